@@ -1,0 +1,52 @@
+/* weald/types.h: result codes, logging and small value types shared by every public header. */
+#ifndef WEALD_TYPES_H
+#define WEALD_TYPES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a call came to. Every failure has been logged once, with its cause, before it is returned. */
+enum wd_result {
+    WD_OK = 0,
+    WD_ERROR_INPUT,       /* a file, option or argument is wrong; the message names it */
+    WD_ERROR_OUTPUT,      /* an output could not be written; nothing half-written remains */
+    WD_ERROR_DEVICE,      /* no usable Vulkan device, or the device was lost */
+    WD_ERROR_MEMORY,      /* host or device memory ran out */
+    WD_ERROR_INTERRUPTED, /* the caller's progress callback asked to stop */
+};
+
+/* Short English name of a result ("input", "output", ...); never NULL. Thread-safe. */
+const char *wd_result_name(enum wd_result result);
+
+enum wd_log_level {
+    WD_LOG_ERROR,
+    WD_LOG_WARNING,
+    WD_LOG_INFO,
+    WD_LOG_DEBUG,
+};
+
+/* Where messages go. `sink` may be NULL: then errors and warnings go to standard error.
+ * `message` is one line of UTF-8 without a newline and lives only during the call.
+ * The sink may be called from any thread that works for the call at hand, one at a time. */
+struct wd_log {
+    void (*sink)(void *user, enum wd_log_level level, const char *message);
+    void *user;
+};
+
+/* How far a long call has come. `report` may be NULL. `done` runs from 0 to `total`, in the
+ * unit that `stage` names ("trees", "frames", ...). Return false to stop the call, which then
+ * returns WD_ERROR_INTERRUPTED and leaves no partial output. Called on the calling thread. */
+struct wd_progress {
+    bool (*report)(void *user, const char *stage, uint64_t done, uint64_t total);
+    void *user;
+};
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,154 @@
+#define _GNU_SOURCE
+#include "base/file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+
+bool wd_file_read(const char *path, size_t max_size, const struct wd_log *log, char **data,
+                  size_t *size)
+{
+    *data = NULL;
+    *size = 0;
+    FILE *stream = fopen(path, "rb");
+    if (!stream)
+        return wd_error(log, "%s: cannot be opened: %s", path, strerror(errno));
+    struct stat info;
+    char *block = NULL;
+    size_t length = 0, capacity = 0;
+    if (fstat(fileno(stream), &info) == 0 && S_ISDIR(info.st_mode)) {
+        wd_error(log, "%s: is a directory, a file is wanted", path);
+        goto fail;
+    }
+    for (;;) {
+        if (length == capacity) {
+            capacity = capacity ? capacity * 2 : 65536;
+            block = wd_realloc(block, capacity + 1);
+        }
+        size_t got = fread(block + length, 1, capacity - length, stream);
+        length += got;
+        if (length > max_size) {
+            wd_error(log, "%s: is larger than the %zu bytes allowed here", path, max_size);
+            goto fail;
+        }
+        if (got == 0)
+            break;
+    }
+    if (ferror(stream)) {
+        wd_error(log, "%s: cannot be read: %s", path, strerror(errno));
+        goto fail;
+    }
+    fclose(stream);
+    block[length] = '\0';
+    *data = block;
+    *size = length;
+    return true;
+fail:
+    free(block);
+    fclose(stream);
+    return false;
+}
+
+bool wd_file_exists(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
+bool wd_make_directories(const char *path, const struct wd_log *log)
+{
+    char *copy = wd_strdup(path);
+    bool ok = true;
+    for (char *at = copy + 1;; at++) {
+        char saved = *at;
+        if (saved != '/' && saved != '\0')
+            continue;
+        *at = '\0';
+        if (mkdir(copy, 0777) != 0 && errno != EEXIST) {
+            ok = wd_error(log, "%s: directory cannot be made: %s", copy, strerror(errno));
+            break;
+        }
+        *at = saved;
+        if (saved == '\0')
+            break;
+    }
+    free(copy);
+    return ok;
+}
+
+char *wd_path_beside(const char *base_file, const char *name)
+{
+    const char *slash = base_file ? strrchr(base_file, '/') : NULL;
+    if (name[0] == '/' || !slash)
+        return wd_strdup(name);
+    return wd_format("%.*s%s", (int)(slash + 1 - base_file), base_file, name);
+}
+
+char *wd_cache_directory(void)
+{
+    const char *cache = getenv("XDG_CACHE_HOME");
+    if (cache && cache[0] == '/')
+        return wd_format("%s/weald", cache);
+    const char *home = getenv("HOME");
+    return wd_format("%s/.cache/weald", home && home[0] == '/' ? home : "/tmp");
+}
+
+char *wd_temporary_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    int directory = slash ? (int)(slash + 1 - path) : 0;
+    return wd_format("%.*s.%d-%s", directory, path, (int)getpid(), path + directory);
+}
+
+bool wd_output_open(struct wd_output_file *file, const char *path, const struct wd_log *log)
+{
+    *file = (struct wd_output_file){.path = wd_strdup(path), .temporary = wd_temporary_name(path)};
+    struct stat info;
+    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) {
+        wd_error(log, "%s: is a directory, cannot be written as a file", path);
+        goto fail;
+    }
+    file->stream = fopen(file->temporary, "wb");
+    if (file->stream)
+        return true;
+    wd_error(log, "%s: cannot be written: %s", path, strerror(errno));
+fail:
+    free(file->path);
+    free(file->temporary);
+    *file = (struct wd_output_file){0};
+    return false;
+}
+
+bool wd_output_commit(struct wd_output_file *file, const struct wd_log *log)
+{
+    bool ok = !ferror(file->stream) && fflush(file->stream) == 0;
+    int error = errno;
+    if (fclose(file->stream) != 0 && ok) {
+        ok = false;
+        error = errno;
+    }
+    file->stream = NULL;
+    if (ok && rename(file->temporary, file->path) != 0) {
+        ok = false;
+        error = errno;
+    }
+    if (!ok)
+        wd_error(log, "%s: cannot be written: %s", file->path, strerror(error));
+    wd_output_discard(file);
+    return ok;
+}
+
+void wd_output_discard(struct wd_output_file *file)
+{
+    if (file->stream)
+        fclose(file->stream);
+    if (file->temporary)
+        unlink(file->temporary); /* after a commit there is nothing under this name */
+    free(file->path);
+    free(file->temporary);
+    *file = (struct wd_output_file){0};
+}

@@ -1,0 +1,44 @@
+/* file.h: whole files in, whole files out. */
+#ifndef WD_BASE_FILE_H
+#define WD_BASE_FILE_H
+
+#include <stdio.h>
+
+#include "weald/types.h"
+
+/* Reads a file into a fresh block with a NUL after its end (not counted in *size). Refuses
+ * directories and anything over `max_size` bytes with a message. free() the block. */
+bool wd_file_read(const char *path, size_t max_size, const struct wd_log *log, char **data,
+                  size_t *size);
+
+bool wd_file_exists(const char *path);
+
+/* Makes `path` and its parents. An existing directory is fine. */
+bool wd_make_directories(const char *path, const struct wd_log *log);
+
+/* `name` as seen from the directory of `base_file` ("" or NULL: the working directory);
+ * absolute names stay. free() it. */
+char *wd_path_beside(const char *base_file, const char *name);
+
+/* Directory for cached bakes: $XDG_CACHE_HOME/weald or ~/.cache/weald. free() it. */
+char *wd_cache_directory(void);
+
+/* An output that appears whole or not at all: written beside `path` under a temporary name,
+ * renamed by commit. `{0}` is closed. */
+struct wd_output_file {
+    FILE *stream;
+    char *path;
+    char *temporary;
+};
+
+bool wd_output_open(struct wd_output_file *file, const char *path, const struct wd_log *log);
+/* Flushes, checks every earlier write, renames. On failure the old file at `path` is untouched. */
+bool wd_output_commit(struct wd_output_file *file, const struct wd_log *log);
+/* Drops the temporary file. Accepts a committed file and `{0}`. */
+void wd_output_discard(struct wd_output_file *file);
+
+/* A fresh temporary name beside `path` (same directory and extension) for writers that insist on
+ * opening by name. free() it. */
+char *wd_temporary_name(const char *path);
+
+#endif

@@ -1,0 +1,76 @@
+#include "base/log.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static void log_message(const struct wd_log *log, enum wd_log_level level, const char *format,
+                        va_list args)
+{
+    char message[2048];
+    vsnprintf(message, sizeof message, format, args);
+    if (log && log->sink) {
+        log->sink(log->user, level, message);
+        return;
+    }
+    if (level > WD_LOG_WARNING)
+        return;
+    fprintf(stderr, "weald: %s%s\n", level == WD_LOG_WARNING ? "warning: " : "", message);
+}
+
+bool wd_error(const struct wd_log *log, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    log_message(log, WD_LOG_ERROR, format, args);
+    va_end(args);
+    return false;
+}
+
+void wd_warn(const struct wd_log *log, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    log_message(log, WD_LOG_WARNING, format, args);
+    va_end(args);
+}
+
+void wd_info(const struct wd_log *log, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    log_message(log, WD_LOG_INFO, format, args);
+    va_end(args);
+}
+
+void wd_debug(const struct wd_log *log, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    log_message(log, WD_LOG_DEBUG, format, args);
+    va_end(args);
+}
+
+bool wd_progress_report(const struct wd_progress *progress, const char *stage, uint64_t done,
+                        uint64_t total)
+{
+    return !progress || !progress->report || progress->report(progress->user, stage, done, total);
+}
+
+const char *wd_result_name(enum wd_result result)
+{
+    switch (result) {
+    case WD_OK:
+        return "ok";
+    case WD_ERROR_INPUT:
+        return "input";
+    case WD_ERROR_OUTPUT:
+        return "output";
+    case WD_ERROR_DEVICE:
+        return "device";
+    case WD_ERROR_MEMORY:
+        return "memory";
+    case WD_ERROR_INTERRUPTED:
+        return "interrupted";
+    }
+    return "unknown";
+}
