@@ -1,0 +1,81 @@
+/* pipeline.h: compute and graphics pipelines from SPIR-V that is embedded in the program. */
+#ifndef WD_GPU_PIPELINE_H
+#define WD_GPU_PIPELINE_H
+
+#include "gpu/device.h"
+
+/* SPIR-V words as the build embeds them: `static const struct wd_spirv NAME` in NAME.spv.h. */
+struct wd_spirv {
+    const uint32_t *words;
+    size_t size; /* bytes */
+    const char *name;
+};
+
+/* One descriptor set (set 0); binding i has type types[i]. All stages see all bindings. */
+enum { WD_MAX_BINDINGS = 16 };
+struct wd_bindings {
+    uint32_t count;
+    VkDescriptorType types[WD_MAX_BINDINGS];
+};
+
+struct wd_pipeline {
+    VkPipeline pipeline;
+    VkPipelineLayout layout;
+    VkDescriptorSetLayout set_layout;
+    VkPipelineBindPoint bind_point;
+    struct wd_bindings bindings;
+    uint32_t push_size;
+};
+
+/* Specialization constants 0..count-1, 32 bits each. */
+struct wd_spec_constants {
+    uint32_t count;
+    const uint32_t *values;
+};
+
+struct wd_compute_params {
+    struct wd_spirv shader;
+    struct wd_bindings bindings;
+    uint32_t push_size; /* bytes of push constants, at most 128 */
+    struct wd_spec_constants constants;
+};
+bool wd_pipeline_init_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+                              const struct wd_compute_params *params);
+
+enum { WD_MAX_COLOR_TARGETS = 4 };
+enum wd_cull { WD_CULL_NONE, WD_CULL_BACK, WD_CULL_FRONT };
+enum wd_blend { WD_BLEND_OFF, WD_BLEND_PREMULTIPLIED };
+struct wd_graphics_params {
+    struct wd_spirv vertex;
+    struct wd_spirv fragment; /* .words NULL: depth only */
+    struct wd_bindings bindings;
+    uint32_t push_size;
+    struct wd_spec_constants constants; /* for both stages */
+    uint32_t color_count;
+    VkFormat color_formats[WD_MAX_COLOR_TARGETS];
+    enum wd_blend blend;
+    VkFormat depth_format;       /* VK_FORMAT_UNDEFINED: no depth */
+    VkCompareOp depth_compare;   /* VK_COMPARE_OP_NEVER (0): GREATER, depth is reversed: 1 near, 0 far */
+    bool depth_read_only;
+    enum wd_cull cull;           /* counter-clockwise is front */
+    VkPrimitiveTopology topology; /* 0 would be points: set TRIANGLE_LIST yourself */
+    float depth_bias_constant, depth_bias_slope; /* both 0: off */
+    bool depth_clamp;            /* used where the device can */
+};
+/* Vertices are pulled from storage buffers: there is no vertex input. Viewport and scissor are
+ * dynamic; wd_cmd_begin_rendering sets them. */
+bool wd_pipeline_init_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+                               const struct wd_graphics_params *params);
+void wd_pipeline_finish(struct wd_pipeline *pipeline, struct wd_gpu *gpu);
+
+enum wd_sampler_kind {
+    WD_SAMPLER_NEAREST_CLAMP,
+    WD_SAMPLER_LINEAR_CLAMP,
+    WD_SAMPLER_LINEAR_REPEAT,
+    WD_SAMPLER_TRILINEAR_CLAMP,
+    WD_SAMPLER_TRILINEAR_REPEAT,
+    WD_SAMPLER_SHADOW, /* linear compare GREATER_OR_EQUAL, border 0 */
+};
+bool wd_sampler_init(VkSampler *sampler, struct wd_gpu *gpu, enum wd_sampler_kind kind);
+
+#endif
