@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "base/jobs.h"
 
 #include <pthread.h>

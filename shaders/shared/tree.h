@@ -1,0 +1,39 @@
+/* tree.h: a placed tree and a tree model's vertex, as the CPU and the GPU both see them. */
+#ifndef WD_SHARED_TREE_H
+#define WD_SHARED_TREE_H
+
+#include "shared/types.h"
+
+/* One standing tree. Positions are whole millimetres east, north and up of the world's origin, so
+ * that a shader can subtract the camera's millimetres exactly: nothing jitters, however far the
+ * world's origin is. 32 bytes. */
+struct wd_tree {
+    int32_t x_mm, y_mm, z_mm; /* the trunk's foot, on the ground */
+    uint32_t id;              /* 1..: the same tree has the same id at every level and frame */
+    uint32_t kind;            /* species index in bits 0..15, model variant in bits 16..23 */
+    uint32_t size;            /* height in cm in bits 0..15; crown diameter in cm in bits 16..31 */
+    uint32_t look;            /* yaw in 1/65536 turns in bits 0..15; tint in bits 16..23 (128 is
+                                 neutral); bit 24: mirrored */
+    uint32_t random;          /* the tree's own random number: fades, blends, wind phase */
+};
+WD_STATIC_ASSERT_SIZE(wd_tree, 32);
+
+#define WD_TREE_SPECIES(tree) ((tree).kind & 0xffffu)
+#define WD_TREE_VARIANT(tree) (((tree).kind >> 16) & 0xffu)
+#define WD_TREE_HEIGHT_M(tree) (float((tree).size & 0xffffu) * 0.01)
+#define WD_TREE_CROWN_M(tree) (float((tree).size >> 16) * 0.01)
+
+/* A vertex of a tree model: metres, z up, the trunk's foot at (0, 0, 0), in the model's own size.
+ * 28 bytes. */
+struct wd_tree_vertex {
+    WD_VEC3(position_m);
+    uint32_t normal; /* octahedral, two 16-bit snorm (x in the low half) */
+    uint32_t uv;     /* two half floats: bark: turns around, metres along; leaf: 0..1 across, along */
+    uint32_t tint;   /* R, G, B: multiplier of the look texture, 255 is 1; A: sky openness of the
+                        place in the crown, 0 dark .. 255 free */
+    uint32_t kind;   /* bits 0..7: flexibility (0 trunk foot .. 255 leaf tip); bit 8: leaf */
+};
+WD_STATIC_ASSERT_SIZE(wd_tree_vertex, 28);
+#define WD_VERTEX_LEAF 0x100u
+
+#endif

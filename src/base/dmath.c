@@ -1,0 +1,105 @@
+#include "base/dmath.h"
+
+#include <math.h>
+
+#define LN2_HIGH 6.93147180369123816490e-01
+#define LN2_LOW 1.90821492927058770002e-10
+
+/* Taylor polynomials on [-pi/4, pi/4]: the first dropped term is below 1e-17. */
+static double sin_poly(double x)
+{
+    double x2 = x * x, sum = 0.0;
+    for (int n = 17; n >= 3; n -= 2)
+        sum = (1.0 + sum) * (-x2 / (double)(n * (n - 1)));
+    return x + x * sum;
+}
+
+static double cos_poly(double x)
+{
+    double x2 = x * x, sum = 0.0;
+    for (int n = 18; n >= 2; n -= 2)
+        sum = (1.0 + sum) * (-x2 / (double)(n * (n - 1)));
+    return 1.0 + sum;
+}
+
+static double sin_quadrant(double x, int shift)
+{
+    double turns = floor(x * (2.0 / WD_PI) + 0.5);
+    /* pi/2 in two parts keeps the reduction exact for the arguments used here */
+    double rest = (x - turns * 1.57079632673412561417e+00) - turns * 6.07710050650619224932e-11;
+    int quadrant = (int)((long long)turns + shift) & 3;
+    double value = quadrant & 1 ? cos_poly(rest) : sin_poly(rest);
+    return quadrant & 2 ? -value : value;
+}
+
+double wd_dsin(double x)
+{
+    return sin_quadrant(x, 0);
+}
+
+double wd_dcos(double x)
+{
+    return sin_quadrant(x, 1);
+}
+
+double wd_dexp(double x)
+{
+    if (x > 709.0)
+        x = 709.0;
+    if (x < -708.0)
+        return 0.0;
+    double power = floor(x * 1.44269504088896340736 + 0.5);
+    double rest = (x - power * LN2_HIGH) - power * LN2_LOW;
+    double sum = 1.0;
+    for (int n = 16; n >= 1; n--)
+        sum = 1.0 + sum * rest / (double)n;
+    return ldexp(sum, (int)power);
+}
+
+double wd_dlog(double x)
+{
+    if (!(x > 0.0))
+        return -1e308;
+    int exponent;
+    double mantissa = frexp(x, &exponent); /* [0.5, 1) */
+    if (mantissa < 0.70710678118654752440) {
+        mantissa *= 2.0;
+        exponent--;
+    }
+    /* ln m = 2 atanh((m - 1) / (m + 1)), |argument| < 0.172 */
+    double t = (mantissa - 1.0) / (mantissa + 1.0), t2 = t * t, sum = 0.0;
+    for (int n = 21; n >= 1; n -= 2)
+        sum = sum * t2 + 1.0 / (double)n;
+    return (double)exponent * LN2_HIGH + ((double)exponent * LN2_LOW + 2.0 * t * sum);
+}
+
+double wd_dpow(double x, double y)
+{
+    if (y == 0.0)
+        return 1.0;
+    if (!(x > 0.0))
+        return 0.0;
+    return wd_dexp(y * wd_dlog(x));
+}
+
+/* atan on [0, 1] by two halvings of the angle and the series. */
+static double atan_unit(double x)
+{
+    for (int i = 0; i < 2; i++)
+        x = x / (1.0 + sqrt(1.0 + x * x));
+    double x2 = x * x, sum = 0.0;
+    for (int n = 23; n >= 1; n -= 2)
+        sum = 1.0 / (double)n - x2 * sum;
+    return 4.0 * x * sum;
+}
+
+double wd_datan2(double y, double x)
+{
+    double ax = fabs(x), ay = fabs(y);
+    if (ax == 0.0 && ay == 0.0)
+        return 0.0;
+    double angle = ay <= ax ? atan_unit(ay / ax) : WD_PI / 2.0 - atan_unit(ax / ay);
+    if (x < 0.0)
+        angle = WD_PI - angle;
+    return y < 0.0 ? -angle : angle;
+}

@@ -1,0 +1,80 @@
+/* keys.h: one table a JSON object says what keys it has; reading, defaults, errors with
+ * file:line:column, "did you mean" and the published JSON Schema all follow from it. */
+#ifndef WD_SCENE_KEYS_H
+#define WD_SCENE_KEYS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+
+enum wd_key_kind {
+    WD_KEY_DOUBLE,  /* double */
+    WD_KEY_FLOAT,   /* float */
+    WD_KEY_INTEGER, /* int64_t */
+    WD_KEY_BOOL,    /* bool */
+    WD_KEY_STRING,  /* const char *, in the arena; NULL when absent without default */
+    WD_KEY_ENUM,    /* int: index into `choices` */
+    WD_KEY_RANGE,   /* float[2]: a number n (becomes n, n) or [min, max], min <= max */
+    WD_KEY_VECTOR,  /* double[length] */
+    WD_KEY_COLOR,   /* float[3], linear sRGB: [r, g, b] in 0..1 linear, or "#rrggbb" (sRGB) */
+    WD_KEY_OBJECT,  /* struct of `table` */
+    WD_KEY_LIST,    /* pointer to items of `table` (in the arena) and size_t at count_offset */
+    WD_KEY_MAP,     /* as LIST, from an object with free names; each item's first member is
+                       `const char *name` */
+    WD_KEY_STRINGS, /* const char ** and size_t at count_offset; a lone string is a list of one */
+    WD_KEY_INTEGERS,/* int64_t * and size_t at count_offset; a lone number is a list of one */
+    WD_KEY_NUMBERS, /* double * and size_t at count_offset */
+    WD_KEY_STRING_MAP, /* struct wd_string_pair * and size_t at count_offset: free names -> text */
+};
+
+struct wd_string_pair {
+    const char *name;
+    const char *value;
+};
+
+enum wd_key_flag {
+    WD_KEY_REQUIRED = 1 << 0,
+    WD_KEY_EXCLUSIVE_MIN = 1 << 1, /* value > min, not >= */
+};
+
+struct wd_keys;
+struct wd_keys_place; /* where in the file the reader is, for errors about an object already read */
+struct wd_key {
+    const char *name;
+    enum wd_key_kind kind;
+    size_t offset;       /* of the member in the struct */
+    double min, max;     /* numbers and each part of ranges and vectors; both 0: any finite value */
+    const char *fallback; /* default as JSON text; NULL: zero bytes (an OBJECT still gets its keys'
+                             own defaults) */
+    const char *doc;     /* one sentence with the unit; goes into the schema */
+    const char *const *choices; /* ENUM: NULL-terminated */
+    const struct wd_keys *table; /* OBJECT, LIST, MAP */
+    size_t count_offset;
+    size_t length;       /* VECTOR: number of parts */
+    unsigned flags;
+};
+struct wd_keys {
+    const char *title;
+    const struct wd_key *keys; /* ends with .name == NULL */
+    size_t size;               /* sizeof the struct it fills */
+    /* Checks across keys, or NULL; reports with wd_keys_error and returns false. */
+    bool (*check)(void *object, const struct wd_keys_place *place);
+};
+
+/* Logs "file:line:column: path.key: message". `key` NULL points at the object itself. Returns false. */
+bool wd_keys_error(const struct wd_keys_place *place, const char *key, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Reads JSON with // and block comments from memory into `object` (table->size bytes). `path`
+ * names the file in messages. Everything allocated lives in `arena`. Every error is logged with
+ * file:line:column, the key's path, what was found and what is allowed; unknown keys are errors
+ * with a "did you mean". */
+bool wd_keys_read(const struct wd_keys *table, const char *path, const char *text, size_t size,
+                  struct wd_arena *arena, const struct wd_log *log, void *object);
+
+/* The JSON Schema (draft 2020-12) of a table, as text; free() it. */
+char *wd_keys_schema(const struct wd_keys *table, const char *id);
+
+#endif

@@ -1,0 +1,40 @@
+/* grow.h: one individual of a species, grown from its file. Pure CPU, deterministic. */
+#ifndef WD_TREE_GROW_H
+#define WD_TREE_GROW_H
+
+#include "base/log.h"
+#include "scene/species.h"
+#include "tree/mesh.h"
+
+struct wd_grow_params {
+    uint32_t seed;     /* the variant: another seed, another individual */
+    float height_m;    /* 0: the species' typical height */
+    float openness;    /* 0 forest-grown (narrow, high crown) .. 1 open-grown (wide, low crown) */
+    float detail;      /* leaves and twigs of the full mesh relative to the species' own number;
+                          0 means 1 */
+};
+
+/* A grown tree: the full mesh and its reduced mesh (about a tenth of the triangles; leaves are a
+ * fair sample of the full set, enlarged so that leaf area is kept). */
+struct wd_tree_model {
+    struct wd_tree_mesh full;
+    struct wd_tree_mesh reduced;
+    float height_m;       /* of the highest point */
+    float crown_radius_m; /* mean horizontal reach of the crown */
+    float crown_base_m;   /* height of the lowest living branch */
+    float dbh_m;          /* stem diameter at 1.3 m */
+    float leaf_area_m2;   /* one side, of the full mesh */
+};
+
+/* Grows `*model`; the same parameters give the same bytes on any machine. False, with {0}, for
+ * parameters outside the species' range (logged). */
+bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
+                  const struct wd_grow_params *params, const struct wd_log *log);
+void wd_tree_model_finish(struct wd_tree_model *model);
+
+/* Look textures, generated: `size` x `size` texels RGBA8 (sRGB colour, A = 255), tileable bark and
+ * one leaf (or needle shoot) that fills the square. `rgba` holds size * size * 4 bytes. */
+void wd_species_bark_texture(const struct wd_species *species, uint32_t size, uint8_t *rgba);
+void wd_species_leaf_texture(const struct wd_species *species, uint32_t size, uint8_t *rgba);
+
+#endif
