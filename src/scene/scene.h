@@ -1,0 +1,193 @@
+/* scene.h: what a scene file says, validated, as plain structs. */
+#ifndef WD_SCENE_SCENE_H
+#define WD_SCENE_SCENE_H
+
+#include "scene/species.h"
+
+enum wd_terrain_kind { WD_TERRAIN_FLAT, WD_TERRAIN_DIAMOND_SQUARE, WD_TERRAIN_RASTER };
+enum wd_nodata_rule { WD_NODATA_FILL, WD_NODATA_CUT };
+
+struct wd_scene_terrain {
+    int kind;                /* enum wd_terrain_kind */
+    double size_m[2];        /* flat, diamond-square: east, north extent */
+    double cell_m;           /* diamond-square: sample spacing; raster: wanted spacing, 0: its own */
+    double relief_m;         /* diamond-square: highest minus lowest */
+    double roughness;        /* diamond-square: y of R1; smooth from 0.8 */
+    double valley;           /* diamond-square: 0 none .. 1 a valley carved along the y axis */
+    double base_m;           /* flat: its height; others: added to every height */
+    const char *file;        /* raster: any GDAL raster, beside the scene file */
+    const char *crs;         /* raster: CRS to assume where the file has none, e.g. "EPSG:4326" */
+    const char *target_crs;  /* raster: metres CRS to reproject to; NULL: the UTM zone for degrees */
+    const char *unit;        /* raster without CRS: "metres" says x and y are metres already */
+    int64_t band;            /* raster: 1.. */
+    double nodata;           /* raster: value to take as missing besides the file's own; NaN: none */
+    int nodata_rule;         /* enum wd_nodata_rule */
+    double *window_m;        /* raster: xmin, ymin, xmax, ymax in the target CRS; NULL: all */
+    size_t window_count;     /* 0 or 4 */
+    double vertical_scale;
+};
+
+/* A raster that gives a probability (or a height) at each place. */
+struct wd_scene_map {
+    const char *file;        /* NULL: no map */
+    const char *crs;         /* to assume where the file has none; "local": stretched over the terrain */
+    int64_t band;
+    int64_t *classes;        /* land cover: probability 1 where the value is listed */
+    size_t class_count;
+    double *class_density;   /* parallel to classes: probability of each; NULL: 1 */
+    size_t class_density_count;
+    float value_range[2];    /* otherwise: value at probability 0 and at 1 */
+};
+
+struct wd_scene_share {
+    const char *name;        /* species */
+    double share;            /* exact probability of this species in the layer, relative */
+};
+
+enum wd_layer_placement { WD_PLACE_GRID, WD_PLACE_POISSON, WD_PLACE_CANOPY };
+struct wd_scene_layer {
+    const char *name;
+    int placement;           /* grid: one per jittered cell (I1); poisson: R2; canopy: one a local
+                                maximum of a canopy-height raster, with that height */
+    struct wd_scene_share *species;
+    size_t species_count;
+    double spacing_m;        /* grid: cell size; poisson: square size; canopy: least distance */
+    double jitter;           /* 0 centres .. 1 anywhere in the cell */
+    double density;          /* grid: probability a cell is planted; poisson: mean a square */
+    struct wd_scene_map map; /* probability map */
+    struct wd_scene_map canopy; /* canopy heights in metres */
+    float slope_deg[2];      /* planted only between; soft over slope_fade_deg */
+    double slope_fade_deg;
+    double altitude_m[2];    /* planted only between; soft over altitude_fade_m */
+    double altitude_fade_m;
+    double patchiness;       /* 0 even .. 1 groves and clearings, of patch_size_m, by hashed noise */
+    double patch_size_m;
+    float height_m[2];       /* drawn evenly between */
+    float aspect[2];         /* crown width, as a factor of the species' own at that height */
+    double tint;             /* spread of colour between trees, 0..1 */
+    double fade_near_m[2];   /* 0, 0: none. Seen only beyond, fading in over this span (I7) */
+    double fade_far_m[2];    /* 0, 0: none. Fades out over this span */
+    double mesh_distance_m;  /* 3D meshes nearer than this (I6); 0: the quality's own */
+};
+
+enum wd_outside_rule { WD_OUTSIDE_DROP, WD_OUTSIDE_KEEP, WD_OUTSIDE_ERROR };
+struct wd_scene_inventory {
+    const char *file;
+    const char *delimiter;   /* NULL: found out from the header row (, ; tab) */
+    struct {
+        const char *x, *y, *species, *dbh, *height, *crown_diameter, *id, *status;
+    } columns;               /* NULL: found out from usual names */
+    const char *dbh_unit;    /* "cm" (default), "mm", "m", "in" */
+    const char *height_unit; /* "m" (default), "cm", "ft" */
+    const char *frame;       /* "local" (default): metres from the terrain's south-west corner;
+                                "projected": the terrain's own coordinates; or "EPSG:n" */
+    double offset_m[2];      /* added to x, y */
+    double rotate_deg;       /* local frame: turned counter-clockwise about its origin, before */
+    struct wd_string_pair *species; /* name in the file -> species name; "*": any other */
+    size_t species_count;
+    const char **dead;       /* values of the status column that mean dead: left out, counted */
+    size_t dead_count;
+    int outside;             /* enum wd_outside_rule */
+    float height_m[2];       /* where neither height nor dbh is given: drawn evenly between */
+};
+
+struct wd_scene_camera {
+    const char *name;
+    const char *frame;       /* "local" (default) or "projected" */
+    double position_m[3];    /* x, y, z; z above the ground unless absolute */
+    double *look_at_m;       /* x, y, z, or NULL: yaw and pitch count */
+    size_t look_at_count;    /* 0 or 3 */
+    double yaw_deg;          /* clockwise from north */
+    double pitch_deg;        /* up */
+    double fov_deg;          /* vertical */
+    bool absolute;           /* z is above the world's zero, not above the ground */
+};
+
+struct wd_scene_path {
+    const char *name;
+    double duration_s;
+    struct wd_scene_camera *keys; /* evenly spaced in time; Catmull-Rom between */
+    size_t key_count;
+};
+
+struct wd_scene {
+    const char *path;        /* of the file */
+    const char *name;
+    int64_t seed;
+    struct wd_scene_terrain terrain;
+    struct wd_string_pair *species_files; /* name -> file, beside the scene file */
+    size_t species_file_count;
+    struct wd_species *species; /* loaded, parallel to species_files */
+    int64_t variants;        /* grown individuals a species */
+    struct wd_scene_layer *layers;
+    size_t layer_count;
+    struct wd_scene_inventory *inventories;
+    size_t inventory_count;
+    struct {
+        double azimuth_deg;  /* clockwise from north */
+        double elevation_deg;
+        double angular_diameter_deg;
+        double strength;     /* 1: the sun of a clear day */
+    } sun;
+    struct {
+        double turbidity;    /* 1.8 clear .. 10 hazy */
+        double strength;
+    } sky;
+    struct {
+        double visibility_m; /* distance at which contrast falls to 2% */
+        double height_m;     /* the haze thins by e over this height */
+        double base_m;       /* height of full density, above the world's zero */
+    } fog;
+    struct {
+        double speed_mps;    /* mean at 10 m */
+        double direction_deg;/* where it blows from, clockwise from north */
+        double gust;         /* share of the mean */
+    } wind;
+    struct {
+        bool enabled;
+        double level_m;      /* above the world's zero */
+        float color[3];      /* linear, of deep water */
+        double clarity_m;    /* depth at which the ground fades by e */
+    } water;
+    struct {
+        float grass[3], soil[3], rock[3], litter[3]; /* linear albedo */
+        double rock_slope_deg;
+        double snow_line_m;  /* above the world's zero; 0: none */
+        double tree_line_m;  /* 0: none */
+    } ground;
+    struct wd_scene_camera *cameras;
+    size_t camera_count;
+    struct wd_scene_path *paths;
+    size_t path_count;
+    const char *method;      /* "octree", "separate" */
+    struct {
+        int64_t width, height;
+        int64_t samples;
+        double mesh_distance_m;    /* full meshes nearer than this, for a tree of 20 m */
+        double reduced_distance_m; /* reduced meshes nearer than this */
+        double blend;              /* share of a distance over which levels blend */
+        int64_t max_cull_depth;    /* octree method; 7 in Guerrero 2006 */
+        int64_t shadow_size;       /* texels a side of a cascade */
+        double shadow_distance_m;
+        int64_t shadow_taps;
+        double exposure_ev;        /* added to automatic exposure */
+        double terrain_error_px;
+    } quality;
+    struct wd_arena arena;   /* owns all of the above */
+};
+
+extern const struct wd_keys wd_scene_keys;
+
+/* Reads a scene file and every species file it names. On failure `*scene` is `{0}`; all errors
+ * that can be found in one pass have been logged. */
+bool wd_scene_load(struct wd_scene *scene, const char *path, const struct wd_log *log);
+void wd_scene_finish(struct wd_scene *scene);
+
+const struct wd_scene_camera *wd_scene_find_camera(const struct wd_scene *scene, const char *name);
+/* Index into scene->species, or -1. */
+int wd_scene_find_species(const struct wd_scene *scene, const char *name);
+
+/* The name among `names` nearest to `wanted` by edit distance, or NULL when none is near. */
+const char *wd_nearest_name(const char *wanted, const char *const *names, size_t count);
+
+#endif

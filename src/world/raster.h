@@ -1,0 +1,31 @@
+/* raster.h: any GDAL raster, resampled to a grid in the terrain's local frame. */
+#ifndef WD_WORLD_RASTER_H
+#define WD_WORLD_RASTER_H
+
+#include "world/terrain.h"
+
+enum wd_resampling { WD_RESAMPLE_NEAREST, WD_RESAMPLE_LINEAR, WD_RESAMPLE_MAX };
+
+/* width * height values, row 0 in the south, covering the terrain's extent: cell (i, j) covers
+ * local [i, i+1) * cell_x_m by [j, j+1) * cell_y_m. NaN: no data. */
+struct wd_raster {
+    uint32_t width, height;
+    double cell_x_m, cell_y_m;
+    float *values;
+};
+
+/* Reads `map->file` (beside the scene file) over the terrain's extent, with its own resolution
+ * (bounded by max_samples). A raster that does not overlap the terrain is an error. */
+bool wd_raster_load(struct wd_raster *raster, const struct wd_scene *scene,
+                    const struct wd_scene_map *map, const struct wd_terrain *terrain,
+                    enum wd_resampling resampling, uint64_t max_samples, const struct wd_log *log);
+void wd_raster_finish(struct wd_raster *raster);
+/* NaN outside or where there is no data. */
+float wd_raster_at(const struct wd_raster *raster, double x_m, double y_m);
+
+/* Reprojects points from `from_crs` ("EPSG:n" or WKT) to the terrain's CRS, in place, x then y
+ * (longitude then latitude for degrees). */
+bool wd_reproject(const char *from_crs, const char *to_crs, double *x, double *y, size_t count,
+                  const struct wd_log *log);
+
+#endif

@@ -1,0 +1,48 @@
+/* world.h: a scene come to life: ground, standing trees, octree. Pure CPU. */
+#ifndef WD_WORLD_WORLD_H
+#define WD_WORLD_WORLD_H
+
+#include "world/octree.h"
+#include "world/terrain.h"
+
+struct wd_world_params {
+    uint32_t seed;          /* used when has_seed; else the scene's */
+    bool has_seed;
+    unsigned threads;       /* 0: all */
+    uint64_t max_trees;     /* 0: 64 million; more is an error that says so */
+    const struct wd_progress *progress;
+    const struct wd_log *log;
+};
+
+/* What became of an inventory's rows. */
+struct wd_inventory_report {
+    uint64_t rows, planted, dead, duplicates, outside, invalid;
+};
+
+/* Local frame: metres east, north, up; local (0, 0) is the terrain's south-west corner
+ * (terrain.origin_m in projected coordinates), z 0 is the terrain's vertical datum. */
+struct wd_world {
+    struct wd_terrain terrain;
+    struct wd_tree *trees;          /* in octree order; ids 1.. follow the order of placement */
+    size_t tree_count;
+    uint32_t *tree_of_id;           /* tree_of_id[id] is an index into trees; [0] unused */
+    uint64_t *species_counts;       /* parallel to scene->species */
+    uint8_t *layer_of_tree;         /* parallel to trees: layer index; 255: inventory */
+    struct wd_inventory_report *inventories; /* parallel to scene->inventories */
+    struct wd_octree octree;
+    /* Canopy cover of the ground, 0..255, on a grid of cover_cell_m over the terrain, for the
+     * colour of the forest floor. */
+    uint8_t *cover;
+    uint32_t cover_width, cover_height;
+    double cover_cell_m;
+    uint32_t seed;
+};
+
+bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
+                   const struct wd_world_params *params);
+void wd_world_finish(struct wd_world *world);
+
+/* xxh64 over all trees in id order: equal worlds have equal hashes on every machine. */
+uint64_t wd_world_hash(const struct wd_world *world);
+
+#endif
