@@ -1,0 +1,123 @@
+/* weald/forest.h: a scene file come to life on the CPU: ground, standing trees, cameras. */
+#ifndef WEALD_FOREST_H
+#define WEALD_FOREST_H
+
+#include "weald/types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Frames of reference. Local: metres east (x), north (y), up (z) of the terrain's south-west
+ * corner; z 0 is the terrain's vertical datum. Projected: the terrain's own coordinate system;
+ * projected = local + wd_forest_info.origin_m in x and y, z alike. */
+
+struct wd_forest;
+
+struct wd_forest_params {
+    const char *scene_path; /* a scene file; required */
+    const char *data_dir;   /* what ${data} stands for in the scene's file names; NULL: none given */
+    const char *seed;       /* decimal, replaces the scene's seed; NULL: the scene's own */
+    unsigned threads;       /* 0: one a processor. The forest is the same for any number */
+    uint64_t max_trees;     /* 0: 64 million; a scene with more is refused */
+    struct wd_progress progress;
+    struct wd_log log;
+};
+
+/* Reads the scene, makes the ground and plants every tree. The same scene and seed give the same
+ * forest on any machine, compiler and number of threads. Takes about a second for a million trees.
+ *   forest  receives the new object, NULL on failure; destroy with wd_forest_destroy
+ *   params  read during the call only
+ * Errors: WD_ERROR_INPUT (the log names file, line and key), WD_ERROR_MEMORY,
+ * WD_ERROR_INTERRUPTED. Thread-safe for different forests. */
+enum wd_result wd_forest_create(struct wd_forest **forest, const struct wd_forest_params *params);
+
+/* Frees the forest; no renderer may still use it. Accepts NULL and a pointer to NULL. */
+void wd_forest_destroy(struct wd_forest **forest);
+
+struct wd_forest_info {
+    const char *name;
+    uint64_t tree_count;
+    uint32_t species_count, layer_count, inventory_count;
+    double min_m[3], max_m[3]; /* local frame: ground and trees */
+    double origin_m[2];        /* projected coordinates of local (0, 0) */
+    const char *crs;           /* WKT of the projected frame, or NULL */
+    uint64_t host_bytes;       /* memory held for terrain, trees and octree */
+    uint64_t hash;             /* equal worlds have equal hashes */
+    uint32_t seed;
+    uint32_t octant_count, octree_depth;
+    double terrain_cell_m;
+};
+
+/* Fills `*info`; its strings live as long as the forest. Thread-safe. */
+void wd_forest_get_info(const struct wd_forest *forest, struct wd_forest_info *info);
+
+struct wd_species_info {
+    const char *name, *latin;
+    uint64_t tree_count;
+};
+/* index < species_count; false beyond. Thread-safe. */
+bool wd_forest_get_species(const struct wd_forest *forest, uint32_t index,
+                           struct wd_species_info *info);
+
+struct wd_inventory_info {
+    const char *file;
+    uint64_t rows, planted, dead, duplicates, outside;
+};
+bool wd_forest_get_inventory(const struct wd_forest *forest, uint32_t index,
+                             struct wd_inventory_info *info);
+
+struct wd_tree_info {
+    uint32_t id;
+    uint32_t species;      /* index for wd_forest_get_species */
+    double position_m[3];  /* local: the trunk's foot */
+    double height_m, crown_diameter_m, yaw_rad;
+};
+/* The tree with this id (1..tree_count, as in the tree_id layer of a picture). Thread-safe. */
+bool wd_forest_get_tree(const struct wd_forest *forest, uint32_t id, struct wd_tree_info *info);
+
+/* Height of the ground at a local place, metres; outside, that of the nearest edge. Thread-safe. */
+double wd_forest_ground_m(const struct wd_forest *forest, double x_m, double y_m);
+
+/* A pinhole camera. */
+struct wd_camera {
+    double position_m[3]; /* local frame; z above the datum */
+    double yaw_rad;       /* clockwise from north */
+    double pitch_rad;     /* up from the horizon */
+    double fov_rad;       /* vertical field of view, (0, pi) */
+};
+
+/* Names of the scene's cameras and paths, in file order; NULL beyond the last. Every scene has at
+ * least one camera. The strings live as long as the forest. */
+const char *wd_forest_camera_name(const struct wd_forest *forest, uint32_t index);
+const char *wd_forest_path_name(const struct wd_forest *forest, uint32_t index);
+
+/* The camera called `name` (NULL: the first). WD_ERROR_INPUT, with the names there are, if none. */
+enum wd_result wd_forest_get_camera(const struct wd_forest *forest, const char *name,
+                                    struct wd_camera *camera);
+
+/* The camera on path `name` (NULL: the first) at `time_s`, clamped to the path's duration;
+ * `*duration_s` may be NULL. Catmull-Rom through the path's keys. */
+enum wd_result wd_forest_get_path_camera(const struct wd_forest *forest, const char *name,
+                                         double time_s, struct wd_camera *camera,
+                                         double *duration_s);
+
+/* What the scene asks for where the caller does not say otherwise. */
+struct wd_render_defaults {
+    uint32_t width, height, samples;
+    const char *method;
+};
+void wd_forest_get_render_defaults(const struct wd_forest *forest,
+                                   struct wd_render_defaults *defaults);
+
+/* Checks a file without building anything: a scene or species (.json), an inventory (.csv) or a
+ * raster. Every fault found is logged with file, line and key. */
+enum wd_result wd_file_check(const char *path, const char *data_dir, const struct wd_log *log);
+
+/* JSON Schema of scene ("scene") or species ("species") files; free() the text. NULL otherwise. */
+char *wd_schema_text(const char *kind);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,148 @@
+/* weald/renderer.h: pictures of a forest, on a Vulkan device that the renderer opens itself. */
+#ifndef WEALD_RENDERER_H
+#define WEALD_RENDERER_H
+
+#include "weald/forest.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct wd_renderer;
+
+enum wd_validation {
+    WD_VALIDATION_OFF,
+    WD_VALIDATION_ON, /* Vulkan validation and synchronization validation; abort at the first error */
+};
+
+struct wd_renderer_params {
+    const char *gpu; /* NULL: the best device; "software"; or a part of a device's name */
+    enum wd_validation validation;
+    const char *cache_dir; /* of baked trees; NULL: $XDG_CACHE_HOME/weald; "": no cache */
+    unsigned threads;
+    struct wd_progress progress; /* of wd_renderer_set_forest */
+    struct wd_log log;
+};
+
+/* Opens a device and builds the pipelines.
+ * Errors: WD_ERROR_DEVICE (no Vulkan, no such device, a feature is missing), WD_ERROR_MEMORY.
+ * A renderer may be used by one thread at a time. */
+enum wd_result wd_renderer_create(struct wd_renderer **renderer,
+                                  const struct wd_renderer_params *params);
+void wd_renderer_destroy(struct wd_renderer **renderer);
+
+/* Grows (or takes from the cache) the trees of `forest` and puts it all on the device, in place of
+ * the forest before. `forest` must outlive its use here. NULL: none. */
+enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct wd_forest *forest);
+
+/* Names of the methods, ended by NULL; the pointer stays valid for ever. */
+const char *const *wd_method_names(void);
+
+/* What pixels show. */
+enum wd_view_mode {
+    WD_VIEW_LIT,
+    WD_VIEW_LOD,     /* trees coloured by level of detail: red mesh, yellow reduced, blue billboard */
+    WD_VIEW_ALBEDO,
+    WD_VIEW_NORMAL,
+    WD_VIEW_TREE_ID,
+    WD_VIEW_SHADOW,
+};
+
+/* Layers of a picture; OR them. */
+enum wd_layer_bits {
+    WD_LAYER_DISPLAY = 1 << 0,  /* exposed, tone-mapped, sRGB */
+    WD_LAYER_COLOR = 1 << 1,    /* linear radiance, scene units */
+    WD_LAYER_DEPTH = 1 << 2,
+    WD_LAYER_NORMAL = 1 << 3,
+    WD_LAYER_ALBEDO = 1 << 4,
+    WD_LAYER_SPECIES = 1 << 5,
+    WD_LAYER_TREE_ID = 1 << 6,
+    WD_LAYER_VELOCITY = 1 << 7,
+    WD_LAYER_ALL = 0xff,
+};
+
+struct wd_render_params {
+    struct wd_camera camera;
+    const struct wd_camera *previous_camera; /* for velocity; NULL: the camera stood still */
+    double time_s;          /* of the wind */
+    double previous_time_s; /* for velocity */
+    uint32_t width, height; /* 1..16384 each */
+    uint32_t samples;       /* pictures averaged with sub-pixel offsets; 0: 1 */
+    const char *method;     /* NULL: the scene's */
+    enum wd_view_mode view;
+    uint32_t layers;        /* wd_layer_bits wanted; 0: display */
+    enum wd_time_mode { WD_TIME_OFF, WD_TIME_PASSES } timing; /* per-pass times, at some cost */
+};
+
+/* A finished picture in host memory. Arrays are height * width, rows top to bottom; those not
+ * asked for are NULL. Layers other than colour and display hold the first sample, unblended. */
+struct wd_picture {
+    uint32_t width, height;
+    uint8_t *display;  /* 4 a pixel: R, G, B, 255 */
+    float *color;      /* 3 a pixel */
+    float *depth_m;    /* distance along the view axis, metres; +infinity for sky */
+    float *normal;     /* 3 a pixel, local frame, unit length; 0 for sky */
+    float *albedo;     /* 3 a pixel, linear */
+    uint32_t *species; /* index + 1; 0: no tree */
+    uint32_t *tree_id; /* 0: no tree */
+    float *velocity_px; /* 2 a pixel: where this surface moved since the previous time, in pixels,
+                           x right, y down */
+};
+
+/* Draws one picture. Deterministic for the same device.
+ *   picture  overwritten; free with wd_picture_finish
+ * Errors: WD_ERROR_INPUT (size, method, no forest), WD_ERROR_DEVICE, WD_ERROR_MEMORY,
+ * WD_ERROR_INTERRUPTED (through the renderer's progress, stage "samples"). */
+enum wd_result wd_renderer_render(struct wd_renderer *renderer,
+                                  const struct wd_render_params *params,
+                                  struct wd_picture *picture);
+void wd_picture_finish(struct wd_picture *picture); /* accepts {0} */
+
+/* Times of the newest picture's passes, per sample. */
+struct wd_pass_time {
+    const char *name; /* "shadow", "trees", "terrain", "light", ... */
+    double gpu_ms;    /* 0 without WD_TIME_PASSES */
+    double cpu_ms;
+};
+struct wd_frame_stats {
+    double frame_ms; /* wall clock of one sample from begin to finished */
+    uint32_t pass_count;
+    const struct wd_pass_time *passes; /* valid until the next call on the renderer */
+    uint64_t draw_calls, triangles;    /* submitted */
+    uint64_t trees_mesh, trees_reduced, trees_billboard; /* drawn into the picture by level */
+    uint64_t device_bytes, device_bytes_peak;
+};
+void wd_renderer_get_stats(const struct wd_renderer *renderer, struct wd_frame_stats *stats);
+
+/* Name of the device in use; lives as long as the renderer. */
+const char *wd_renderer_device_name(const struct wd_renderer *renderer);
+/* Names of all Vulkan devices present, one a line; free() it. */
+char *wd_device_list(void);
+
+/* --- writing pictures ------------------------------------------------------------------- */
+
+/* Writes `picture` whole or not at all. ".png" takes the display layer, ".exr" every layer there
+ * is (R G B, Z in metres, N.X N.Y N.Z, albedo.R .G .B, species, tree_id, velocity.X .Y).
+ * Errors: WD_ERROR_INPUT for another ending or a missing layer, WD_ERROR_OUTPUT. */
+enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
+                                const struct wd_log *log);
+
+/* A film (".mp4", through ffmpeg) or numbered pictures (a name with %d or %05d, .png or .exr). */
+struct wd_film;
+struct wd_film_params {
+    const char *path;
+    uint32_t width, height; /* even for .mp4 */
+    double frames_per_second;
+};
+enum wd_result wd_film_open(struct wd_film **film, const struct wd_film_params *params,
+                            const struct wd_log *log);
+enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture);
+/* Finishes the film under its name and frees it. With no frame added nothing is written. */
+enum wd_result wd_film_commit(struct wd_film **film);
+/* Drops the film (numbered pictures already written stay). Accepts a pointer to NULL. */
+void wd_film_discard(struct wd_film **film);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

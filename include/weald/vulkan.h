@@ -1,0 +1,63 @@
+/* weald/vulkan.h: drawing into images of the caller's own Vulkan device. */
+#ifndef WEALD_VULKAN_H
+#define WEALD_VULKAN_H
+
+#include <vulkan/vulkan.h>
+
+#include "weald/renderer.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Fills the features that a device must be created with and chains them: features -> features12 ->
+ * features13. Pass `features` as VkDeviceCreateInfo.pNext (pEnabledFeatures NULL). The instance and
+ * device must be of Vulkan 1.3. */
+void wd_vulkan_required_features(VkPhysicalDeviceFeatures2 *features,
+                                 VkPhysicalDeviceVulkan12Features *features12,
+                                 VkPhysicalDeviceVulkan13Features *features13);
+
+struct wd_vulkan_handles {
+    VkInstance instance;
+    VkPhysicalDevice physical_device;
+    VkDevice device;
+    VkQueue queue; /* graphics, compute and transfer */
+    uint32_t queue_family;
+};
+
+/* A renderer on the caller's device, which must outlive it. `params->gpu` and `->validation` are
+ * not used. The queue is used only during calls on the renderer, on the calling thread. */
+enum wd_result wd_renderer_create_vulkan(struct wd_renderer **renderer,
+                                         const struct wd_vulkan_handles *handles,
+                                         const struct wd_renderer_params *params);
+
+/* A renderer on a device of its own that can also present: for programs with a window.
+ * `instance_extensions`: what the window system needs. VK_KHR_swapchain is enabled. */
+enum wd_result wd_renderer_create_presenting(struct wd_renderer **renderer,
+                                             const char *const *instance_extensions,
+                                             uint32_t instance_extension_count,
+                                             const struct wd_renderer_params *params);
+void wd_renderer_get_vulkan(const struct wd_renderer *renderer, struct wd_vulkan_handles *handles);
+
+/* Where a frame goes. */
+struct wd_vulkan_target {
+    VkImage image;          /* usage COLOR_ATTACHMENT, TRANSFER_DST or both; one mip, one layer */
+    VkFormat format;        /* R8G8B8A8 or B8G8R8A8, UNORM or SRGB */
+    uint32_t width, height; /* must equal params->width, height */
+    VkImageLayout layout_after; /* e.g. PRESENT_SRC_KHR; old contents are discarded */
+    VkSemaphore wait;       /* signalled when the image may be written, or VK_NULL_HANDLE */
+    VkSemaphore signal;     /* signalled when it is finished, or VK_NULL_HANDLE */
+};
+
+/* Draws one frame into `target` and returns once it is submitted: up to two frames are in flight.
+ * Only the display is made (params->layers is not used). */
+enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_render_params *params,
+                                const struct wd_vulkan_target *target);
+
+/* Waits until every submitted frame is finished. */
+enum wd_result wd_renderer_wait(struct wd_renderer *renderer);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
