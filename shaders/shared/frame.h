@@ -1,0 +1,76 @@
+/* frame.h: what every pass of a frame knows; G-buffer layout.
+ *
+ * "rel" is the camera-relative frame: metres east, north, up of the camera. A world position of
+ * whole millimetres p becomes rel = vec3(p - camera_mm) * 0.001 - camera_frac_m, exactly.
+ * Depth is reversed and infinite: depth = near_m / distance along the view axis, 0 is the sky.
+ *
+ * G-buffer (written by terrain and by every method):
+ *   albedo  R8G8B8A8_SRGB        rgb: linear albedo; a: sky openness (1 open ground or outer leaf,
+ *                                0 deep inside a crown)
+ *   normal  A2B10G10R10_UNORM    xyz * 0.5 + 0.5, world axes; a: material / 3
+ *   surface R32_UINT             index of the tree in octree order + 1; 0: ground or sky
+ *   depth   D32_SFLOAT */
+#ifndef WD_SHARED_FRAME_H
+#define WD_SHARED_FRAME_H
+
+#include "shared/types.h"
+
+#define WD_MATERIAL_GROUND 0
+#define WD_MATERIAL_WOOD 1
+#define WD_MATERIAL_LEAF 2
+#define WD_MATERIAL_CARD 3 /* a billboard: its position is that of the card, not of the leaf */
+
+#define WD_CASCADES 4
+
+/* values of view_mode: as enum wd_view_mode of weald/renderer.h */
+#define WD_MODE_LIT 0
+#define WD_MODE_LOD 1
+#define WD_MODE_ALBEDO 2
+#define WD_MODE_NORMAL 3
+#define WD_MODE_TREE_ID 4
+#define WD_MODE_SHADOW 5
+
+struct wd_frame_uniforms {
+    WD_MAT4(clip_from_rel);          /* with this sample's sub-pixel offset */
+    WD_MAT4(rel_from_clip);
+    WD_MAT4(previous_clip_from_rel); /* takes rel of the current camera; no sub-pixel offset */
+    WD_MAT4(steady_clip_from_rel);   /* clip_from_rel without the sub-pixel offset */
+    WD_MAT4(shadow_from_rel[WD_CASCADES]); /* to texture coordinates (x, y in 0..1) and depth z
+                                              (reversed: 1 nearest the sun) */
+    WD_VEC4(cascade_far_m);          /* distance from the camera at which each cascade ends */
+    WD_VEC4(cascade_texel_m);        /* size of a texel on the ground */
+    WD_VEC4(cascade_depth_m);        /* depth range that z 0..1 spans */
+    int32_t camera_mm[3];
+    float time_s;
+    WD_VEC3(camera_frac_m);          /* 0..0.001 */
+    float previous_time_s;
+    WD_VEC3(sun_direction);          /* unit, toward the sun */
+    float sun_cos_radius;            /* cosine of the disc's angular radius */
+    WD_VEC3(sun_irradiance);         /* on a surface facing the sun, at the ground, linear sRGB */
+    float sky_turbidity;
+    WD_VEC3(sky_irradiance);         /* of the whole sky on level ground, for ambient light */
+    float sky_strength;
+    WD_VEC3(sky_zenith);             /* radiance: parameters of shaders/lib/sky.glsl */
+    float near_m;
+    WD_VEC3(sky_horizon);
+    float fog_per_m;                 /* extinction at full density */
+    float fog_height_m;
+    float fog_base_m;                /* above the world's zero */
+    float wind_speed_mps, wind_gust;
+    WD_VEC2(wind_toward);            /* unit: where the wind blows to, x east, y north */
+    float water_level_m;             /* -1e9: no water */
+    float water_clarity_m;
+    WD_VEC3(water_color);
+    float exposure;                  /* factor for the display; filled in by metering when 0 */
+    WD_VEC3(grass); float rock_slope; /* linear albedo; slope as rise over run */
+    WD_VEC3(soil); float snow_line_m;
+    WD_VEC3(rock); float tree_line_m;
+    WD_VEC3(litter); float terrain_cell_m;
+    uint32_t width, height;          /* of the picture */
+    uint32_t terrain_width, terrain_height; /* samples */
+    uint32_t sample_index, sample_count;
+    uint32_t view_mode;
+    uint32_t shadow_taps;            /* 0: no shadows */
+};
+
+#endif

@@ -1,0 +1,31 @@
+/* targets.h: the images of a frame that passes share. */
+#ifndef WD_FRAME_TARGETS_H
+#define WD_FRAME_TARGETS_H
+
+#include "gpu/command.h"
+
+#define WD_ALBEDO_FORMAT VK_FORMAT_R8G8B8A8_SRGB
+#define WD_NORMAL_FORMAT VK_FORMAT_A2B10G10R10_UNORM_PACK32
+#define WD_SURFACE_FORMAT VK_FORMAT_R32_UINT
+#define WD_DEPTH_FORMAT VK_FORMAT_D32_SFLOAT
+#define WD_RADIANCE_FORMAT VK_FORMAT_R32G32B32A32_SFLOAT
+#define WD_DISPLAY_FORMAT VK_FORMAT_R8G8B8A8_UNORM
+
+struct wd_targets {
+    uint32_t width, height;
+    struct wd_image albedo, normal, surface, depth; /* the G-buffer: shaders/shared/frame.h */
+    struct wd_image radiance;                       /* storage: sum over the samples so far */
+    struct wd_image display;                        /* storage: tone-mapped, sRGB-encoded bytes */
+    struct wd_image shadow;                         /* depth, WD_CASCADES layers */
+    uint32_t shadow_size;
+};
+
+bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t width,
+                     uint32_t height, uint32_t shadow_size);
+void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu);
+
+/* Begins rendering into the G-buffer: albedo, normal, surface, depth in this order. `load` says
+ * whether it is cleared or kept. */
+void wd_targets_begin_gbuffer(struct wd_targets *targets, struct wd_cmd *cmd, enum wd_load load);
+
+#endif
