@@ -29,4 +29,31 @@ struct wd_view {
     float lod_scale;            /* factor on the distances of the levels of detail */
 };
 
+struct wd_view_params {
+    struct wd_camera camera;
+    uint32_t width, height;
+    float near_m;
+    float offset_px[2]; /* of this sample within its pixel, -0.5..0.5 */
+};
+/* A camera's view. */
+void wd_view_init(struct wd_view *view, const struct wd_view_params *params);
+
+/* Parallel-split shadow maps (Zhang et al. 2006), stabilised: a cascade holds the bounding sphere
+ * of its slice of the view frustum, in a frame fixed to the world, moved by whole texels. */
+struct wd_cascades_params {
+    const struct wd_view *view;
+    float sun_direction[3];  /* unit, toward the sun */
+    float distance_m;        /* at which the last cascade ends */
+    float near_m;
+    uint32_t size;           /* texels a side */
+    double min_z_m, max_z_m; /* of everything that casts, local frame */
+};
+/* Fills the shadow members of `*uniforms` and one view a cascade. */
+void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,
+                      const struct wd_cascades_params *params);
+
+/* Matrices are columns of rows, as GLSL's. */
+void wd_matrix_multiply(float result[4][4], const float a[4][4], const float b[4][4]);
+void wd_matrix_invert(float result[4][4], const float m[4][4]);
+
 #endif

@@ -1,0 +1,132 @@
+#include "frame/view.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A cascade ends at this share of the next one's distance. */
+static const double CASCADE_RATIO = 0.28;
+
+struct sun_axes {
+    double right[3], up[3], toward[3]; /* of the shadow map, in the local frame */
+};
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static struct sun_axes sun_axes(const float direction[3])
+{
+    struct sun_axes axes = {.toward = {direction[0], direction[1], direction[2]}};
+    /* Any axis across the sun's direction does, so long as it does not turn with the camera. */
+    double length = hypot(direction[0], direction[1]);
+    if (length < 1e-4) {
+        axes.right[0] = 1.0;
+    } else {
+        axes.right[0] = -direction[1] / length;
+        axes.right[1] = direction[0] / length;
+    }
+    const double *t = axes.toward, *r = axes.right;
+    axes.up[0] = t[1] * r[2] - t[2] * r[1];
+    axes.up[1] = t[2] * r[0] - t[0] * r[2];
+    axes.up[2] = t[0] * r[1] - t[1] * r[0];
+    return axes;
+}
+
+/* The sphere round the slice [near, far] of the view: centre on the axis at `*center` metres. */
+static double slice_sphere(const struct wd_view *view, double near, double far, double *center)
+{
+    double half_height = tan(view->camera.fov_rad * 0.5);
+    double half_width = half_height * view->width / view->height;
+    double corner = half_height * half_height + half_width * half_width; /* per metre, squared */
+    double middle = 0.5 * (near + far) * (1.0 + corner);
+    if (middle > far)
+        middle = far;
+    *center = middle;
+    return sqrt((far - middle) * (far - middle) + corner * far * far);
+}
+
+struct box {
+    double center[3]; /* along right, up, toward; local frame */
+    double radius;
+    double depth;     /* extent along toward */
+};
+
+static struct box cascade_box(const struct wd_cascades_params *params, const struct sun_axes *axes,
+                              double near, double far)
+{
+    const struct wd_view *view = params->view;
+    double distance, center[3];
+    double radius = slice_sphere(view, near, far, &distance);
+    double sp = sin(view->camera.pitch_rad), cp = cos(view->camera.pitch_rad);
+    const double forward[3] = {sin(view->camera.yaw_rad) * cp, cos(view->camera.yaw_rad) * cp, sp};
+    for (int k = 0; k < 3; k++)
+        center[k] = view->eye_m[k] + forward[k] * distance;
+    /* Whole texels, and a radius rounded up, so that a turning camera changes nothing. */
+    radius = ceil(radius * 16.0) / 16.0;
+    double texel = 2.0 * radius / params->size;
+    struct box box = {.radius = radius};
+    box.center[0] = floor(dot(center, axes->right) / texel + 0.5) * texel;
+    box.center[1] = floor(dot(center, axes->up) / texel + 0.5) * texel;
+    /* Casters stand between the slice and the sun, no higher than the highest of all. */
+    double rise = axes->toward[2] > 0.05 ? axes->toward[2] : 0.05;
+    double low = dot(center, axes->toward) - radius;
+    double reach = (params->max_z_m - (center[2] - radius)) / rise;
+    double extent = fmin(fmax(reach, 2.0 * radius), 2.0 * radius + 20000.0);
+    box.depth = extent + 64.0;
+    box.center[2] = low - 32.0;
+    return box;
+}
+
+static void cascade_view(struct wd_view *cascade, const struct wd_view *view, const struct box *box,
+                         const struct sun_axes *axes)
+{
+    cascade->camera = view->camera;
+    memcpy(cascade->eye_m, view->eye_m, sizeof cascade->eye_m);
+    cascade->pixels_per_radian = view->pixels_per_radian;
+    cascade->lod_scale = view->lod_scale;
+    const double *rows[3] = {axes->right, axes->up, axes->toward};
+    const double scale[3] = {1.0 / box->radius, 1.0 / box->radius, 1.0 / box->depth};
+    for (int row = 0; row < 3; row++) {
+        double origin = (dot(view->eye_m, rows[row]) - box->center[row]) * scale[row];
+        for (int k = 0; k < 3; k++)
+            cascade->clip_from_rel[k][row] = (float)(rows[row][k] * scale[row]);
+        cascade->clip_from_rel[3][row] = (float)origin;
+    }
+    cascade->clip_from_rel[3][3] = 1.0f;
+    /* -1 <= x, y <= 1 and 0 <= z; nothing lies beyond z = 1 */
+    for (int plane = 0; plane < 5; plane++) {
+        int row = plane / 2;
+        float sign = plane % 2 ? -1.0f : 1.0f;
+        for (int k = 0; k < 4; k++)
+            cascade->frustum.planes[plane][k] = sign * cascade->clip_from_rel[k][row];
+        cascade->frustum.planes[plane][3] += row < 2 ? 1.0f : 0.0f;
+    }
+    cascade->frustum.count = 5;
+}
+
+void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,
+                      const struct wd_cascades_params *params)
+{
+    struct sun_axes axes = sun_axes(params->sun_direction);
+    double near = params->near_m;
+    for (int i = 0; i < WD_CASCADES; i++) {
+        double far = params->distance_m * pow(CASCADE_RATIO, WD_CASCADES - 1 - i);
+        struct box box = cascade_box(params, &axes, near, far);
+        cascades[i] = (struct wd_view){
+            .width = params->size, .height = params->size, .cascade = (uint32_t)i};
+        cascade_view(&cascades[i], params->view, &box, &axes);
+        memcpy(uniforms->shadow_from_rel[i], cascades[i].clip_from_rel,
+               sizeof uniforms->shadow_from_rel[i]);
+        for (int column = 0; column < 4; column++) {
+            for (int row = 0; row < 2; row++)
+                uniforms->shadow_from_rel[i][column][row] *= 0.5f;
+        }
+        uniforms->shadow_from_rel[i][3][0] += 0.5f;
+        uniforms->shadow_from_rel[i][3][1] += 0.5f;
+        uniforms->cascade_far_m[i] = (float)far;
+        uniforms->cascade_texel_m[i] = (float)(2.0 * box.radius / params->size);
+        uniforms->cascade_depth_m[i] = (float)box.depth;
+        near = far * 0.9; /* slices overlap where one fades into the next */
+    }
+}

@@ -1,0 +1,60 @@
+#include "frame/targets.h"
+
+#include "shared/frame.h"
+
+bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t width,
+                     uint32_t height, uint32_t shadow_size)
+{
+    const VkImageUsageFlags target = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const VkImageUsageFlags depth =
+        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const VkImageUsageFlags storage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const struct {
+        struct wd_image *image;
+        struct wd_image_params params;
+    } images[] = {
+        {&targets->albedo, {"albedo", WD_ALBEDO_FORMAT, width, height, 1, 1, target, 0}},
+        {&targets->normal, {"normal", WD_NORMAL_FORMAT, width, height, 1, 1, target, 0}},
+        {&targets->surface, {"surface", WD_SURFACE_FORMAT, width, height, 1, 1, target, 0}},
+        {&targets->depth, {"depth", WD_DEPTH_FORMAT, width, height, 1, 1, depth, 0}},
+        {&targets->radiance, {"radiance", WD_RADIANCE_FORMAT, width, height, 1, 1, storage, 0}},
+        {&targets->display, {"display", WD_DISPLAY_FORMAT, width, height, 1, 1, storage, 0}},
+        {&targets->shadow,
+         {"shadow", WD_DEPTH_FORMAT, shadow_size, shadow_size, WD_CASCADES, 1, depth,
+          WD_IMAGE_ARRAY}},
+    };
+    *targets = (struct wd_targets){
+        .width = width, .height = height, .shadow_size = shadow_size};
+    for (size_t i = 0; i < sizeof images / sizeof *images; i++) {
+        if (!wd_image_init(images[i].image, gpu, &images[i].params)) {
+            wd_targets_finish(targets, gpu);
+            return false;
+        }
+    }
+    return true;
+}
+
+void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu)
+{
+    struct wd_image *images[] = {&targets->albedo,   &targets->normal,  &targets->surface,
+                                 &targets->depth,    &targets->radiance, &targets->display,
+                                 &targets->shadow};
+    for (size_t i = 0; i < sizeof images / sizeof *images; i++)
+        wd_image_finish(images[i], gpu);
+    *targets = (struct wd_targets){0};
+}
+
+void wd_targets_begin_gbuffer(struct wd_targets *targets, struct wd_cmd *cmd, enum wd_load load)
+{
+    const struct wd_rendering rendering = {
+        .width = targets->width,
+        .height = targets->height,
+        .color_count = 3,
+        .color = {{.image = &targets->albedo, .load = load},
+                  {.image = &targets->normal, .load = load},
+                  {.image = &targets->surface, .load = load}},
+        .depth = &targets->depth,
+        .depth_load = load,
+    };
+    wd_cmd_begin_rendering(cmd, &rendering);
+}

@@ -1,0 +1,104 @@
+#define CGLM_ALL_UNALIGNED
+#include "frame/view.h"
+
+#include <math.h>
+#include <string.h>
+
+#include <cglm/mat4.h>
+
+enum wd_side wd_frustum_box(const struct wd_frustum *frustum, const float min[3], const float max[3])
+{
+    enum wd_side side = WD_INSIDE;
+    for (uint32_t i = 0; i < frustum->count; i++) {
+        const float *plane = frustum->planes[i];
+        float nearest = plane[3], farthest = plane[3];
+        for (int k = 0; k < 3; k++) {
+            float a = plane[k] * min[k], b = plane[k] * max[k];
+            nearest += a < b ? a : b;
+            farthest += a < b ? b : a;
+        }
+        if (farthest < 0.0f)
+            return WD_OUTSIDE;
+        if (nearest < 0.0f)
+            side = WD_PARTLY;
+    }
+    return side;
+}
+
+void wd_matrix_multiply(float result[4][4], const float a[4][4], const float b[4][4])
+{
+    mat4 left, right, product;
+    memcpy(left, a, sizeof left);
+    memcpy(right, b, sizeof right);
+    glm_mat4_mul(left, right, product);
+    memcpy(result, product, sizeof product);
+}
+
+void wd_matrix_invert(float result[4][4], const float m[4][4])
+{
+    mat4 from, inverse;
+    memcpy(from, m, sizeof from);
+    glm_mat4_inv(from, inverse);
+    memcpy(result, inverse, sizeof inverse);
+}
+
+static void set_row(float matrix[4][4], int row, const double axis[3], double factor, double last)
+{
+    for (int k = 0; k < 3; k++)
+        matrix[k][row] = (float)(axis[k] * factor);
+    matrix[3][row] = (float)last;
+}
+
+static void camera_axes(const struct wd_camera *camera, double right[3], double forward[3],
+                        double up[3])
+{
+    double sy = sin(camera->yaw_rad), cy = cos(camera->yaw_rad);
+    double sp = sin(camera->pitch_rad), cp = cos(camera->pitch_rad);
+    const double axes[3][3] = {{cy, -sy, 0.0}, {sy * cp, cy * cp, sp}, {-sy * sp, -cy * sp, cp}};
+    memcpy(right, axes[0], sizeof axes[0]);
+    memcpy(forward, axes[1], sizeof axes[1]);
+    memcpy(up, axes[2], sizeof axes[2]);
+}
+
+/* The plane that holds the eye and the frustum's side in direction `side`. */
+static void add_side_plane(struct wd_frustum *frustum, const double forward[3], const double side[3],
+                           double half_extent)
+{
+    double length = sqrt(1.0 + half_extent * half_extent);
+    float *plane = frustum->planes[frustum->count++];
+    for (int k = 0; k < 3; k++)
+        plane[k] = (float)((forward[k] * half_extent - side[k]) / length);
+    plane[3] = 0.0f;
+}
+
+void wd_view_init(struct wd_view *view, const struct wd_view_params *params)
+{
+    double right[3], forward[3], up[3];
+    camera_axes(&params->camera, right, forward, up);
+    *view = (struct wd_view){.camera = params->camera,
+                             .width = params->width,
+                             .height = params->height,
+                             .lod_scale = 1.0f};
+    memcpy(view->eye_m, params->camera.position_m, sizeof view->eye_m);
+    double half_height = tan(params->camera.fov_rad * 0.5);
+    double half_width = half_height * params->width / params->height;
+    view->pixels_per_radian = (float)(params->height * 0.5 / half_height);
+    /* clip = (x / half_width, -y / half_height, near, distance): y down, depth = near / distance */
+    set_row(view->clip_from_rel, 0, right, 1.0 / half_width, 0.0);
+    set_row(view->clip_from_rel, 1, up, -1.0 / half_height, 0.0);
+    set_row(view->clip_from_rel, 2, forward, 0.0, params->near_m);
+    set_row(view->clip_from_rel, 3, forward, 1.0, 0.0);
+    for (int k = 0; k < 3; k++) {
+        view->clip_from_rel[k][0] += (float)(forward[k] * 2.0 * params->offset_px[0] / params->width);
+        view->clip_from_rel[k][1] += (float)(forward[k] * 2.0 * params->offset_px[1] / params->height);
+    }
+    const double left[3] = {-right[0], -right[1], -right[2]}, down[3] = {-up[0], -up[1], -up[2]};
+    add_side_plane(&view->frustum, forward, right, half_width);
+    add_side_plane(&view->frustum, forward, left, half_width);
+    add_side_plane(&view->frustum, forward, up, half_height);
+    add_side_plane(&view->frustum, forward, down, half_height);
+    float *near = view->frustum.planes[view->frustum.count++];
+    for (int k = 0; k < 3; k++)
+        near[k] = (float)forward[k];
+    near[3] = -params->near_m;
+}
