@@ -31,12 +31,14 @@ struct wd_frame_slot {
     VkFence fence;
     VkDescriptorPool *descriptor_pools;
     size_t descriptor_pool_count, descriptor_pool_used, descriptor_pool_capacity;
-    struct wd_buffer upload; /* grows on demand; uniforms and per-frame arrays */
+    struct wd_buffer *upload; /* replaced by a larger one on demand; uniforms, per-frame arrays */
     VkDeviceSize upload_used;
     VkQueryPool queries;
     uint32_t scope_count;
     struct wd_scope_time scopes[WD_MAX_SCOPES];
     struct wd_deferred *deferred;
+    struct wd_barrier *barriers; /* recorded since the last submission; see wd_frame_submit */
+    size_t barrier_count, barrier_capacity;
     bool pending; /* submitted, fence not yet waited for */
 };
 struct wd_frames {
@@ -60,16 +62,25 @@ struct wd_cmd {
     bool failed;        /* a descriptor or upload could not be had; wd_frame_submit returns false */
     uint32_t scope_stack[8], scope_depth;
     double scope_start[WD_MAX_SCOPES];
+    enum wd_timing timing; /* of this frame */
+    bool rendering;        /* between wd_cmd_begin_rendering and wd_cmd_end_rendering */
+    bool recorded;         /* something was recorded since the frame or scope began or ended */
+    double waited_s;       /* spent waiting for scopes that were submitted alone */
 };
 
 /* Waits until the slot's earlier frame is done, frees what was deferred, starts recording. */
 bool wd_frame_begin(struct wd_frames *frames, struct wd_cmd *cmd);
-/* Ends and submits; wait/signal may be VK_NULL_HANDLE (binary semaphores, for swapchains). */
+/* Ends and submits; wait/signal may be VK_NULL_HANDLE (binary semaphores, for swapchains). To be
+ * called for every frame that was begun, also after a failure. A failed frame draws nothing: only
+ * its barriers are submitted, so that tracked uses stay true; `wait` is consumed, `signal` is not
+ * signalled, the result is false and the next frame may begin. With timing on a device without
+ * true timestamps, work on the image that `wait` guards must stand after the last scope. */
 bool wd_frame_submit(struct wd_cmd *cmd, VkSemaphore wait, VkSemaphore signal);
 /* Waits for every submitted frame; afterwards frames->last_scopes is that of the newest one. */
 bool wd_frames_wait(struct wd_frames *frames);
 
-/* Begins and ends a named part of the frame (debug label + timer). No render pass may be open. */
+/* Begins and ends a named part of the frame (debug label + timer); at most 8 deep. No render pass
+ * may be open, and what is bound does not survive a scope's begin or end. */
 void wd_cmd_scope_begin(struct wd_cmd *cmd, const char *name);
 void wd_cmd_scope_end(struct wd_cmd *cmd);
 
@@ -97,6 +108,16 @@ void wd_cmd_bind(struct wd_cmd *cmd, const struct wd_pipeline *pipeline,
                  const struct wd_binding *bindings);
 void wd_cmd_push(struct wd_cmd *cmd, const struct wd_pipeline *pipeline, const void *data,
                  uint32_t size);
+
+/* Draws and indirect work that do nothing in a failed frame (prefer them to vkCmd*). The buffer's
+ * use must have been declared as WD_USE_INDIRECT. */
+void wd_cmd_draw(struct wd_cmd *cmd, uint32_t vertices, uint32_t instances);
+void wd_cmd_draw_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer, VkDeviceSize offset,
+                          uint32_t draws, uint32_t stride);
+void wd_cmd_dispatch_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer,
+                              VkDeviceSize offset);
+/* Fills a whole buffer with a 32-bit value; declares the use. */
+void wd_cmd_fill_buffer(struct wd_cmd *cmd, struct wd_buffer *buffer, uint32_t value);
 
 /* Space in this frame's upload arena (256-byte aligned); NULL marks the frame failed. `*binding`
  * describes the range for wd_cmd_bind. */

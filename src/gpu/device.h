@@ -19,6 +19,7 @@ struct wd_gpu_external {
     VkDevice device;
     VkQueue queue;         /* graphics + compute + transfer; used only during our calls */
     uint32_t queue_family;
+    uint32_t features;     /* wd_gpu_feature bits that were enabled when it was created */
 };
 
 struct wd_gpu_params {
@@ -39,7 +40,7 @@ struct wd_gpu_params {
 /* Optional features; each user has a fallback, and tests disable them. */
 enum wd_gpu_feature {
     WD_GPU_FEATURE_INT64_ATOMICS = 1 << 0, /* shaderInt64 + shaderBufferInt64Atomics */
-    WD_GPU_FEATURE_MULTI_DRAW_INDIRECT = 1 << 1,
+    WD_GPU_FEATURE_MULTI_DRAW_INDIRECT = 1 << 1, /* multiDrawIndirect + drawIndirectFirstInstance */
     WD_GPU_FEATURE_DRAW_INDIRECT_COUNT = 1 << 2,
     WD_GPU_FEATURE_DEPTH_CLAMP = 1 << 3,
     WD_GPU_FEATURE_ANISOTROPY = 1 << 4,
@@ -61,6 +62,10 @@ struct wd_gpu {
     bool lost;         /* VK_ERROR_DEVICE_LOST was seen; every later call fails fast */
     uint64_t bytes_allocated;  /* device memory held now through memory.h */
     uint64_t bytes_peak;
+    uint32_t allocation_count; /* VkDeviceMemory objects held now */
+    uint64_t max_buffer_size;
+    uint32_t timestamp_bits;   /* valid bits of a timestamp in our queue */
+    struct wd_transfer *transfer; /* staging for blocking transfers, made on first use */
     const struct wd_log *log;
     VkDebugUtilsMessengerEXT messenger;
     VkPipelineCache pipeline_cache;
@@ -69,9 +74,9 @@ struct wd_gpu {
     PFN_vkSetDebugUtilsObjectNameEXT set_name;
 };
 
-/* Features a device must have: Vulkan 1.3 with dynamicRendering, synchronization2,
- * scalarBlockLayout, fragmentStoresAndAtomics, vertexPipelineStoresAndAtomics not needed,
- * imageCubeArray not needed, shaderImageGatherExtended not needed, independentBlend.
+/* Features a device must have: Vulkan 1.3 with dynamicRendering, synchronization2, maintenance4,
+ * shaderTerminateInvocation, shaderDemoteToHelperInvocation (all five are part of any 1.3),
+ * scalarBlockLayout, fragmentStoresAndAtomics, independentBlend.
  * Chains `*features12`, `*features13` behind `*features`. Used for our own devices and published
  * (through weald/vulkan.h) for embedders. */
 void wd_gpu_required_features(VkPhysicalDeviceFeatures2 *features,

@@ -19,6 +19,9 @@ enum wd_gpu_use {
     WD_USE_COLOR_TARGET,
     WD_USE_DEPTH_TARGET,
     WD_USE_PRESENT,          /* images only: ready for the presentation engine */
+    WD_USE_GRAPHICS_WRITE,   /* storage buffer or image: written or atomically updated by fragments */
+    WD_USE_HOST_READ,        /* read-back memory, read by the CPU after the frame has finished */
+    WD_USE_COUNT,
 };
 
 enum wd_gpu_memory_kind {
@@ -31,8 +34,10 @@ struct wd_buffer {
     VkBuffer buffer;
     VkDeviceMemory memory;
     VkDeviceSize size;
+    VkDeviceSize memory_size;
     void *mapped; /* UPLOAD and READBACK, for the whole life */
     enum wd_gpu_use last_use;
+    uint32_t reads; /* bit 1 << use for each reading use that the last write is visible to */
 };
 
 /* `usage` is ORed with TRANSFER_SRC and TRANSFER_DST. `name` shows in errors and debuggers. */
@@ -53,7 +58,9 @@ struct wd_image {
     VkFormat format;
     VkImageAspectFlags aspect;
     uint32_t width, height, layers, mips;
+    VkDeviceSize memory_size;
     enum wd_gpu_use last_use;
+    uint32_t reads; /* as in wd_buffer */
 };
 
 enum wd_image_view_kind {
@@ -71,7 +78,8 @@ struct wd_image_params {
 };
 #define WD_ALL_MIPS UINT32_MAX
 bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu, const struct wd_image_params *params);
-/* Wraps a foreign VkImage (one layer, one mip) and makes a view of it. */
+/* Wraps a foreign VkImage (one layer, one mip) and makes a view of it. Its layout counts as
+ * undefined; set last_use where the contents matter. */
 bool wd_image_wrap(struct wd_image *image, struct wd_gpu *gpu, VkImage foreign, VkFormat format,
                    uint32_t width, uint32_t height);
 void wd_image_finish(struct wd_image *image, struct wd_gpu *gpu);
@@ -80,7 +88,8 @@ void wd_image_finish(struct wd_image *image, struct wd_gpu *gpu);
 bool wd_image_layer_view(struct wd_gpu *gpu, const struct wd_image *image, uint32_t layer,
                          uint32_t mip, VkImageView *view);
 
-/* Blocking transfers over an internal staging buffer, chunked so that no size is too large.
+/* Blocking transfers over an internal staging buffer, chunked so that no size is too large. Not
+ * while a frame that uses the object is being recorded: the transfer would overtake it.
  * Image data is tightly packed, rows top to bottom, one mip of one layer. */
 bool wd_buffer_upload(struct wd_gpu *gpu, struct wd_buffer *buffer, VkDeviceSize offset,
                       const void *data, VkDeviceSize size);

@@ -1,0 +1,138 @@
+#include "gpu/pipeline.h"
+
+#include <assert.h>
+
+#include "base/log.h"
+#include "gpu/allocation.h"
+#include "gpu/pipeline_parts.h"
+
+void wd_specialization_init(struct wd_specialization *specialization,
+                            const struct wd_spec_constants *constants)
+{
+    assert(constants->count <= WD_MAX_SPEC_CONSTANTS);
+    for (uint32_t i = 0; i < constants->count; i++)
+        specialization->entries[i] = (VkSpecializationMapEntry){i, i * 4, 4};
+    specialization->info = (VkSpecializationInfo){
+        .mapEntryCount = constants->count,
+        .pMapEntries = specialization->entries,
+        .dataSize = constants->count * 4,
+        .pData = constants->values,
+    };
+}
+
+static VkResult create_set_layout(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+                                  VkShaderStageFlags stages)
+{
+    VkDescriptorSetLayoutBinding bindings[WD_MAX_BINDINGS];
+    for (uint32_t i = 0; i < pipeline->bindings.count; i++) {
+        bindings[i] = (VkDescriptorSetLayoutBinding){
+            .binding = i,
+            .descriptorType = pipeline->bindings.types[i],
+            .descriptorCount = 1,
+            .stageFlags = stages,
+        };
+    }
+    const VkDescriptorSetLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = pipeline->bindings.count,
+        .pBindings = bindings,
+    };
+    return vkCreateDescriptorSetLayout(gpu->device, &info, NULL, &pipeline->set_layout);
+}
+
+bool wd_pipeline_init_layout(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+                             const struct wd_bindings *bindings, uint32_t push_size,
+                             VkShaderStageFlags stages, const char *name)
+{
+    assert(bindings->count <= WD_MAX_BINDINGS && push_size <= 128 && push_size % 4 == 0);
+    pipeline->bindings = *bindings;
+    pipeline->push_size = push_size;
+    VkResult result = create_set_layout(pipeline, gpu, stages);
+    if (!wd_gpu_check(gpu, result, name))
+        return false;
+    const VkPushConstantRange range = {stages, 0, push_size};
+    const VkPipelineLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = 1,
+        .pSetLayouts = &pipeline->set_layout,
+        .pushConstantRangeCount = push_size ? 1 : 0,
+        .pPushConstantRanges = &range,
+    };
+    result = vkCreatePipelineLayout(gpu->device, &info, NULL, &pipeline->layout);
+    return wd_gpu_check(gpu, result, name);
+}
+
+bool wd_shader_module_init(VkShaderModule *module, struct wd_gpu *gpu, const struct wd_spirv *spirv)
+{
+    const uint32_t spirv_magic = 0x07230203;
+    *module = VK_NULL_HANDLE;
+    if (spirv->size < 20 || spirv->size % 4 != 0 || spirv->words[0] != spirv_magic)
+        return wd_error(gpu->log, "shader \"%s\" is not SPIR-V", spirv->name);
+    const VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+        .codeSize = spirv->size,
+        .pCode = spirv->words,
+    };
+    return wd_gpu_check(gpu, vkCreateShaderModule(gpu->device, &info, NULL, module), spirv->name);
+}
+
+VkShaderStageFlags wd_pipeline_stages(const struct wd_pipeline *pipeline)
+{
+    return pipeline->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE
+               ? VK_SHADER_STAGE_COMPUTE_BIT
+               : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+}
+
+static bool create_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+                           const struct wd_compute_params *params)
+{
+    VkShaderModule module;
+    if (!wd_shader_module_init(&module, gpu, &params->shader))
+        return false;
+    struct wd_specialization specialization;
+    wd_specialization_init(&specialization, &params->constants);
+    const VkComputePipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {
+            .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+            .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+            .module = module,
+            .pName = "main",
+            .pSpecializationInfo = &specialization.info,
+        },
+        .layout = pipeline->layout,
+    };
+    VkResult result = vkCreateComputePipelines(gpu->device, gpu->pipeline_cache, 1, &info, NULL,
+                                               &pipeline->pipeline);
+    vkDestroyShaderModule(gpu->device, module, NULL);
+    if (result != VK_SUCCESS)
+        pipeline->pipeline = VK_NULL_HANDLE;
+    return wd_gpu_check(gpu, result, params->shader.name);
+}
+
+bool wd_pipeline_init_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+                              const struct wd_compute_params *params)
+{
+    *pipeline = (struct wd_pipeline){.bind_point = VK_PIPELINE_BIND_POINT_COMPUTE};
+    if (gpu->lost ||
+        !wd_pipeline_init_layout(pipeline, gpu, &params->bindings, params->push_size,
+                                 VK_SHADER_STAGE_COMPUTE_BIT, params->shader.name) ||
+        !create_compute(pipeline, gpu, params)) {
+        wd_pipeline_finish(pipeline, gpu);
+        return false;
+    }
+    wd_set_object_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)pipeline->pipeline,
+                       params->shader.name);
+    return true;
+}
+
+void wd_pipeline_finish(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+{
+    if (pipeline->pipeline)
+        vkDestroyPipeline(gpu->device, pipeline->pipeline, NULL);
+    if (pipeline->layout)
+        vkDestroyPipelineLayout(gpu->device, pipeline->layout, NULL);
+    if (pipeline->set_layout)
+        vkDestroyDescriptorSetLayout(gpu->device, pipeline->set_layout, NULL);
+    *pipeline = (struct wd_pipeline){0};
+}

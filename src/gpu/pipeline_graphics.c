@@ -1,0 +1,176 @@
+#include <assert.h>
+
+#include "gpu/allocation.h"
+#include "gpu/pipeline_parts.h"
+
+static VkCullModeFlags cull_mode(enum wd_cull cull)
+{
+    return cull == WD_CULL_BACK    ? VK_CULL_MODE_BACK_BIT
+           : cull == WD_CULL_FRONT ? VK_CULL_MODE_FRONT_BIT
+                                   : VK_CULL_MODE_NONE;
+}
+
+static VkPipelineRasterizationStateCreateInfo raster_state(struct wd_gpu *gpu,
+                                                           const struct wd_graphics_params *params)
+{
+    return (VkPipelineRasterizationStateCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+        .depthClampEnable = params->depth_clamp && (gpu->features & WD_GPU_FEATURE_DEPTH_CLAMP),
+        .polygonMode = VK_POLYGON_MODE_FILL,
+        .cullMode = cull_mode(params->cull),
+        .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
+        .depthBiasEnable = params->depth_bias_constant != 0 || params->depth_bias_slope != 0,
+        .depthBiasConstantFactor = params->depth_bias_constant,
+        .depthBiasSlopeFactor = params->depth_bias_slope,
+        .lineWidth = 1,
+    };
+}
+
+static VkPipelineDepthStencilStateCreateInfo depth_state(const struct wd_graphics_params *params)
+{
+    bool has_depth = params->depth_format != VK_FORMAT_UNDEFINED;
+    bool reversed = params->depth_compare == VK_COMPARE_OP_NEVER;
+    return (VkPipelineDepthStencilStateCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+        .depthTestEnable = has_depth,
+        .depthWriteEnable = has_depth && !params->depth_read_only,
+        .depthCompareOp = reversed ? VK_COMPARE_OP_GREATER : params->depth_compare,
+    };
+}
+
+/* Integer formats cannot blend: there the switch does nothing. */
+static VkPipelineColorBlendAttachmentState blend_state(struct wd_gpu *gpu, enum wd_blend blend,
+                                                       VkFormat format)
+{
+    VkFormatProperties properties;
+    vkGetPhysicalDeviceFormatProperties(gpu->physical_device, format, &properties);
+    bool can = properties.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
+    return (VkPipelineColorBlendAttachmentState){
+        .blendEnable = can && blend == WD_BLEND_PREMULTIPLIED,
+        .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
+        .dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+        .colorBlendOp = VK_BLEND_OP_ADD,
+        .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+        .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+        .alphaBlendOp = VK_BLEND_OP_ADD,
+        .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                          VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT,
+    };
+}
+
+static VkPipelineShaderStageCreateInfo stage_info(VkShaderStageFlagBits stage,
+                                                  VkShaderModule module,
+                                                  const struct wd_specialization *specialization)
+{
+    return (VkPipelineShaderStageCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+        .stage = stage,
+        .module = module,
+        .pName = "main",
+        .pSpecializationInfo = &specialization->info,
+    };
+}
+
+static VkResult create_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+                                const struct wd_graphics_params *params,
+                                const VkPipelineShaderStageCreateInfo *stages,
+                                uint32_t stage_count)
+{
+    const VkPipelineVertexInputStateCreateInfo vertex_input = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+    };
+    const VkPipelineInputAssemblyStateCreateInfo assembly = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+        .topology = params->topology,
+    };
+    const VkPipelineViewportStateCreateInfo viewport = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+        .viewportCount = 1,
+        .scissorCount = 1,
+    };
+    const VkPipelineRasterizationStateCreateInfo raster = raster_state(gpu, params);
+    const VkPipelineMultisampleStateCreateInfo samples = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT,
+    };
+    const VkPipelineDepthStencilStateCreateInfo depth = depth_state(params);
+    VkPipelineColorBlendAttachmentState targets[WD_MAX_COLOR_TARGETS];
+    for (uint32_t i = 0; i < params->color_count; i++)
+        targets[i] = blend_state(gpu, params->blend, params->color_formats[i]);
+    const VkPipelineColorBlendStateCreateInfo blend = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+        .attachmentCount = params->color_count,
+        .pAttachments = targets,
+    };
+    const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+    const VkPipelineDynamicStateCreateInfo dynamic = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+        .dynamicStateCount = 2,
+        .pDynamicStates = dynamic_states,
+    };
+    const VkPipelineRenderingCreateInfo rendering = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+        .colorAttachmentCount = params->color_count,
+        .pColorAttachmentFormats = params->color_formats,
+        .depthAttachmentFormat = params->depth_format,
+    };
+    const VkGraphicsPipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+        .pNext = &rendering,
+        .stageCount = stage_count,
+        .pStages = stages,
+        .pVertexInputState = &vertex_input,
+        .pInputAssemblyState = &assembly,
+        .pViewportState = &viewport,
+        .pRasterizationState = &raster,
+        .pMultisampleState = &samples,
+        .pDepthStencilState = &depth,
+        .pColorBlendState = &blend,
+        .pDynamicState = &dynamic,
+        .layout = pipeline->layout,
+    };
+    return vkCreateGraphicsPipelines(gpu->device, gpu->pipeline_cache, 1, &info, NULL,
+                                     &pipeline->pipeline);
+}
+
+static bool create_with_shaders(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+                                const struct wd_graphics_params *params)
+{
+    struct wd_specialization specialization;
+    wd_specialization_init(&specialization, &params->constants);
+    bool depth_only = !params->fragment.words;
+    VkShaderModule vertex = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
+    bool ok = wd_shader_module_init(&vertex, gpu, &params->vertex) &&
+              (depth_only || wd_shader_module_init(&fragment, gpu, &params->fragment));
+    if (ok) {
+        const VkPipelineShaderStageCreateInfo stages[] = {
+            stage_info(VK_SHADER_STAGE_VERTEX_BIT, vertex, &specialization),
+            stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, &specialization),
+        };
+        VkResult result = create_graphics(pipeline, gpu, params, stages, depth_only ? 1 : 2);
+        if (result != VK_SUCCESS)
+            pipeline->pipeline = VK_NULL_HANDLE;
+        ok = wd_gpu_check(gpu, result, params->vertex.name);
+    }
+    vkDestroyShaderModule(gpu->device, vertex, NULL);
+    vkDestroyShaderModule(gpu->device, fragment, NULL);
+    return ok;
+}
+
+bool wd_pipeline_init_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+                               const struct wd_graphics_params *params)
+{
+    assert(params->color_count <= WD_MAX_COLOR_TARGETS);
+    *pipeline = (struct wd_pipeline){.bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS};
+    VkShaderStageFlags stages = wd_pipeline_stages(pipeline);
+    if (gpu->lost ||
+        !wd_pipeline_init_layout(pipeline, gpu, &params->bindings, params->push_size, stages,
+                                 params->vertex.name) ||
+        !create_with_shaders(pipeline, gpu, params)) {
+        wd_pipeline_finish(pipeline, gpu);
+        return false;
+    }
+    wd_set_object_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)pipeline->pipeline,
+                       params->vertex.name);
+    return true;
+}
