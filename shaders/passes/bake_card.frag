@@ -1,0 +1,19 @@
+#version 460
+#include "shared/types.h"
+
+layout(set = 0, binding = 1) uniform sampler2DArray looks;
+
+layout(location = 0) in vec3 in_normal;
+layout(location = 1) in vec2 in_uv;
+layout(location = 2) in vec4 in_tint;
+layout(location = 3) flat in uint in_leaf;
+
+layout(location = 0) out vec4 out_albedo;
+layout(location = 1) out vec4 out_normal;
+
+void main()
+{
+    vec3 look = texture(looks, vec3(in_uv, float(in_leaf))).rgb;
+    out_albedo = vec4(look * in_tint.rgb, 1.0);
+    out_normal = vec4(normalize(in_normal) * 0.5 + 0.5, in_tint.a);
+}

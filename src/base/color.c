@@ -1,0 +1,20 @@
+#include "base/color.h"
+
+#include <math.h>
+
+float wd_srgb_decode(uint8_t value)
+{
+    float x = (float)value / 255.0f;
+    return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
+}
+
+uint8_t wd_unorm_encode(float value)
+{
+    return (uint8_t)(fminf(fmaxf(value, 0.0f), 1.0f) * 255.0f + 0.5f);
+}
+
+uint8_t wd_srgb_encode(float linear)
+{
+    float x = fmaxf(linear, 0.0f);
+    return wd_unorm_encode(x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f);
+}

@@ -1,0 +1,319 @@
+#include "forest/forest.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/jobs.h"
+#include "base/memory.h"
+#include "forest/looks.h"
+
+/* Everything made on the CPU before it is uploaded. */
+struct preparation {
+    struct wd_forest_device *forest;
+    const struct wd_forest_device_params *params;
+    struct wd_tree_model *grown; /* [model] */
+    uint8_t *looks;              /* WD_LOOK_BYTES a species */
+    atomic_bool failed;
+};
+
+/* --- growing ----------------------------------------------------------------------------- */
+
+/* Variants spread over the heights that the species reaches, so that young trees are not scaled
+ * down old ones: variant v stands for the middle of its part of the range. */
+static float variant_height(const struct wd_species *species, uint32_t variant, uint32_t variants)
+{
+    float share = ((float)variant + 0.5f) / (float)variants;
+    float low = fmaxf(species->height_range_m[0], 0.45f * species->typical_height_m);
+    float high = fminf(species->height_range_m[1], 1.1f * species->typical_height_m);
+    return low + (high - low) * share;
+}
+
+static void grow_model(void *user, size_t index)
+{
+    struct preparation *work = user;
+    uint32_t variants = work->forest->variants;
+    const struct wd_species *species = &work->params->scene->species[index / variants];
+    const struct wd_grow_params params = {
+        .seed = (uint32_t)(index % variants) + 1,
+        .height_m = variant_height(species, (uint32_t)(index % variants), variants),
+        .openness = 0.35f,
+    };
+    if (!wd_tree_grow(&work->grown[index], species, &params, work->params->log))
+        atomic_store(&work->failed, true);
+}
+
+static void make_look(void *user, size_t index)
+{
+    struct preparation *work = user;
+    wd_look_generate(&work->params->scene->species[index], work->looks + index * WD_LOOK_BYTES);
+}
+
+static void describe_model(struct wd_model *model, const struct preparation *work, uint32_t index)
+{
+    const struct wd_tree_model *grown = &work->grown[index];
+    uint32_t species_index = index / work->forest->variants;
+    const struct wd_species *species = &work->params->scene->species[species_index];
+    *model = (struct wd_model){
+        .height_m = grown->height_m,
+        .crown_m = fmaxf(2.0f * grown->crown_radius_m, 0.1f),
+        .flexibility = species->flexibility,
+        .look_layer = 2 * species_index,
+        .card_layer = WD_CARDS * index,
+        .crown_base_m = grown->crown_base_m,
+    };
+    for (int k = 0; k < 3; k++)
+        model->transmittance[k] = species->leaf.transmittance[k] / fmaxf(species->leaf.color[k], 1e-3f);
+}
+
+/* --- uploading --------------------------------------------------------------------------- */
+
+static bool make_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
+                        VkBufferUsageFlags usage, const void *data, size_t size)
+{
+    const struct wd_buffer_params params = {name, size, usage, WD_MEMORY_DEVICE};
+    if (usage == VK_BUFFER_USAGE_STORAGE_BUFFER_BIT &&
+        size > gpu->properties.limits.maxStorageBufferRange)
+        return wd_error(gpu->log, "%s: %zu MB are more than the %u MB that %s can bind at once", name,
+                        size >> 20, gpu->properties.limits.maxStorageBufferRange >> 20,
+                        gpu->properties.deviceName);
+    return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
+}
+
+/* Two triangles a card: corners 0 1 2, 2 1 3. */
+static bool make_card_pattern(struct wd_buffer *buffer, struct wd_gpu *gpu, uint32_t vertices)
+{
+    static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
+    size_t cards = (size_t)WD_CARD_BATCH * vertices / 4;
+    uint32_t *indices = wd_alloc_array(cards * 6, sizeof *indices);
+    for (size_t i = 0; i < cards * 6; i++)
+        indices[i] = (uint32_t)(i / 6 * 4) + corners[i % 6];
+    bool ok = make_buffer(buffer, gpu, "card indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, indices,
+                          cards * 6 * sizeof *indices);
+    free(indices);
+    return ok;
+}
+
+static const struct wd_tree_mesh *level_mesh(const struct wd_tree_model *model, int level)
+{
+    return level == WD_LEVEL_MESH ? &model->full : &model->reduced;
+}
+
+static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
+{
+    struct wd_forest_device *forest = work->forest;
+    size_t vertex_count = 0, index_count = 0;
+    for (uint32_t i = 0; i < forest->model_count; i++) {
+        for (int level = 0; level < 2; level++) {
+            const struct wd_tree_mesh *mesh = level_mesh(&work->grown[i], level);
+            forest->ranges[i][level] = (struct wd_mesh_range){
+                (uint32_t)index_count, mesh->index_count, (int32_t)vertex_count};
+            vertex_count += mesh->vertex_count;
+            index_count += mesh->index_count;
+        }
+    }
+    struct wd_tree_vertex *vertices = wd_alloc_array(vertex_count, sizeof *vertices);
+    uint32_t *indices = wd_alloc_array(index_count, sizeof *indices);
+    for (uint32_t i = 0; i < forest->model_count; i++) {
+        for (int level = 0; level < 2; level++) {
+            const struct wd_tree_mesh *mesh = level_mesh(&work->grown[i], level);
+            const struct wd_mesh_range *range = &forest->ranges[i][level];
+            memcpy(vertices + range->vertex_offset, mesh->vertices,
+                   mesh->vertex_count * sizeof *vertices);
+            memcpy(indices + range->first_index, mesh->indices,
+                   mesh->index_count * sizeof *indices);
+        }
+    }
+    bool ok = make_buffer(&forest->vertices, gpu, "tree vertices",
+                          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, vertices,
+                          vertex_count * sizeof *vertices) &&
+              make_buffer(&forest->indices, gpu, "tree indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
+                          indices, index_count * sizeof *indices);
+    free(vertices);
+    free(indices);
+    return ok;
+}
+
+static bool make_card_image(struct wd_image *image, struct wd_gpu *gpu, const char *name,
+                            VkFormat format, uint32_t models)
+{
+    const struct wd_image_params params = {
+        .name = name,
+        .format = format,
+        .width = WD_CARD_WIDTH,
+        .height = WD_CARD_HEIGHT,
+        .layers = WD_CARDS * models,
+        .mips = WD_CARD_MIPS,
+        .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+        .view = WD_IMAGE_ARRAY,
+    };
+    if (params.layers > gpu->properties.limits.maxImageArrayLayers)
+        return wd_error(gpu->log,
+                        "%u tree models need %u image layers, %s has %u: use fewer species or variants",
+                        models, params.layers, gpu->properties.deviceName,
+                        gpu->properties.limits.maxImageArrayLayers);
+    return wd_image_init(image, gpu, &params);
+}
+
+static bool upload_cards(struct wd_forest_device *forest, struct wd_gpu *gpu, uint32_t model,
+                         const struct wd_cards *cards)
+{
+    for (uint32_t card = 0; card < WD_CARDS; card++) {
+        for (uint32_t mip = 0; mip < WD_CARD_MIPS; mip++) {
+            uint32_t width, height, layer = model * WD_CARDS + card;
+            wd_card_size(mip, &width, &height);
+            size_t offset = wd_card_offset(card, mip), size = (size_t)4 * width * height;
+            if (!wd_image_upload(gpu, &forest->card_albedo, layer, mip, cards->albedo + offset,
+                                 size) ||
+                !wd_image_upload(gpu, &forest->card_normal, layer, mip, cards->normal + offset,
+                                 size))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* --- cards ------------------------------------------------------------------------------- */
+
+static bool bake_model(struct preparation *work, struct wd_gpu *gpu, struct wd_card_baker *baker,
+                       uint32_t index, struct wd_cards *cards)
+{
+    const struct wd_forest_device_params *params = work->params;
+    const char *cache = params->cache_dir && params->cache_dir[0] ? params->cache_dir : NULL;
+    const uint8_t *look = work->looks + index / work->forest->variants * WD_LOOK_BYTES;
+    uint64_t key = wd_cards_key(&work->grown[index], look, WD_LOOK_BYTES);
+    if (cache && wd_cards_load(cards, cache, key)) {
+        work->forest->baked_from_cache++;
+        return true;
+    }
+    if (!baker->gpu && !wd_card_baker_init(baker, gpu, params->log))
+        return false;
+    struct wd_image image = {0};
+    bool ok = wd_looks_upload(&image, gpu, look, 1) &&
+              wd_cards_bake(cards, baker, &work->grown[index], &image);
+    wd_image_finish(&image, gpu);
+    if (ok && cache)
+        wd_cards_store(cards, cache, key, params->log);
+    return ok;
+}
+
+static bool prepare_cards(struct preparation *work, struct wd_gpu *gpu)
+{
+    struct wd_forest_device *forest = work->forest;
+    struct wd_card_baker baker = {0};
+    bool ok = make_card_image(&forest->card_albedo, gpu, "card albedo", VK_FORMAT_R8G8B8A8_SRGB,
+                              forest->model_count) &&
+              make_card_image(&forest->card_normal, gpu, "card normal", VK_FORMAT_R8G8B8A8_UNORM,
+                              forest->model_count);
+    for (uint32_t i = 0; i < forest->model_count && ok; i++) {
+        struct wd_cards cards = {0};
+        ok = wd_progress_report(work->params->progress, "baking trees", i, forest->model_count) &&
+             bake_model(work, gpu, &baker, i, &cards);
+        if (!ok)
+            break;
+        struct wd_model *model = &forest->host_models[i];
+        model->half_width_m = cards.half_width_m;
+        model->half_depth_m = cards.half_depth_m;
+        model->bottom_m = cards.bottom_m;
+        model->top_m = cards.top_m;
+        ok = upload_cards(forest, gpu, i, &cards);
+        wd_cards_finish(&cards);
+    }
+    wd_card_baker_finish(&baker);
+    return ok;
+}
+
+/* --- the whole --------------------------------------------------------------------------- */
+
+static bool upload_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
+{
+    static const struct wd_tree none = {0};
+    const struct wd_world *world = forest->world;
+    for (size_t i = 0; i < world->tree_count; i++)
+        forest->max_tree_height_m =
+            fmaxf(forest->max_tree_height_m, 0.01f * (float)(world->trees[i].size & 0xffffu));
+    size_t count = world->tree_count ? world->tree_count : 1;
+    return make_buffer(&forest->trees, gpu, "trees", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                       world->tree_count ? world->trees : &none, count * sizeof none);
+}
+
+static bool prepare(struct preparation *work, struct wd_gpu *gpu)
+{
+    struct wd_forest_device *forest = work->forest;
+    const struct wd_forest_device_params *params = work->params;
+    double start = wd_clock_s();
+    wd_jobs_run(params->threads, params->scene->species_file_count, make_look, work);
+    wd_jobs_run(params->threads, forest->model_count, grow_model, work);
+    if (atomic_load(&work->failed))
+        return false;
+    for (uint32_t i = 0; i < forest->model_count; i++)
+        describe_model(&forest->host_models[i], work, i);
+    double grown = wd_clock_s();
+    forest->grown_us = (uint64_t)((grown - start) * 1e6);
+    bool ok = prepare_cards(work, gpu) && upload_meshes(work, gpu) &&
+              make_buffer(&forest->models, gpu, "tree models", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                          forest->host_models, forest->model_count * sizeof *forest->host_models) &&
+              wd_looks_upload(&forest->looks, gpu, work->looks,
+                              (uint32_t)params->scene->species_file_count);
+    forest->baked_us = (uint64_t)((wd_clock_s() - grown) * 1e6);
+    return ok;
+}
+
+bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
+                           const struct wd_forest_device_params *params)
+{
+    const struct wd_scene *scene = params->scene;
+    *forest = (struct wd_forest_device){
+        .scene = scene, .world = params->world, .variants = (uint32_t)scene->variants};
+    forest->model_count = (uint32_t)scene->species_file_count * forest->variants;
+    size_t slots = forest->model_count ? forest->model_count : 1;
+    forest->ranges = wd_alloc_array(slots, sizeof *forest->ranges);
+    forest->host_models = wd_alloc_array(slots, sizeof *forest->host_models);
+    struct preparation work = {
+        .forest = forest,
+        .params = params,
+        .grown = wd_alloc_array(slots, sizeof *work.grown),
+        .looks = wd_alloc_array(scene->species_file_count, WD_LOOK_BYTES),
+    };
+    bool ok = wd_ground_init(&forest->ground, gpu, params->world, params->log) &&
+              upload_trees(forest, gpu) &&
+              make_card_pattern(&forest->card_indices, gpu, WD_CARD_VERTICES) &&
+              make_card_pattern(&forest->shadow_card_indices, gpu, WD_SHADOW_CARD_VERTICES) &&
+              wd_sampler_init(&forest->look_sampler, gpu, WD_SAMPLER_TRILINEAR_REPEAT) &&
+              wd_sampler_init(&forest->card_sampler, gpu, WD_SAMPLER_TRILINEAR_CLAMP) &&
+              (forest->model_count == 0 || prepare(&work, gpu));
+    for (uint32_t i = 0; i < forest->model_count; i++)
+        wd_tree_model_finish(&work.grown[i]);
+    free(work.grown);
+    free(work.looks);
+    if (!ok)
+        wd_forest_device_finish(forest, gpu);
+    return ok;
+}
+
+void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu)
+{
+    struct wd_buffer *buffers[] = {&forest->trees,   &forest->models,       &forest->vertices,
+                                   &forest->indices, &forest->card_indices, &forest->shadow_card_indices};
+    struct wd_image *images[] = {&forest->looks, &forest->card_albedo, &forest->card_normal};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        wd_buffer_finish(buffers[i], gpu);
+    for (size_t i = 0; i < sizeof images / sizeof *images; i++)
+        wd_image_finish(images[i], gpu);
+    wd_ground_finish(&forest->ground, gpu);
+    if (forest->look_sampler)
+        vkDestroySampler(gpu->device, forest->look_sampler, NULL);
+    if (forest->card_sampler)
+        vkDestroySampler(gpu->device, forest->card_sampler, NULL);
+    free(forest->ranges);
+    free(forest->host_models);
+    *forest = (struct wd_forest_device){0};
+}
+
+uint32_t wd_forest_model_of(const struct wd_forest_device *forest, const struct wd_tree *tree)
+{
+    uint32_t variant = (tree->kind >> 16) & 0xffu;
+    return (tree->kind & 0xffffu) * forest->variants + variant % forest->variants;
+}

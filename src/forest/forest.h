@@ -1,0 +1,56 @@
+/* forest.h: a world and its trees as device buffers, whatever method draws them. */
+#ifndef WD_FOREST_FOREST_H
+#define WD_FOREST_FOREST_H
+
+#include "bake/cards.h"
+#include "forest/ground.h"
+#include "gpu/command.h"
+#include "shared/forest.h"
+#include "world/world.h"
+
+/* Where a model's triangles are in the common buffers. */
+struct wd_mesh_range {
+    uint32_t first_index, index_count;
+    int32_t vertex_offset;
+};
+
+struct wd_forest_device {
+    const struct wd_scene *scene;
+    const struct wd_world *world;
+    struct wd_ground ground;
+    struct wd_buffer trees;    /* struct wd_tree[], octree order; never empty */
+    struct wd_buffer models;   /* struct wd_model[species * variants] */
+    struct wd_buffer vertices; /* struct wd_tree_vertex[] of all models and levels */
+    struct wd_buffer indices;  /* uint32_t[] */
+    struct wd_buffer card_indices;        /* WD_CARD_BATCH trees of WD_CARD_INDICES */
+    struct wd_buffer shadow_card_indices; /* WD_CARD_BATCH trees of WD_SHADOW_CARD_INDICES */
+    struct wd_image looks;     /* bark and leaf of each species, sRGB, layered */
+    struct wd_image card_albedo, card_normal; /* WD_CARDS layers a model */
+    VkSampler look_sampler, card_sampler;
+    struct wd_mesh_range (*ranges)[2]; /* [model][WD_LEVEL_MESH, WD_LEVEL_REDUCED] */
+    struct wd_model *host_models;
+    uint32_t model_count, variants;
+    float max_tree_height_m;
+    uint64_t grown_us, baked_us; /* what preparing cost */
+    uint32_t baked_from_cache;   /* models whose cards came from the cache */
+};
+
+struct wd_forest_device_params {
+    const struct wd_scene *scene;
+    const struct wd_world *world;
+    const char *cache_dir; /* "" or NULL: none */
+    unsigned threads;
+    const struct wd_progress *progress;
+    const struct wd_log *log;
+};
+
+/* Grows every model, bakes (or loads) its cards and uploads it all with the world's trees. `scene`
+ * and `world` must outlive the result. */
+bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
+                           const struct wd_forest_device_params *params);
+void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu);
+
+/* Index into models of a tree's model. */
+uint32_t wd_forest_model_of(const struct wd_forest_device *forest, const struct wd_tree *tree);
+
+#endif

@@ -1,0 +1,65 @@
+#include "forest/looks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/color.h"
+#include "base/memory.h"
+
+void wd_look_generate(const struct wd_species *species, uint8_t *rgba)
+{
+    wd_species_bark_texture(species, WD_LOOK_SIZE, rgba);
+    wd_species_leaf_texture(species, WD_LOOK_SIZE, rgba + WD_LOOK_BYTES / 2);
+}
+
+/* Halves a square sRGB image, averaging linear light. */
+static void halve(uint8_t *coarse, const uint8_t *fine, uint32_t size, const float linear[256])
+{
+    for (uint32_t y = 0; y < size; y++) {
+        for (uint32_t x = 0; x < size; x++) {
+            const uint8_t *from = fine + 4 * ((size_t)2 * y * 2 * size + 2 * x);
+            uint8_t *to = coarse + 4 * ((size_t)y * size + x);
+            for (int k = 0; k < 3; k++)
+                to[k] = wd_srgb_encode(0.25f * (linear[from[k]] + linear[from[k + 4]] +
+                                                linear[from[k + 8 * size]] +
+                                                linear[from[k + 8 * size + 4]]));
+            to[3] = 255;
+        }
+    }
+}
+
+bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *rgba,
+                     uint32_t species_count)
+{
+    const struct wd_image_params params = {
+        .name = "looks",
+        .format = VK_FORMAT_R8G8B8A8_SRGB,
+        .width = WD_LOOK_SIZE,
+        .height = WD_LOOK_SIZE,
+        .layers = 2 * species_count,
+        .mips = WD_ALL_MIPS,
+        .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+        .view = WD_IMAGE_ARRAY,
+    };
+    if (!wd_image_init(image, gpu, &params))
+        return false;
+    float linear[256];
+    for (int i = 0; i < 256; i++)
+        linear[i] = wd_srgb_decode((uint8_t)i);
+    uint8_t *levels[2] = {wd_alloc(WD_LOOK_BYTES / 2), wd_alloc(WD_LOOK_BYTES / 2)};
+    bool ok = true;
+    for (uint32_t layer = 0; layer < image->layers && ok; layer++) {
+        memcpy(levels[0], rgba + layer * (WD_LOOK_BYTES / 2), WD_LOOK_BYTES / 2);
+        for (uint32_t mip = 0; mip < image->mips && ok; mip++) {
+            uint32_t size = WD_LOOK_SIZE >> mip;
+            if (mip > 0)
+                halve(levels[mip & 1], levels[(mip - 1) & 1], size, linear);
+            ok = wd_image_upload(gpu, image, layer, mip, levels[mip & 1], (size_t)4 * size * size);
+        }
+    }
+    free(levels[0]);
+    free(levels[1]);
+    if (!ok)
+        wd_image_finish(image, gpu);
+    return ok;
+}
