@@ -1,0 +1,37 @@
+# The front door. `make help` lists what it opens.
+BUILD ?= build
+PREFIX ?= /usr/local
+
+.PHONY: run test deps build lint bench install clean help
+.DEFAULT_GOAL := help
+
+run: deps ## build, then show scenes/valley.json: in a window, or as out/valley.png
+	@scripts/build.sh $(BUILD)
+	@scripts/run.sh $(BUILD)
+
+test: ## every test, on software Vulkan, with sanitizers and a second compiler
+	@scripts/deps.sh test
+	@scripts/test.sh $(BUILD)
+
+deps: ## install the Debian packages that are missing
+	@scripts/deps.sh
+
+build: ## build release
+	@scripts/build.sh $(BUILD)
+
+lint: ## static checks
+	@scripts/deps.sh test
+	@scripts/lint.sh $(BUILD)
+
+bench: deps ## measure everything, or one figure with ONLY=NAME
+	@bench/run $(BUILD) $(ONLY)
+
+install: build ## install program, library, headers and manual below PREFIX
+	@meson configure $(BUILD) -Dprefix=$(abspath $(PREFIX))
+	@meson install -C $(BUILD)
+
+clean: ## remove everything built and rendered
+	rm -rf build build-asan build-o0 out
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)

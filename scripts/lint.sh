@@ -1,0 +1,20 @@
+#!/bin/sh
+# Static checks: include rules and words that must not stand in the tree, cppcheck on every C
+# source, shellcheck where it is installed.
+set -eu
+cd "$(dirname "$0")/.."
+build=${1:-build}
+scripts/build.sh "$build"
+failed=0
+
+tests/house/includes.sh . || failed=1
+tests/house/words.sh . || failed=1
+cppcheck --quiet --error-exitcode=1 --inline-suppr --std=c11 --enable=warning,portability \
+    --suppress=missingIncludeSystem --suppress=invalidPointerCast \
+    --suppress=normalCheckLevelMaxBranches --suppress=unknownMacro -j "$(nproc)" \
+    -I include -I src -I shaders src cli viewer examples bench || failed=1
+if command -v shellcheck >/dev/null 2>&1; then
+    git ls-files '*.sh' .ci/run bench/run | xargs shellcheck || failed=1
+fi
+[ "$failed" -eq 0 ] && echo "lint: nothing found"
+exit "$failed"

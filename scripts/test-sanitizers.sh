@@ -1,0 +1,15 @@
+#!/bin/sh
+# The tests that need no GPU, under AddressSanitizer and UndefinedBehaviorSanitizer.
+set -eu
+cd "$(dirname "$0")/.."
+build=build-asan
+
+scripts/build.sh configure "$build" -Dbuildtype=debugoptimized -Db_sanitize=address,undefined \
+    -Db_lundef=false -Dtests=enabled
+export ASAN_OPTIONS=abort_on_error=1:detect_stack_use_after_return=1
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+# Libraries of others keep what they keep for the life of the process.
+export LSAN_OPTIONS=suppressions=$PWD/scripts/leaks-of-others.txt:print_suppressions=0
+# shellcheck disable=SC2046  # one word a test
+meson test -C "$build" --print-errorlogs --timeout-multiplier 5 \
+    $(scripts/select-tests.sh "$build" base scene world tree output)

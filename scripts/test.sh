@@ -1,0 +1,48 @@
+#!/bin/sh
+# Every test: the release build on software Vulkan, then what needs no GPU again under ASan and
+# UBSan, then the worlds and trees again from another compiler at -O0: their hashes are part of
+# the tests and must not move.
+set -eu
+cd "$(dirname "$0")/.."
+build=${1:-build}
+
+software=
+for file in /usr/share/vulkan/icd.d/lvp_icd.*json /etc/vulkan/icd.d/lvp_icd.*json; do
+    [ ! -f "$file" ] || software=$file
+done
+[ -n "$software" ] || {
+    echo "test: no software Vulkan driver (lvp_icd.json); install mesa-vulkan-drivers" >&2
+    exit 1
+}
+export VK_DRIVER_FILES="$software" VK_ICD_FILENAMES="$software"
+
+failed=
+step() { # step NAME COMMAND...: runs it, remembers a failure, goes on
+    step_name=$1
+    shift
+    printf '\n=== %s\n' "$step_name"
+    step_begin=$(date +%s)
+    if "$@"; then
+        printf '%s: passed (%s s)\n' "$step_name" $(($(date +%s) - step_begin))
+    else
+        printf '%s: FAILED (%s s)\n' "$step_name" $(($(date +%s) - step_begin))
+        failed="$failed, $step_name"
+    fi
+}
+
+scripts/build.sh "$build"
+# A build made before the test packages were there has the tests switched off.
+meson introspect "$build" --tests | grep -q '"name"' ||
+    meson setup --reconfigure -Dtests=enabled "$build" >/dev/null
+scripts/build.sh "$build"
+
+step release meson test -C "$build" --no-rebuild --print-errorlogs
+step sanitizers scripts/test-sanitizers.sh
+step 'second compiler at -O0' scripts/test-determinism.sh
+
+printf '\n'
+[ -z "$failed" ] || {
+    echo "Tests FAILED in: ${failed#, }"
+    exit 1
+}
+echo "All tests passed."
