@@ -14,10 +14,12 @@ enum wd_key_kind {
     WD_KEY_FLOAT,   /* float */
     WD_KEY_INTEGER, /* int64_t */
     WD_KEY_BOOL,    /* bool */
-    WD_KEY_STRING,  /* const char *, in the arena; NULL when absent without default */
+    WD_KEY_STRING,  /* const char *, in the arena; NULL when absent without default; one of
+                       `choices` where there are any */
     WD_KEY_ENUM,    /* int: index into `choices` */
     WD_KEY_RANGE,   /* float[2]: a number n (becomes n, n) or [min, max], min <= max */
     WD_KEY_VECTOR,  /* double[length] */
+    WD_KEY_FLOATS,  /* float[length] */
     WD_KEY_COLOR,   /* float[3], linear sRGB: [r, g, b] in 0..1 linear, or "#rrggbb" (sRGB) */
     WD_KEY_OBJECT,  /* struct of `table` */
     WD_KEY_LIST,    /* pointer to items of `table` (in the arena) and size_t at count_offset */
@@ -25,8 +27,10 @@ enum wd_key_kind {
                        `const char *name` */
     WD_KEY_STRINGS, /* const char ** and size_t at count_offset; a lone string is a list of one */
     WD_KEY_INTEGERS,/* int64_t * and size_t at count_offset; a lone number is a list of one */
-    WD_KEY_NUMBERS, /* double * and size_t at count_offset */
+    WD_KEY_NUMBERS, /* double * and size_t at count_offset; `length` of them unless that is 0 */
     WD_KEY_STRING_MAP, /* struct wd_string_pair * and size_t at count_offset: free names -> text */
+    WD_KEY_NUMBER_MAP, /* struct wd_number_pair * and size_t at count_offset: free names ->
+                          numbers; a lone string is one name with the number 1 */
 };
 
 struct wd_string_pair {
@@ -34,25 +38,44 @@ struct wd_string_pair {
     const char *value;
 };
 
+struct wd_number_pair {
+    const char *name;
+    double value;
+};
+
 enum wd_key_flag {
     WD_KEY_REQUIRED = 1 << 0,
     WD_KEY_EXCLUSIVE_MIN = 1 << 1, /* value > min, not >= */
+    WD_KEY_NAN_IF_ABSENT = 1 << 2, /* DOUBLE without a default: NaN, not 0 */
+    WD_KEY_SORTED = 1 << 3,        /* VECTOR: no part may be less than the one before */
 };
 
 struct wd_keys;
-struct wd_keys_place; /* where in the file the reader is, for errors about an object already read */
+struct wd_keys_reader;
+
+/* Where in the file the reader is: a chain from the innermost object or list item to the root. A
+ * check makes the places of children itself: {place->reader, place, "layers", 0}, then
+ * {place->reader, &that, NULL, 2}. */
+struct wd_keys_place {
+    struct wd_keys_reader *reader;
+    const struct wd_keys_place *parent; /* NULL: the root */
+    const char *key;                    /* NULL in a list */
+    size_t index;
+};
+
 struct wd_key {
     const char *name;
     enum wd_key_kind kind;
     size_t offset;       /* of the member in the struct */
-    double min, max;     /* numbers and each part of ranges and vectors; both 0: any finite value */
+    double min, max;     /* numbers and each part of ranges, vectors, lists and maps of numbers;
+                            either may be infinite; both 0: any finite value */
     const char *fallback; /* default as JSON text; NULL: zero bytes (an OBJECT still gets its keys'
                              own defaults) */
     const char *doc;     /* one sentence with the unit; goes into the schema */
     const char *const *choices; /* ENUM: NULL-terminated */
     const struct wd_keys *table; /* OBJECT, LIST, MAP */
     size_t count_offset;
-    size_t length;       /* VECTOR: number of parts */
+    size_t length;       /* VECTOR, FLOATS: number of parts */
     unsigned flags;
 };
 struct wd_keys {
@@ -67,12 +90,23 @@ struct wd_keys {
 bool wd_keys_error(const struct wd_keys_place *place, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* For checks: what the reader was given. */
+const char *wd_keys_path(const struct wd_keys_place *place);
+struct wd_arena *wd_keys_arena(const struct wd_keys_place *place);
+const struct wd_log *wd_keys_log(const struct wd_keys_place *place);
+const void *wd_keys_user(const struct wd_keys_place *place);
+
 /* Reads JSON with // and block comments from memory into `object` (table->size bytes). `path`
  * names the file in messages. Everything allocated lives in `arena`. Every error is logged with
  * file:line:column, the key's path, what was found and what is allowed; unknown keys are errors
  * with a "did you mean". */
 bool wd_keys_read(const struct wd_keys *table, const char *path, const char *text, size_t size,
                   struct wd_arena *arena, const struct wd_log *log, void *object);
+
+/* The same; the checks get `user` from wd_keys_user. */
+bool wd_keys_read_with(const struct wd_keys *table, const char *path, const char *text, size_t size,
+                       const void *user, struct wd_arena *arena, const struct wd_log *log,
+                       void *object);
 
 /* The JSON Schema (draft 2020-12) of a table, as text; free() it. */
 char *wd_keys_schema(const struct wd_keys *table, const char *id);

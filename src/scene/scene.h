@@ -2,6 +2,7 @@
 #ifndef WD_SCENE_SCENE_H
 #define WD_SCENE_SCENE_H
 
+#include "scene/nearest.h"
 #include "scene/species.h"
 
 enum wd_terrain_kind { WD_TERRAIN_FLAT, WD_TERRAIN_DIAMOND_SQUARE, WD_TERRAIN_RASTER };
@@ -186,8 +187,5 @@ void wd_scene_finish(struct wd_scene *scene);
 const struct wd_scene_camera *wd_scene_find_camera(const struct wd_scene *scene, const char *name);
 /* Index into scene->species, or -1. */
 int wd_scene_find_species(const struct wd_scene *scene, const char *name);
-
-/* The name among `names` nearest to `wanted` by edit distance, or NULL when none is near. */
-const char *wd_nearest_name(const char *wanted, const char *const *names, size_t count);
 
 #endif

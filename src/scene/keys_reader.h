@@ -1,0 +1,39 @@
+/* keys_reader.h: what keys.c and keys_value.c share while a file is read. */
+#ifndef WD_SCENE_KEYS_READER_H
+#define WD_SCENE_KEYS_READER_H
+
+#include <jansson.h>
+
+#include "scene/json_text.h"
+#include "scene/keys.h"
+
+struct wd_keys_reader {
+    const char *path;
+    const char *text;  /* as written */
+    const char *clean; /* comments blanked, same offsets */
+    size_t size;
+    struct wd_arena *arena;
+    const struct wd_log *log;
+    const void *user;
+    unsigned errors;
+};
+
+/* Errors of one file that are logged; the rest is counted. */
+enum { WD_KEYS_ERROR_LIMIT = 20 };
+
+/* Fills an object's struct from its JSON. */
+bool wd_keys_read_object(const struct wd_keys *table, json_t *json,
+                         const struct wd_keys_place *place, void *object);
+
+/* Fills one member; `place` is the object that holds it. */
+bool wd_keys_read_value(const struct wd_key *key, json_t *json, const struct wd_keys_place *place,
+                        void *object);
+
+/* As wd_keys_error, but points at the key, not at its value. */
+bool wd_keys_error_at_key(const struct wd_keys_place *place, const char *key, const char *format,
+                          ...) __attribute__((format(printf, 3, 4)));
+
+/* What a key takes, for messages: "a number from 0 to 1". */
+const char *wd_keys_allowed(const struct wd_key *key, char *buffer, size_t size);
+
+#endif
