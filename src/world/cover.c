@@ -1,0 +1,64 @@
+#include "world/cover.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+
+enum { SIDE = 4 }; /* sample points along a cell's side */
+static const double most_cells = 4.0 * 1024.0 * 1024.0;
+
+/* Bit 4 * row + column of a cell is set where that sample point lies under a crown. */
+struct samples {
+    uint16_t *masks;
+    uint32_t width, height; /* in cells */
+    double step_m;          /* between sample points */
+};
+
+static void mark_row(struct samples *samples, long row, long first, long last)
+{
+    long columns = (long)samples->width * SIDE;
+    if (row < 0 || row >= (long)samples->height * SIDE)
+        return;
+    first = first < 0 ? 0 : first;
+    last = last >= columns ? columns - 1 : last;
+    uint16_t *masks = samples->masks + (size_t)(row / SIDE) * samples->width;
+    for (long column = first; column <= last; column++)
+        masks[column / SIDE] |= (uint16_t)(1u << (row % SIDE * SIDE + column % SIDE));
+}
+
+static void mark_disc(struct samples *samples, const struct wd_tree *tree)
+{
+    double x = tree->x_mm * 0.001 / samples->step_m - 0.5;
+    double y = tree->y_mm * 0.001 / samples->step_m - 0.5;
+    double radius = (tree->size >> 16) * 0.005 / samples->step_m;
+    for (long row = (long)ceil(y - radius); (double)row <= y + radius; row++) {
+        double up = (double)row - y, half = sqrt(fmax(radius * radius - up * up, 0.0));
+        mark_row(samples, row, (long)ceil(x - half), (long)floor(x + half));
+    }
+}
+
+void wd_cover_init(struct wd_world *world)
+{
+    double x_m = wd_terrain_extent_x_m(&world->terrain);
+    double y_m = wd_terrain_extent_y_m(&world->terrain);
+    double cell_m = 4.0;
+    while ((floor(x_m / cell_m) + 1.0) * (floor(y_m / cell_m) + 1.0) > most_cells)
+        cell_m *= 1.0905077326652577; /* 2^(1/8) */
+    struct samples samples = {
+        .width = (uint32_t)floor(x_m / cell_m) + 1,
+        .height = (uint32_t)floor(y_m / cell_m) + 1,
+        .step_m = cell_m / SIDE,
+    };
+    size_t count = (size_t)samples.width * samples.height;
+    samples.masks = wd_alloc_array(count, sizeof *samples.masks);
+    for (size_t i = 0; i < world->tree_count; i++)
+        mark_disc(&samples, &world->trees[i]);
+    world->cover = wd_alloc(count);
+    for (size_t i = 0; i < count; i++)
+        world->cover[i] = (uint8_t)(__builtin_popcount(samples.masks[i]) * 255 / (SIDE * SIDE));
+    free(samples.masks);
+    world->cover_width = samples.width;
+    world->cover_height = samples.height;
+    world->cover_cell_m = cell_m;
+}
