@@ -4,9 +4,17 @@
 
 #include "shared/tree.h"
 
+#ifdef __STDC_VERSION__
+#define WD_FADE_STRUCT struct wd_layer_fade
+#else
+#define WD_FADE_STRUCT wd_layer_fade
+#endif
+
 /* A model's cards: three upright through the trunk's axis, a third of a half turn apart, and one
  * level at CARD_TOP of the height (crossed billboards, Guerrero 2006, section 4; the level one
  * keeps crowns whole from above). */
+#define WD_CARD_WIDTH_TEXELS 128 /* of the finest mip */
+#define WD_CARD_HEIGHT_TEXELS 256
 #define WD_CARD_SIDES 3
 #define WD_CARDS 4
 #define WD_CARD_VERTICES 16  /* a tree */
@@ -36,6 +44,29 @@ struct wd_model {
     float crown_base_m;     /* height of the lowest living branch */
 };
 
+/* 0 up to begin, 1 from end on, linear between. */
+WD_FUNC float wd_ramp(float begin, float end, float x)
+{
+    float t = end > begin ? (x - begin) / (end - begin) : (x >= end ? 1.0f : 0.0f);
+    return t < 0.0f ? 0.0f : (t > 1.0f ? 1.0f : t);
+}
+
+/* How trees of one layer come and go with distance (I7); 0 at both ends: they do not. */
+struct wd_layer_fade {
+    float near_begin_m, near_end_m; /* hidden nearer than begin, whole beyond end */
+    float far_begin_m, far_end_m;   /* whole nearer than begin, hidden beyond end */
+};
+
+WD_FUNC float wd_layer_show(WD_FADE_STRUCT fade, float distance_m)
+{
+    float show = 1.0f;
+    if (fade.near_end_m > 0.0f)
+        show *= wd_ramp(fade.near_begin_m, fade.near_end_m, distance_m);
+    if (fade.far_end_m > 0.0f)
+        show *= 1.0f - wd_ramp(fade.far_begin_m, fade.far_end_m, distance_m);
+    return show;
+}
+
 /* A tree drawn by itself. */
 struct wd_instance {
     uint32_t tree;  /* index in octree order */
@@ -48,7 +79,6 @@ struct wd_tree_push {
     uint32_t cascade;   /* of a shadow pass */
     uint32_t level;     /* WD_LEVEL_* of what is drawn, for LOD colouring */
     float show;         /* for draws of ranges */
-    uint32_t single;    /* 1 + tree to draw when it stands alone (separate); 0: by instance */
 };
 
 #endif

@@ -13,13 +13,14 @@ struct wd_tree {
     uint32_t kind;            /* species index in bits 0..15, model variant in bits 16..23 */
     uint32_t size;            /* height in cm in bits 0..15; crown diameter in cm in bits 16..31 */
     uint32_t look;            /* yaw in 1/65536 turns in bits 0..15; tint in bits 16..23 (128 is
-                                 neutral); bit 24: mirrored */
+                                 neutral); bit 24: mirrored; bits 25..31: layer + 1, 0 inventory */
     uint32_t random;          /* the tree's own random number: fades, blends, wind phase */
 };
 WD_STATIC_ASSERT_SIZE(wd_tree, 32);
 
 #define WD_TREE_SPECIES(tree) ((tree).kind & 0xffffu)
 #define WD_TREE_VARIANT(tree) (((tree).kind >> 16) & 0xffu)
+#define WD_TREE_LAYER(tree) ((tree).look >> 25) /* 0: inventory */
 #define WD_TREE_HEIGHT_M(tree) (float((tree).size & 0xffffu) * 0.01)
 #define WD_TREE_CROWN_M(tree) (float((tree).size >> 16) * 0.01)
 

@@ -7,8 +7,8 @@
 #include "tree/grow.h"
 
 enum {
-    WD_CARD_WIDTH = 128,  /* texels of a card */
-    WD_CARD_HEIGHT = 256,
+    WD_CARD_WIDTH = WD_CARD_WIDTH_TEXELS,
+    WD_CARD_HEIGHT = WD_CARD_HEIGHT_TEXELS,
     WD_CARD_MIPS = 8,     /* down to 1 x 2 */
     WD_LOOK_SIZE = 256,   /* texels a side of bark and leaf textures */
 };

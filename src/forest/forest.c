@@ -239,6 +239,20 @@ static bool upload_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
                        world->tree_count ? world->trees : &none, count * sizeof none);
 }
 
+static bool upload_fades(struct wd_forest_device *forest, struct wd_gpu *gpu)
+{
+    size_t count = forest->scene->layer_count + 1;
+    forest->host_fades = wd_alloc_array(count, sizeof *forest->host_fades);
+    for (size_t i = 1; i < count; i++) {
+        const struct wd_scene_layer *layer = &forest->scene->layers[i - 1];
+        forest->host_fades[i] = (struct wd_layer_fade){
+            (float)layer->fade_near_m[0], (float)layer->fade_near_m[1],
+            (float)layer->fade_far_m[0], (float)layer->fade_far_m[1]};
+    }
+    return make_buffer(&forest->fades, gpu, "layer fades", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                       forest->host_fades, count * sizeof *forest->host_fades);
+}
+
 static bool prepare(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
@@ -278,7 +292,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
         .looks = wd_alloc_array(scene->species_file_count, WD_LOOK_BYTES),
     };
     bool ok = wd_ground_init(&forest->ground, gpu, params->world, params->log) &&
-              upload_trees(forest, gpu) &&
+              upload_trees(forest, gpu) && upload_fades(forest, gpu) &&
               make_card_pattern(&forest->card_indices, gpu, WD_CARD_VERTICES) &&
               make_card_pattern(&forest->shadow_card_indices, gpu, WD_SHADOW_CARD_VERTICES) &&
               wd_sampler_init(&forest->look_sampler, gpu, WD_SAMPLER_TRILINEAR_REPEAT) &&
@@ -295,8 +309,9 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
 
 void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
-    struct wd_buffer *buffers[] = {&forest->trees,   &forest->models,       &forest->vertices,
-                                   &forest->indices, &forest->card_indices, &forest->shadow_card_indices};
+    struct wd_buffer *buffers[] = {
+        &forest->trees,   &forest->models,       &forest->vertices,           &forest->fades,
+        &forest->indices, &forest->card_indices, &forest->shadow_card_indices};
     struct wd_image *images[] = {&forest->looks, &forest->card_albedo, &forest->card_normal};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
@@ -309,6 +324,7 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
         vkDestroySampler(gpu->device, forest->card_sampler, NULL);
     free(forest->ranges);
     free(forest->host_models);
+    free(forest->host_fades);
     *forest = (struct wd_forest_device){0};
 }
 

@@ -24,11 +24,13 @@ struct wd_forest_device {
     struct wd_buffer indices;  /* uint32_t[] */
     struct wd_buffer card_indices;        /* WD_CARD_BATCH trees of WD_CARD_INDICES */
     struct wd_buffer shadow_card_indices; /* WD_CARD_BATCH trees of WD_SHADOW_CARD_INDICES */
+    struct wd_buffer fades;    /* struct wd_layer_fade[1 + layers]; [0] is that of inventories */
     struct wd_image looks;     /* bark and leaf of each species, sRGB, layered */
     struct wd_image card_albedo, card_normal; /* WD_CARDS layers a model */
     VkSampler look_sampler, card_sampler;
     struct wd_mesh_range (*ranges)[2]; /* [model][WD_LEVEL_MESH, WD_LEVEL_REDUCED] */
     struct wd_model *host_models;
+    struct wd_layer_fade *host_fades;
     uint32_t model_count, variants;
     float max_tree_height_m;
     uint64_t grown_us, baked_us; /* what preparing cost */

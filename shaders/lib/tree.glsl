@@ -1,0 +1,84 @@
+/* Standing trees: from a model's frame to the camera-relative one, with wind.
+ * Expects `frame` (wd_frame_uniforms). */
+#include "shared/forest.h"
+#include "shared/wind.h"
+
+vec3 tree_foot_rel(wd_tree tree)
+{
+    ivec3 foot_mm = ivec3(tree.x_mm, tree.y_mm, tree.z_mm);
+    ivec3 camera_mm = ivec3(frame.camera_mm[0], frame.camera_mm[1], frame.camera_mm[2]);
+    return vec3(foot_mm - camera_mm) * 0.001 - frame.camera_frac_m;
+}
+
+/* Cosine and sine of the tree's yaw; scale in x and y (x mirrored), scale in z. */
+struct tree_pose {
+    vec2 turn;
+    vec2 mirror; /* x: -1 mirrored */
+    float across, up;
+};
+
+tree_pose tree_pose_of(wd_tree tree, wd_model model)
+{
+    tree_pose pose;
+    float yaw = float(tree.look & 0xffffu) * (6.28318530718 / 65536.0);
+    pose.turn = vec2(cos(yaw), sin(yaw));
+    pose.mirror = vec2((tree.look & 0x1000000u) != 0u ? -1.0 : 1.0, 1.0);
+    pose.across = WD_TREE_CROWN_M(tree) / model.crown_m;
+    pose.up = WD_TREE_HEIGHT_M(tree) / model.height_m;
+    return pose;
+}
+
+vec2 tree_turn(tree_pose pose, vec2 v)
+{
+    v *= pose.mirror;
+    return vec2(pose.turn.x * v.x - pose.turn.y * v.y, pose.turn.y * v.x + pose.turn.x * v.y);
+}
+
+/* A model's point as an offset from the tree's foot. */
+vec3 tree_offset(tree_pose pose, vec3 model_m)
+{
+    return vec3(tree_turn(pose, model_m.xy) * pose.across, model_m.z * pose.up);
+}
+
+/* A model's normal in world axes: the inverse transpose of the pose. */
+vec3 tree_normal(tree_pose pose, vec3 normal)
+{
+    return normalize(vec3(tree_turn(pose, normal.xy) * pose.up, normal.z * pose.across));
+}
+
+wd_wind tree_wind()
+{
+    return wd_wind(frame.wind_speed_mps, frame.wind_gust, frame.wind_toward.x, frame.wind_toward.y);
+}
+
+vec3 tree_sway(wd_tree tree, float flexibility, float height_m, float time_s)
+{
+    if (frame.wind_speed_mps <= 0.0)
+        return vec3(0.0);
+    wd_wind_tree swaying = wd_wind_tree(float(tree.x_mm) * 0.001, float(tree.y_mm) * 0.001,
+                                        WD_TREE_HEIGHT_M(tree), flexibility, tree.random);
+    wd_wind_shift shift = wd_wind_offset(tree_wind(), swaying, height_m, time_s);
+    return vec3(shift.x_m, shift.y_m, shift.z_m);
+}
+
+/* Each tree's own brightness and hue about the species' colour. */
+vec3 tree_tint(wd_tree tree)
+{
+    float spread = float((tree.look >> 16) & 0xffu) * (1.0 / 128.0) - 1.0;
+    float other = float(tree.random >> 24) * (1.0 / 128.0) - 1.0;
+    return vec3(1.0 + 0.30 * spread + 0.10 * other * abs(spread), 1.0 + 0.22 * spread,
+                1.0 + 0.16 * spread - 0.08 * other * abs(spread));
+}
+
+vec3 level_color(uint level)
+{
+    return level == WD_LEVEL_MESH      ? vec3(0.85, 0.08, 0.05)
+           : level == WD_LEVEL_REDUCED ? vec3(0.85, 0.65, 0.05)
+                                       : vec3(0.05, 0.25, 0.85);
+}
+
+vec4 shadow_clip(uint cascade, vec3 rel)
+{
+    vec3 at = (frame.shadow_from_rel[cascade] * vec4(rel, 1.0)).xyz;
+    return vec4(at.xy * 2.0 - 1.0, at.z, 1.0);
+}

@@ -1,0 +1,41 @@
+#version 460
+#include "shared/frame.h"
+#include "shared/forest.h"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
+layout(set = 0, binding = 5) uniform sampler2DArray card_normal;
+
+#include "lib/tree.glsl"
+#include "lib/card.glsl"
+
+layout(location = 0) in vec3 in_uv;
+layout(location = 1) flat in vec4 in_pose;
+layout(location = 2) flat in vec4 in_tint;
+layout(location = 3) flat in uvec2 in_flat;
+layout(location = 4) flat in vec3 in_flip;
+
+layout(location = 0) out vec4 out_albedo;
+layout(location = 1) out vec4 out_normal;
+layout(location = 2) out uint out_surface;
+
+void main()
+{
+    vec4 albedo = texture(card_albedo, in_uv);
+    float lod = textureQueryLod(card_albedo, in_uv.xy).y;
+    float opacity = card_opacity(albedo.a, lod) * in_tint.a;
+    if (card_noise(in_uv, lod, in_flat.y, frame.sample_index) >= opacity)
+        discard;
+    vec4 packed = texture(card_normal, in_uv);
+    vec3 normal = packed.xyz * 2.0 - 1.0;
+    normal.x *= in_pose.z;
+    normal = vec3((in_pose.x * normal.x - in_pose.y * normal.y) * in_pose.w,
+                  (in_pose.y * normal.x + in_pose.x * normal.y) * in_pose.w, normal.z);
+    normal -= 2.0 * dot(normal, in_flip) * in_flip;
+    albedo.rgb *= in_tint.rgb;
+    if (frame.view_mode == WD_MODE_LOD)
+        albedo.rgb = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * packed.a);
+    out_albedo = vec4(albedo.rgb, packed.a);
+    out_normal = vec4(normalize(normal) * 0.5 + 0.5, float(WD_MATERIAL_CARD) / 3.0);
+    out_surface = in_flat.x;
+}

@@ -1,0 +1,54 @@
+#version 460
+/* A tree as triangles, full or reduced. */
+#include "shared/frame.h"
+#include "shared/forest.h"
+#include "shared/hash.h"
+
+layout(constant_id = 0) const uint SHADOW = 0u;
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_tree_vertex vertices[]; };
+layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_instance instances[]; };
+layout(scalar, push_constant) uniform Push { wd_tree_push push; };
+
+#include "lib/tree.glsl"
+#include "lib/tree_vertex.glsl"
+
+layout(location = 0) out vec3 out_normal;
+layout(location = 1) out vec3 out_uv; /* z: layer of the look */
+layout(location = 2) out vec4 out_tint;
+layout(location = 3) flat out uvec3 out_flat; /* surface, material, random of the triangle */
+layout(location = 4) flat out float out_show;
+
+void main()
+{
+    wd_instance instance = instances[gl_InstanceIndex];
+    wd_tree tree = trees[instance.tree];
+    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                            + WD_TREE_VARIANT(tree) % push.variants];
+    wd_tree_vertex v = vertices[gl_VertexIndex];
+    tree_pose pose = tree_pose_of(tree, model);
+    vec3 offset = tree_offset(pose, v.position_m);
+    vec3 normal = tree_normal(pose, tree_vertex_normal(v));
+    bool leaf = (v.kind & WD_VERTEX_LEAF) != 0u;
+
+    offset += tree_sway(tree, model.flexibility, offset.z, frame.time_s);
+    if (leaf && frame.wind_speed_mps > 0.0) {
+        float phase = fract(dot(floor(v.position_m * 4.0), vec3(0.137, 0.311, 0.173)));
+        offset += normal * wd_wind_flutter(tree_wind(), float(v.kind & 0xffu) * (1.0 / 255.0),
+                                           phase, frame.time_s);
+    }
+    vec3 rel = tree_foot_rel(tree) + offset;
+    out_normal = normal;
+    out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + (leaf ? 1u : 0u)));
+    out_tint = unpackUnorm4x8(v.tint);
+    if (leaf)
+        out_tint.rgb *= tree_tint(tree);
+    out_flat = uvec3(instance.tree + 1u, leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD,
+                     wd_hash2(uint(gl_VertexIndex), tree.random));
+    out_show = instance.show;
+    gl_Position = SHADOW != 0u ? shadow_clip(push.cascade, rel)
+                               : frame.clip_from_rel * vec4(rel, 1.0);
+}

@@ -1,0 +1,160 @@
+#include "methods/selection.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+/* Quality distances are meant for a tree of this height. */
+static const float REFERENCE_HEIGHT_M = 20.0f;
+/* Cascades from this one on take reduced meshes at most, and from the next on cards only. */
+enum { REDUCED_CASCADE = 1 };
+
+struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
+                                      const struct wd_view *view, enum wd_tree_pass pass)
+{
+    const struct wd_scene *scene = forest->scene;
+    struct wd_level_rule rule = {
+        .mesh_m = (float)scene->quality.mesh_distance_m * view->lod_scale,
+        .reduced_m = (float)scene->quality.reduced_distance_m * view->lod_scale,
+        .blend = (float)scene->quality.blend,
+        .finest = WD_LEVEL_MESH,
+    };
+    if (pass == WD_PASS_CAMERA || view->cascade < REDUCED_CASCADE)
+        return rule;
+    rule.finest = view->cascade == REDUCED_CASCADE ? WD_LEVEL_REDUCED : WD_LEVEL_CARD;
+    rule.reduced_m = rule.finest == WD_LEVEL_CARD ? 0.0f : rule.mesh_m;
+    rule.mesh_m = 0.0f;
+    return rule;
+}
+
+/* Shares of a nearer and a farther level about the distance where they change. */
+static void blend_levels(float from_m, float blend, float distance_m, float *nearer, float *farther)
+{
+    float t = wd_ramp(from_m, from_m * (1.0f + blend), distance_m);
+    *farther = fminf(2.0f * t, 1.0f);
+    *nearer = fminf(2.0f - 2.0f * t, 1.0f);
+}
+
+struct wd_levels wd_levels_at(const struct wd_level_rule *rule, float height_m, float distance_m)
+{
+    struct wd_levels levels;
+    float scale = height_m / REFERENCE_HEIGHT_M, not_mesh, meshes;
+    blend_levels(rule->mesh_m * scale, rule->blend, distance_m, &levels.show[WD_LEVEL_MESH],
+                 &not_mesh);
+    blend_levels(fmaxf(rule->reduced_m, rule->mesh_m) * scale, rule->blend, distance_m, &meshes,
+                 &levels.show[WD_LEVEL_CARD]);
+    levels.show[WD_LEVEL_REDUCED] = fminf(not_mesh, meshes);
+    if (rule->finest > WD_LEVEL_MESH)
+        levels.show[WD_LEVEL_MESH] = 0.0f;
+    if (rule->finest > WD_LEVEL_REDUCED)
+        levels = (struct wd_levels){{0.0f, 0.0f, 1.0f}};
+    return levels;
+}
+
+float wd_level_card_distance(const struct wd_level_rule *rule, float height_m)
+{
+    if (rule->finest == WD_LEVEL_CARD)
+        return 0.0f;
+    return fmaxf(rule->reduced_m, rule->mesh_m) * (1.0f + rule->blend) * height_m /
+           REFERENCE_HEIGHT_M;
+}
+
+void wd_selection_clear(struct wd_selection *selection)
+{
+    selection->range_count = selection->card_count = 0;
+    selection->mesh_count = selection->batch_count = 0;
+}
+
+void wd_selection_finish(struct wd_selection *selection)
+{
+    free(selection->ranges);
+    free(selection->cards);
+    free(selection->meshes);
+    free(selection->mesh_keys);
+    free(selection->batches);
+    *selection = (struct wd_selection){0};
+}
+
+void wd_selection_add_range(struct wd_selection *selection, uint32_t begin, uint32_t end)
+{
+    if (begin == end)
+        return;
+    if (selection->range_count && selection->ranges[selection->range_count - 1].end == begin) {
+        selection->ranges[selection->range_count - 1].end = end;
+        return;
+    }
+    *wd_push(selection->ranges, selection->range_count, selection->range_capacity) =
+        (struct wd_range){begin, end};
+}
+
+static void add_mesh(struct wd_selection *selection, uint32_t model, uint32_t level, uint32_t tree,
+                     float show)
+{
+    selection->mesh_keys = wd_grow(selection->mesh_keys, selection->mesh_count,
+                                   &selection->key_capacity, sizeof *selection->mesh_keys);
+    selection->mesh_keys[selection->mesh_count] = model * 2 + level;
+    *wd_push(selection->meshes, selection->mesh_count, selection->mesh_capacity) =
+        (struct wd_instance){tree, show};
+}
+
+static enum wd_side tree_side(const struct wd_view *view, const struct wd_tree *tree,
+                              const float foot[3])
+{
+    float half = 0.005f * (float)(tree->size >> 16), height = 0.01f * (float)(tree->size & 0xffffu);
+    /* wind and leaning boughs reach a little further */
+    float reach = half * 1.5f + 0.1f * height + 0.5f;
+    const float min[3] = {foot[0] - reach, foot[1] - reach, foot[2] - 1.0f};
+    const float max[3] = {foot[0] + reach, foot[1] + reach, foot[2] + 1.1f * height};
+    return wd_frustum_box(&view->frustum, min, max);
+}
+
+void wd_selection_add_tree(struct wd_selection *selection, const struct wd_forest_device *forest,
+                           const struct wd_view *view, const struct wd_level_rule *rule,
+                           uint32_t index)
+{
+    const struct wd_tree *tree = &forest->world->trees[index];
+    const int32_t place_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
+    float foot[3], distance_squared = 0.0f;
+    for (int k = 0; k < 3; k++) {
+        foot[k] = (float)(place_mm[k] * 0.001 - view->eye_m[k]);
+        distance_squared += foot[k] * foot[k];
+    }
+    if (tree_side(view, tree, foot) == WD_OUTSIDE)
+        return;
+    float distance_m = sqrtf(distance_squared), height_m = 0.01f * (float)(tree->size & 0xffffu);
+    float fade = wd_layer_show(forest->host_fades[tree->look >> 25], distance_m);
+    struct wd_levels levels = wd_levels_at(rule, height_m, distance_m);
+    uint32_t model = wd_forest_model_of(forest, tree);
+    for (uint32_t level = WD_LEVEL_MESH; level <= WD_LEVEL_REDUCED; level++) {
+        if (levels.show[level] * fade > 0.0f)
+            add_mesh(selection, model, level, index, levels.show[level] * fade);
+    }
+    /* the card's shader applies the fade itself: ranges need it too */
+    if (levels.show[WD_LEVEL_CARD] * fade > 0.0f)
+        *wd_push(selection->cards, selection->card_count, selection->card_capacity) =
+            (struct wd_instance){index, levels.show[WD_LEVEL_CARD]};
+}
+
+void wd_selection_sort(struct wd_selection *selection, uint32_t model_count)
+{
+    size_t keys = (size_t)model_count * 2, count = selection->mesh_count;
+    if (count == 0)
+        return;
+    uint32_t *first = wd_alloc_array(keys + 1, sizeof *first);
+    struct wd_instance *sorted = wd_alloc_array(count, sizeof *sorted);
+    for (size_t i = 0; i < count; i++)
+        first[selection->mesh_keys[i] + 1]++;
+    for (size_t key = 0; key < keys; key++) {
+        if (first[key + 1])
+            *wd_push(selection->batches, selection->batch_count, selection->batch_capacity) =
+                (struct wd_mesh_batch){(uint32_t)key / 2, key % 2, first[key], first[key + 1]};
+        first[key + 1] += first[key];
+    }
+    for (size_t i = 0; i < count; i++)
+        sorted[first[selection->mesh_keys[i]]++] = selection->meshes[i];
+    memcpy(selection->meshes, sorted, count * sizeof *sorted);
+    free(first);
+    free(sorted);
+}

@@ -1,0 +1,64 @@
+/* selection.h: which trees a view shows, at which level: what every method decides before drawing. */
+#ifndef WD_METHODS_SELECTION_H
+#define WD_METHODS_SELECTION_H
+
+#include "forest/forest.h"
+#include "frame/view.h"
+
+enum wd_tree_pass { WD_PASS_CAMERA, WD_PASS_SHADOW };
+
+/* How much of each level shows: G7's noise blend. The farther level is blended in whole before the
+ * nearer one is blended out, so that nothing shines through. */
+struct wd_levels {
+    float show[3]; /* by WD_LEVEL_*: 0 nothing .. 1 whole */
+};
+
+/* Distances of the levels for one view. */
+struct wd_level_rule {
+    float mesh_m, reduced_m; /* for a tree of 20 m; both grow with height */
+    float blend;             /* share of the distance over which levels blend */
+    uint32_t finest;         /* WD_LEVEL_*: shadows of far cascades start lower */
+};
+struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
+                                      const struct wd_view *view, enum wd_tree_pass pass);
+struct wd_levels wd_levels_at(const struct wd_level_rule *rule, float height_m, float distance_m);
+/* Distance beyond which every tree up to `height_m` is a card and nothing else. */
+float wd_level_card_distance(const struct wd_level_rule *rule, float height_m);
+
+struct wd_range {
+    uint32_t begin, end; /* trees, octree order */
+};
+
+/* Trees of one model and level. */
+struct wd_mesh_batch {
+    uint32_t model, level;
+    uint32_t first, count; /* instances */
+};
+
+struct wd_selection {
+    struct wd_range *ranges; /* drawn as cards, whole */
+    size_t range_count, range_capacity;
+    struct wd_instance *cards; /* drawn as cards one by one */
+    size_t card_count, card_capacity;
+    struct wd_instance *meshes; /* in the order they were found, until sorted into batches */
+    uint32_t *mesh_keys;        /* model * 2 + level, parallel to meshes */
+    size_t mesh_count, mesh_capacity, key_capacity;
+    struct wd_mesh_batch *batches;
+    size_t batch_count, batch_capacity;
+};
+
+void wd_selection_clear(struct wd_selection *selection); /* keeps the memory */
+void wd_selection_finish(struct wd_selection *selection);
+
+/* Adds a range; one that begins where the last ended makes it longer. */
+void wd_selection_add_range(struct wd_selection *selection, uint32_t begin, uint32_t end);
+
+/* Adds one tree by itself at the levels that its distance asks for, if the view can see it. */
+void wd_selection_add_tree(struct wd_selection *selection, const struct wd_forest_device *forest,
+                           const struct wd_view *view, const struct wd_level_rule *rule,
+                           uint32_t tree);
+
+/* Orders the meshes by model and level and fills `batches`. */
+void wd_selection_sort(struct wd_selection *selection, uint32_t model_count);
+
+#endif

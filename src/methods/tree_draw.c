@@ -1,0 +1,223 @@
+#include "methods/tree_draw.h"
+
+#include <string.h>
+
+#include "frame/targets.h"
+
+static const uint32_t tree_mesh_vert[] =
+#include "tree_mesh.vert.inc"
+    ;
+static const uint32_t tree_mesh_frag[] =
+#include "tree_mesh.frag.inc"
+    ;
+static const uint32_t tree_mesh_shadow_frag[] =
+#include "tree_mesh_shadow.frag.inc"
+    ;
+static const uint32_t tree_card_vert[] =
+#include "tree_card.vert.inc"
+    ;
+static const uint32_t tree_card_frag[] =
+#include "tree_card.frag.inc"
+    ;
+static const uint32_t tree_card_shadow_frag[] =
+#include "tree_card_shadow.frag.inc"
+    ;
+
+#define SPIRV(words) {words, sizeof words, #words}
+
+/* --- pipelines --------------------------------------------------------------------------- */
+
+static void set_targets(struct wd_graphics_params *params, enum wd_tree_pass pass)
+{
+    params->depth_format = WD_DEPTH_FORMAT;
+    params->topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    params->push_size = sizeof(struct wd_tree_push);
+    if (pass == WD_PASS_CAMERA) {
+        params->color_count = 3;
+        params->color_formats[0] = WD_ALBEDO_FORMAT;
+        params->color_formats[1] = WD_NORMAL_FORMAT;
+        params->color_formats[2] = WD_SURFACE_FORMAT;
+    } else {
+        params->depth_bias_slope = -1.0f; /* reversed depth: away from the sun is down */
+    }
+}
+
+static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tree_pass pass)
+{
+    const uint32_t constants[] = {pass == WD_PASS_SHADOW};
+    struct wd_graphics_params params = {
+        .vertex = SPIRV(tree_mesh_vert),
+        .bindings = {6,
+                     {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
+        .constants = {1, constants},
+    };
+    const struct wd_spirv fragments[] = {SPIRV(tree_mesh_frag), SPIRV(tree_mesh_shadow_frag)};
+    params.fragment = fragments[pass];
+    set_targets(&params, pass);
+    return wd_pipeline_init_graphics(pipeline, gpu, &params);
+}
+
+static bool init_card(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tree_pass pass,
+                      uint32_t listed)
+{
+    const uint32_t constants[] = {pass == WD_PASS_SHADOW, listed};
+    struct wd_graphics_params params = {
+        .vertex = SPIRV(tree_card_vert),
+        .bindings = {7,
+                     {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+        .constants = {2, constants},
+    };
+    const struct wd_spirv fragments[] = {SPIRV(tree_card_frag), SPIRV(tree_card_shadow_frag)};
+    params.fragment = fragments[pass];
+    set_targets(&params, pass);
+    return wd_pipeline_init_graphics(pipeline, gpu, &params);
+}
+
+bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
+{
+    *pipelines = (struct wd_tree_pipelines){0};
+    for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
+        if (!init_mesh(&pipelines->mesh[pass], gpu, pass) ||
+            !init_card(&pipelines->card_range[pass], gpu, pass, 0) ||
+            !init_card(&pipelines->card_listed[pass], gpu, pass, 1)) {
+            wd_tree_pipelines_finish(pipelines, gpu);
+            return false;
+        }
+    }
+    return true;
+}
+
+void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
+{
+    for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
+        wd_pipeline_finish(&pipelines->mesh[pass], gpu);
+        wd_pipeline_finish(&pipelines->card_range[pass], gpu);
+        wd_pipeline_finish(&pipelines->card_listed[pass], gpu);
+    }
+}
+
+/* --- drawing ----------------------------------------------------------------------------- */
+
+static struct wd_tree_push tree_push(const struct wd_tree_draw *draw, uint32_t level)
+{
+    return (struct wd_tree_push){.variants = draw->forest->variants,
+                                 .cascade = draw->view->cascade,
+                                 .level = level,
+                                 .show = 1.0f};
+}
+
+/* Instances in the frame's upload memory; false marks the frame failed already. */
+static bool upload_instances(const struct wd_tree_draw *draw, const struct wd_instance *instances,
+                             size_t count, struct wd_binding *binding)
+{
+    void *memory = wd_cmd_upload(draw->cmd, count * sizeof *instances, binding);
+    if (memory)
+        memcpy(memory, instances, count * sizeof *instances);
+    return memory != NULL;
+}
+
+static void draw_indexed(const struct wd_tree_draw *draw, uint32_t indices, uint32_t instances,
+                         const struct wd_mesh_range *range, uint32_t first_instance)
+{
+    vkCmdDrawIndexed(draw->cmd->vk, indices, instances, range->first_index, range->vertex_offset,
+                     first_instance);
+    draw->stats->draw_calls++;
+    draw->stats->triangles += (uint64_t)indices / 3 * instances;
+}
+
+static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selection *selection,
+                        enum wd_draw_grouping grouping)
+{
+    const struct wd_forest_device *forest = draw->forest;
+    const struct wd_pipeline *pipeline = &draw->pipelines->mesh[draw->pass];
+    struct wd_binding instances;
+    if (!selection->mesh_count ||
+        !upload_instances(draw, selection->meshes, selection->mesh_count, &instances))
+        return;
+    const struct wd_binding bindings[] = {
+        draw->uniforms, WD_BIND_BUFFER(&forest->trees), WD_BIND_BUFFER(&forest->models),
+        WD_BIND_BUFFER(&forest->vertices), instances,
+        WD_BIND_IMAGE(&forest->looks, forest->look_sampler)};
+    wd_cmd_bind(draw->cmd, pipeline, bindings);
+    vkCmdBindIndexBuffer(draw->cmd->vk, forest->indices.buffer, 0, VK_INDEX_TYPE_UINT32);
+    for (size_t i = 0; i < selection->batch_count; i++) {
+        const struct wd_mesh_batch *batch = &selection->batches[i];
+        const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
+        const struct wd_tree_push push = tree_push(draw, batch->level);
+        wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
+        draw->stats->trees[batch->level] += batch->count;
+        if (grouping == WD_DRAW_GROUPED) {
+            draw_indexed(draw, range->index_count, batch->count, range, batch->first);
+            continue;
+        }
+        for (uint32_t k = 0; k < batch->count; k++)
+            draw_indexed(draw, range->index_count, 1, range, batch->first + k);
+    }
+}
+
+/* Binds what cards need and returns indices a tree. */
+static uint32_t bind_cards(const struct wd_tree_draw *draw, const struct wd_pipeline *pipeline,
+                           struct wd_binding instances)
+{
+    const struct wd_forest_device *forest = draw->forest;
+    const struct wd_binding bindings[] = {
+        draw->uniforms, WD_BIND_BUFFER(&forest->trees), WD_BIND_BUFFER(&forest->models), instances,
+        WD_BIND_IMAGE(&forest->card_albedo, forest->card_sampler),
+        WD_BIND_IMAGE(&forest->card_normal, forest->card_sampler), WD_BIND_BUFFER(&forest->fades)};
+    bool shadow = draw->pass == WD_PASS_SHADOW;
+    const struct wd_tree_push push = tree_push(draw, WD_LEVEL_CARD);
+    wd_cmd_bind(draw->cmd, pipeline, bindings);
+    wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
+    vkCmdBindIndexBuffer(draw->cmd->vk,
+                         (shadow ? &forest->shadow_card_indices : &forest->card_indices)->buffer, 0,
+                         VK_INDEX_TYPE_UINT32);
+    return shadow ? WD_SHADOW_CARD_INDICES : WD_CARD_INDICES;
+}
+
+/* Trees (or list slots) [begin, end) as cards, in draws of at most `batch`. */
+static void draw_card_range(const struct wd_tree_draw *draw, uint32_t begin, uint32_t end,
+                            uint32_t indices, uint32_t batch)
+{
+    uint32_t vertices = indices / 6 * 4;
+    for (uint32_t at = begin; at < end; at += batch) {
+        uint32_t count = end - at < batch ? end - at : batch;
+        const struct wd_mesh_range range = {0, 0, (int32_t)(at * vertices)};
+        draw_indexed(draw, count * indices, 1, &range, 0);
+    }
+    draw->stats->trees[WD_LEVEL_CARD] += end - begin;
+}
+
+static void draw_cards(const struct wd_tree_draw *draw, const struct wd_selection *selection,
+                       enum wd_draw_grouping grouping)
+{
+    if (selection->range_count) {
+        /* ranges read no instances; the slot is filled all the same */
+        uint32_t indices = bind_cards(draw, &draw->pipelines->card_range[draw->pass],
+                                      WD_BIND_BUFFER(&draw->forest->trees));
+        for (size_t i = 0; i < selection->range_count; i++)
+            draw_card_range(draw, selection->ranges[i].begin, selection->ranges[i].end, indices,
+                            WD_CARD_BATCH);
+    }
+    struct wd_binding instances;
+    if (selection->card_count &&
+        upload_instances(draw, selection->cards, selection->card_count, &instances)) {
+        uint32_t indices = bind_cards(draw, &draw->pipelines->card_listed[draw->pass], instances);
+        draw_card_range(draw, 0, (uint32_t)selection->card_count, indices,
+                        grouping == WD_DRAW_GROUPED ? WD_CARD_BATCH : 1);
+    }
+}
+
+void wd_tree_draw_selection(const struct wd_tree_draw *draw, struct wd_selection *selection,
+                            enum wd_draw_grouping grouping)
+{
+    wd_selection_sort(selection, draw->forest->model_count);
+    draw_meshes(draw, selection, grouping);
+    draw_cards(draw, selection, grouping);
+}

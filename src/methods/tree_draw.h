@@ -1,0 +1,42 @@
+/* tree_draw.h: pipelines that draw trees as meshes and cards, shared by methods. */
+#ifndef WD_METHODS_TREE_DRAW_H
+#define WD_METHODS_TREE_DRAW_H
+
+#include "methods/selection.h"
+
+struct wd_draw_stats {
+    uint64_t draw_calls, triangles;
+    uint64_t trees[3]; /* by WD_LEVEL_*; a tree that blends counts at both levels */
+};
+
+struct wd_tree_pipelines {
+    /* [WD_PASS_CAMERA, WD_PASS_SHADOW] */
+    struct wd_pipeline mesh[2];
+    struct wd_pipeline card_range[2], card_listed[2];
+};
+bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu);
+void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu);
+
+/* One view to be drawn. */
+struct wd_tree_draw {
+    struct wd_cmd *cmd;
+    const struct wd_tree_pipelines *pipelines;
+    const struct wd_forest_device *forest;
+    const struct wd_view *view;
+    enum wd_tree_pass pass;
+    struct wd_binding uniforms;     /* struct wd_frame_uniforms */
+    struct wd_draw_stats *stats;    /* added to */
+};
+
+/* Whether trees that stand alone share draws. */
+enum wd_draw_grouping {
+    WD_DRAW_GROUPED, /* one instanced draw a model and level, one draw for all listed cards */
+    WD_DRAW_SINGLE,  /* one draw a tree */
+};
+
+/* Records all of a selection, inside an open rendering. Buffers of the forest are in use for
+ * reading by graphics. Sorts the selection. */
+void wd_tree_draw_selection(const struct wd_tree_draw *draw, struct wd_selection *selection,
+                            enum wd_draw_grouping grouping);
+
+#endif
