@@ -34,7 +34,8 @@ static bool add_pool(struct wd_frame_slot *slot, struct wd_gpu *gpu)
     return true;
 }
 
-/* Pools [0, used) are full or in use; sets come from pool used - 1. */
+/* Sets come from pool used - 1; the pools before it are full. Drivers may hand out more sets than
+ * a pool was made for, so they are counted here. */
 static VkDescriptorSet allocate_set(struct wd_cmd *cmd, VkDescriptorSetLayout layout)
 {
     struct wd_frame_slot *slot = cmd->slot;
@@ -44,14 +45,16 @@ static VkDescriptorSet allocate_set(struct wd_cmd *cmd, VkDescriptorSetLayout la
         .pSetLayouts = &layout,
     };
     VkDescriptorSet set = VK_NULL_HANDLE;
-    if (slot->descriptor_pool_used > 0) {
+    if (slot->descriptor_pool_used > 0 && slot->descriptor_sets_used < SETS_PER_POOL) {
         info.descriptorPool = slot->descriptor_pools[slot->descriptor_pool_used - 1];
+        slot->descriptor_sets_used++;
         if (vkAllocateDescriptorSets(cmd->gpu->device, &info, &set) == VK_SUCCESS)
             return set;
     }
     if (slot->descriptor_pool_used == slot->descriptor_pool_count && !add_pool(slot, cmd->gpu))
         return VK_NULL_HANDLE;
     info.descriptorPool = slot->descriptor_pools[slot->descriptor_pool_used++];
+    slot->descriptor_sets_used = 1;
     VkResult result = vkAllocateDescriptorSets(cmd->gpu->device, &info, &set);
     return wd_gpu_check(cmd->gpu, result, "vkAllocateDescriptorSets") ? set : VK_NULL_HANDLE;
 }
@@ -63,7 +66,7 @@ bool wd_descriptors_reset(struct wd_frame_slot *slot, struct wd_gpu *gpu)
         if (!wd_gpu_check(gpu, result, "vkResetDescriptorPool"))
             return false;
     }
-    slot->descriptor_pool_used = 0;
+    slot->descriptor_pool_used = slot->descriptor_sets_used = 0;
     return true;
 }
 

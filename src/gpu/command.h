@@ -31,6 +31,7 @@ struct wd_frame_slot {
     VkFence fence;
     VkDescriptorPool *descriptor_pools;
     size_t descriptor_pool_count, descriptor_pool_used, descriptor_pool_capacity;
+    size_t descriptor_sets_used; /* of the pool in use */
     struct wd_buffer *upload; /* replaced by a larger one on demand; uniforms, per-frame arrays */
     VkDeviceSize upload_used;
     VkQueryPool queries;

@@ -1,0 +1,173 @@
+#include "gpu_test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A device as an embedding program would make it: from the published required features. */
+static void make_external(struct wd_gpu_external *external)
+{
+    const VkApplicationInfo application = {
+        .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+        .apiVersion = VK_API_VERSION_1_3,
+    };
+    const VkInstanceCreateInfo instance = {
+        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+        .pApplicationInfo = &application,
+    };
+    *external = (struct wd_gpu_external){0};
+    assert_int_equal(vkCreateInstance(&instance, NULL, &external->instance), VK_SUCCESS);
+    uint32_t count = 1;
+    vkEnumeratePhysicalDevices(external->instance, &count, &external->physical_device);
+    assert_int_equal(count, 1);
+    VkPhysicalDeviceFeatures2 features;
+    VkPhysicalDeviceVulkan12Features features12;
+    VkPhysicalDeviceVulkan13Features features13;
+    wd_gpu_required_features(&features, &features12, &features13);
+    assert_true(features13.dynamicRendering && features13.synchronization2);
+    assert_true(features12.scalarBlockLayout && features.features.independentBlend);
+    const VkDeviceQueueCreateInfo queue = {
+        .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+        .queueCount = 1,
+        .pQueuePriorities = (const float[]){1},
+    };
+    const VkDeviceCreateInfo device = {
+        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+        .pNext = &features,
+        .queueCreateInfoCount = 1,
+        .pQueueCreateInfos = &queue,
+    };
+    assert_int_equal(vkCreateDevice(external->physical_device, &device, NULL, &external->device),
+                     VK_SUCCESS);
+    vkGetDeviceQueue(external->device, 0, 0, &external->queue);
+}
+
+static void destroy_external(struct wd_gpu_external *external)
+{
+    vkDestroyDevice(external->device, NULL);
+    vkDestroyInstance(external->instance, NULL);
+}
+
+static void draw_and_read(struct wd_gpu *gpu)
+{
+    struct wd_frames frames;
+    assert_true(wd_frames_init(&frames, gpu));
+    struct wd_buffer buffer;
+    assert_true(wd_buffer_init(&buffer, gpu, &(struct wd_buffer_params){
+        .name = "theirs", .size = 64, .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
+    struct wd_cmd cmd;
+    assert_true(wd_frame_begin(&frames, &cmd));
+    wd_cmd_scope_begin(&cmd, "fill");
+    wd_cmd_fill_buffer(&cmd, &buffer, 42);
+    wd_cmd_scope_end(&cmd);
+    assert_true(wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE));
+    uint32_t values[16];
+    assert_true(wd_buffer_read(gpu, &buffer, 0, values, sizeof values));
+    assert_int_equal(values[15], 42);
+    wd_buffer_finish(&buffer, gpu);
+    wd_frames_finish(&frames);
+}
+
+static void external_device_is_used_and_left_alone(void **state)
+{
+    struct gpu_test *test = *state;
+    struct wd_gpu_external external;
+    make_external(&external);
+    struct wd_gpu gpu;
+    assert_true(wd_gpu_init(&gpu, &(struct wd_gpu_params){.external = &external}, &test->log));
+    assert_false(gpu.owned);
+    assert_int_equal(gpu.features & WD_GPU_FEATURE_INT64_ATOMICS, 0);
+    draw_and_read(&gpu);
+    wd_gpu_finish(&gpu);
+    assert_int_equal(vkDeviceWaitIdle(external.device), VK_SUCCESS); /* still alive */
+    assert_int_equal(test->errors, 0);
+    destroy_external(&external);
+}
+
+static void enabled_features_are_believed_where_possible(void **state)
+{
+    struct gpu_test *test = *state;
+    struct wd_gpu_external external;
+    make_external(&external);
+    external.features = WD_GPU_FEATURE_ANISOTROPY | WD_GPU_FEATURE_TIMESTAMPS |
+                        WD_GPU_FEATURE_DEBUG_LABELS;
+    struct wd_gpu gpu;
+    assert_true(wd_gpu_init(&gpu, &(struct wd_gpu_params){.external = &external}, &test->log));
+    /* no true timestamps on software, and the instance has no debug labels */
+    assert_int_equal(gpu.features, WD_GPU_FEATURE_ANISOTROPY);
+    wd_gpu_finish(&gpu);
+    destroy_external(&external);
+}
+
+static void null_handle_is_an_error(void **state)
+{
+    struct gpu_test *test = *state;
+    struct wd_gpu gpu;
+    const struct wd_gpu_external external = {0};
+    assert_false(wd_gpu_init(&gpu, &(struct wd_gpu_params){.external = &external}, &test->log));
+    assert_logged(test, "null handle");
+}
+
+static VkImage make_foreign_image(struct gpu_test *test, VkDeviceMemory *memory)
+{
+    const VkImageCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = VK_IMAGE_TYPE_2D,
+        .format = VK_FORMAT_B8G8R8A8_UNORM,
+        .extent = {16, 8, 1},
+        .mipLevels = 1,
+        .arrayLayers = 1,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+    };
+    VkImage image;
+    assert_int_equal(vkCreateImage(test->gpu.device, &info, NULL, &image), VK_SUCCESS);
+    VkMemoryRequirements needs;
+    vkGetImageMemoryRequirements(test->gpu.device, image, &needs);
+    const VkMemoryAllocateInfo allocation = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+        .allocationSize = needs.size,
+    };
+    assert_int_equal(vkAllocateMemory(test->gpu.device, &allocation, NULL, memory), VK_SUCCESS);
+    assert_int_equal(vkBindImageMemory(test->gpu.device, image, *memory, 0), VK_SUCCESS);
+    return image;
+}
+
+static void foreign_image_is_drawn_into(void **state)
+{
+    struct gpu_test *test = *state;
+    VkDeviceMemory memory;
+    VkImage foreign = make_foreign_image(test, &memory);
+    struct wd_image image;
+    assert_true(wd_image_wrap(&image, &test->gpu, foreign, VK_FORMAT_B8G8R8A8_UNORM, 16, 8));
+    struct wd_cmd cmd = begin_frame(test);
+    wd_cmd_begin_rendering(&cmd, &(struct wd_rendering){
+        .width = 16, .height = 8, .color_count = 1,
+        .color = {{.image = &image, .load = WD_LOAD_CLEAR, .clear = {.float32 = {1, 0, 0, 1}}}}});
+    wd_cmd_end_rendering(&cmd);
+    finish_frame(test, &cmd);
+    uint8_t texels[8][16][4];
+    assert_true(wd_image_read(&test->gpu, &image, 0, 0, texels, sizeof texels));
+    assert_memory_equal(texels[7][15], ((uint8_t[]){0, 0, 255, 255}), 4);
+    wd_image_finish(&image, &test->gpu);
+    vkDestroyImage(test->gpu.device, foreign, NULL);
+    vkFreeMemory(test->gpu.device, memory, NULL);
+}
+
+static int log_teardown(void **state)
+{
+    free(*state);
+    return 0;
+}
+
+int main(void)
+{
+#define LOG_TEST(f) cmocka_unit_test_setup_teardown(f, log_setup, log_teardown)
+    const struct CMUnitTest tests[] = {
+        LOG_TEST(external_device_is_used_and_left_alone),
+        LOG_TEST(enabled_features_are_believed_where_possible),
+        LOG_TEST(null_handle_is_an_error),
+        cmocka_unit_test_setup_teardown(foreign_image_is_drawn_into, gpu_setup, gpu_teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
