@@ -4,7 +4,7 @@
 
 #include "gpu/memory.h"
 
-/* Allocates what `needs` asks for, in the best memory type that has room. `name` shows in errors. */
+/* Allocates what `needs` asks for, in the best memory type that has room. `name`: for errors. */
 bool wd_allocate(struct wd_gpu *gpu, const VkMemoryRequirements *needs,
                  enum wd_gpu_memory_kind kind, const char *name, VkDeviceMemory *memory);
 /* `size` as in the requirements. Accepts VK_NULL_HANDLE. */

@@ -9,7 +9,8 @@ static bool create_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu,
     const VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = params->size,
-        .usage = params->usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        .usage = params->usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_DST_BIT,
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
     VkResult result = vkCreateBuffer(gpu->device, &info, NULL, &buffer->buffer);

@@ -98,7 +98,7 @@ struct wd_binding {
     const struct wd_buffer *buffer;
     VkDeviceSize offset, size; /* size 0: the rest */
     VkImageView view;
-    VkImageLayout layout;      /* UNDEFINED (0): SHADER_READ_ONLY_OPTIMAL for sampled, GENERAL for storage */
+    VkImageLayout layout; /* 0: SHADER_READ_ONLY_OPTIMAL for sampled, GENERAL for storage */
     VkSampler sampler;
 };
 #define WD_BIND_BUFFER(b) ((struct wd_binding){.buffer = (b)})

@@ -19,7 +19,7 @@ enum wd_gpu_use {
     WD_USE_COLOR_TARGET,
     WD_USE_DEPTH_TARGET,
     WD_USE_PRESENT,          /* images only: ready for the presentation engine */
-    WD_USE_GRAPHICS_WRITE,   /* storage buffer or image: written or atomically updated by fragments */
+    WD_USE_GRAPHICS_WRITE,   /* storage buffer or image: fragments write or update atomically */
     WD_USE_HOST_READ,        /* read-back memory, read by the CPU after the frame has finished */
     WD_USE_COUNT,
 };
@@ -77,7 +77,8 @@ struct wd_image_params {
     enum wd_image_view_kind view;
 };
 #define WD_ALL_MIPS UINT32_MAX
-bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu, const struct wd_image_params *params);
+bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu,
+                   const struct wd_image_params *params);
 /* Wraps a foreign VkImage (one layer, one mip) and makes a view of it. Its layout counts as
  * undefined; set last_use where the contents matter. */
 bool wd_image_wrap(struct wd_image *image, struct wd_gpu *gpu, VkImage foreign, VkFormat format,

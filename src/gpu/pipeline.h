@@ -55,7 +55,7 @@ struct wd_graphics_params {
     VkFormat color_formats[WD_MAX_COLOR_TARGETS];
     enum wd_blend blend;
     VkFormat depth_format;       /* VK_FORMAT_UNDEFINED: no depth */
-    VkCompareOp depth_compare;   /* VK_COMPARE_OP_NEVER (0): GREATER, depth is reversed: 1 near, 0 far */
+    VkCompareOp depth_compare;   /* NEVER (0): GREATER, depth is reversed: 1 near, 0 far */
     bool depth_read_only;
     enum wd_cull cull;           /* counter-clockwise is front */
     VkPrimitiveTopology topology; /* 0 would be points: set TRIANGLE_LIST yourself */
