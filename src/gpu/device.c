@@ -1,6 +1,5 @@
 #include "gpu/device.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gpu/device_features.h"
+
 static void software_device_is_chosen(void **state)
 {
     struct gpu_test *test = *state;
@@ -96,6 +98,23 @@ static void every_optional_feature_can_be_disabled(void **state)
     wd_gpu_finish(&gpu);
 }
 
+static void lacking_features_are_named(void **state)
+{
+    (void)state;
+    struct wd_feature_set set;
+    wd_features_choose(&set, 0);
+    assert_null(wd_features_missing(&set));
+    assert_int_equal(wd_features_optional(&set), 0);
+    set.v12.scalarBlockLayout = VK_FALSE;
+    set.v13.synchronization2 = VK_FALSE;
+    char *missing = wd_features_missing(&set);
+    assert_string_equal(missing, "scalarBlockLayout, synchronization2");
+    free(missing);
+    wd_features_choose(&set, WD_GPU_FEATURE_INT64_ATOMICS | WD_GPU_FEATURE_DEPTH_CLAMP);
+    set.base.features.shaderInt64 = VK_FALSE; /* half of a pair is none */
+    assert_int_equal(wd_features_optional(&set), WD_GPU_FEATURE_DEPTH_CLAMP);
+}
+
 static void presentation_enables_the_swapchain(void **state)
 {
     struct gpu_test *test = *state;
@@ -152,6 +171,7 @@ int main(void)
         LOG_TEST(missing_validation_layer_is_an_error),
         LOG_TEST(missing_instance_extension_is_named),
         LOG_TEST(every_optional_feature_can_be_disabled),
+        cmocka_unit_test(lacking_features_are_named),
         LOG_TEST(presentation_enables_the_swapchain),
         LOG_TEST(list_names_the_software_device),
         cmocka_unit_test_setup_teardown(lost_device_fails_fast, gpu_setup, gpu_teardown),
