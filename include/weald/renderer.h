@@ -75,7 +75,8 @@ struct wd_render_params {
 };
 
 /* A finished picture in host memory. Arrays are height * width, rows top to bottom; those not
- * asked for are NULL. Layers other than colour and display hold the first sample, unblended. */
+ * asked for are NULL. Layers other than colour and display are not blended: they
+ * hold the sample through each pixel's middle. */
 struct wd_picture {
     uint32_t width, height;
     uint8_t *display;  /* 4 a pixel: R, G, B, 255 */

@@ -19,6 +19,7 @@ bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t wi
         {&targets->depth, {"depth", WD_DEPTH_FORMAT, width, height, 1, 1, depth, 0}},
         {&targets->radiance, {"radiance", WD_RADIANCE_FORMAT, width, height, 1, 1, storage, 0}},
         {&targets->display, {"display", WD_DISPLAY_FORMAT, width, height, 1, 1, storage, 0}},
+        {&targets->velocity, {"velocity", WD_VELOCITY_FORMAT, width, height, 1, 1, storage, 0}},
         {&targets->shadow,
          {"shadow", WD_DEPTH_FORMAT, shadow_size, shadow_size, WD_CASCADES, 1, depth,
           WD_IMAGE_ARRAY}},
@@ -38,7 +39,7 @@ void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu)
 {
     struct wd_image *images[] = {&targets->albedo,   &targets->normal,  &targets->surface,
                                  &targets->depth,    &targets->radiance, &targets->display,
-                                 &targets->shadow};
+                                 &targets->velocity, &targets->shadow};
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
         wd_image_finish(images[i], gpu);
     *targets = (struct wd_targets){0};

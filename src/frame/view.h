@@ -46,7 +46,7 @@ struct wd_cascades_params {
     float distance_m;        /* at which the last cascade ends */
     float near_m;
     uint32_t size;           /* texels a side */
-    double min_z_m, max_z_m; /* of everything that casts, local frame */
+    double max_z_m;          /* of everything that casts, local frame */
 };
 /* Fills the shadow members of `*uniforms` and one view a cascade. */
 void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,

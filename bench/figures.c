@@ -1,0 +1,43 @@
+/* Prints one figure: figures NAME [GPU]. */
+#include "figures.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct figure {
+    const char *name;
+    bool (*run)(const char *gpu);
+} figures[] = {
+    {"octree-speedup", bench_octree_speedup},
+    {"octree-frame-ms", bench_octree_frame},
+    {"place-million-s", bench_place_million},
+    {"first-frame-warm-s", bench_first_frame_warm},
+    {"first-frame-cold-s", bench_first_frame_cold},
+    {"peak-memory-mb", bench_peak_memory},
+};
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+double bench_median(double *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare);
+    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
+int main(int argc, char **argv)
+{
+    size_t count = sizeof figures / sizeof *figures;
+    for (size_t i = 0; argc >= 2 && i < count; i++) {
+        if (strcmp(figures[i].name, argv[1]) == 0)
+            return figures[i].run(argc > 2 ? argv[2] : "software") ? 0 : 1;
+    }
+    fprintf(stderr, "usage: figures NAME [GPU]; names are\n");
+    for (size_t i = 0; i < count; i++)
+        fprintf(stderr, "    %s\n", figures[i].name);
+    return 2;
+}

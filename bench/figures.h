@@ -1,0 +1,20 @@
+/* figures.h: the figures that `make bench` prints; each ends with a line NAME VALUE UNIT. */
+#ifndef WD_BENCH_FIGURES_H
+#define WD_BENCH_FIGURES_H
+
+#include <stddef.h>
+
+#include "weald/renderer.h"
+
+/* `gpu` as in struct wd_renderer_params. Each prints what it measured and the last line; false on failure, which has been logged. */
+bool bench_octree_speedup(const char *gpu);
+bool bench_octree_frame(const char *gpu);
+bool bench_place_million(const char *gpu);
+bool bench_first_frame_warm(const char *gpu);
+bool bench_first_frame_cold(const char *gpu);
+bool bench_peak_memory(const char *gpu);
+
+/* Sorts and returns the middle one. */
+double bench_median(double *values, size_t count);
+
+#endif

@@ -1,0 +1,158 @@
+#include "api/forest.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+const char *wd_forest_camera_name(const struct wd_forest *forest, uint32_t index)
+{
+    return index < forest->scene.camera_count ? forest->scene.cameras[index].name : NULL;
+}
+
+const char *wd_forest_path_name(const struct wd_forest *forest, uint32_t index)
+{
+    return index < forest->scene.path_count ? forest->scene.paths[index].name : NULL;
+}
+
+/* A place of the scene file in the local frame. */
+static void local_place(const struct wd_forest *forest, const struct wd_scene_camera *camera,
+                        const double from[3], double to[3])
+{
+    const struct wd_terrain *terrain = &forest->world.terrain;
+    bool projected = camera->frame && strcmp(camera->frame, "projected") == 0;
+    to[0] = from[0] - (projected ? terrain->origin_m[0] : 0.0);
+    to[1] = from[1] - (projected ? terrain->origin_m[1] : 0.0);
+    to[2] = from[2] + (camera->absolute ? 0.0 : wd_terrain_height(terrain, to[0], to[1]));
+}
+
+static void look_at(struct wd_camera *camera, const double target_m[3])
+{
+    double east = target_m[0] - camera->position_m[0], north = target_m[1] - camera->position_m[1];
+    double up = target_m[2] - camera->position_m[2];
+    camera->yaw_rad = atan2(east, north);
+    camera->pitch_rad = atan2(up, hypot(east, north));
+}
+
+/* Over the south-western corner, looking to the middle: for scenes that name no camera. */
+static void overlook(const struct wd_forest *forest, struct wd_camera *camera)
+{
+    const struct wd_terrain *terrain = &forest->world.terrain;
+    double east = wd_terrain_extent_x_m(terrain), north = wd_terrain_extent_y_m(terrain);
+    double middle[3] = {0.5 * east, 0.5 * north, 0.0};
+    middle[2] = wd_terrain_height(terrain, middle[0], middle[1]);
+    camera->position_m[0] = 0.1 * east;
+    camera->position_m[1] = 0.1 * north;
+    double span = hypot(east, north);
+    camera->position_m[2] =
+        fmax(wd_terrain_height(terrain, camera->position_m[0], camera->position_m[1]) + 0.04 * span,
+             middle[2] + 0.12 * span);
+    look_at(camera, middle);
+}
+
+static void resolve(const struct wd_forest *forest, const struct wd_scene_camera *from,
+                    struct wd_camera *camera)
+{
+    *camera = (struct wd_camera){
+        .yaw_rad = from->yaw_deg * (PI / 180.0),
+        .pitch_rad = from->pitch_deg * (PI / 180.0),
+        .fov_rad = from->fov_deg * (PI / 180.0),
+    };
+    if (from->automatic) {
+        overlook(forest, camera);
+        return;
+    }
+    local_place(forest, from, from->position_m, camera->position_m);
+    if (from->look_at_count == 3) {
+        double target[3];
+        local_place(forest, from, from->look_at_m, target);
+        look_at(camera, target);
+    }
+}
+
+enum wd_result wd_forest_get_camera(const struct wd_forest *forest, const char *name,
+                                    struct wd_camera *camera)
+{
+    const struct wd_scene_camera *found =
+        name ? wd_scene_find_camera(&forest->scene, name) : &forest->scene.cameras[0];
+    if (!found) {
+        const char *nearest = NULL;
+        for (size_t i = 0; i < forest->scene.camera_count && !nearest; i++)
+            nearest = wd_nearest_name(name, &forest->scene.cameras[i].name, 1);
+        wd_error(&forest->log, "%s: no camera \"%s\"%s%s%s; the first is \"%s\"",
+                 forest->scene.path, name, nearest ? ", did you mean \"" : "",
+                 nearest ? nearest : "", nearest ? "\"" : "", forest->scene.cameras[0].name);
+        return WD_ERROR_INPUT;
+    }
+    resolve(forest, found, camera);
+    return WD_OK;
+}
+
+static double catmull_rom(const double p[4], double t)
+{
+    return p[1] + 0.5 * t * ((p[2] - p[0]) +
+                             t * ((2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3]) +
+                                  t * (3.0 * (p[1] - p[2]) + p[3] - p[0])));
+}
+
+/* The turn from `from` to `to` the short way round. */
+static double near_angle(double from, double to)
+{
+    return from + remainder(to - from, 2.0 * PI);
+}
+
+static void interpolate(const struct wd_camera keys[4], double t, struct wd_camera *camera)
+{
+    double values[6][4];
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++)
+            values[k][i] = keys[i].position_m[k];
+        values[3][i] = keys[i].yaw_rad;
+        values[4][i] = keys[i].pitch_rad;
+        values[5][i] = keys[i].fov_rad;
+    }
+    for (int i = 1; i < 4; i++)
+        values[3][i] = near_angle(values[3][i - 1], values[3][i]);
+    for (int k = 0; k < 3; k++)
+        camera->position_m[k] = catmull_rom(values[k], t);
+    camera->yaw_rad = catmull_rom(values[3], t);
+    camera->pitch_rad = catmull_rom(values[4], t);
+    camera->fov_rad = catmull_rom(values[5], t);
+}
+
+static const struct wd_scene_path *find_path(const struct wd_forest *forest, const char *name)
+{
+    for (size_t i = 0; i < forest->scene.path_count; i++) {
+        if (!name || strcmp(forest->scene.paths[i].name, name) == 0)
+            return &forest->scene.paths[i];
+    }
+    return NULL;
+}
+
+enum wd_result wd_forest_get_path_camera(const struct wd_forest *forest, const char *name,
+                                         double time_s, struct wd_camera *camera,
+                                         double *duration_s)
+{
+    const struct wd_scene_path *path = find_path(forest, name);
+    if (!path) {
+        if (!forest->scene.path_count)
+            wd_error(&forest->log, "%s: the scene has no paths", forest->scene.path);
+        else
+            wd_error(&forest->log, "%s: no path \"%s\"; the first is \"%s\"", forest->scene.path,
+                     name, forest->scene.paths[0].name);
+        return WD_ERROR_INPUT;
+    }
+    if (duration_s)
+        *duration_s = path->duration_s;
+    double spans = (double)(path->key_count - 1);
+    double at = fmin(fmax(time_s / path->duration_s, 0.0), 1.0) * spans;
+    size_t span = (size_t)fmin(floor(at), spans - 1.0);
+    struct wd_camera keys[4];
+    for (int i = 0; i < 4; i++) {
+        long key = (long)span + i - 1;
+        key = key < 0 ? 0 : key > (long)spans ? (long)spans : key;
+        resolve(forest, &path->keys[key], &keys[i]);
+    }
+    interpolate(keys, at - (double)span, camera);
+    return WD_OK;
+}

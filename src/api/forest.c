@@ -1,0 +1,171 @@
+#include "api/forest.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+
+static bool parse_seed(const char *text, uint32_t *seed, const struct wd_log *log)
+{
+    char *end;
+    errno = 0;
+    unsigned long long value = strtoull(text, &end, 10);
+    if (text[0] < '0' || text[0] > '9' || *end || errno || value > UINT32_MAX)
+        return wd_error(log, "seed \"%s\": a whole number from 0 to 4294967295 is wanted", text);
+    *seed = (uint32_t)value;
+    return true;
+}
+
+/* Tells a failure of the input from a wish to stop. */
+struct watch {
+    const struct wd_progress *progress;
+    bool stopped;
+};
+
+static bool watch_report(void *user, const char *stage, uint64_t done, uint64_t total)
+{
+    struct watch *watch = user;
+    if (!wd_progress_report(watch->progress, stage, done, total))
+        watch->stopped = true;
+    return !watch->stopped;
+}
+
+enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_forest_params *params)
+{
+    *result = NULL;
+    struct wd_forest *forest = wd_alloc(sizeof *forest);
+    forest->log = params->log;
+    struct watch watch = {&params->progress, false};
+    const struct wd_progress progress = {watch_report, &watch};
+    struct wd_world_params world = {
+        .has_seed = params->seed != NULL,
+        .threads = params->threads,
+        .max_trees = params->max_trees,
+        .progress = &progress,
+        .log = &forest->log,
+    };
+    if ((params->seed && !parse_seed(params->seed, &world.seed, &forest->log)) ||
+        !wd_scene_load_with(&forest->scene, params->scene_path, params->data_dir, &forest->log) ||
+        !wd_world_init(&forest->world, &forest->scene, &world)) {
+        wd_forest_destroy(&forest);
+        return watch.stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_INPUT;
+    }
+    *result = forest;
+    return WD_OK;
+}
+
+void wd_forest_destroy(struct wd_forest **forest)
+{
+    if (!forest || !*forest)
+        return;
+    wd_world_finish(&(*forest)->world);
+    wd_scene_finish(&(*forest)->scene);
+    free(*forest);
+    *forest = NULL;
+}
+
+static uint64_t host_bytes(const struct wd_world *world)
+{
+    const struct wd_terrain *terrain = &world->terrain;
+    uint64_t samples = (uint64_t)terrain->width * terrain->height;
+    return samples * (sizeof *terrain->height_m + (terrain->hole ? 1 : 0)) +
+           world->tree_count * (sizeof *world->trees + sizeof *world->tree_of_id + 1) +
+           (uint64_t)world->octree.count * sizeof *world->octree.octants +
+           (uint64_t)world->octree.tight_count * sizeof *world->octree.tight_trees +
+           (uint64_t)world->cover_width * world->cover_height;
+}
+
+void wd_forest_get_info(const struct wd_forest *forest, struct wd_forest_info *info)
+{
+    const struct wd_world *world = &forest->world;
+    const struct wd_terrain *terrain = &world->terrain;
+    *info = (struct wd_forest_info){
+        .name = forest->scene.name,
+        .tree_count = world->tree_count,
+        .species_count = (uint32_t)forest->scene.species_file_count,
+        .layer_count = (uint32_t)forest->scene.layer_count,
+        .inventory_count = (uint32_t)forest->scene.inventory_count,
+        .max_m = {wd_terrain_extent_x_m(terrain), wd_terrain_extent_y_m(terrain), terrain->max_m},
+        .min_m = {0.0, 0.0, terrain->min_m},
+        .origin_m = {terrain->origin_m[0], terrain->origin_m[1]},
+        .crs = terrain->crs,
+        .host_bytes = host_bytes(world),
+        .hash = wd_world_hash(world),
+        .seed = world->seed,
+        .octant_count = world->octree.count,
+        .octree_depth = world->octree.depth,
+        .terrain_cell_m = terrain->cell_m,
+    };
+    if (world->octree.count) {
+        const struct wd_octant *root = &world->octree.octants[0];
+        for (int k = 0; k < 3; k++) {
+            if (root->min_m[k] < info->min_m[k])
+                info->min_m[k] = root->min_m[k];
+            if (root->max_m[k] > info->max_m[k])
+                info->max_m[k] = root->max_m[k];
+        }
+    }
+}
+
+bool wd_forest_get_species(const struct wd_forest *forest, uint32_t index,
+                           struct wd_species_info *info)
+{
+    if (index >= forest->scene.species_file_count)
+        return false;
+    const struct wd_species *species = &forest->scene.species[index];
+    *info = (struct wd_species_info){
+        .name = forest->scene.species_files[index].name,
+        .latin = species->latin,
+        .tree_count = forest->world.species_counts[index],
+    };
+    return true;
+}
+
+bool wd_forest_get_inventory(const struct wd_forest *forest, uint32_t index,
+                             struct wd_inventory_info *info)
+{
+    if (index >= forest->scene.inventory_count)
+        return false;
+    const struct wd_inventory_report *report = &forest->world.inventories[index];
+    *info = (struct wd_inventory_info){
+        .file = forest->scene.inventories[index].file,
+        .rows = report->rows,
+        .planted = report->planted,
+        .dead = report->dead,
+        .duplicates = report->duplicates,
+        .outside = report->outside,
+    };
+    return true;
+}
+
+bool wd_forest_get_tree(const struct wd_forest *forest, uint32_t id, struct wd_tree_info *info)
+{
+    if (id == 0 || id > forest->world.tree_count)
+        return false;
+    const struct wd_tree *tree = &forest->world.trees[forest->world.tree_of_id[id]];
+    *info = (struct wd_tree_info){
+        .id = id,
+        .species = tree->kind & 0xffffu,
+        .position_m = {tree->x_mm * 0.001, tree->y_mm * 0.001, tree->z_mm * 0.001},
+        .height_m = (tree->size & 0xffffu) * 0.01,
+        .crown_diameter_m = (tree->size >> 16) * 0.01,
+        .yaw_rad = (tree->look & 0xffffu) * (6.283185307179586 / 65536.0),
+    };
+    return true;
+}
+
+double wd_forest_ground_m(const struct wd_forest *forest, double x_m, double y_m)
+{
+    return wd_terrain_height(&forest->world.terrain, x_m, y_m);
+}
+
+void wd_forest_get_render_defaults(const struct wd_forest *forest,
+                                   struct wd_render_defaults *defaults)
+{
+    *defaults = (struct wd_render_defaults){
+        .width = (uint32_t)forest->scene.quality.width,
+        .height = (uint32_t)forest->scene.quality.height,
+        .samples = (uint32_t)forest->scene.quality.samples,
+        .method = forest->scene.method,
+    };
+}

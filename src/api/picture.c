@@ -1,0 +1,135 @@
+#include "api/renderer.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/color.h"
+#include "base/memory.h"
+
+void wd_picture_finish(struct wd_picture *picture)
+{
+    free(picture->display);
+    free(picture->color);
+    free(picture->depth_m);
+    free(picture->normal);
+    free(picture->albedo);
+    free(picture->species);
+    free(picture->tree_id);
+    free(picture->velocity_px);
+    *picture = (struct wd_picture){0};
+}
+
+/* Reads a target of `texel` bytes a pixel into fresh memory; NULL on failure. */
+static void *read_target(struct wd_renderer *renderer, struct wd_image *image, size_t texel)
+{
+    size_t size = (size_t)image->width * image->height * texel;
+    void *data = wd_alloc(size);
+    if (wd_image_read(&renderer->gpu, image, 0, 0, data, size))
+        return data;
+    free(data);
+    return NULL;
+}
+
+static bool read_color(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
+{
+    float *sum = read_target(renderer, &renderer->frame.targets.radiance, 16);
+    if (!sum)
+        return false;
+    float share = 1.0f / (float)renderer->frame.params.samples;
+    picture->color = wd_alloc_array(pixels * 3, sizeof(float));
+    for (size_t i = 0; i < pixels; i++) {
+        for (int k = 0; k < 3; k++)
+            picture->color[3 * i + k] = sum[4 * i + k] * share;
+    }
+    free(sum);
+    return true;
+}
+
+static bool read_depth(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
+{
+    picture->depth_m = read_target(renderer, &renderer->frame.targets.depth, 4);
+    if (!picture->depth_m)
+        return false;
+    for (size_t i = 0; i < pixels; i++) {
+        float reversed = picture->depth_m[i];
+        picture->depth_m[i] = reversed > 0.0f ? renderer->frame.near_m / reversed : INFINITY;
+    }
+    return true;
+}
+
+/* A2B10G10R10: R in the low bits. Where nothing was drawn the target is 0 and so is the normal. */
+static bool read_normal(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
+{
+    uint32_t *packed = read_target(renderer, &renderer->frame.targets.normal, 4);
+    if (!packed)
+        return false;
+    picture->normal = wd_alloc_array(pixels * 3, sizeof(float));
+    for (size_t i = 0; i < pixels; i++) {
+        float normal[3], squared = 0.0f;
+        for (int k = 0; k < 3; k++) {
+            normal[k] = (float)(packed[i] >> (10 * k) & 1023u) / 511.5f - 1.0f;
+            squared += normal[k] * normal[k];
+        }
+        float scale = (packed[i] & 0x3fffffffu) && squared > 0.0f ? 1.0f / sqrtf(squared) : 0.0f;
+        for (int k = 0; k < 3; k++)
+            picture->normal[3 * i + k] = normal[k] * scale;
+    }
+    free(packed);
+    return true;
+}
+
+static bool read_albedo(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
+{
+    uint8_t *bytes = read_target(renderer, &renderer->frame.targets.albedo, 4);
+    if (!bytes)
+        return false;
+    picture->albedo = wd_alloc_array(pixels * 3, sizeof(float));
+    for (size_t i = 0; i < pixels * 3; i++)
+        picture->albedo[i] = wd_srgb_decode(bytes[i / 3 * 4 + i % 3]);
+    free(bytes);
+    return true;
+}
+
+static bool read_trees(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers,
+                       size_t pixels)
+{
+    const struct wd_world *world = &renderer->forest->world;
+    uint32_t *surface = read_target(renderer, &renderer->frame.targets.surface, 4);
+    if (!surface)
+        return false;
+    if (layers & WD_LAYER_SPECIES)
+        picture->species = wd_alloc_array(pixels, sizeof(uint32_t));
+    if (layers & WD_LAYER_TREE_ID)
+        picture->tree_id = wd_alloc_array(pixels, sizeof(uint32_t));
+    for (size_t i = 0; i < pixels; i++) {
+        if (surface[i] == 0)
+            continue;
+        const struct wd_tree *tree = &world->trees[surface[i] - 1];
+        if (picture->species)
+            picture->species[i] = (tree->kind & 0xffffu) + 1;
+        if (picture->tree_id)
+            picture->tree_id[i] = tree->id;
+    }
+    free(surface);
+    return true;
+}
+
+bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers)
+{
+    struct wd_targets *targets = &renderer->frame.targets;
+    size_t pixels = (size_t)targets->width * targets->height;
+    picture->width = targets->width;
+    picture->height = targets->height;
+    if (layers & WD_LAYER_DISPLAY &&
+        !(picture->display = read_target(renderer, &targets->display, 4)))
+        return false;
+    if (layers & WD_LAYER_VELOCITY &&
+        !(picture->velocity_px = read_target(renderer, &targets->velocity, 8)))
+        return false;
+    return (!(layers & WD_LAYER_COLOR) || read_color(picture, renderer, pixels)) &&
+           (!(layers & WD_LAYER_DEPTH) || read_depth(picture, renderer, pixels)) &&
+           (!(layers & WD_LAYER_NORMAL) || read_normal(picture, renderer, pixels)) &&
+           (!(layers & WD_LAYER_ALBEDO) || read_albedo(picture, renderer, pixels)) &&
+           (!(layers & (WD_LAYER_SPECIES | WD_LAYER_TREE_ID)) ||
+            read_trees(picture, renderer, layers, pixels));
+}

@@ -1,0 +1,268 @@
+#include "api/renderer.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "weald/vulkan.h"
+
+enum { MAX_SIZE = 16384, MAX_SAMPLES = 65536 };
+
+/* --- making ------------------------------------------------------------------------------ */
+
+static enum wd_result create(struct wd_renderer **result, const struct wd_gpu_params *gpu,
+                             const struct wd_renderer_params *params)
+{
+    *result = NULL;
+    struct wd_renderer *renderer = wd_alloc(sizeof *renderer);
+    renderer->log = params->log;
+    renderer->progress = params->progress;
+    renderer->threads = params->threads;
+    renderer->cache_dir = params->cache_dir ? wd_strdup(params->cache_dir) : wd_cache_directory();
+    if (!wd_gpu_init(&renderer->gpu, gpu, &renderer->log) ||
+        !wd_frame_init(&renderer->frame, &renderer->gpu)) {
+        wd_renderer_destroy(&renderer);
+        return WD_ERROR_DEVICE;
+    }
+    *result = renderer;
+    return WD_OK;
+}
+
+static struct wd_gpu_params gpu_params(const struct wd_renderer_params *params)
+{
+    return (struct wd_gpu_params){
+        .name = params->gpu,
+        .validation = params->validation == WD_VALIDATION_ON ? WD_GPU_VALIDATION_ON
+                                                             : WD_GPU_VALIDATION_OFF,
+    };
+}
+
+enum wd_result wd_renderer_create(struct wd_renderer **renderer,
+                                  const struct wd_renderer_params *params)
+{
+    const struct wd_gpu_params gpu = gpu_params(params);
+    return create(renderer, &gpu, params);
+}
+
+enum wd_result wd_renderer_create_presenting(struct wd_renderer **renderer,
+                                             const char *const *instance_extensions,
+                                             uint32_t instance_extension_count,
+                                             const struct wd_renderer_params *params)
+{
+    struct wd_gpu_params gpu = gpu_params(params);
+    gpu.instance_extensions = instance_extensions;
+    gpu.instance_extension_count = instance_extension_count;
+    gpu.presentation = WD_GPU_PRESENT;
+    return create(renderer, &gpu, params);
+}
+
+enum wd_result wd_renderer_create_vulkan(struct wd_renderer **renderer,
+                                         const struct wd_vulkan_handles *handles,
+                                         const struct wd_renderer_params *params)
+{
+    const struct wd_gpu_external external = {handles->instance, handles->physical_device,
+                                             handles->device, handles->queue,
+                                             handles->queue_family};
+    const struct wd_gpu_params gpu = {.external = &external};
+    return create(renderer, &gpu, params);
+}
+
+void wd_renderer_destroy(struct wd_renderer **renderer)
+{
+    if (!renderer || !*renderer)
+        return;
+    struct wd_renderer *r = *renderer;
+    wd_frame_finish(&r->frame);
+    if (r->forest)
+        wd_forest_device_finish(&r->device, &r->gpu);
+    wd_gpu_finish(&r->gpu);
+    free(r->cache_dir);
+    free(r);
+    *renderer = NULL;
+}
+
+enum wd_result wd_renderer_failure(const struct wd_renderer *renderer)
+{
+    (void)renderer;
+    return WD_ERROR_DEVICE;
+}
+
+/* --- the forest -------------------------------------------------------------------------- */
+
+static bool stopped_report(void *user, const char *stage, uint64_t done, uint64_t total)
+{
+    struct wd_renderer *renderer = user;
+    bool go_on = wd_progress_report(&renderer->progress, stage, done, total);
+    renderer->stopped |= !go_on;
+    return go_on;
+}
+
+enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct wd_forest *forest)
+{
+    if (!wd_frames_wait(&renderer->frame.ring))
+        return WD_ERROR_DEVICE;
+    if (renderer->forest) {
+        wd_frame_drop_forest(&renderer->frame);
+        wd_forest_device_finish(&renderer->device, &renderer->gpu);
+    }
+    renderer->forest = NULL;
+    if (!forest)
+        return WD_OK;
+    const struct wd_progress progress = {stopped_report, renderer};
+    const struct wd_forest_device_params params = {
+        .scene = &forest->scene,
+        .world = &forest->world,
+        .cache_dir = renderer->cache_dir,
+        .threads = renderer->threads,
+        .progress = &progress,
+        .log = &renderer->log,
+    };
+    renderer->stopped = false;
+    if (!wd_forest_device_init(&renderer->device, &renderer->gpu, &params))
+        return renderer->stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_DEVICE;
+    renderer->forest = forest;
+    return WD_OK;
+}
+
+/* --- pictures ---------------------------------------------------------------------------- */
+
+static bool check(const struct wd_renderer *renderer, const struct wd_render_params *params)
+{
+    const struct wd_log *log = &renderer->log;
+    if (!renderer->forest)
+        return wd_error(log, "no forest is set to be drawn: call wd_renderer_set_forest first");
+    if (params->width < 1 || params->width > MAX_SIZE || params->height < 1 ||
+        params->height > MAX_SIZE)
+        return wd_error(log, "picture of %u x %u pixels: 1 to %d each way are possible",
+                        params->width, params->height, MAX_SIZE);
+    if (params->samples > MAX_SAMPLES)
+        return wd_error(log, "%u samples: at most %d are possible", params->samples, MAX_SAMPLES);
+    double fov = params->camera.fov_rad;
+    if (!(fov > 0.0 && fov < 3.14159))
+        return wd_error(log, "field of view of %g radians: between 0 and pi is possible", fov);
+    for (int k = 0; k < 3; k++) {
+        if (!(fabs(params->camera.position_m[k]) < 2.0e6))
+            return wd_error(log, "camera at %g, %g, %g m: within 2,000 km of the origin is possible",
+                            params->camera.position_m[0], params->camera.position_m[1],
+                            params->camera.position_m[2]);
+    }
+    return true;
+}
+
+enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
+                                   const struct wd_render_params *params, uint32_t max_samples)
+{
+    if (renderer->gpu.lost) {
+        wd_error(&renderer->log, "the device was lost: make a new renderer");
+        return WD_ERROR_DEVICE;
+    }
+    if (!check(renderer, params))
+        return WD_ERROR_INPUT;
+    const char *name = params->method ? params->method : renderer->forest->scene.method;
+    const struct wd_method *method = wd_method_find(name);
+    if (!method) {
+        wd_error(&renderer->log, "no method \"%s\": there are octree and separate", name);
+        return WD_ERROR_INPUT;
+    }
+    uint32_t samples = params->samples ? params->samples : 1;
+    const struct wd_frame_params frame = {
+        .forest = &renderer->device,
+        .method = method,
+        .camera = params->camera,
+        .previous_camera = params->previous_camera ? *params->previous_camera : params->camera,
+        .time_s = params->time_s,
+        .previous_time_s = params->previous_time_s,
+        .width = params->width,
+        .height = params->height,
+        .samples = samples < max_samples ? samples : max_samples,
+        .view_mode = (uint32_t)params->view,
+        .velocity = params->layers & WD_LAYER_VELOCITY ? WD_VELOCITY_ON : WD_VELOCITY_OFF,
+    };
+    renderer->frame.ring.timing = params->timing == WD_TIME_PASSES ? WD_TIMING_ON : WD_TIMING_OFF;
+    return wd_frame_prepare(&renderer->frame, &frame) ? WD_OK : wd_renderer_failure(renderer);
+}
+
+/* Takes the finished sample's times as those per sample. */
+static void keep_times(struct wd_renderer *renderer)
+{
+    const struct wd_frames *ring = &renderer->frame.ring;
+    renderer->pass_count = 0;
+    for (uint32_t i = 0; i < ring->last_scope_count && renderer->pass_count < WD_MAX_PASSES; i++) {
+        const struct wd_scope_time *scope = &ring->last_scopes[i];
+        renderer->passes[renderer->pass_count++] = (struct wd_pass_time){
+            .name = scope->name, .gpu_ms = scope->gpu_us * 1e-3, .cpu_ms = scope->cpu_us * 1e-3};
+    }
+}
+
+static enum wd_result render_samples(struct wd_renderer *renderer)
+{
+    struct wd_frame *frame = &renderer->frame;
+    uint32_t samples = frame->params.samples;
+    double start = wd_clock_s();
+    for (uint32_t i = 0; i < samples; i++) {
+        struct wd_cmd cmd;
+        if (samples > 1 && !wd_progress_report(&renderer->progress, "samples", i, samples))
+            return WD_ERROR_INTERRUPTED;
+        if (!wd_frame_begin(&frame->ring, &cmd))
+            return wd_renderer_failure(renderer);
+        wd_frame_record(frame, &cmd, i);
+        if (!wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE))
+            return wd_renderer_failure(renderer);
+        if (i == 0 && (!wd_frames_wait(&frame->ring)))
+            return wd_renderer_failure(renderer);
+        if (i == 0)
+            keep_times(renderer);
+    }
+    if (!wd_frames_wait(&frame->ring))
+        return wd_renderer_failure(renderer);
+    renderer->frame_ms = (wd_clock_s() - start) * 1e3 / samples;
+    return WD_OK;
+}
+
+enum wd_result wd_renderer_render(struct wd_renderer *renderer,
+                                  const struct wd_render_params *params, struct wd_picture *picture)
+{
+    *picture = (struct wd_picture){0};
+    enum wd_result result = wd_renderer_prepare(renderer, params, UINT32_MAX);
+    if (result != WD_OK)
+        return result;
+    uint32_t layers = params->layers ? params->layers : WD_LAYER_DISPLAY;
+    result = render_samples(renderer);
+    if (result == WD_OK && !wd_picture_read(picture, renderer, layers))
+        result = wd_renderer_failure(renderer);
+    if (result != WD_OK)
+        wd_picture_finish(picture);
+    return result;
+}
+
+/* --- facts ------------------------------------------------------------------------------- */
+
+void wd_renderer_get_stats(const struct wd_renderer *renderer, struct wd_frame_stats *stats)
+{
+    const struct wd_frame *frame = &renderer->frame;
+    *stats = (struct wd_frame_stats){
+        .frame_ms = renderer->frame_ms,
+        .pass_count = renderer->pass_count,
+        .passes = renderer->passes,
+        .draw_calls = frame->stats.draw_calls,
+        .triangles = frame->stats.triangles,
+        .trees_mesh = frame->camera_stats.trees[WD_LEVEL_MESH],
+        .trees_reduced = frame->camera_stats.trees[WD_LEVEL_REDUCED],
+        .trees_billboard = frame->camera_stats.trees[WD_LEVEL_CARD],
+        .device_bytes = renderer->gpu.bytes_allocated,
+        .device_bytes_peak = renderer->gpu.bytes_peak,
+    };
+}
+
+const char *wd_renderer_device_name(const struct wd_renderer *renderer)
+{
+    return renderer->gpu.properties.deviceName;
+}
+
+char *wd_device_list(void)
+{
+    return wd_gpu_list(NULL);
+}

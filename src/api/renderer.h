@@ -1,0 +1,34 @@
+/* renderer.h: what stands behind the public struct wd_renderer. */
+#ifndef WD_API_RENDERER_H
+#define WD_API_RENDERER_H
+
+#include "api/forest.h"
+#include "frame/frame.h"
+#include "weald/renderer.h"
+
+enum { WD_MAX_PASSES = 16 };
+
+struct wd_renderer {
+    struct wd_gpu gpu;
+    struct wd_frame frame;
+    struct wd_forest_device device; /* of `forest` */
+    const struct wd_forest *forest; /* NULL: none */
+    char *cache_dir;
+    unsigned threads;
+    struct wd_progress progress;
+    bool stopped; /* progress asked to stop */
+    struct wd_log log;
+    struct wd_pass_time passes[WD_MAX_PASSES];
+    uint32_t pass_count;
+    double frame_ms;
+};
+
+/* Checks the parameters of a picture and hands them to the frame. */
+enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
+                                   const struct wd_render_params *params, uint32_t max_samples);
+/* Fetches the layers of the frame just finished. */
+bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers);
+/* What a failed device call comes to. */
+enum wd_result wd_renderer_failure(const struct wd_renderer *renderer);
+
+#endif

@@ -1,0 +1,52 @@
+/* frame.h: one frame, pass by pass. */
+#ifndef WD_FRAME_FRAME_H
+#define WD_FRAME_FRAME_H
+
+#include "frame/passes/light.h"
+#include "frame/passes/post.h"
+#include "frame/passes/terrain.h"
+#include "frame/targets.h"
+#include "frame/view.h"
+#include "methods/method.h"
+
+/* What a frame shows. */
+struct wd_frame_params {
+    const struct wd_forest_device *forest;
+    const struct wd_method *method;
+    struct wd_camera camera, previous_camera;
+    double time_s, previous_time_s;
+    uint32_t width, height;
+    uint32_t samples;
+    uint32_t view_mode; /* WD_MODE_* */
+    enum wd_velocity { WD_VELOCITY_OFF, WD_VELOCITY_ON } velocity;
+};
+
+struct wd_frame {
+    struct wd_gpu *gpu;
+    struct wd_frames ring;
+    struct wd_targets targets;
+    struct wd_tree_pipelines trees;
+    struct wd_terrain_pass terrain;
+    struct wd_light_pass light;
+    struct wd_post_pass post;
+    struct wd_selection selection;   /* scratch of the methods */
+    struct wd_draw_stats camera_stats; /* of the last sample: what the camera sees */
+    struct wd_draw_stats stats;      /* of the last sample, shadows too */
+    struct wd_frame_params params;
+    float near_m; /* depth target = near_m / distance along the view axis */
+};
+
+bool wd_frame_init(struct wd_frame *frame, struct wd_gpu *gpu);
+void wd_frame_finish(struct wd_frame *frame);
+
+/* Takes the parameters and makes the targets fit; waits for frames in flight when they change. */
+bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *params);
+
+/* Records sample `index` of params.samples up to the radiance target. Sample 0 draws the shadows,
+ * which the others share. The last one is followed by the display. */
+void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index);
+
+/* Forgets what the passes keep of a forest; call before it is destroyed. */
+void wd_frame_drop_forest(struct wd_frame *frame);
+
+#endif

@@ -1,0 +1,22 @@
+/* uniforms.h: what a frame's passes know, gathered from the scene, the world and the camera. */
+#ifndef WD_FRAME_UNIFORMS_H
+#define WD_FRAME_UNIFORMS_H
+
+#include "forest/forest.h"
+#include "frame/view.h"
+
+struct wd_uniforms_params {
+    const struct wd_forest_device *forest;
+    struct wd_camera camera, previous_camera;
+    double time_s, previous_time_s;
+    uint32_t width, height, shadow_size;
+    uint32_t sample_index, sample_count;
+    uint32_t view_mode;
+};
+
+/* Fills all of `*uniforms`, the camera's view and those of the sun's cascades. */
+void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
+                      struct wd_view cascades[WD_CASCADES],
+                      const struct wd_uniforms_params *params);
+
+#endif
