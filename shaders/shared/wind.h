@@ -13,14 +13,12 @@
 
 #ifdef __STDC_VERSION__
 #include <math.h>
-#define WD_STRUCT(name) struct name
+#define WD_STRUCT struct
 #define WD_FLOOR(x) floorf(x)
-#define WD_SQRT(x) sqrtf(x)
 #define WD_ABS(x) fabsf(x)
 #else
-#define WD_STRUCT(name) name
+#define WD_STRUCT
 #define WD_FLOOR(x) floor(x)
-#define WD_SQRT(x) sqrt(x)
 #define WD_ABS(x) abs(x)
 #endif
 
@@ -50,7 +48,7 @@ WD_FUNC float wd_wind_wave(float x)
 }
 
 /* Wind speed over the mean at a place, as a factor of the mean: -gust .. +gust. */
-WD_FUNC float wd_wind_gust(WD_STRUCT(wd_wind) wind, float x_m, float y_m, float time_s)
+WD_FUNC float wd_wind_gust(WD_STRUCT wd_wind wind, float x_m, float y_m, float time_s)
 {
     float along = x_m * wind.toward_x + y_m * wind.toward_y;
     float across = y_m * wind.toward_x - x_m * wind.toward_y;
@@ -61,11 +59,11 @@ WD_FUNC float wd_wind_gust(WD_STRUCT(wd_wind) wind, float x_m, float y_m, float 
 }
 
 /* Where a point of the stem or crown, `height_m` above the foot, goes from its place at rest. */
-WD_FUNC WD_STRUCT(wd_wind_shift) wd_wind_offset(WD_STRUCT(wd_wind) wind,
-                                                WD_STRUCT(wd_wind_tree) tree, float height_m,
-                                                float time_s)
+WD_FUNC WD_STRUCT wd_wind_shift wd_wind_offset(WD_STRUCT wd_wind wind,
+                                               WD_STRUCT wd_wind_tree tree, float height_m,
+                                               float time_s)
 {
-    WD_STRUCT(wd_wind_shift) shift;
+    WD_STRUCT wd_wind_shift shift;
     float phase = tree.random & 0xffffu, pitch = (tree.random >> 16) & 0xffu;
     float hertz = 6.0f / (tree.height_m + 1.0f) * (0.85f + pitch * (0.3f / 255.0f));
     float gust = wd_wind_gust(wind, tree.x_m, tree.y_m, time_s);
@@ -84,7 +82,7 @@ WD_FUNC WD_STRUCT(wd_wind_shift) wd_wind_offset(WD_STRUCT(wd_wind) wind,
 
 /* Flutter of leaves and twigs besides the sway, metres along the leaf's normal. `flexibility` is
  * that of the vertex, 0..1; `phase` differs between leaves, e.g. a sum of its coordinates. */
-WD_FUNC float wd_wind_flutter(WD_STRUCT(wd_wind) wind, float flexibility, float phase,
+WD_FUNC float wd_wind_flutter(WD_STRUCT wd_wind wind, float flexibility, float phase,
                               float time_s)
 {
     float strength = wind.speed_mps < 12.0f ? wind.speed_mps : 12.0f;
