@@ -90,6 +90,18 @@ static bool read_albedo(struct wd_picture *picture, struct wd_renderer *renderer
     return true;
 }
 
+static bool read_velocity(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
+{
+    float *wide = read_target(renderer, &renderer->frame.targets.velocity, 16);
+    if (!wide)
+        return false;
+    picture->velocity_px = wd_alloc_array(pixels * 2, sizeof(float));
+    for (size_t i = 0; i < pixels * 2; i++)
+        picture->velocity_px[i] = wide[i / 2 * 4 + i % 2];
+    free(wide);
+    return true;
+}
+
 static bool read_trees(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers,
                        size_t pixels)
 {
@@ -123,10 +135,8 @@ bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, u
     if (layers & WD_LAYER_DISPLAY &&
         !(picture->display = read_target(renderer, &targets->display, 4)))
         return false;
-    if (layers & WD_LAYER_VELOCITY &&
-        !(picture->velocity_px = read_target(renderer, &targets->velocity, 8)))
-        return false;
-    return (!(layers & WD_LAYER_COLOR) || read_color(picture, renderer, pixels)) &&
+    return (!(layers & WD_LAYER_VELOCITY) || read_velocity(picture, renderer, pixels)) &&
+           (!(layers & WD_LAYER_COLOR) || read_color(picture, renderer, pixels)) &&
            (!(layers & WD_LAYER_DEPTH) || read_depth(picture, renderer, pixels)) &&
            (!(layers & WD_LAYER_NORMAL) || read_normal(picture, renderer, pixels)) &&
            (!(layers & WD_LAYER_ALBEDO) || read_albedo(picture, renderer, pixels)) &&

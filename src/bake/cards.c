@@ -144,7 +144,7 @@ struct bake {
     uint32_t index_count;
 };
 
-static bool render_card(const struct bake *bake, const struct wd_cards *cards, uint32_t card)
+static bool render_card(struct bake *bake, const struct wd_cards *cards, uint32_t card)
 {
     struct wd_card_baker *baker = bake->baker;
     struct wd_cmd cmd;
@@ -164,11 +164,13 @@ static bool render_card(const struct bake *bake, const struct wd_cards *cards, u
     float clip_from_model[4][4];
     card_matrix(clip_from_model, cards, card);
     wd_cmd_use_image(&cmd, bake->looks, WD_USE_GRAPHICS_READ);
+    wd_cmd_use_buffer(&cmd, &bake->vertices, WD_USE_GRAPHICS_READ);
+    wd_cmd_use_buffer(&cmd, &bake->indices, WD_USE_INDEX);
     wd_cmd_begin_rendering(&cmd, &rendering);
     wd_cmd_bind(&cmd, &baker->pipeline, bindings);
     wd_cmd_push(&cmd, &baker->pipeline, clip_from_model, sizeof clip_from_model);
-    vkCmdBindIndexBuffer(cmd.vk, bake->indices.buffer, 0, VK_INDEX_TYPE_UINT32);
-    vkCmdDrawIndexed(cmd.vk, bake->index_count, 1, 0, 0, 0);
+    wd_cmd_bind_indices(&cmd, &bake->indices);
+    wd_cmd_draw_indexed(&cmd, &(VkDrawIndexedIndirectCommand){bake->index_count, 1, 0, 0, 0});
     wd_cmd_end_rendering(&cmd);
     return wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE) && wd_frames_wait(&baker->frames);
 }

@@ -328,6 +328,28 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
     *forest = (struct wd_forest_device){0};
 }
 
+void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
+{
+    struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->vertices,
+                                  &forest->fades};
+    struct wd_buffer *indices[] = {&forest->indices, &forest->card_indices,
+                                   &forest->shadow_card_indices};
+    struct wd_image *images[] = {&forest->looks, &forest->card_albedo, &forest->card_normal};
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
+        if (tables[i]->buffer)
+            wd_cmd_use_buffer(cmd, tables[i], WD_USE_SHADER_READ);
+    }
+    for (size_t i = 0; i < sizeof indices / sizeof *indices; i++) {
+        if (indices[i]->buffer)
+            wd_cmd_use_buffer(cmd, indices[i], WD_USE_INDEX);
+    }
+    for (size_t i = 0; i < sizeof images / sizeof *images; i++) {
+        if (images[i]->image)
+            wd_cmd_use_image(cmd, images[i], WD_USE_SHADER_READ);
+    }
+    wd_ground_use(&forest->ground, cmd);
+}
+
 uint32_t wd_forest_model_of(const struct wd_forest_device *forest, const struct wd_tree *tree)
 {
     uint32_t variant = (tree->kind >> 16) & 0xffu;

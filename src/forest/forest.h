@@ -52,6 +52,9 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
                            const struct wd_forest_device_params *params);
 void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu);
 
+/* Declares that the frame's passes read all of it. Once a frame, before any of them. */
+void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd);
+
 /* Index into models of a tree's model. */
 uint32_t wd_forest_model_of(const struct wd_forest_device *forest, const struct wd_tree *tree);
 

@@ -118,6 +118,19 @@ void wd_cmd_draw(struct wd_cmd *cmd, uint32_t vertices, uint32_t instances)
         vkCmdDraw(cmd->vk, vertices, instances, 0, 0);
 }
 
+void wd_cmd_bind_indices(struct wd_cmd *cmd, const struct wd_buffer *indices)
+{
+    if (!cmd->failed)
+        vkCmdBindIndexBuffer(cmd->vk, indices->buffer, 0, VK_INDEX_TYPE_UINT32);
+}
+
+void wd_cmd_draw_indexed(struct wd_cmd *cmd, const VkDrawIndexedIndirectCommand *draw)
+{
+    if (!cmd->failed)
+        vkCmdDrawIndexed(cmd->vk, draw->indexCount, draw->instanceCount, draw->firstIndex,
+                         draw->vertexOffset, draw->firstInstance);
+}
+
 void wd_cmd_draw_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer, VkDeviceSize offset,
                           uint32_t draws, uint32_t stride)
 {

@@ -126,8 +126,10 @@ static bool upload_instances(const struct wd_tree_draw *draw, const struct wd_in
 static void draw_indexed(const struct wd_tree_draw *draw, uint32_t indices, uint32_t instances,
                          const struct wd_mesh_range *range, uint32_t first_instance)
 {
-    vkCmdDrawIndexed(draw->cmd->vk, indices, instances, range->first_index, range->vertex_offset,
-                     first_instance);
+    wd_cmd_draw_indexed(draw->cmd, &(VkDrawIndexedIndirectCommand){indices, instances,
+                                                                   range->first_index,
+                                                                   range->vertex_offset,
+                                                                   first_instance});
     draw->stats->draw_calls++;
     draw->stats->triangles += (uint64_t)indices / 3 * instances;
 }
@@ -146,7 +148,7 @@ static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selecti
         WD_BIND_BUFFER(&forest->vertices), instances,
         WD_BIND_IMAGE(&forest->looks, forest->look_sampler)};
     wd_cmd_bind(draw->cmd, pipeline, bindings);
-    vkCmdBindIndexBuffer(draw->cmd->vk, forest->indices.buffer, 0, VK_INDEX_TYPE_UINT32);
+    wd_cmd_bind_indices(draw->cmd, &forest->indices);
     for (size_t i = 0; i < selection->batch_count; i++) {
         const struct wd_mesh_batch *batch = &selection->batches[i];
         const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
@@ -175,9 +177,7 @@ static uint32_t bind_cards(const struct wd_tree_draw *draw, const struct wd_pipe
     const struct wd_tree_push push = tree_push(draw, WD_LEVEL_CARD);
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
-    vkCmdBindIndexBuffer(draw->cmd->vk,
-                         (shadow ? &forest->shadow_card_indices : &forest->card_indices)->buffer, 0,
-                         VK_INDEX_TYPE_UINT32);
+    wd_cmd_bind_indices(draw->cmd, shadow ? &forest->shadow_card_indices : &forest->card_indices);
     return shadow ? WD_SHADOW_CARD_INDICES : WD_CARD_INDICES;
 }
 
