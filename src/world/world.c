@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "world/cover.h"
+#include "world/inventory.h"
 #include "world/placement.h"
 
 static const uint64_t default_max_trees = UINT64_C(64) << 20;
@@ -68,25 +69,43 @@ static void index_trees(struct wd_world *world, struct wd_tree_list *list,
     }
 }
 
-static bool make(struct wd_world *world, const struct wd_scene *scene,
-                 struct wd_placement_params *params, struct wd_tree_list *list)
+static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool fitted,
+                  const struct wd_placement_params *params, struct wd_tree_list *list)
 {
-    if (!wd_terrain_init(&world->terrain, scene, params->seed, 0, params->progress, params->log))
-        return false;
-    params->terrain = &world->terrain;
+    const struct wd_scene *scene = params->scene;
+    for (size_t i = 0; i < scene->inventory_count; i++) {
+        if (!wd_inventory_plant(&inventories[i], params, i, fitted, list))
+            return false;
+        world->inventories[i] = inventories[i].report;
+    }
     struct layer_ends layers = {.ends = wd_alloc_array(scene->layer_count, sizeof(size_t))};
     bool ok = plant_layers(params, list, &layers);
+    uint64_t count = list->count;
+    ok = ok && wd_progress_report(params->progress, "sorting trees", 0, count);
     if (ok) {
-        uint64_t count = list->count;
-        ok = wd_progress_report(params->progress, "sorting trees", 0, count);
-        if (ok) {
-            index_trees(world, list, &layers, scene, params->threads);
-            wd_cover_init(world);
-            ok = wd_progress_report(params->progress, "sorting trees", count, count);
-        }
+        index_trees(world, list, &layers, scene, params->threads);
+        wd_cover_init(world);
+        ok = wd_progress_report(params->progress, "sorting trees", count, count);
     }
     free(layers.ends);
     return ok;
+}
+
+static bool make(struct wd_world *world, struct wd_inventory *inventories,
+                 struct wd_placement_params *params, struct wd_tree_list *list)
+{
+    const struct wd_scene *scene = params->scene;
+    for (size_t i = 0; i < scene->inventory_count; i++)
+        if (!wd_inventory_load(&inventories[i], scene, i, params->log) ||
+            !wd_progress_report(params->progress, "reading inventories", i + 1,
+                                scene->inventory_count))
+            return false;
+    bool fitted;
+    if (!wd_world_make_terrain(&world->terrain, inventories, params, &fitted))
+        return false;
+    params->terrain = &world->terrain;
+    world->inventories = wd_alloc_array(scene->inventory_count, sizeof *world->inventories);
+    return plant(world, inventories, fitted, params, list);
 }
 
 bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
@@ -108,7 +127,11 @@ bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
         return wd_error(params->log, "%s: %zu layers, at most %d are allowed", scene->path,
                         scene->layer_count, INVENTORY_LAYER - 1);
     struct wd_tree_list list = {0};
-    bool ok = make(world, scene, &placement, &list);
+    struct wd_inventory *inventories = wd_alloc_array(scene->inventory_count, sizeof *inventories);
+    bool ok = make(world, inventories, &placement, &list);
+    for (size_t i = 0; i < scene->inventory_count; i++)
+        wd_inventory_finish(&inventories[i]);
+    free(inventories);
     wd_tree_list_finish(&list);
     if (!ok)
         wd_world_finish(world);

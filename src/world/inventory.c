@@ -1,0 +1,171 @@
+/* inventory.c: rows of a CSV file as living trees. */
+#include "world/inventory.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+
+/* The tallest, thickest and widest trees known are about 116 m, 1100 cm and 60 m. */
+static const double most_dbh_cm = 1500.0, most_height_m = 130.0, most_crown_m = 100.0;
+
+struct reader {
+    struct wd_inventory *inventory;
+    struct wd_csv csv;
+    struct wd_inventory_columns columns;
+    struct wd_species_names names;
+    const struct wd_log *log;
+    uint64_t first_invalid_line, zero_sizes;
+};
+
+static bool is_dead(const struct reader *reader)
+{
+    const struct wd_scene_inventory *wanted = reader->inventory->wanted;
+    if (reader->columns.status < 0)
+        return false;
+    const char *status = reader->csv.fields[reader->columns.status];
+    if (wanted->dead_count == 0)
+        return strcasecmp(status, "dead") == 0;
+    for (size_t i = 0; i < wanted->dead_count; i++)
+        if (strcasecmp(status, wanted->dead[i]) == 0)
+            return true;
+    return false;
+}
+
+/* A size of the row in the wanted unit; 0 where it is missing or written as 0. */
+static bool read_size(struct reader *reader, int column, double factor, double most,
+                      const char *unit, float *size)
+{
+    double value;
+    *size = 0.0f;
+    if (column < 0)
+        return true;
+    enum wd_csv_value kind = wd_csv_number(&reader->csv, column, &value);
+    if (kind != WD_CSV_NUMBER)
+        return kind == WD_CSV_MISSING;
+    reader->zero_sizes += value == 0.0;
+    *size = (float)(value * factor);
+    if (value >= 0.0 && value * factor <= most)
+        return true;
+    return wd_error(reader->log, "%s:%" PRIu64 ": column %s: %s is %s; above 0 and up to %g %s is "
+                    "a tree (is the unit right?)", reader->csv.path, reader->csv.line,
+                    reader->csv.header[column], reader->csv.fields[column],
+                    value < 0.0 ? "negative" : "too much", most, unit);
+}
+
+/* A row without a position cannot be planted, but is no reason to stop. */
+static bool read_position(struct reader *reader, struct wd_inventory_tree *tree, bool *present)
+{
+    enum wd_csv_value x = wd_csv_number(&reader->csv, reader->columns.x, &tree->x);
+    if (x == WD_CSV_BAD)
+        return false;
+    enum wd_csv_value y = wd_csv_number(&reader->csv, reader->columns.y, &tree->y);
+    if (y == WD_CSV_BAD)
+        return false;
+    *present = x == WD_CSV_NUMBER && y == WD_CSV_NUMBER;
+    if (!*present && reader->inventory->report.invalid++ == 0)
+        reader->first_invalid_line = reader->csv.line;
+    return true;
+}
+
+static bool read_tree(struct reader *reader)
+{
+    struct wd_inventory *inventory = reader->inventory;
+    const struct wd_inventory_columns *columns = &reader->columns;
+    struct wd_inventory_tree tree = {.row = (uint32_t)reader->csv.line};
+    bool present;
+    inventory->report.rows++;
+    if (is_dead(reader)) {
+        inventory->report.dead++;
+        return true;
+    }
+    if (!read_position(reader, &tree, &present) ||
+        !read_size(reader, columns->dbh, columns->dbh_cm, most_dbh_cm, "cm", &tree.dbh_cm) ||
+        !read_size(reader, columns->height, columns->height_m, most_height_m, "m",
+                   &tree.height_m) ||
+        !read_size(reader, columns->crown, columns->crown_m, most_crown_m, "m", &tree.crown_m))
+        return false;
+    const char *name = columns->species >= 0 ? reader->csv.fields[columns->species] : "";
+    int species = wd_species_names_find(&reader->names, name);
+    if (!present || species < 0)
+        return true; /* names that are not found are reported together */
+    tree.species = (uint32_t)species;
+    struct wd_inventory_tree *added = wd_push(inventory->trees, inventory->count,
+                                              inventory->capacity);
+    *added = tree;
+    return true;
+}
+
+/* Without a species column every tree is of the scene's only species, or of "*". */
+static bool check_species_column(struct reader *reader, const struct wd_scene *scene)
+{
+    if (reader->columns.species >= 0)
+        return true;
+    if (scene->species_file_count == 1) {
+        struct wd_species_name *any = wd_push(reader->names.names, reader->names.count,
+                                              reader->names.capacity);
+        *any = (struct wd_species_name){wd_strdup(""), 0, 0};
+        return true;
+    }
+    if (wd_species_names_find(&reader->names, "") >= 0)
+        return true;
+    char *names = wd_csv_names(&reader->csv);
+    wd_error(reader->log, "%s:1: no column for the species was recognised; name it in "
+             "columns.species, or give one species for all as \"*\"; the header has: %s",
+             reader->csv.path, names);
+    free(names);
+    return false;
+}
+
+static bool read_rows(struct reader *reader)
+{
+    enum wd_csv_row row;
+    while ((row = wd_csv_next(&reader->csv)) == WD_CSV_ROW)
+        if (!read_tree(reader))
+            return false;
+    if (row == WD_CSV_ERROR)
+        return false;
+    const struct wd_inventory_report *report = &reader->inventory->report;
+    if (report->rows == 0)
+        return wd_error(reader->log, "%s: has a header but no trees", reader->csv.path);
+    if (!wd_species_names_check(&reader->names, reader->csv.path, reader->log))
+        return false;
+    if (report->invalid > 0)
+        wd_warn(reader->log, "%s:%" PRIu64 ": %" PRIu64 " rows have no position and are left out; "
+                "this is the first", reader->csv.path, reader->first_invalid_line, report->invalid);
+    if (reader->zero_sizes > 0)
+        wd_warn(reader->log, "%s: %" PRIu64 " sizes are 0 and count as not measured",
+                reader->csv.path, reader->zero_sizes);
+    if (reader->inventory->count == 0)
+        return wd_error(reader->log, "%s: no living tree with a position among %" PRIu64 " rows",
+                        reader->csv.path, report->rows);
+    return true;
+}
+
+bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *scene, size_t index,
+                       const struct wd_log *log)
+{
+    *inventory = (struct wd_inventory){.wanted = &scene->inventories[index]};
+    inventory->path = wd_path_beside(scene->path, inventory->wanted->file);
+    struct reader reader = {.inventory = inventory, .log = log};
+    reader.names = (struct wd_species_names){.scene = scene, .wanted = inventory->wanted};
+    bool ok = wd_csv_open(&reader.csv, inventory->path, inventory->wanted->delimiter, log) &&
+              wd_inventory_find_columns(&reader.columns, &reader.csv, inventory->wanted, log) &&
+              check_species_column(&reader, scene) && read_rows(&reader);
+    wd_csv_close(&reader.csv);
+    wd_species_names_finish(&reader.names);
+    if (!ok)
+        wd_inventory_finish(inventory);
+    return ok;
+}
+
+void wd_inventory_finish(struct wd_inventory *inventory)
+{
+    free(inventory->path);
+    free(inventory->trees);
+    *inventory = (struct wd_inventory){0};
+}

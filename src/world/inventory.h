@@ -1,0 +1,71 @@
+/* inventory.h: measured trees from CSV files. */
+#ifndef WD_WORLD_INVENTORY_H
+#define WD_WORLD_INVENTORY_H
+
+#include "world/csv.h"
+#include "world/placement.h"
+#include "world/world.h"
+
+/* A living tree as its row says. */
+struct wd_inventory_tree {
+    double x, y;        /* in the file's frame */
+    uint32_t species;   /* index into scene->species */
+    uint32_t row;       /* line in the file */
+    float dbh_cm, height_m, crown_m; /* 0: not given */
+};
+struct wd_inventory {
+    const struct wd_scene_inventory *wanted;
+    char *path;
+    struct wd_inventory_tree *trees;
+    size_t count, capacity;
+    struct wd_inventory_report report; /* rows, dead and invalid so far */
+};
+
+bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *scene, size_t index,
+                       const struct wd_log *log);
+void wd_inventory_finish(struct wd_inventory *inventory);
+
+/* Adds the trees to the list, in the order of rows; completes and logs the report. `fitted`: the
+ * ground was made round the inventories, so local coordinates count from its origin too. */
+bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placement_params *params,
+                        size_t index, bool fitted, struct wd_tree_list *list);
+
+enum wd_inventory_frame { WD_FRAME_LOCAL, WD_FRAME_PROJECTED, WD_FRAME_CRS };
+enum wd_inventory_frame wd_inventory_frame(const struct wd_scene_inventory *wanted);
+
+/* Rotation and offset, then reprojection to `crs` (may be NULL unless the frame is a CRS):
+ * coordinates in the ground's projected frame, or local ones for a local frame. free() them. */
+bool wd_inventory_points(const struct wd_inventory *inventory, const char *crs,
+                         const struct wd_log *log, double **x, double **y);
+
+/* The terrain of the scene; made-up ground is laid under inventories with real coordinates, and
+ * flat ground of size 0 is made to fit all of them. */
+bool wd_world_make_terrain(struct wd_terrain *terrain, const struct wd_inventory *inventories,
+                           const struct wd_placement_params *params, bool *fitted);
+
+/* Columns of a file by what they hold; -1: absent. */
+struct wd_inventory_columns {
+    int x, y, species, dbh, height, crown, status;
+    double dbh_cm, height_m, crown_m; /* of one unit */
+};
+bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struct wd_csv *csv,
+                               const struct wd_scene_inventory *wanted, const struct wd_log *log);
+
+/* Finds species by the names in a file. Names that are not found are counted for the error. */
+struct wd_species_names {
+    const struct wd_scene *scene;
+    const struct wd_scene_inventory *wanted;
+    struct wd_species_name {
+        char *name;
+        int species; /* -1: not found */
+        uint64_t count;
+    } *names;
+    size_t count, capacity;
+};
+int wd_species_names_find(struct wd_species_names *names, const char *name);
+/* False, with an error that lists them, when any name was not found. */
+bool wd_species_names_check(const struct wd_species_names *names, const char *path,
+                            const struct wd_log *log);
+void wd_species_names_finish(struct wd_species_names *names);
+
+#endif

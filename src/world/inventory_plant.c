@@ -1,0 +1,250 @@
+/* inventory_plant.c: measured trees set on the ground, with the sizes that were not measured. */
+#include "world/inventory.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/dmath.h"
+#include "base/memory.h"
+
+enum wd_inventory_frame wd_inventory_frame(const struct wd_scene_inventory *wanted)
+{
+    if (wanted->frame == NULL || strcasecmp(wanted->frame, "local") == 0)
+        return WD_FRAME_LOCAL;
+    return strcasecmp(wanted->frame, "projected") == 0 ? WD_FRAME_PROJECTED : WD_FRAME_CRS;
+}
+
+bool wd_inventory_points(const struct wd_inventory *inventory, const char *crs,
+                         const struct wd_log *log, double **x, double **y)
+{
+    const struct wd_scene_inventory *wanted = inventory->wanted;
+    enum wd_inventory_frame frame = wd_inventory_frame(wanted);
+    double turn = frame == WD_FRAME_LOCAL ? wanted->rotate_deg * (WD_PI / 180.0) : 0.0;
+    double cosine = wd_dcos(turn), sine = wd_dsin(turn);
+    *x = wd_alloc_array(inventory->count, sizeof **x);
+    *y = wd_alloc_array(inventory->count, sizeof **y);
+    for (size_t i = 0; i < inventory->count; i++) {
+        const struct wd_inventory_tree *tree = &inventory->trees[i];
+        (*x)[i] = tree->x * cosine - tree->y * sine + wanted->offset_m[0];
+        (*y)[i] = tree->x * sine + tree->y * cosine + wanted->offset_m[1];
+    }
+    if (frame != WD_FRAME_CRS)
+        return true;
+    bool ok = crs ? wd_reproject(wanted->frame, crs, *x, *y, inventory->count, log)
+                  : wd_error(log, "%s: frame %s: the terrain has no coordinate system to "
+                             "reproject to", inventory->path, wanted->frame);
+    if (!ok) {
+        free(*x);
+        free(*y);
+        *x = *y = NULL;
+    }
+    return ok;
+}
+
+static uint32_t whole_cm(double cm)
+{
+    cm = floor(cm + 0.5);
+    return cm < 1.0 ? 1 : cm > 65535.0 ? 65535 : (uint32_t)cm;
+}
+
+/* Measured, else by allometry from the diameter, else drawn from the inventory's range, else
+ * typical of the species. */
+static uint32_t height_cm_of(const struct wd_inventory *inventory,
+                             const struct wd_inventory_tree *tree, const struct wd_species *species,
+                             uint32_t key)
+{
+    if (tree->height_m > 0.0f)
+        return whole_cm((double)tree->height_m * 100.0);
+    if (tree->dbh_cm > 0.0f)
+        return whole_cm(wd_species_height_m(species, tree->dbh_cm) * 100.0);
+    double low_m = inventory->wanted->height_m[0], high_m = inventory->wanted->height_m[1];
+    if (!(low_m > 0.0 && high_m >= low_m))
+        return whole_cm((double)species->typical_height_m * 100.0);
+    double share = (double)wd_hash2(key, WD_FOR_HEIGHT) / 4294967296.0;
+    return whole_cm((low_m + (high_m - low_m) * share) * 100.0);
+}
+
+static uint32_t crown_cm_of(const struct wd_inventory_tree *tree, const struct wd_species *species,
+                            uint32_t height_cm)
+{
+    if (tree->crown_m > 0.0f)
+        return whole_cm((double)tree->crown_m * 100.0);
+    if (tree->dbh_cm > 0.0f)
+        return whole_cm(wd_species_crown_m(species, tree->dbh_cm) * 100.0);
+    return whole_cm(wd_crown_cm(species, height_cm));
+}
+
+struct planting {
+    struct wd_inventory *inventory;
+    const struct wd_placement_params *params;
+    struct wd_ground_input ground;
+    uint32_t key;
+    uint32_t *planted; /* index of the inventory's tree for each one in the list */
+    struct wd_tree_list trees;
+};
+
+/* Whether a tree there is to stand; outside the ground the inventory's rule decides. */
+static bool check_place(struct planting *planting, const struct wd_inventory_tree *tree,
+                        const double at_mm[2], bool *stands)
+{
+    const struct wd_inventory *inventory = planting->inventory;
+    const struct wd_ground *ground = &planting->ground.ground;
+    *stands = true;
+    bool inside = at_mm[0] >= 0.0 && at_mm[1] >= 0.0 && at_mm[0] <= ground->extent_mm[0] &&
+                  at_mm[1] <= ground->extent_mm[1];
+    if (inside) {
+        struct wd_ground_place place = wd_ground_locate(&planting->ground, (int32_t)at_mm[0],
+                                                        (int32_t)at_mm[1]);
+        inside = !wd_ground_is_hole(&planting->ground, place);
+    }
+    if (inside)
+        return true;
+    planting->inventory->report.outside++;
+    if (inventory->wanted->outside == WD_OUTSIDE_ERROR)
+        return wd_error(planting->params->log, "%s:%u: stands at (%.3f, %.3f), outside the ground: "
+                        "local (%.3f, %.3f), the ground reaches to (%.3f, %.3f)", inventory->path,
+                        tree->row, tree->x, tree->y, at_mm[0] * 1e-3, at_mm[1] * 1e-3,
+                        ground->extent_mm[0] * 1e-3, ground->extent_mm[1] * 1e-3);
+    bool near = fabs(at_mm[0]) < 2e9 && fabs(at_mm[1]) < 2e9;
+    *stands = inventory->wanted->outside == WD_OUTSIDE_KEEP && near;
+    return true;
+}
+
+static void plant_tree(struct planting *planting, size_t index, const double at_mm[2])
+{
+    const struct wd_inventory_tree *from = &planting->inventory->trees[index];
+    const struct wd_scene *scene = planting->params->scene;
+    const struct wd_species *species = &scene->species[from->species];
+    uint32_t key = wd_hash2(planting->key, from->row);
+    uint32_t variants = scene->variants < 1     ? 1
+                        : scene->variants > 256 ? 256
+                                                : (uint32_t)scene->variants;
+    struct wd_tree tree = {.x_mm = (int32_t)at_mm[0], .y_mm = (int32_t)at_mm[1]};
+    struct wd_ground_place place = wd_ground_locate(&planting->ground, tree.x_mm, tree.y_mm);
+    uint32_t height_cm = height_cm_of(planting->inventory, from, species, key);
+    tree.z_mm = wd_ground_mm(wd_ground_height(&planting->ground, place));
+    tree.kind = from->species | WD_MULTIPLY_HIGH(wd_hash2(key, WD_FOR_VARIANT), variants) << 16;
+    tree.size = height_cm | crown_cm_of(from, species, height_cm) << 16;
+    tree.look = wd_place_look(key, 64);
+    tree.random = wd_hash2(key, WD_FOR_OWN);
+    planting->planted[planting->trees.count] = (uint32_t)index;
+    wd_tree_list_add(&planting->trees, &tree);
+}
+
+static bool plant_all(struct planting *planting, const double *x, const double *y,
+                      const double origin_m[2])
+{
+    for (size_t i = 0; i < planting->inventory->count; i++) {
+        const double at_mm[2] = {floor((x[i] - origin_m[0]) * 1000.0 + 0.5),
+                                 floor((y[i] - origin_m[1]) * 1000.0 + 0.5)};
+        bool stands;
+        if (!check_place(planting, &planting->inventory->trees[i], at_mm, &stands))
+            return false;
+        if (stands)
+            plant_tree(planting, i, at_mm);
+    }
+    return true;
+}
+
+/* Place, species and order of a planted tree. */
+struct stand {
+    int32_t x_mm, y_mm;
+    uint32_t species, index;
+};
+
+static int compare_stands(const void *first, const void *second)
+{
+    const struct stand *a = first, *b = second;
+    if (a->x_mm != b->x_mm)
+        return a->x_mm < b->x_mm ? -1 : 1;
+    if (a->y_mm != b->y_mm)
+        return a->y_mm < b->y_mm ? -1 : 1;
+    if (a->species != b->species)
+        return a->species < b->species ? -1 : 1;
+    return a->index < b->index ? -1 : a->index > b->index;
+}
+
+/* Marks trees of one species on one millimetre, all but the first row's, by size 0. */
+static void drop_duplicates(struct planting *planting)
+{
+    size_t count = planting->trees.count;
+    struct wd_tree *trees = planting->trees.trees;
+    struct stand *stands = wd_alloc_array(count, sizeof *stands);
+    for (size_t i = 0; i < count; i++)
+        stands[i] = (struct stand){trees[i].x_mm, trees[i].y_mm, WD_TREE_SPECIES(trees[i]),
+                                   (uint32_t)i};
+    qsort(stands, count, sizeof *stands, compare_stands);
+    uint32_t first_line = 0;
+    for (size_t i = 1; i < count; i++) {
+        if (stands[i].x_mm != stands[i - 1].x_mm || stands[i].y_mm != stands[i - 1].y_mm ||
+            stands[i].species != stands[i - 1].species)
+            continue;
+        uint32_t line = planting->inventory->trees[planting->planted[stands[i].index]].row;
+        first_line = first_line == 0 || line < first_line ? line : first_line;
+        trees[stands[i].index].size = 0;
+        planting->inventory->report.duplicates++;
+    }
+    free(stands);
+    if (first_line > 0)
+        wd_warn(planting->params->log, "%s:%u: %" PRIu64 " rows repeat the place and species of an "
+                "earlier one and are left out; this is the first", planting->inventory->path,
+                first_line, planting->inventory->report.duplicates);
+}
+
+static bool take(struct planting *planting, struct wd_tree_list *list)
+{
+    struct wd_inventory_report *report = &planting->inventory->report;
+    for (size_t i = 0; i < planting->trees.count; i++) {
+        if (planting->trees.trees[i].size == 0)
+            continue;
+        if (list->count >= planting->params->max_trees)
+            return wd_too_many_trees(planting->params, planting->inventory->path);
+        wd_tree_list_add(list, &planting->trees.trees[i]);
+        report->planted++;
+    }
+    wd_info(planting->params->log,
+            "inventory %s: %" PRIu64 " rows, %" PRIu64 " planted, %" PRIu64 " dead, %" PRIu64
+            " duplicates, %" PRIu64 " outside%s, %" PRIu64 " invalid",
+            planting->inventory->path, report->rows, report->planted, report->dead,
+            report->duplicates, report->outside,
+            report->outside && planting->inventory->wanted->outside == WD_OUTSIDE_KEEP ? " (kept)"
+                                                                                       : "",
+            report->invalid);
+    if (report->planted == 0)
+        return wd_error(planting->params->log, "%s: no tree stands on the ground; is \"frame\" "
+                        "right?", planting->inventory->path);
+    if (report->outside > 0 && planting->inventory->wanted->outside == WD_OUTSIDE_DROP)
+        wd_warn(planting->params->log, "%s: %" PRIu64 " trees stand outside the ground and are "
+                "left out", planting->inventory->path, report->outside);
+    return true;
+}
+
+bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placement_params *params,
+                        size_t index, bool fitted, struct wd_tree_list *list)
+{
+    static const double zero[2] = {0.0, 0.0};
+    struct planting planting = {
+        .inventory = inventory,
+        .params = params,
+        .key = wd_hash2(params->seed, 0x80000000u + (uint32_t)index),
+    };
+    double *x, *y;
+    if (!wd_ground_input_init(&planting.ground, params->terrain, params->log) ||
+        !wd_inventory_points(inventory, params->terrain->crs, params->log, &x, &y))
+        return false;
+    bool local = wd_inventory_frame(inventory->wanted) == WD_FRAME_LOCAL && !fitted;
+    planting.planted = wd_alloc_array(inventory->count, sizeof *planting.planted);
+    bool ok = plant_all(&planting, x, y, local ? zero : params->terrain->origin_m);
+    if (ok) {
+        drop_duplicates(&planting);
+        ok = take(&planting, list);
+    }
+    wd_tree_list_finish(&planting.trees);
+    free(planting.planted);
+    free(x);
+    free(y);
+    return ok;
+}

@@ -1,0 +1,98 @@
+#include "world/inventory.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/memory.h"
+
+static const char *mapped_name(const struct wd_scene_inventory *wanted, const char *name)
+{
+    for (size_t i = 0; i < wanted->species_count; i++)
+        if (strcmp(wanted->species[i].name, name) == 0)
+            return wanted->species[i].value;
+    for (size_t i = 0; i < wanted->species_count; i++)
+        if (strcasecmp(wanted->species[i].name, name) == 0)
+            return wanted->species[i].value;
+    return NULL;
+}
+
+/* The scene's own name for a species, or its Latin name. */
+static int scene_species(const struct wd_scene *scene, const char *name)
+{
+    for (size_t i = 0; i < scene->species_file_count; i++)
+        if (strcasecmp(scene->species_files[i].name, name) == 0)
+            return (int)i;
+    for (size_t i = 0; i < scene->species_file_count; i++)
+        if (scene->species[i].latin && strcasecmp(scene->species[i].latin, name) == 0)
+            return (int)i;
+    return -1;
+}
+
+static int look_up(const struct wd_species_names *names, const char *name)
+{
+    const char *mapped = mapped_name(names->wanted, name);
+    if (mapped)
+        return wd_scene_find_species(names->scene, mapped);
+    int species = *name ? scene_species(names->scene, name) : -1;
+    if (species >= 0)
+        return species;
+    mapped = mapped_name(names->wanted, "*");
+    return mapped ? wd_scene_find_species(names->scene, mapped) : -1;
+}
+
+int wd_species_names_find(struct wd_species_names *names, const char *name)
+{
+    for (size_t i = 0; i < names->count; i++)
+        if (strcmp(names->names[i].name, name) == 0) {
+            names->names[i].count++;
+            return names->names[i].species;
+        }
+    int species = look_up(names, name);
+    struct wd_species_name *added = wd_push(names->names, names->count, names->capacity);
+    *added = (struct wd_species_name){wd_strdup(name), species, 1};
+    return species;
+}
+
+static int most_frequent_first(const void *first, const void *second)
+{
+    const struct wd_species_name *a = first, *b = second;
+    if (a->count != b->count)
+        return a->count > b->count ? -1 : 1;
+    return strcmp(a->name, b->name);
+}
+
+bool wd_species_names_check(const struct wd_species_names *names, const char *path,
+                            const struct wd_log *log)
+{
+    enum { MOST_LISTED = 20 };
+    struct wd_species_name *missing = wd_alloc_array(names->count, sizeof *missing);
+    size_t count = 0;
+    for (size_t i = 0; i < names->count; i++)
+        if (names->names[i].species < 0)
+            missing[count++] = names->names[i];
+    qsort(missing, count, sizeof *missing, most_frequent_first);
+    char *list = wd_strdup("");
+    for (size_t i = 0; i < count && i < MOST_LISTED; i++) {
+        char *longer = wd_format("%s%s\"%s\" (%" PRIu64 ")", list, i ? ", " : "",
+                                 *missing[i].name ? missing[i].name : "empty", missing[i].count);
+        free(list);
+        list = longer;
+    }
+    if (count > 0)
+        wd_error(log, "%s: %zu species names are not mapped to a species of the scene: %s%s; name "
+                 "each in \"species\", or \"*\" for any other", path, count, list,
+                 count > MOST_LISTED ? ", ..." : "");
+    free(list);
+    free(missing);
+    return count == 0;
+}
+
+void wd_species_names_finish(struct wd_species_names *names)
+{
+    for (size_t i = 0; i < names->count; i++)
+        free(names->names[i].name);
+    free(names->names);
+    *names = (struct wd_species_names){0};
+}
