@@ -1,0 +1,303 @@
+#include "args.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define AT(field) offsetof(struct cli_options, field)
+#define SCENE_COMMANDS (CLI_RENDER | CLI_VIEW | CLI_INFO)
+#define PICTURE_COMMANDS (CLI_RENDER | CLI_VIEW)
+
+static const struct cli_option option_table[] = {
+    {"output", 'o', "FILE", CLI_KIND_TEXT, AT(output), 0, 0, CLI_RENDER,
+     "where to write: .png, .exr (all layers), .mp4, or numbered files (frame-%05d.png)"},
+    {"camera", 0, "NAME", CLI_KIND_TEXT, AT(camera), 0, 0, PICTURE_COMMANDS,
+     "a camera of the scene (default: its first)"},
+    {"path", 0, "NAME", CLI_KIND_TEXT, AT(path), 0, 0, PICTURE_COMMANDS,
+     "a camera path of the scene"},
+    {"size", 0, "WxH", CLI_KIND_SIZE, AT(size_px), 1, CLI_MAX_SIZE_PX, PICTURE_COMMANDS,
+     "pixels, 1 to 16384 each way (default: the scene's)"},
+    {"samples", 0, "N", CLI_KIND_WHOLE, AT(samples), 1, 65536, CLI_RENDER,
+     "pictures averaged into one (default: the scene's)"},
+    {"frames", 0, "N", CLI_KIND_WHOLE, AT(frames), 1, 10000000, CLI_RENDER,
+     "frames of a film, spread evenly over the path (default: the path at its own speed)"},
+    {"fps", 0, "N", CLI_KIND_REAL, AT(frames_per_second), 0.01, 1000, CLI_RENDER,
+     "frames a second of a film (default: 24)"},
+    {"method", 0, "NAME", CLI_KIND_TEXT, AT(method), 0, 0, PICTURE_COMMANDS,
+     "how trees are drawn (default: the scene's)"},
+    {"view", 0, "WHAT", CLI_KIND_VIEW, AT(view), 0, 0, PICTURE_COMMANDS,
+     "what pixels show: lit, lod, albedo, normal, tree-id or shadow (default: lit)"},
+    {"time", 0, "SECONDS", CLI_KIND_REAL, AT(time_s), 0, 1e6, CLI_RENDER,
+     "time of the wind; with --path and a single picture also the place on the path"},
+    {"seed", 0, "N", CLI_KIND_TEXT, AT(seed), 0, 0, SCENE_COMMANDS,
+     "replaces the scene's seed: another forest of the same kind"},
+    {"data", 0, "DIR", CLI_KIND_TEXT, AT(data), 0, 0, SCENE_COMMANDS | CLI_CHECK,
+     "what ${data} stands for in the scene's file names"},
+    {"gpu", 0, "NAME", CLI_KIND_TEXT, AT(gpu), 0, 0, PICTURE_COMMANDS,
+     "\"software\" or a part of a device's name, see `weald devices` (default: the best)"},
+    {"gpu-validate", 0, NULL, CLI_KIND_FLAG, AT(gpu_validate), 0, 0, PICTURE_COMMANDS,
+     "check every use of Vulkan, end at the first error"},
+    {"threads", 0, "N", CLI_KIND_WHOLE, AT(threads), 1, 1024, SCENE_COMMANDS,
+     "processor threads (default: one a processor); changes no picture"},
+    {"walk", 0, NULL, CLI_KIND_FLAG, AT(walk), 0, 0, CLI_VIEW,
+     "begin on foot instead of in the air"},
+    {"screenshots", 0, "DIR", CLI_KIND_TEXT, AT(screenshots), 0, 0, CLI_VIEW,
+     "where F12 puts pictures (default: the working directory)"},
+    {"report", 0, "FILE", CLI_KIND_TEXT, AT(report), 0, 0, CLI_VIEW,
+     "append a line of JSON about the state at F9 and at the end"},
+    {"times", 0, NULL, CLI_KIND_FLAG, AT(times), 0, 0, CLI_RENDER,
+     "print how long each pass took"},
+    {"json", 0, NULL, CLI_KIND_FLAG, AT(json), 0, 0, CLI_INFO, "print JSON"},
+    {"quiet", 'q', NULL, CLI_KIND_FLAG, AT(quiet), 0, 0, SCENE_COMMANDS | CLI_CHECK,
+     "print nothing but warnings, errors and what was asked for"},
+    {"help", 'h', NULL, CLI_KIND_FLAG, AT(help), 0, 0, CLI_EVERY, "print this and exit"},
+    {0},
+};
+
+const struct cli_option *cli_option_table(void)
+{
+    return option_table;
+}
+
+const char *const *cli_view_names(void)
+{
+    static const char *const names[] = {"lit",    "lod",     "albedo",
+                                        "normal", "tree-id", "shadow", NULL};
+    return names;
+}
+
+/* Edits (insert, delete, replace) that turn `a` into `b`; both shorter than 64 characters. */
+static unsigned edit_distance(const char *a, const char *b)
+{
+    unsigned row[64];
+    size_t b_length = strlen(b);
+    if (b_length >= 64 || strlen(a) >= 64)
+        return UINT32_MAX;
+    for (unsigned j = 0; j <= b_length; j++)
+        row[j] = j;
+    for (unsigned i = 1; a[i - 1]; i++) {
+        unsigned diagonal = row[0];
+        row[0] = i;
+        for (unsigned j = 1; j <= b_length; j++) {
+            unsigned best = diagonal + (a[i - 1] != b[j - 1]);
+            diagonal = row[j];
+            if (row[j] + 1 < best)
+                best = row[j] + 1;
+            if (row[j - 1] + 1 < best)
+                best = row[j - 1] + 1;
+            row[j] = best;
+        }
+    }
+    return row[b_length];
+}
+
+const char *cli_suggest(const char *word, const char *const *names)
+{
+    const char *best = NULL;
+    unsigned best_distance = 1 + (unsigned)(strlen(word) / 3);
+    for (; *names; names++) {
+        unsigned distance = edit_distance(word, *names);
+        if (distance <= best_distance && (!best || distance < best_distance)) {
+            best = *names;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+static bool complain(const struct cli_command *command, const char *what, const char *word,
+                     const char *more)
+{
+    fprintf(stderr, "weald %s: %s%s%s\n", command->name, what, word, more);
+    fprintf(stderr, "Try 'weald %s --help'.\n", command->name);
+    return false;
+}
+
+static bool complain_unknown(const struct cli_command *command, const char *word)
+{
+    const char *names[sizeof option_table / sizeof *option_table];
+    size_t count = 0;
+    for (const struct cli_option *option = option_table; option->name; option++)
+        if (option->commands & command->bit)
+            names[count++] = option->name;
+    names[count] = NULL;
+
+    char bare[64], more[128] = "";
+    snprintf(bare, sizeof bare, "%s", word + strspn(word, "-"));
+    bare[strcspn(bare, "=")] = 0;
+    const char *suggestion = cli_suggest(bare, names);
+    if (suggestion)
+        snprintf(more, sizeof more, ", did you mean --%s?", suggestion);
+    return complain(command, "there is no option ", word, more);
+}
+
+static const struct cli_option *find_option(const struct cli_command *command, const char *word)
+{
+    for (const struct cli_option *option = option_table; option->name; option++) {
+        if (!(option->commands & command->bit))
+            continue;
+        if (word[1] != '-' && option->letter && word[1] == option->letter && !word[2])
+            return option;
+        size_t length = strlen(option->name);
+        if (word[1] == '-' && !strncmp(word + 2, option->name, length) &&
+            (!word[2 + length] || word[2 + length] == '='))
+            return option;
+    }
+    return NULL;
+}
+
+static bool parse_size(const char *text, uint32_t size_px[2])
+{
+    char *end;
+    unsigned long long width = strtoull(text, &end, 10);
+    if (end == text || (*end != 'x' && *end != 'X') || *text == '-')
+        return false;
+    const char *second = end + 1;
+    unsigned long long height = strtoull(second, &end, 10);
+    if (end == second || *end || *second == '-')
+        return false;
+    if (width < 1 || height < 1 || width > CLI_MAX_SIZE_PX || height > CLI_MAX_SIZE_PX)
+        return false;
+    size_px[0] = (uint32_t)width;
+    size_px[1] = (uint32_t)height;
+    return true;
+}
+
+static bool parse_whole(const char *text, const struct cli_option *option, uint32_t *value)
+{
+    char *end;
+    errno = 0;
+    unsigned long long number = strtoull(text, &end, 10);
+    if (end == text || *end || errno || *text == '-' || (double)number < option->min ||
+        (double)number > option->max)
+        return false;
+    *value = (uint32_t)number;
+    return true;
+}
+
+static bool parse_real(const char *text, const struct cli_option *option, double *value)
+{
+    char *end;
+    double number = strtod(text, &end);
+    if (end == text || *end || !isfinite(number) || number < option->min || number > option->max)
+        return false;
+    *value = number;
+    return true;
+}
+
+static bool parse_view(const char *text, enum wd_view_mode *view)
+{
+    const char *const *names = cli_view_names();
+    for (int i = 0; names[i]; i++)
+        if (!strcmp(names[i], text)) {
+            *view = (enum wd_view_mode)i;
+            return true;
+        }
+    return false;
+}
+
+static bool store(const struct cli_option *option, const char *text, struct cli_options *options)
+{
+    void *field = (char *)options + option->offset;
+    switch (option->kind) {
+    case CLI_KIND_FLAG:
+        *(bool *)field = true;
+        return true;
+    case CLI_KIND_TEXT:
+        *(const char **)field = text;
+        return *text != 0;
+    case CLI_KIND_SIZE:
+        return parse_size(text, field);
+    case CLI_KIND_WHOLE:
+        return parse_whole(text, option, field);
+    case CLI_KIND_REAL:
+        return parse_real(text, option, field);
+    case CLI_KIND_VIEW:
+        return parse_view(text, field);
+    }
+    return false;
+}
+
+static bool complain_value(const struct cli_command *command, const struct cli_option *option,
+                           const char *text)
+{
+    char what[64], more[256] = " is not usable";
+    snprintf(what, sizeof what, "--%s ", option->name);
+    switch (option->kind) {
+    case CLI_KIND_SIZE:
+        snprintf(more, sizeof more,
+                 ": a size is WIDTHxHEIGHT in pixels, each from %g to %g, as in 1280x720",
+                 option->min, option->max);
+        break;
+    case CLI_KIND_WHOLE:
+        snprintf(more, sizeof more, ": must be a whole number from %.0f to %.0f", option->min,
+                 option->max);
+        break;
+    case CLI_KIND_REAL:
+        snprintf(more, sizeof more, ": must be a number from %g to %g", option->min, option->max);
+        break;
+    case CLI_KIND_VIEW: {
+        const char *suggestion = cli_suggest(text, cli_view_names());
+        snprintf(more, sizeof more, ": must be lit, lod, albedo, normal, tree-id or shadow%s%s%s",
+                 suggestion ? "; did you mean " : "", suggestion ? suggestion : "",
+                 suggestion ? "?" : "");
+        break;
+    }
+    case CLI_KIND_TEXT:
+        snprintf(more, sizeof more, "must not be empty");
+        break;
+    case CLI_KIND_FLAG:
+        break;
+    }
+    return complain(command, what, text, more);
+}
+
+/* Reads the option at words[*index] and moves *index past its last word. */
+static bool parse_option(const struct cli_command *command, int word_count, char **words,
+                         int *index, struct cli_options *options)
+{
+    const char *word = words[(*index)++];
+    const struct cli_option *option = find_option(command, word);
+    if (!option)
+        return complain_unknown(command, word);
+    const char *text = word[1] == '-' ? strchr(word, '=') : NULL;
+    if (text)
+        text++;
+    if (option->kind == CLI_KIND_FLAG && text)
+        return complain(command, word, " takes no value", "");
+    if (option->kind != CLI_KIND_FLAG && !text) {
+        if (*index >= word_count)
+            return complain(command, word, " needs a value: ", option->value);
+        text = words[(*index)++];
+    }
+    return store(option, text, options) || complain_value(command, option, text);
+}
+
+static bool check_operands(const struct cli_command *command, const struct cli_options *options)
+{
+    if (options->operand_count < command->operands_min)
+        return complain(command, "missing: ", command->operands, "");
+    if (options->operand_count > command->operands_max)
+        return complain(command, "one too many: ", options->operands[command->operands_max], "");
+    return true;
+}
+
+bool cli_options_parse(const struct cli_command *command, int word_count, char **words,
+                       char **operands, struct cli_options *options)
+{
+    options->operands = operands;
+    bool options_over = false;
+    for (int i = 0; i < word_count;) {
+        if (!options_over && !strcmp(words[i], "--")) {
+            options_over = true;
+            i++;
+        } else if (options_over || words[i][0] != '-' || !words[i][1]) {
+            operands[options->operand_count++] = words[i++];
+        } else if (!parse_option(command, word_count, words, &i, options)) {
+            return false;
+        }
+    }
+    return options->help || check_operands(command, options);
+}

@@ -1,0 +1,114 @@
+/* cli.h: what the commands of the program share: options, messages, progress. */
+#ifndef CLI_CLI_H
+#define CLI_CLI_H
+
+#include <stdatomic.h>
+#include <signal.h>
+#include <pthread.h>
+
+#include "weald/renderer.h"
+
+enum cli_status {
+    CLI_OK = 0,
+    CLI_FAILED = 1,
+    CLI_USAGE = 2,
+    CLI_NO_DISPLAY = 3, /* `view` found no display to open a window on */
+    CLI_INTERRUPTED = 130,
+};
+
+/* Commands as bits: an option says which of them know it. */
+enum cli_command_bit {
+    CLI_RENDER = 1 << 0,
+    CLI_VIEW = 1 << 1,
+    CLI_INFO = 1 << 2,
+    CLI_CHECK = 1 << 3,
+    CLI_SCHEMA = 1 << 4,
+    CLI_DEVICES = 1 << 5,
+    CLI_MANUAL = 1 << 6,
+    CLI_EVERY = (1 << 7) - 1,
+};
+
+enum { CLI_MAX_SIZE_PX = 16384 };
+
+/* Values of all options; those not given are 0, NULL or false. */
+struct cli_options {
+    char **operands;
+    int operand_count;
+    const char *output, *camera, *path, *method, *seed, *data, *gpu;
+    const char *screenshots, *report;
+    uint32_t size_px[2];
+    uint32_t samples, frames, threads;
+    double frames_per_second, time_s;
+    enum wd_view_mode view;
+    bool help, json, quiet, times, gpu_validate, walk;
+};
+
+/* The bar on standard error, or plain lines at every quarter where that is no terminal. Silent in
+ * the first two seconds. */
+struct cli_meter {
+    double begin_s;
+    double drawn_s;
+    bool terminal, quiet, bar_shown;
+    const char *stage; /* of the newest plain line */
+    unsigned quarter;
+    uint64_t frame, frame_count; /* of a film; frame_count 0: no film */
+};
+
+/* Waits for SIGINT and SIGTERM on a thread of its own; the second one ends the program at once. */
+struct cli_interrupt {
+    atomic_int signal; /* 0: none came */
+    pthread_t thread;
+    sigset_t signals;
+};
+
+struct cli_session {
+    const struct cli_options *options;
+    struct cli_meter meter;
+    struct cli_interrupt interrupt;
+    struct wd_log log;
+    struct wd_progress progress;
+};
+
+struct cli_command {
+    const char *name;
+    unsigned bit;
+    const char *operands; /* as the usage line shows them */
+    int operands_min, operands_max;
+    const char *summary; /* one line */
+    const char *description;
+    const char *examples; /* lines of "command  # what for" */
+    enum cli_status (*run)(struct cli_session *session);
+};
+
+/* All commands, ended by one without a name. */
+const struct cli_command *cli_commands(void);
+
+bool cli_session_start(struct cli_session *session, const struct cli_options *options);
+bool cli_session_interrupted(const struct cli_session *session);
+/* What the program exits with after `result`. */
+enum cli_status cli_session_status(const struct cli_session *session, enum wd_result result);
+/* A film's frames become the outer measure of progress, a frame's samples the inner one. */
+void cli_session_film_progress(struct cli_session *session, uint64_t frame, uint64_t frame_count);
+/* Takes the bar off the screen before something else is printed. */
+void cli_meter_clear(struct cli_meter *meter);
+double cli_seconds(void);
+
+__attribute__((format(printf, 2, 3))) void cli_say(struct cli_session *session, const char *format,
+                                                   ...); /* standard output unless --quiet */
+__attribute__((format(printf, 2, 3))) bool cli_fail(struct cli_session *session,
+                                                    const char *format, ...); /* returns false */
+
+/* Opens the forest that the scene operand and the options ask for. */
+enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **forest);
+/* Tells a wrong --method from a right one before any long work. */
+bool cli_method_check(struct cli_session *session);
+
+enum cli_status cli_render(struct cli_session *session);
+enum cli_status cli_view(struct cli_session *session);
+enum cli_status cli_info(struct cli_session *session);
+enum cli_status cli_check(struct cli_session *session);
+enum cli_status cli_schema(struct cli_session *session);
+enum cli_status cli_devices(struct cli_session *session);
+enum cli_status cli_manual(struct cli_session *session);
+
+#endif

@@ -1,0 +1,27 @@
+/* film.h: many frames along a path, or of the wind before a standing camera. */
+#ifndef CLI_FILM_H
+#define CLI_FILM_H
+
+#include "picture.h"
+
+struct cli_film {
+    struct cli_session *session;
+    const struct wd_forest *forest;
+    const struct cli_plan *plan;
+    struct wd_film *output;
+    const char *path; /* NULL: the camera stands still */
+    double duration_s; /* of the path */
+    double frames_per_second;
+    uint64_t frame_count, frames_done;
+};
+
+/* Settles the frames and opens the output, before the long work. `*film` is ready for
+ * cli_film_close whatever the result. */
+enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
+                             const struct wd_forest *forest, const struct cli_plan *plan);
+enum wd_result cli_film_shoot(struct cli_film *film, struct wd_renderer *renderer);
+/* Keeps the finished frames unless the output itself failed, and says so. Returns `result`, or
+ * what went wrong in finishing. */
+enum wd_result cli_film_close(struct cli_film *film, enum wd_result result);
+
+#endif

@@ -1,0 +1,136 @@
+#include "help.h"
+
+#include <string.h>
+
+#include "args.h"
+
+static const char controls[] =
+    "  W A S D        move            right button   look around (or G to grab the mouse)\n"
+    "  Q E            down, up        Shift          five times as fast; the wheel sets the speed\n"
+    "  F              fly or walk     M              next method\n"
+    "  L              colour by level of detail      T  times and tree counts\n"
+    "  C, Shift+C     next camera, save this one     P  play the path\n"
+    "  F9, F12        report line, screenshot        H  help        Esc  quit\n";
+
+void cli_help_program(FILE *to)
+{
+    fprintf(to, "weald: forests from terrain, species and inventories, drawn with Vulkan\n\n"
+                "Usage: weald COMMAND [OPTIONS]\n\nCommands:\n");
+    for (const struct cli_command *command = cli_commands(); command->name; command++)
+        fprintf(to, "  %-9s %s\n", command->name, command->summary);
+    fprintf(to, "\n  --version, --help\n\nExamples:\n"
+                "  weald render scenes/valley.json -o valley.png\n"
+                "  weald view scenes/valley.json\n"
+                "  weald info scenes/valley.json\n\n"
+                "'weald COMMAND --help' tells all about a command.\n");
+}
+
+static void print_option(FILE *to, const struct cli_option *option)
+{
+    char left[64];
+    char letter[8] = "    ";
+    if (option->letter)
+        snprintf(letter, sizeof letter, "-%c, ", option->letter);
+    snprintf(left, sizeof left, "%s--%s%s%s", letter, option->name, option->value ? " " : "",
+             option->value ? option->value : "");
+    fprintf(to, "  %-25s %s\n", left, option->help);
+}
+
+void cli_help_command(FILE *to, const struct cli_command *command)
+{
+    fprintf(to, "Usage: weald %s %s%s[OPTIONS]\n\n%s\n\nOptions:\n", command->name,
+            command->operands, *command->operands ? " " : "", command->description);
+    for (const struct cli_option *option = cli_option_table(); option->name; option++)
+        if (option->commands & command->bit)
+            print_option(to, option);
+    if (command->bit == CLI_RENDER || command->bit == CLI_VIEW) {
+        fprintf(to, "\nMethods:");
+        for (const char *const *name = wd_method_names(); *name; name++)
+            fprintf(to, " %s", *name);
+        fprintf(to, "\n");
+    }
+    if (command->bit == CLI_VIEW)
+        fprintf(to, "\nKeys:\n%s", controls);
+    fprintf(to, "\nExamples:\n%s", command->examples);
+}
+
+/* Text with what roff would take for its own escaped. */
+static void print_roff(FILE *to, const char *text)
+{
+    bool line_start = true;
+    for (; *text; text++) {
+        if (line_start && (*text == '.' || *text == '\''))
+            fputs("\\&", to);
+        if (*text == '\\')
+            fputs("\\e", to);
+        else if (*text == '-')
+            fputs("\\-", to);
+        else
+            fputc(*text, to);
+        line_start = *text == '\n';
+    }
+}
+
+static void print_roff_literal(FILE *to, const char *text)
+{
+    fputs(".nf\n", to);
+    print_roff(to, text);
+    fputs(".fi\n", to);
+}
+
+static void manual_command(FILE *to, const struct cli_command *command)
+{
+    fprintf(to, ".SS weald %s %s\n", command->name, command->operands);
+    print_roff(to, command->description);
+    fputs("\n", to);
+    for (const struct cli_option *option = cli_option_table(); option->name; option++) {
+        if (!(option->commands & command->bit))
+            continue;
+        fputs(".TP\n.B ", to);
+        if (option->letter)
+            fprintf(to, "\\-%c, ", option->letter);
+        fputs("\\-\\-", to);
+        print_roff(to, option->name);
+        if (option->value)
+            fprintf(to, " \\fI%s\\fR", option->value);
+        fputs("\n", to);
+        print_roff(to, option->help);
+        fputs("\n", to);
+    }
+    if (command->bit == CLI_VIEW) {
+        fputs(".PP\nKeys:\n", to);
+        print_roff_literal(to, controls);
+    }
+    fputs(".PP\nExamples:\n", to);
+    print_roff_literal(to, command->examples);
+}
+
+void cli_help_manual(FILE *to)
+{
+    fputs(".TH WEALD 1 \"\" \"weald " WEALD_VERSION "\" \"User Commands\"\n"
+          ".SH NAME\nweald \\- draw forests from terrain, species and inventories\n"
+          ".SH SYNOPSIS\n.B weald\n.I COMMAND\n[\\fIOPTIONS\\fR]\n"
+          ".SH DESCRIPTION\n"
+          "weald reads a scene file (terrain, species, layers of trees or a tree inventory, light,\n"
+          "cameras), plants the forest and draws it with Vulkan: as a picture, a film, layers for\n"
+          "measurement, or in a window to walk through.\n"
+          ".SH COMMANDS\n",
+          to);
+    for (const struct cli_command *command = cli_commands(); command->name; command++)
+        manual_command(to, command);
+    fputs(".SH EXIT STATUS\n"
+          "0: done. 1: failed, the message says why. 2: the command line is wrong.\n"
+          "3: there is no display for a window. 130: stopped by Ctrl\\-C; finished frames of a film\n"
+          "are kept.\n"
+          ".SH FILES\n"
+          ".I $XDG_CACHE_HOME/weald\n(or ~/.cache/weald) holds what was made from trees once.\n"
+          "It may be deleted at any time.\n",
+          to);
+}
+
+enum cli_status cli_manual(struct cli_session *session)
+{
+    (void)session;
+    cli_help_manual(stdout);
+    return CLI_OK;
+}

@@ -1,0 +1,120 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "args.h"
+#include "help.h"
+
+static const struct cli_command commands[] = {
+    {"render", CLI_RENDER, "SCENE -o FILE", 1, 1, "draw a picture or a film",
+     "Draws a picture of a scene, or a film of it along a path or of its wind. An .exr holds all\n"
+     "layers: colour, depth in metres, world normal, albedo, species, 32-bit tree id, velocity.\n"
+     "Ctrl-C stops a film after the frames that are finished; these are kept.",
+     "  weald render scenes/valley.json -o valley.png\n"
+     "  weald render scenes/valley.json -o valley.exr --camera overview --size 1920x1080\n"
+     "  weald render scenes/valley.json -o flight.mp4 --path flight --samples 4\n"
+     "  weald render scenes/valley.json -o frame-%05d.png --path flight --frames 48\n"
+     "  weald render scenes/valley.json -o lod.png --view lod --method octree --times\n",
+     cli_render},
+    {"view", CLI_VIEW, "SCENE", 1, 1, "walk or fly through a scene in a window",
+     "Opens a window to walk and fly through a scene. Cameras saved with Shift+C go to\n"
+     "SCENE.cameras.json beside the scene, or to the working directory.",
+     "  weald view scenes/valley.json\n"
+     "  weald view scenes/valley.json --walk --size 1920x1080\n"
+     "  weald view scenes/valley.json --gpu software --size 480x270\n",
+     cli_view},
+    {"info", CLI_INFO, "SCENE", 1, 1, "tell what stands in a scene",
+     "Plants a scene and tells its trees by species, bounds, memory, inventories, cameras and\n"
+     "paths, and the devices that could draw it.",
+     "  weald info scenes/valley.json\n"
+     "  weald info scenes/valley.json --json | jq .tree_count\n",
+     cli_info},
+    {"check", CLI_CHECK, "FILE...", 1, 1 << 20, "look for faults in scene, species, CSV and raster files",
+     "Checks files without building anything: scenes and species (.json), inventories (.csv),\n"
+     "rasters (anything else). Every fault is named with file, line and key. Exits with 1 if any\n"
+     "file has one.",
+     "  weald check scenes/*.json species/*.json\n"
+     "  weald check my-plot.csv --data ~/plots\n",
+     cli_check},
+    {"schema", CLI_SCHEMA, "scene|species", 1, 1, "print the JSON Schema of a kind of file",
+     "Prints the JSON Schema of scene or species files.",
+     "  weald schema scene > scene.schema.json\n", cli_schema},
+    {"devices", CLI_DEVICES, "", 0, 0, "list the Vulkan devices",
+     "Lists the Vulkan devices that --gpu can name.", "  weald devices\n", cli_devices},
+    {"manual", CLI_MANUAL, "", 0, 0, "print the manual page",
+     "Prints the manual page, for man(1).", "  weald manual | man -l -\n", cli_manual},
+    {0},
+};
+
+const struct cli_command *cli_commands(void)
+{
+    return commands;
+}
+
+static const struct cli_command *find_command(const char *name)
+{
+    for (const struct cli_command *command = commands; command->name; command++)
+        if (!strcmp(command->name, name))
+            return command;
+    return NULL;
+}
+
+static enum cli_status complain_command(const char *name)
+{
+    const char *names[sizeof commands / sizeof *commands] = {0};
+    for (size_t i = 0; commands[i].name; i++)
+        names[i] = commands[i].name;
+    const char *suggestion = cli_suggest(name, names);
+    fprintf(stderr, "weald: there is no command %s%s%s%s\n", name,
+            suggestion ? ", did you mean " : "", suggestion ? suggestion : "",
+            suggestion ? "?" : "");
+    fprintf(stderr, "Try 'weald --help'.\n");
+    return CLI_USAGE;
+}
+
+static enum cli_status run_command(const struct cli_command *command, int word_count, char **words)
+{
+    struct cli_options options = {0};
+    char **operands = calloc((size_t)word_count + 1, sizeof *operands);
+    enum cli_status status = CLI_USAGE;
+    if (!operands)
+        return CLI_FAILED;
+    if (cli_options_parse(command, word_count, words, operands, &options)) {
+        struct cli_session session;
+        if (options.help) {
+            cli_help_command(stdout, command);
+            status = CLI_OK;
+        } else if (!cli_session_start(&session, &options)) {
+            status = CLI_FAILED;
+        } else {
+            status = command->run(&session);
+            cli_meter_clear(&session.meter);
+        }
+    }
+    free(operands);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        cli_help_program(stderr);
+        return CLI_USAGE;
+    }
+    if (!strcmp(argv[1], "--version")) {
+        puts("weald " WEALD_VERSION);
+        return CLI_OK;
+    }
+    if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help")) {
+        cli_help_program(stdout);
+        return CLI_OK;
+    }
+    const struct cli_command *command = find_command(argv[1]);
+    enum cli_status status =
+        command ? run_command(command, argc - 2, argv + 2) : complain_command(argv[1]);
+    if (fflush(stdout) || ferror(stdout)) {
+        perror("weald: standard output");
+        return CLI_FAILED;
+    }
+    return status;
+}

@@ -1,0 +1,206 @@
+#include "cli.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "args.h"
+
+#define QUIET_SECONDS 2.0
+#define REDRAW_SECONDS 0.1
+
+double cli_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}
+
+void cli_meter_clear(struct cli_meter *meter)
+{
+    if (meter->bar_shown)
+        fprintf(stderr, "\r\033[K");
+    meter->bar_shown = false;
+}
+
+static void draw_bar(struct cli_meter *meter, const char *stage, double fraction)
+{
+    enum { WIDTH = 40 };
+    char bar[WIDTH + 1];
+    int full = (int)(fraction * WIDTH);
+    memset(bar, '-', WIDTH);
+    memset(bar, '#', (size_t)full);
+    bar[WIDTH] = 0;
+    fprintf(stderr, "\r%-12s [%s] %3.0f%%  %.0f s\033[K", stage, bar, fraction * 100,
+            cli_seconds() - meter->begin_s);
+    fflush(stderr);
+    meter->bar_shown = true;
+}
+
+static void print_quarter(struct cli_meter *meter, const char *stage, double fraction)
+{
+    unsigned quarter = (unsigned)(fraction * 4);
+    if (meter->stage && !strcmp(meter->stage, stage) && quarter <= meter->quarter)
+        return;
+    meter->stage = stage;
+    meter->quarter = quarter;
+    fprintf(stderr, "weald: %s %u%%\n", stage, quarter * 25);
+}
+
+static void show_progress(struct cli_meter *meter, const char *stage, uint64_t done,
+                          uint64_t total)
+{
+    double now_s = cli_seconds();
+    if (meter->quiet || now_s - meter->begin_s < QUIET_SECONDS)
+        return;
+    double fraction = total ? (double)done / (double)total : 0;
+    if (meter->frame_count) {
+        fraction = ((double)meter->frame + fraction) / (double)meter->frame_count;
+        stage = "frames";
+    }
+    fraction = fraction > 1 ? 1 : fraction;
+    if (!meter->terminal) {
+        print_quarter(meter, stage, fraction);
+    } else if (now_s - meter->drawn_s >= REDRAW_SECONDS) {
+        meter->drawn_s = now_s;
+        draw_bar(meter, stage, fraction);
+    }
+}
+
+void cli_session_film_progress(struct cli_session *session, uint64_t frame, uint64_t frame_count)
+{
+    session->meter.frame = frame;
+    session->meter.frame_count = frame_count;
+    if (frame_count)
+        show_progress(&session->meter, "frames", 0, 1);
+}
+
+static bool report_progress(void *user, const char *stage, uint64_t done, uint64_t total)
+{
+    struct cli_session *session = user;
+    show_progress(&session->meter, stage, done, total);
+    return !cli_session_interrupted(session);
+}
+
+static void print_message(void *user, enum wd_log_level level, const char *message)
+{
+    struct cli_session *session = user;
+    if (level == WD_LOG_DEBUG || (level == WD_LOG_INFO && session->options->quiet))
+        return;
+    cli_meter_clear(&session->meter);
+    const char *kind = level == WD_LOG_ERROR     ? "error: "
+                       : level == WD_LOG_WARNING ? "warning: "
+                                                 : "";
+    fprintf(stderr, "weald: %s%s\n", kind, message);
+}
+
+static void *wait_for_signals(void *user)
+{
+    struct cli_interrupt *interrupt = user;
+    for (;;) {
+        int number;
+        if (sigwait(&interrupt->signals, &number))
+            return NULL;
+        if (atomic_exchange(&interrupt->signal, number))
+            _exit(128 + number);
+    }
+}
+
+/* The signals are blocked in every thread but the waiting one and in children: a film's encoder
+ * must live on to finish the frames there are when Ctrl-C reaches the whole foreground group. */
+static bool start_interrupt(struct cli_interrupt *interrupt)
+{
+    sigemptyset(&interrupt->signals);
+    sigaddset(&interrupt->signals, SIGINT);
+    sigaddset(&interrupt->signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &interrupt->signals, NULL);
+    signal(SIGPIPE, SIG_IGN);
+    if (pthread_create(&interrupt->thread, NULL, wait_for_signals, interrupt))
+        return false;
+    pthread_detach(interrupt->thread);
+    return true;
+}
+
+bool cli_session_start(struct cli_session *session, const struct cli_options *options)
+{
+    *session = (struct cli_session){.options = options};
+    session->meter.begin_s = cli_seconds();
+    session->meter.terminal = isatty(STDERR_FILENO);
+    session->meter.quiet = options->quiet;
+    session->log = (struct wd_log){print_message, session};
+    session->progress = (struct wd_progress){report_progress, session};
+    return start_interrupt(&session->interrupt) ||
+           cli_fail(session, "no thread could be started to wait for Ctrl-C");
+}
+
+bool cli_session_interrupted(const struct cli_session *session)
+{
+    return atomic_load(&session->interrupt.signal) != 0;
+}
+
+enum cli_status cli_session_status(const struct cli_session *session, enum wd_result result)
+{
+    if (result == WD_OK)
+        return CLI_OK;
+    if (result == WD_ERROR_INTERRUPTED)
+        return (enum cli_status)(128 + atomic_load(&session->interrupt.signal));
+    return CLI_FAILED;
+}
+
+void cli_say(struct cli_session *session, const char *format, ...)
+{
+    if (session->options->quiet)
+        return;
+    cli_meter_clear(&session->meter);
+    va_list args;
+    va_start(args, format);
+    vprintf(format, args);
+    va_end(args);
+    fflush(stdout);
+}
+
+bool cli_fail(struct cli_session *session, const char *format, ...)
+{
+    char message[1024];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+    print_message(session, WD_LOG_ERROR, message);
+    return false;
+}
+
+enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **forest)
+{
+    const struct cli_options *options = session->options;
+    struct wd_forest_params params = {
+        .scene_path = options->operands[0],
+        .data_dir = options->data,
+        .seed = options->seed,
+        .threads = options->threads,
+        .progress = session->progress,
+        .log = session->log,
+    };
+    return wd_forest_create(forest, &params);
+}
+
+bool cli_method_check(struct cli_session *session)
+{
+    const char *method = session->options->method;
+    char known[256] = "";
+    if (!method)
+        return true;
+    for (const char *const *name = wd_method_names(); *name; name++) {
+        if (!strcmp(*name, method))
+            return true;
+        size_t used = strlen(known);
+        snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", *name);
+    }
+    const char *suggestion = cli_suggest(method, wd_method_names());
+    if (suggestion)
+        return cli_fail(session, "there is no method \"%s\", did you mean \"%s\"?", method,
+                        suggestion);
+    return cli_fail(session, "there is no method \"%s\"; there are: %s", method, known);
+}

@@ -1,0 +1,35 @@
+#include "cli.h"
+
+#include "viewer/viewer.h"
+
+enum cli_status cli_view(struct cli_session *session)
+{
+    const struct cli_options *options = session->options;
+    if (!cli_method_check(session))
+        return CLI_USAGE;
+    struct wd_viewer_params params = {
+        .scene_path = options->operands[0],
+        .camera = options->camera,
+        .path = options->path,
+        .method = options->method,
+        .view = options->view,
+        .width = options->size_px[0],
+        .height = options->size_px[1],
+        .walk = options->walk,
+        .screenshot_dir = options->screenshots,
+        .report_path = options->report,
+        .gpu = options->gpu,
+        .validation = options->gpu_validate ? WD_VALIDATION_ON : WD_VALIDATION_OFF,
+        .threads = options->threads,
+        .log = session->log,
+        .progress = session->progress,
+    };
+    if (!wd_viewer_display_present(&session->log))
+        return CLI_NO_DISPLAY;
+    struct wd_forest *forest = NULL;
+    enum wd_result result = cli_forest_open(session, &forest);
+    if (result == WD_OK)
+        result = wd_viewer_run(forest, &params);
+    wd_forest_destroy(&forest);
+    return cli_session_status(session, result);
+}

@@ -1,0 +1,31 @@
+/* viewer.h: a window to walk and fly through a forest. */
+#ifndef VIEWER_VIEWER_H
+#define VIEWER_VIEWER_H
+
+#include "weald/renderer.h"
+
+struct wd_viewer_params {
+    const char *scene_path;     /* its name is on the window; saved cameras lie beside it */
+    const char *camera;         /* NULL: the first */
+    const char *path;           /* played from the beginning; NULL: none */
+    const char *method;         /* NULL: the scene's */
+    enum wd_view_mode view;
+    uint32_t width, height;     /* of the window; 0: 1280x720 */
+    bool walk;                  /* begin on foot */
+    const char *screenshot_dir; /* NULL: the working directory */
+    const char *report_path;    /* where lines of JSON about the state go; NULL: nowhere */
+    const char *gpu;
+    enum wd_validation validation;
+    unsigned threads;
+    struct wd_log log;
+    struct wd_progress progress; /* asked once a frame, stage "viewer": false closes the window */
+};
+
+/* Whether a window could be opened here; says why not. */
+bool wd_viewer_display_present(const struct wd_log *log);
+
+/* Shows `forest` until the window is closed or Escape is pressed: WD_OK. */
+enum wd_result wd_viewer_run(const struct wd_forest *forest,
+                             const struct wd_viewer_params *params);
+
+#endif
