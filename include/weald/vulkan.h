@@ -41,8 +41,9 @@ void wd_renderer_get_vulkan(const struct wd_renderer *renderer, struct wd_vulkan
 
 /* Where a frame goes. */
 struct wd_vulkan_target {
-    VkImage image;          /* usage COLOR_ATTACHMENT, TRANSFER_DST or both; one mip, one layer */
-    VkFormat format;        /* R8G8B8A8 or B8G8R8A8, UNORM or SRGB */
+    VkImage image;          /* usage TRANSFER_DST; one mip, one layer */
+    VkFormat format;        /* R8G8B8A8_UNORM, R8G8B8A8_SRGB or B8G8R8A8_UNORM; receives
+                               sRGB-encoded bytes in each case */
     uint32_t width, height; /* must equal params->width, height */
     VkImageLayout layout_after; /* e.g. PRESENT_SRC_KHR; old contents are discarded */
     VkSemaphore wait;       /* signalled when the image may be written, or VK_NULL_HANDLE */

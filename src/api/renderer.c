@@ -84,12 +84,6 @@ void wd_renderer_destroy(struct wd_renderer **renderer)
     *renderer = NULL;
 }
 
-enum wd_result wd_renderer_failure(const struct wd_renderer *renderer)
-{
-    (void)renderer;
-    return WD_ERROR_DEVICE;
-}
-
 /* --- the forest -------------------------------------------------------------------------- */
 
 static bool stopped_report(void *user, const char *stage, uint64_t done, uint64_t total)
@@ -182,11 +176,11 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
         .velocity = params->layers & WD_LAYER_VELOCITY ? WD_VELOCITY_ON : WD_VELOCITY_OFF,
     };
     renderer->frame.ring.timing = params->timing == WD_TIME_PASSES ? WD_TIMING_ON : WD_TIMING_OFF;
-    return wd_frame_prepare(&renderer->frame, &frame) ? WD_OK : wd_renderer_failure(renderer);
+    return wd_frame_prepare(&renderer->frame, &frame) ? WD_OK : WD_ERROR_DEVICE;
 }
 
 /* Takes the finished sample's times as those per sample. */
-static void keep_times(struct wd_renderer *renderer)
+void wd_renderer_keep_times(struct wd_renderer *renderer)
 {
     const struct wd_frames *ring = &renderer->frame.ring;
     renderer->pass_count = 0;
@@ -207,17 +201,17 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
         if (samples > 1 && !wd_progress_report(&renderer->progress, "samples", i, samples))
             return WD_ERROR_INTERRUPTED;
         if (!wd_frame_begin(&frame->ring, &cmd))
-            return wd_renderer_failure(renderer);
+            return WD_ERROR_DEVICE;
         wd_frame_record(frame, &cmd, i);
         if (!wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE))
-            return wd_renderer_failure(renderer);
-        if (i == 0 && (!wd_frames_wait(&frame->ring)))
-            return wd_renderer_failure(renderer);
+            return WD_ERROR_DEVICE;
+        if (i == 0 && !wd_frames_wait(&frame->ring))
+            return WD_ERROR_DEVICE;
         if (i == 0)
-            keep_times(renderer);
+            wd_renderer_keep_times(renderer);
     }
     if (!wd_frames_wait(&frame->ring))
-        return wd_renderer_failure(renderer);
+        return WD_ERROR_DEVICE;
     renderer->frame_ms = (wd_clock_s() - start) * 1e3 / samples;
     return WD_OK;
 }
@@ -232,7 +226,7 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
     uint32_t layers = params->layers ? params->layers : WD_LAYER_DISPLAY;
     result = render_samples(renderer);
     if (result == WD_OK && !wd_picture_read(picture, renderer, layers))
-        result = wd_renderer_failure(renderer);
+        result = WD_ERROR_DEVICE;
     if (result != WD_OK)
         wd_picture_finish(picture);
     return result;

@@ -28,7 +28,7 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
                                    const struct wd_render_params *params, uint32_t max_samples);
 /* Fetches the layers of the frame just finished. */
 bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers);
-/* What a failed device call comes to. */
-enum wd_result wd_renderer_failure(const struct wd_renderer *renderer);
+/* Takes over the pass times of the newest finished frame. */
+void wd_renderer_keep_times(struct wd_renderer *renderer);
 
 #endif

@@ -46,6 +46,15 @@ bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *para
  * which the others share. The last one is followed by the display. */
 void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index);
 
+/* A foreign image that takes the display. */
+struct wd_frame_target {
+    VkImage image; /* as large as the frame; its contents are discarded */
+    VkFormat format;
+    VkImageLayout layout_after;
+};
+/* Records the copy of the display (sRGB-encoded bytes) into the image; the last thing in a frame. */
+void wd_frame_copy(struct wd_frame *frame, struct wd_cmd *cmd, const struct wd_frame_target *target);
+
 /* Forgets what the passes keep of a forest; call before it is destroyed. */
 void wd_frame_drop_forest(struct wd_frame *frame);
 

@@ -1,0 +1,67 @@
+#include "weald/vulkan.h"
+
+#include "api/renderer.h"
+#include "base/clock.h"
+
+void wd_vulkan_required_features(VkPhysicalDeviceFeatures2 *features,
+                                 VkPhysicalDeviceVulkan12Features *features12,
+                                 VkPhysicalDeviceVulkan13Features *features13)
+{
+    wd_gpu_required_features(features, features12, features13);
+}
+
+void wd_renderer_get_vulkan(const struct wd_renderer *renderer, struct wd_vulkan_handles *handles)
+{
+    const struct wd_gpu *gpu = &renderer->gpu;
+    *handles = (struct wd_vulkan_handles){gpu->instance, gpu->physical_device, gpu->device,
+                                          gpu->queue, gpu->queue_family};
+}
+
+static bool check_target(const struct wd_renderer *renderer, const struct wd_render_params *params,
+                         const struct wd_vulkan_target *target)
+{
+    if (!target->image)
+        return wd_error(&renderer->log, "the target has no image");
+    if (target->width != params->width || target->height != params->height)
+        return wd_error(&renderer->log, "the target is %u x %u pixels, the picture %u x %u",
+                        target->width, target->height, params->width, params->height);
+    switch (target->format) {
+    case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_R8G8B8A8_SRGB:
+    case VK_FORMAT_B8G8R8A8_UNORM:
+        return true;
+    default:
+        return wd_error(&renderer->log,
+                        "the target's format is %d: R8G8B8A8_UNORM, R8G8B8A8_SRGB "
+                        "and B8G8R8A8_UNORM are possible",
+                        (int)target->format);
+    }
+}
+
+enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_render_params *params,
+                                const struct wd_vulkan_target *target)
+{
+    enum { LIVE_SAMPLES = 1 };
+    if (!check_target(renderer, params, target))
+        return WD_ERROR_INPUT;
+    enum wd_result result = wd_renderer_prepare(renderer, params, LIVE_SAMPLES);
+    if (result != WD_OK)
+        return result;
+    struct wd_cmd cmd;
+    double start = wd_clock_s();
+    if (!wd_frame_begin(&renderer->frame.ring, &cmd))
+        return WD_ERROR_DEVICE;
+    wd_frame_record(&renderer->frame, &cmd, 0);
+    const struct wd_frame_target copy = {target->image, target->format, target->layout_after};
+    wd_frame_copy(&renderer->frame, &cmd, &copy);
+    if (!wd_frame_submit(&cmd, target->wait, target->signal))
+        return WD_ERROR_DEVICE;
+    renderer->frame_ms = (wd_clock_s() - start) * 1e3;
+    wd_renderer_keep_times(renderer);
+    return WD_OK;
+}
+
+enum wd_result wd_renderer_wait(struct wd_renderer *renderer)
+{
+    return wd_frames_wait(&renderer->frame.ring) ? WD_OK : WD_ERROR_DEVICE;
+}

@@ -1,0 +1,156 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/color.h"
+#include "base/dmath.h"
+#include "base/file.h"
+#include "base/jobs.h"
+#include "base/log.h"
+#include "base/memory.h"
+
+static void elementary_functions_are_accurate(void **state)
+{
+    (void)state;
+    for (int i = -200000; i < 200000; i++) {
+        double x = i * 1.37e-3;
+        assert_true(fabs(wd_dsin(x) - sin(x)) < 1e-14 && fabs(wd_dcos(x) - cos(x)) < 1e-14);
+        assert_true(fabs(wd_dexp(x) / exp(x) - 1.0) < 1e-13);
+        double y = exp(x / 3.0);
+        assert_true(fabs(wd_dlog(y) - log(y)) < 1e-13);
+        double a = sin(x) * 3.0, b = cos(x * 0.7);
+        assert_true(fabs(wd_datan2(a, b) - atan2(a, b)) < 1e-13);
+        assert_true(fabs(wd_dpow(y, 1.7) / pow(y, 1.7) - 1.0) < 1e-12);
+    }
+    assert_true(wd_dpow(0.0, 2.0) == 0.0 && wd_dpow(3.0, 0.0) == 1.0);
+    assert_true(wd_datan2(0.0, 0.0) == 0.0);
+}
+
+static void srgb_round_trips(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 256; i++)
+        assert_int_equal(wd_srgb_encode(wd_srgb_decode((uint8_t)i)), i);
+    assert_int_equal(wd_srgb_encode(-1.0f), 0);
+    assert_int_equal(wd_srgb_encode(7.0f), 255);
+}
+
+static void count_call(void *user, size_t index)
+{
+    int *calls = user;
+    __atomic_fetch_add(&calls[index], 1, __ATOMIC_RELAXED);
+}
+
+static void every_index_is_worked_once(void **state)
+{
+    (void)state;
+    static const unsigned threads[] = {0, 1, 2, 7, 16, 1000};
+    for (size_t t = 0; t < sizeof threads / sizeof *threads; t++) {
+        int calls[1000] = {0};
+        wd_jobs_run(threads[t], 1000, count_call, calls);
+        for (int i = 0; i < 1000; i++)
+            assert_int_equal(calls[i], 1);
+    }
+    wd_jobs_run(4, 0, count_call, NULL);
+}
+
+struct heard {
+    int errors;
+    char last[512];
+};
+
+static void hear(void *user, enum wd_log_level level, const char *message)
+{
+    struct heard *heard = user;
+    heard->errors += level == WD_LOG_ERROR;
+    snprintf(heard->last, sizeof heard->last, "%s", message);
+}
+
+static void an_output_appears_whole_or_not_at_all(void **state)
+{
+    (void)state;
+    char directory[] = "/tmp/weald-test-XXXXXX";
+    assert_non_null(mkdtemp(directory));
+    char *path = wd_format("%s/out.txt", directory);
+    struct wd_output_file file;
+    assert_true(wd_output_open(&file, path, NULL));
+    fputs("half", file.stream);
+    wd_output_discard(&file);
+    assert_false(wd_file_exists(path));
+    assert_true(wd_output_open(&file, path, NULL));
+    fputs("whole", file.stream);
+    assert_false(wd_file_exists(path));
+    assert_true(wd_output_commit(&file, NULL));
+    char *data;
+    size_t size;
+    assert_true(wd_file_read(path, 100, NULL, &data, &size));
+    assert_string_equal(data, "whole");
+    free(data);
+    struct heard heard = {0};
+    const struct wd_log log = {hear, &heard};
+    assert_false(wd_file_read(path, 3, &log, &data, &size));
+    assert_false(wd_output_open(&file, directory, &log));
+    assert_int_equal(heard.errors, 2);
+    assert_non_null(strstr(heard.last, directory));
+    unlink(path);
+    assert_int_equal(rmdir(directory), 0); /* no temporary file is left */
+    free(path);
+}
+
+static void a_full_disk_leaves_nothing(void **state)
+{
+    (void)state;
+    struct heard heard = {0};
+    const struct wd_log log = {hear, &heard};
+    struct wd_output_file file;
+    if (access("/dev/full", W_OK) != 0)
+        skip();
+    char directory[] = "/tmp/weald-test-XXXXXX";
+    assert_non_null(mkdtemp(directory));
+    char *path = wd_format("%s/out.txt", directory);
+    assert_true(wd_output_open(&file, path, &log));
+    assert_non_null(freopen("/dev/full", "wb", file.stream));
+    fputs("this does not fit", file.stream);
+    assert_false(wd_output_commit(&file, &log));
+    assert_int_equal(heard.errors, 1);
+    assert_non_null(strstr(heard.last, "No space left"));
+    assert_int_equal(rmdir(directory), 0);
+    free(path);
+}
+
+static void names_are_seen_from_their_file(void **state)
+{
+    (void)state;
+    static const char *const cases[][3] = {
+        {"scenes/a.json", "b.csv", "scenes/b.csv"},
+        {"a.json", "b.csv", "b.csv"},
+        {"/x/a.json", "../b.csv", "/x/../b.csv"},
+        {"scenes/a.json", "/b.csv", "/b.csv"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char *path = wd_path_beside(cases[i][0], cases[i][1]);
+        assert_string_equal(path, cases[i][2]);
+        free(path);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(elementary_functions_are_accurate),
+        cmocka_unit_test(srgb_round_trips),
+        cmocka_unit_test(every_index_is_worked_once),
+        cmocka_unit_test(an_output_appears_whole_or_not_at_all),
+        cmocka_unit_test(a_full_disk_leaves_nothing),
+        cmocka_unit_test(names_are_seen_from_their_file),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,92 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "methods/selection.h"
+
+static const struct wd_level_rule RULE = {60.0f, 200.0f, 0.25f, WD_LEVEL_MESH};
+
+/* G7: at every distance some level is whole, so that the background never leaks through. */
+static void one_level_is_always_whole(void **state)
+{
+    (void)state;
+    for (float distance = 0.0f; distance < 600.0f; distance += 0.37f) {
+        for (float height = 1.0f; height < 60.0f; height += 7.0f) {
+            struct wd_levels levels = wd_levels_at(&RULE, height, distance);
+            float most = 0.0f;
+            for (int i = 0; i < 3; i++) {
+                assert_true(levels.show[i] >= 0.0f && levels.show[i] <= 1.0f);
+                most = fmaxf(most, levels.show[i]);
+            }
+            assert_true(most == 1.0f);
+        }
+    }
+}
+
+static void levels_follow_each_other(void **state)
+{
+    (void)state;
+    struct wd_levels near = wd_levels_at(&RULE, 20.0f, 10.0f);
+    assert_true(near.show[WD_LEVEL_MESH] == 1.0f && near.show[WD_LEVEL_REDUCED] == 0.0f &&
+                near.show[WD_LEVEL_CARD] == 0.0f);
+    struct wd_levels middle = wd_levels_at(&RULE, 20.0f, 120.0f);
+    assert_true(middle.show[WD_LEVEL_MESH] == 0.0f && middle.show[WD_LEVEL_REDUCED] == 1.0f &&
+                middle.show[WD_LEVEL_CARD] == 0.0f);
+    struct wd_levels far = wd_levels_at(&RULE, 20.0f, 260.0f);
+    assert_true(far.show[WD_LEVEL_MESH] == 0.0f && far.show[WD_LEVEL_REDUCED] == 0.0f &&
+                far.show[WD_LEVEL_CARD] == 1.0f);
+    /* a tree half as high changes at half the distance */
+    assert_true(wd_levels_at(&RULE, 10.0f, 130.0f).show[WD_LEVEL_CARD] == 1.0f);
+}
+
+static void beyond_the_card_distance_there_are_cards_only(void **state)
+{
+    (void)state;
+    for (float height = 2.0f; height <= 40.0f; height += 2.0f) {
+        float distance = wd_level_card_distance(&RULE, 40.0f);
+        struct wd_levels levels = wd_levels_at(&RULE, height, distance + 0.01f);
+        assert_true(levels.show[WD_LEVEL_MESH] == 0.0f && levels.show[WD_LEVEL_REDUCED] == 0.0f);
+    }
+}
+
+static void far_cascades_take_coarser_levels(void **state)
+{
+    (void)state;
+    struct wd_level_rule cards = RULE;
+    cards.finest = WD_LEVEL_CARD;
+    assert_true(wd_levels_at(&cards, 20.0f, 1.0f).show[WD_LEVEL_CARD] == 1.0f);
+    assert_true(wd_levels_at(&cards, 20.0f, 1.0f).show[WD_LEVEL_MESH] == 0.0f);
+    struct wd_level_rule reduced = {0.0f, 60.0f, 0.25f, WD_LEVEL_REDUCED};
+    assert_true(wd_levels_at(&reduced, 20.0f, 1.0f).show[WD_LEVEL_REDUCED] == 1.0f);
+}
+
+static void ranges_that_touch_become_one(void **state)
+{
+    (void)state;
+    struct wd_selection selection = {0};
+    wd_selection_add_range(&selection, 0, 10);
+    wd_selection_add_range(&selection, 10, 25);
+    wd_selection_add_range(&selection, 25, 25);
+    wd_selection_add_range(&selection, 30, 31);
+    assert_int_equal(selection.range_count, 2);
+    assert_int_equal(selection.ranges[0].end, 25);
+    assert_int_equal(selection.ranges[1].begin, 30);
+    wd_selection_finish(&selection);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_level_is_always_whole),
+        cmocka_unit_test(levels_follow_each_other),
+        cmocka_unit_test(beyond_the_card_distance_there_are_cards_only),
+        cmocka_unit_test(far_cascades_take_coarser_levels),
+        cmocka_unit_test(ranges_that_touch_become_one),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
