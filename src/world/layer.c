@@ -97,8 +97,8 @@ static bool set_cells(struct wd_place_layer *to, const struct wd_scene_layer *fr
         return wd_error(log, "layer %s: spacing_m: %g, 0.01 .. 100000 is allowed", from->name,
                         from->spacing_m);
     to->cell_mm = (uint32_t)(from->spacing_m * 1000.0 + 0.5);
-    to->columns = (uint32_t)ground->extent_mm[0] / to->cell_mm + 1;
-    to->rows = (uint32_t)ground->extent_mm[1] / to->cell_mm + 1;
+    to->columns = ((uint32_t)ground->extent_mm[0] + to->cell_mm - 1) / to->cell_mm;
+    to->rows = ((uint32_t)ground->extent_mm[1] + to->cell_mm - 1) / to->cell_mm;
     to->jitter = (uint32_t)(fmin(fmax(from->jitter, 0.0), 1.0) * 2147483648.0);
     return true;
 }
