@@ -50,9 +50,9 @@ struct wd_frame_uniforms {
     float sky_turbidity;
     WD_VEC3(sky_irradiance);         /* of the whole sky on level ground, for ambient light */
     float sky_strength;
-    WD_VEC3(sky_zenith);             /* radiance: parameters of shaders/lib/sky.glsl */
+    WD_VEC3(sky_glow);               /* radiance of the haze at the horizon over its phase function */
     float near_m;
-    WD_VEC3(sky_horizon);
+    WD_VEC3(sky_horizon);            /* radiance there without the glow */
     float fog_per_m;                 /* extinction at full density */
     float fog_height_m;
     float fog_base_m;                /* above the world's zero */
