@@ -25,6 +25,9 @@ struct wd_branch_order {
     float spacing_m;          /* along the parent, at the species' typical height */
     float wander;             /* random bending per metre, radians */
     float upturn;             /* bending toward the light (+) or by weight (-), radians per metre */
+    float tip_upturn;         /* the same at the tip; spruce branches sag, and their tips rise */
+    float start;              /* bare share of the parent below its first branch (not order 0) */
+    float flatness;           /* 0 all around the parent .. 1 in one flat spray */
 };
 
 struct wd_species {
@@ -37,6 +40,8 @@ struct wd_species {
     float crown_base_forest, crown_base_open; /* share of height that is clear stem */
     float crown_shape[4];     /* crown radius, as a share of the widest, at 0, 1/3, 2/3 and 1 of
                                  the crown's length from its base */
+    float crown_lobes;        /* depth of the crown's bulges, share of its radius */
+    float crown_open;         /* crown diameter in the open over that in a forest, same stem */
     float trunk_wander;       /* radians per metre */
     float apical_dominance;   /* 1: one leader to the top; 0: the trunk dissolves into limbs */
     float root_flare;         /* stem radius at the ground over that at 1.3 m */
@@ -49,6 +54,7 @@ struct wd_species {
         float length_cm, width_cm;
         float droop;          /* 0 flat to the light .. 1 hanging */
         int64_t count;        /* drawn leaves, or needle shoots, of a tree of typical height */
+        float area_index;     /* leaf area, one side, over the crown's projection */
         float color[3], back_color[3]; /* linear albedo */
         float transmittance[3];        /* linear */
         float color_spread;   /* of brightness and hue between trees, 0..1 */
@@ -56,6 +62,9 @@ struct wd_species {
     struct {
         int pattern;          /* enum wd_bark_pattern */
         float color[3], crack_color[3]; /* linear albedo */
+        float upper_color[3]; /* of the stem's upper part: pine is orange there */
+        float twig_color[3];
+        float upper_from;     /* share of the height where the upper colour begins to show */
         float scale_cm;       /* size of one plate or fissure */
     } bark;
     struct wd_allometry allometry;

@@ -1,0 +1,246 @@
+#include "tree/foliage.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "tree/look.h"
+
+/* A piece of a twig that bears leaves. */
+struct carrier {
+    size_t branch;
+    float from, length_m, weight; /* from: share of the branch where leaves begin */
+};
+
+struct carriers {
+    struct carrier *items;
+    size_t count, capacity;
+    float weight;
+};
+
+void wd_foliage_finish(struct wd_foliage *foliage)
+{
+    free(foliage->leaves);
+    wd_tree_density_finish(&foliage->crown);
+    *foliage = (struct wd_foliage){0};
+}
+
+/* Leaves stand on the last order all along and on the outer ends of the one before. */
+static float leafy_from(const struct wd_tree_form *form, const struct wd_branch *branch)
+{
+    int last = (int)form->species->order_count - 1;
+    bool tuft = form->species->leaf.phyllotaxis == WD_PHYLLOTAXIS_WHORLED;
+    if (branch->order == last)
+        return tuft ? 0.45f : 0.12f;
+    if (branch->order == last - 1 && branch->order >= 0)
+        return form->species->form == WD_FORM_CONIFER && last < 2 ? 0.35f : 0.75f;
+    return branch->order == WD_TRUNK ? 0.975f : 0.9f;
+}
+
+static void gather_carriers(struct carriers *carriers, const struct wd_skeleton *skeleton,
+                            const struct wd_tree_form *form)
+{
+    for (size_t b = 0; b < skeleton->branch_count; b++) {
+        float from = leafy_from(form, &skeleton->branches[b]);
+        struct carrier *carrier = wd_push(carriers->items, carriers->count, carriers->capacity);
+        *carrier = (struct carrier){b, from, (1 - from) * skeleton->branches[b].length_m, 0};
+    }
+}
+
+static void fill_crown(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
+                       const struct carriers *carriers, float area_per_weight, bool weighted)
+{
+    for (size_t i = 0; i < carriers->count; i++) {
+        const struct carrier *carrier = &carriers->items[i];
+        float amount = area_per_weight * (weighted ? carrier->weight : carrier->length_m);
+        for (int part = 0; part < 3; part++) {
+            struct wd_vec3 d;
+            size_t node;
+            float share = wd_mixf(carrier->from, 1, ((float)part + 0.5f) / 3);
+            struct wd_vec3 p = wd_branch_point(skeleton, &skeleton->branches[carrier->branch],
+                                               share, &d, &node);
+            wd_tree_density_add(&foliage->crown, p, amount / 3);
+        }
+    }
+}
+
+/* A twig bears leaves by its length and by the light that reaches it. */
+static void weigh_carriers(struct carriers *carriers, struct wd_foliage *foliage,
+                           const struct wd_skeleton *skeleton, float area_m2)
+{
+    float length = 0;
+    for (size_t i = 0; i < carriers->count; i++)
+        length += carriers->items[i].length_m;
+    fill_crown(foliage, skeleton, carriers, area_m2 / length, false);
+    wd_tree_density_light(&foliage->crown);
+    for (size_t i = 0; i < carriers->count; i++) {
+        struct carrier *carrier = &carriers->items[i];
+        struct wd_vec3 d;
+        size_t node;
+        struct wd_vec3 p = wd_branch_point(skeleton, &skeleton->branches[carrier->branch], 0.7f,
+                                           &d, &node);
+        carrier->weight = carrier->length_m * (0.4f + wd_tree_density_sky(&foliage->crown, p));
+        carriers->weight += carrier->weight;
+    }
+    for (size_t i = 0; i < (size_t)foliage->crown.size[0] * (size_t)foliage->crown.size[1] *
+                               (size_t)foliage->crown.size[2]; i++)
+        foliage->crown.area[i] = 0;
+    fill_crown(foliage, skeleton, carriers, area_m2 / carriers->weight, true);
+    wd_tree_density_light(&foliage->crown);
+    wd_tree_density_blur(&foliage->crown);
+    wd_tree_density_blur(&foliage->crown);
+}
+
+/* Where around the twig the n-th leaf stands: in two rows on flat sprays, else in a spiral. */
+static struct wd_vec3 leaf_side(const struct wd_tree_form *form, struct wd_vec3 twig, int n,
+                                struct wd_random *random)
+{
+    const struct wd_species *species = form->species;
+    struct wd_vec3 side = wd_v3_side(twig), over = wd_v3_cross(side, twig);
+    bool rows = species->orders[species->order_count - 1].flatness > 0.6f;
+    float angle = (float)n * 2.3999632f;
+    if (species->leaf.phyllotaxis == WD_PHYLLOTAXIS_OPPOSITE)
+        angle = (float)WD_PI * ((float)(n & 1) + 0.5f * (float)(n >> 1 & 1));
+    else if (rows)
+        angle = (float)WD_PI * (float)(n & 1) + 0.35f * wd_random_signed(random);
+    return wd_v3_turn(side, over, angle);
+}
+
+static void turn_broadleaf(struct wd_leaf *leaf, const struct wd_tree_form *form,
+                           struct wd_vec3 twig, struct wd_vec3 side, struct wd_random *random)
+{
+    float droop = form->species->leaf.droop;
+    struct wd_vec3 axis = wd_v3_mad(wd_v3_scale(twig, 0.6f), side, 0.8f);
+    axis = wd_v3_add(axis, WD_V3(0, 0, -1.2f * droop * wd_random_range(random, 0.5f, 1.2f)));
+    leaf->axis = wd_v3_unit(wd_v3_mad(axis, wd_random_vec3(random), 0.25f));
+    struct wd_vec3 light = wd_v3_mad(WD_V3(0, 0, 0.75f), leaf->shading, 0.7f);
+    light = wd_v3_mad(light, wd_random_vec3(random), 0.45f);
+    leaf->normal = wd_v3_square(light, leaf->axis);
+}
+
+static void turn_shoot(struct wd_leaf *leaf, const struct wd_tree_form *form, struct wd_vec3 twig,
+                       struct wd_vec3 side, struct wd_random *random)
+{
+    float droop = form->species->leaf.droop;
+    bool tuft = form->species->leaf.phyllotaxis == WD_PHYLLOTAXIS_WHORLED;
+    struct wd_vec3 axis = wd_v3_mad(twig, side, (tuft ? 0.7f : 0.55f) *
+                                                    wd_random_range(random, 0.5f, 1.2f));
+    axis = wd_v3_add(axis, WD_V3(0, 0, (tuft ? 0.5f : -1.3f * droop) *
+                                           wd_random_range(random, 0.5f, 1)));
+    leaf->axis = wd_v3_unit(wd_v3_mad(axis, wd_random_vec3(random), 0.15f));
+    struct wd_vec3 light = wd_v3_mad(WD_V3(0, 0, 1), leaf->shading, 0.5f);
+    leaf->normal = wd_v3_square(wd_v3_mad(light, wd_random_vec3(random), 0.3f), leaf->axis);
+}
+
+/* Leaves differ a little one by one, more from branch to branch; those in the light are paler. */
+static void tint_leaf(struct wd_leaf *leaf, uint32_t clump_key, struct wd_random *random)
+{
+    float clump = wd_hash_unit(wd_hash2(clump_key, 0xc1)) - 0.5f;
+    float warm = 0.10f * (wd_hash_unit(wd_hash2(clump_key, 0xc2)) - 0.5f) +
+                 0.10f * wd_random_signed(random);
+    float bright = WD_LEAF_TINT_MEAN * (1 + 0.16f * clump + 0.12f * wd_random_signed(random)) +
+                   0.12f * (leaf->sky - 0.4f);
+    leaf->tint[0] = wd_clampf(bright * (1 + warm), 0, 1);
+    leaf->tint[1] = wd_clampf(bright, 0, 1);
+    leaf->tint[2] = wd_clampf(bright * (1 - warm), 0, 1);
+}
+
+static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
+                       const struct wd_skeleton *skeleton, const struct wd_tree_form *form,
+                       const struct carrier *carrier, int n, int of)
+{
+    const struct wd_branch *branch = &skeleton->branches[carrier->branch];
+    leaf->key = wd_hash3(branch->key, 0x1eaf, (uint32_t)n);
+    struct wd_random random = wd_random_of(leaf->key, 1);
+    float place = ((float)n + wd_random_unit(&random)) / (float)of;
+    struct wd_vec3 twig;
+    size_t node;
+    struct wd_vec3 p = wd_branch_point(skeleton, branch, wd_mixf(carrier->from, 1, place), &twig,
+                                       &node);
+    struct wd_vec3 side = leaf_side(form, twig, n, &random);
+    bool needles = form->species->leaf.shape == WD_LEAF_NEEDLES;
+    leaf->sky = wd_tree_density_sky(&foliage->crown, p);
+    struct wd_vec3 outward = wd_tree_density_outward(&foliage->crown, p);
+    leaf->shading = wd_v3_unit(wd_v3_mad(wd_tree_crown_direction(form, p), outward, 1.2f));
+    if (needles)
+        turn_shoot(leaf, form, twig, side, &random);
+    else
+        turn_broadleaf(leaf, form, twig, side, &random);
+    leaf->size_m = wd_mixf(1.2f, 0.85f, wd_clampf(1.5f * leaf->sky, 0, 1)) *
+                   wd_random_range(&random, 0.8f, 1.15f);
+    leaf->position_m = p;
+    leaf->flexibility = skeleton->nodes[node].flexibility;
+    int parent = branch->parent >= 0 ? branch->parent : 0;
+    tint_leaf(leaf, skeleton->branches[parent].key, &random);
+}
+
+static void shuffle(struct wd_leaf *leaves, size_t count, uint32_t key)
+{
+    struct wd_random random = wd_random_of(key, 0x5f);
+    for (size_t i = count; i > 1; i--) {
+        size_t other = (size_t)(((uint64_t)wd_random_bits(&random) * i) >> 32);
+        struct wd_leaf kept = leaves[i - 1];
+        leaves[i - 1] = leaves[other];
+        leaves[other] = kept;
+    }
+}
+
+/* Leaf area of the whole tree from the leaf area index over the crown's projection. */
+static float leaf_area_m2(const struct wd_tree_form *form)
+{
+    float projection = (float)WD_PI * form->crown_radius_m * form->crown_radius_m;
+    return 0.9f * projection * form->species->leaf.area_index;
+}
+
+/* Small trees draw fewer leaves, and never smaller ones than real. */
+static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
+{
+    const struct wd_species *species = form->species;
+    double scale = wd_dpow((double)form->scale, 1.5);
+    double count = (double)species->leaf.count * (double)form->detail * (scale < 1.3 ? scale : 1.3);
+    float real_m = 0.01f * species->leaf.length_cm;
+    if (species->leaf.shape == WD_LEAF_NEEDLES)
+        real_m = 0.10f; /* a shoot of one year */
+    double most = (double)(area_m2 / (wd_leaf_unit_area(species) * real_m * real_m));
+    if (count > most)
+        count = most;
+    return count < 40 ? 40 : (size_t)count;
+}
+
+static void scale_leaves(struct wd_foliage *foliage, const struct wd_species *species,
+                         float area_m2)
+{
+    float unit = wd_leaf_unit_area(species), sum = 0;
+    for (size_t i = 0; i < foliage->count; i++)
+        sum += unit * foliage->leaves[i].size_m * foliage->leaves[i].size_m;
+    float grow = sum > 0 ? sqrtf(area_m2 / sum) : 0;
+    for (size_t i = 0; i < foliage->count; i++)
+        foliage->leaves[i].size_m *= grow;
+    foliage->area_m2 = area_m2;
+}
+
+void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
+                     const struct wd_tree_form *form)
+{
+    *foliage = (struct wd_foliage){0};
+    struct carriers carriers = {0};
+    float area = leaf_area_m2(form), reach = 1.35f * form->crown_radius_m;
+    size_t wanted = leaf_count(form, area);
+    float cell = fmaxf(0.09f * form->crown_radius_m, 0.03f);
+    wd_tree_density_init(&foliage->crown, WD_V3(-reach, -reach, 0.6f * form->crown_base_m),
+                         WD_V3(reach, reach, 1.1f * form->height_m), cell);
+    gather_carriers(&carriers, skeleton, form);
+    weigh_carriers(&carriers, foliage, skeleton, area);
+    foliage->leaves = wd_alloc_array(wanted + 1, sizeof *foliage->leaves);
+    double given = 0, weight = 0;
+    for (size_t i = 0; i < carriers.count; i++) {
+        weight += (double)carriers.items[i].weight;
+        int of = (int)((double)wanted * weight / (double)carriers.weight - given);
+        given += of;
+        for (int n = 0; n < of && foliage->count < wanted; n++)
+            place_leaf(&foliage->leaves[foliage->count++], foliage, skeleton, form,
+                       &carriers.items[i], n, of);
+    }
+    free(carriers.items);
+    scale_leaves(foliage, form->species, area);
+    shuffle(foliage->leaves, foliage->count, form->key);
+}

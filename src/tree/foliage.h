@@ -1,0 +1,43 @@
+/* foliage.h: where leaves and needle shoots sit, how they are turned, and their meshes. */
+#ifndef WD_TREE_FOLIAGE_H
+#define WD_TREE_FOLIAGE_H
+
+#include "tree/mesh.h"
+#include "tree/skeleton.h"
+
+struct wd_leaf {
+    struct wd_vec3 position_m; /* of its base */
+    struct wd_vec3 axis;       /* unit, base to tip */
+    struct wd_vec3 normal;     /* unit, square to the axis: the upper side */
+    struct wd_vec3 shading;    /* unit: how the crown faces the light here */
+    float size_m;              /* length of the leaf or shoot */
+    float flexibility;
+    float tint[3];
+    float sky;
+    uint32_t key;
+};
+
+/* Leaves in random order: any prefix is a fair sample. */
+struct wd_foliage {
+    struct wd_leaf *leaves;
+    size_t count;
+    struct wd_tree_density crown; /* leaf area, with its light swept */
+    float area_m2;
+};
+
+void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
+                     const struct wd_tree_form *form);
+void wd_foliage_finish(struct wd_foliage *foliage);
+
+/* Area of one leaf or shoot of unit length as drawn, one side. */
+float wd_leaf_unit_area(const struct wd_species *species);
+
+/* Appends every leaf as drawn near. */
+void wd_foliage_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
+                     const struct wd_species *species);
+
+/* Appends the first leaves as `count` plain kites that together have the area of all. */
+void wd_foliage_mesh_reduced(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
+                             const struct wd_species *species, size_t count);
+
+#endif

@@ -1,0 +1,89 @@
+#include "tree/form.h"
+
+struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
+                                    const struct wd_grow_params *params)
+{
+    float height = params->height_m > 0 ? params->height_m : species->typical_height_m;
+    float open = params->openness;
+    double dbh_cm = wd_species_dbh_cm(species, height) * (1 + 0.2 * (double)open);
+    struct wd_random random = wd_random_of(params->seed, 0x7ee5);
+    float crown = (float)wd_species_crown_m(species, dbh_cm);
+    crown *= wd_mixf(1, species->crown_open, open) * wd_random_range(&random, 0.92f, 1.08f);
+    float clear = wd_mixf(species->crown_base_forest, species->crown_base_open, open);
+    return (struct wd_tree_form){
+        .species = species,
+        .key = wd_hash2(params->seed, 0x600d),
+        .height_m = height,
+        .scale = height / species->typical_height_m,
+        .openness = open,
+        .detail = params->detail > 0 ? params->detail : 1,
+        .dbh_m = (float)dbh_cm * 0.01f,
+        .crown_base_m = height * clear * wd_random_range(&random, 0.94f, 1.04f),
+        .crown_radius_m = 0.5f * crown,
+        .lobe_m = wd_clampf(0.3f * crown, 0.5f, 3.0f),
+    };
+}
+
+/* The four given radii joined by straight lines for a conifer; for a broadleaf their squares are,
+ * which rounds the top like a dome. */
+static float profile(const struct wd_species *species, float t)
+{
+    float place = wd_clampf(t, 0, 1) * 3;
+    int i = place >= 2 ? 2 : (int)place;
+    float a = species->crown_shape[i], b = species->crown_shape[i + 1], f = place - (float)i;
+    if (species->form == WD_FORM_CONIFER)
+        return wd_mixf(a, b, f);
+    return sqrtf(wd_mixf(a * a, b * b, f));
+}
+
+static float crown_share(const struct wd_tree_form *form, float z)
+{
+    return (z - form->crown_base_m) / (form->height_m - form->crown_base_m);
+}
+
+float wd_tree_envelope_m(const struct wd_tree_form *form, struct wd_vec3 p)
+{
+    float t = crown_share(form, p.z);
+    if (t < 0 || t > 1)
+        return 0;
+    struct wd_vec3 out = wd_v3_unit_or(WD_V3(p.x, p.y, 0), WD_V3(1, 0, 0));
+    struct wd_vec3 at = wd_v3_mad(WD_V3(0, 0, p.z), out, form->crown_radius_m);
+    float bulge = wd_noise3(form->key, wd_v3_scale(at, 1 / form->lobe_m)) - 0.5f;
+    return form->crown_radius_m * profile(form->species, t) *
+           (1 + 2 * form->species->crown_lobes * bulge);
+}
+
+float wd_tree_envelope_share(const struct wd_tree_form *form, struct wd_vec3 p)
+{
+    float t = crown_share(form, p.z), beyond = 0;
+    if (t > 1)
+        beyond = (t - 1) * 8;
+    if (t < 0)
+        beyond = -t * 3;
+    struct wd_vec3 at = WD_V3(p.x, p.y, form->crown_base_m +
+                                            wd_clampf(t, 0, 1) *
+                                                (form->height_m - form->crown_base_m));
+    float radius = wd_tree_envelope_m(form, at);
+    float least = 0.04f * form->crown_radius_m;
+    return sqrtf(p.x * p.x + p.y * p.y) / (radius > least ? radius : least) + beyond;
+}
+
+float wd_tree_envelope_reach_m(const struct wd_tree_form *form, struct wd_vec3 p,
+                               struct wd_vec3 d, float limit_m)
+{
+    enum { STEPS = 12 };
+    for (int i = 1; i <= STEPS; i++) {
+        float distance = limit_m * (float)i / STEPS;
+        if (wd_tree_envelope_share(form, wd_v3_mad(p, d, distance)) > 1)
+            return distance - 0.5f * limit_m / STEPS;
+    }
+    return limit_m;
+}
+
+struct wd_vec3 wd_tree_crown_direction(const struct wd_tree_form *form, struct wd_vec3 p)
+{
+    float length = form->height_m - form->crown_base_m;
+    float middle = form->crown_base_m + 0.3f * length;
+    float rise = (p.z - middle) * 2 * form->crown_radius_m / length;
+    return wd_v3_unit(WD_V3(p.x, p.y, rise + 0.15f * form->crown_radius_m));
+}

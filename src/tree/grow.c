@@ -1,0 +1,114 @@
+#include "tree/grow.h"
+
+#include "tree/foliage.h"
+#include "tree/wood.h"
+
+enum {
+    REDUCED_WOOD_TRIANGLES = 1600,
+    REDUCED_LEAVES = 2600, /* two triangles each */
+};
+
+static bool check_params(const struct wd_species *species, const struct wd_grow_params *params,
+                         const struct wd_log *log)
+{
+    double height = (double)params->height_m, low = (double)species->height_range_m[0];
+    double high = (double)species->height_range_m[1];
+    if (params->height_m != 0 && !(height >= low && height <= high))
+        return wd_error(log, "cannot grow %s %g m high; its species file allows %g to %g m",
+                        species->name, height, low, high);
+    if (!(params->openness >= 0 && params->openness <= 1))
+        return wd_error(log, "cannot grow %s with openness %g; allowed is 0 to 1", species->name,
+                        (double)params->openness);
+    if (!(params->detail >= 0 && params->detail <= 8))
+        return wd_error(log, "cannot grow %s with detail %g; allowed is 0 (meaning 1) to 8",
+                        species->name, (double)params->detail);
+    return true;
+}
+
+static void build_full(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
+                       const struct wd_foliage *foliage, const struct wd_tree_form *form)
+{
+    float least = form->species->leaf.shape == WD_LEAF_NEEDLES ? 0.0055f : 0;
+    struct wd_wood_style style = {least * fminf(form->scale, 1), 1, 12};
+    wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
+    mesh->wood_index_count = mesh->index_count;
+    wd_foliage_mesh(mesh, foliage, form->species);
+}
+
+/* The thickest branches that the budget allows, with few sides and a ring at every third node. */
+static void build_reduced(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
+                          const struct wd_foliage *foliage, const struct wd_tree_form *form)
+{
+    struct wd_wood_style style = {0.002f, 4, 5};
+    while (wd_wood_triangles(skeleton, &style) > REDUCED_WOOD_TRIANGLES)
+        style.least_radius_m *= 1.1f;
+    wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
+    mesh->wood_index_count = mesh->index_count;
+    wd_foliage_mesh_reduced(mesh, foliage, form->species, REDUCED_LEAVES);
+}
+
+static void scale_mesh(struct wd_tree_mesh *mesh, float factor)
+{
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            mesh->vertices[i].position_m[axis] *= factor;
+    wd_tree_mesh_update_bounds(mesh);
+}
+
+/* Mean over sixteen sectors of how far leaves reach out. */
+static float crown_radius_m(const struct wd_foliage *foliage)
+{
+    enum { SECTORS = 16 };
+    float reach[SECTORS] = {0}, sum = 0;
+    for (size_t i = 0; i < foliage->count; i++) {
+        struct wd_vec3 p = foliage->leaves[i].position_m;
+        double turn = wd_datan2((double)p.y, (double)p.x) / (2 * WD_PI) + 0.5;
+        int sector = (int)(turn * SECTORS) % SECTORS;
+        reach[sector] = fmaxf(reach[sector], sqrtf(p.x * p.x + p.y * p.y));
+    }
+    for (int i = 0; i < SECTORS; i++)
+        sum += reach[i];
+    return sum / SECTORS;
+}
+
+/* The mesh is brought to exactly the asked height: growth itself ends near it. */
+static void finish_model(struct wd_tree_model *model, const struct wd_foliage *foliage,
+                         const struct wd_tree_form *form)
+{
+    wd_tree_mesh_update_bounds(&model->full);
+    float factor = form->height_m / model->full.max_m[2];
+    scale_mesh(&model->full, factor);
+    scale_mesh(&model->reduced, factor);
+    model->height_m = form->height_m;
+    model->crown_radius_m = factor * crown_radius_m(foliage);
+    model->crown_base_m = factor * form->crown_base_m;
+    model->dbh_m = factor * form->dbh_m;
+    model->leaf_area_m2 = factor * factor * foliage->area_m2;
+}
+
+bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
+                  const struct wd_grow_params *params, const struct wd_log *log)
+{
+    *model = (struct wd_tree_model){0};
+    if (!check_params(species, params, log))
+        return false;
+    struct wd_tree_form form = wd_tree_form_of(species, params);
+    struct wd_skeleton skeleton;
+    struct wd_foliage foliage;
+    if (!wd_skeleton_grow(&skeleton, &form, log))
+        return false;
+    wd_foliage_grow(&foliage, &skeleton, &form);
+    build_full(&model->full, &skeleton, &foliage, &form);
+    build_reduced(&model->reduced, &skeleton, &foliage, &form);
+    finish_model(model, &foliage, &form);
+    wd_foliage_finish(&foliage);
+    wd_skeleton_finish(&skeleton);
+    return true;
+}
+
+void wd_tree_model_finish(struct wd_tree_model *model)
+{
+    wd_tree_mesh_finish(&model->full);
+    wd_tree_mesh_finish(&model->reduced);
+    *model = (struct wd_tree_model){0};
+}

@@ -1,0 +1,102 @@
+#include "tree/mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+enum { FIRST_CAPACITY = 1024 };
+
+static void *make_room(void *items, uint32_t count, uint32_t more, uint32_t *capacity, size_t size)
+{
+    if (count + more <= *capacity)
+        return items;
+    *capacity = *capacity ? *capacity * 2 : FIRST_CAPACITY;
+    return wd_realloc(items, *capacity * size);
+}
+
+void wd_tree_mesh_finish(struct wd_tree_mesh *mesh)
+{
+    free(mesh->vertices);
+    free(mesh->indices);
+    *mesh = (struct wd_tree_mesh){0};
+}
+
+uint32_t wd_tree_mesh_add_vertex(struct wd_tree_mesh *mesh, const struct wd_tree_vertex *vertex)
+{
+    mesh->vertices = make_room(mesh->vertices, mesh->vertex_count, 1, &mesh->vertex_capacity,
+                               sizeof *mesh->vertices);
+    mesh->vertices[mesh->vertex_count] = *vertex;
+    return mesh->vertex_count++;
+}
+
+void wd_tree_mesh_add_triangle(struct wd_tree_mesh *mesh, uint32_t a, uint32_t b, uint32_t c)
+{
+    mesh->indices = make_room(mesh->indices, mesh->index_count, 3, &mesh->index_capacity,
+                              sizeof *mesh->indices);
+    mesh->indices[mesh->index_count++] = a;
+    mesh->indices[mesh->index_count++] = b;
+    mesh->indices[mesh->index_count++] = c;
+}
+
+void wd_tree_mesh_update_bounds(struct wd_tree_mesh *mesh)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        float low = INFINITY, high = -INFINITY;
+        for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+            low = fminf(low, mesh->vertices[i].position_m[axis]);
+            high = fmaxf(high, mesh->vertices[i].position_m[axis]);
+        }
+        mesh->min_m[axis] = mesh->vertex_count ? low : 0;
+        mesh->max_m[axis] = mesh->vertex_count ? high : 0;
+    }
+}
+
+static uint32_t pack_snorm16(float value)
+{
+    float scaled = floorf(fminf(fmaxf(value, -1), 1) * 32767 + 0.5f);
+    return (uint32_t)(int32_t)scaled & 0xffffu;
+}
+
+uint32_t wd_pack_normal(const float normal[3])
+{
+    float sum = fabsf(normal[0]) + fabsf(normal[1]) + fabsf(normal[2]);
+    float x = sum > 0 ? normal[0] / sum : 0, y = sum > 0 ? normal[1] / sum : 0;
+    if (normal[2] < 0) {
+        float folded = (1 - fabsf(y)) * (x < 0 ? -1.0f : 1.0f);
+        y = (1 - fabsf(x)) * (y < 0 ? -1.0f : 1.0f);
+        x = folded;
+    }
+    return pack_snorm16(x) | pack_snorm16(y) << 16;
+}
+
+void wd_unpack_normal(uint32_t packed, float normal[3])
+{
+    float x = fmaxf((float)(int16_t)(packed & 0xffffu) / 32767, -1);
+    float y = fmaxf((float)(int16_t)(packed >> 16) / 32767, -1);
+    float z = 1 - fabsf(x) - fabsf(y), fold = fmaxf(-z, 0);
+    x += x >= 0 ? -fold : fold;
+    y += y >= 0 ? -fold : fold;
+    float length = sqrtf(x * x + y * y + z * z);
+    normal[0] = x / length;
+    normal[1] = y / length;
+    normal[2] = z / length;
+}
+
+/* Round to nearest half float; magnitudes beyond 65504 clamp, below 2^-14 flush to zero. */
+static uint32_t pack_half(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    uint32_t sign = bits >> 16 & 0x8000u, magnitude = bits & 0x7fffffffu;
+    if (magnitude < 0x38800000u)
+        return sign;
+    uint32_t half = (magnitude - 0x38000000u + 0x1000u) >> 13;
+    return sign | (half > 0x7bffu ? 0x7bffu : half);
+}
+
+uint32_t wd_pack_uv(float u, float v)
+{
+    return pack_half(u) | pack_half(v) << 16;
+}

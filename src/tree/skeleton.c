@@ -1,0 +1,303 @@
+#include "tree/skeleton.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+
+void wd_skeleton_finish(struct wd_skeleton *skeleton)
+{
+    free(skeleton->nodes);
+    free(skeleton->branches);
+    wd_tree_density_finish(&skeleton->crowd);
+    *skeleton = (struct wd_skeleton){0};
+}
+
+struct wd_vec3 wd_branch_point(const struct wd_skeleton *skeleton, const struct wd_branch *branch,
+                               float share, struct wd_vec3 *direction, size_t *node)
+{
+    float place = wd_clampf(share, 0, 1) * (float)(branch->node_count - 1);
+    size_t step = (size_t)place;
+    if (step > branch->node_count - 2)
+        step = branch->node_count - 2;
+    const struct wd_skeleton_node *a = &skeleton->nodes[branch->first_node + step];
+    float t = place - (float)step;
+    *direction = wd_v3_unit(wd_v3_mix(a[0].direction, a[1].direction, t));
+    *node = branch->first_node + step;
+    return wd_v3_mix(a[0].position_m, a[1].position_m, t);
+}
+
+/* What a chain of nodes is grown by. */
+struct stem {
+    int order, parent;
+    size_t parent_node;
+    struct wd_vec3 start, direction;
+    float length_m, along_m;
+    float upturn, tip_upturn, wander; /* radians per metre */
+    int steps;
+    uint32_t key;
+};
+
+static void add_node(struct wd_skeleton *skeleton, struct wd_vec3 position,
+                     struct wd_vec3 direction, float along_m)
+{
+    struct wd_skeleton_node *node =
+        wd_push(skeleton->nodes, skeleton->node_count, skeleton->node_capacity);
+    node->position_m = position;
+    node->direction = direction;
+    node->along_m = along_m;
+}
+
+static struct wd_branch *add_branch(struct wd_skeleton *skeleton, const struct stem *stem)
+{
+    struct wd_branch *branch =
+        wd_push(skeleton->branches, skeleton->branch_count, skeleton->branch_capacity);
+    branch->order = stem->order;
+    branch->parent = stem->parent;
+    branch->parent_node = stem->parent_node;
+    branch->first_node = skeleton->node_count;
+    branch->key = stem->key;
+    return branch;
+}
+
+/* Bends d by `angle` radians up (or down, where negative), without passing the vertical. */
+static struct wd_vec3 bend_up(struct wd_vec3 d, float angle)
+{
+    struct wd_vec3 up = wd_v3_square(WD_V3(0, 0, angle < 0 ? -1 : 1), d);
+    float level = sqrtf(d.x * d.x + d.y * d.y);
+    return wd_v3_unit(wd_v3_mad(d, up, fabsf(angle) * level));
+}
+
+/* Grows a branch node by node: wander, bending, and a turn back where it would leave the crown. */
+static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *form,
+                      const struct stem *stem)
+{
+    struct wd_random random = wd_random_of(stem->key, 0x57e);
+    struct wd_branch *branch = add_branch(skeleton, stem);
+    struct wd_vec3 p = stem->start, d = stem->direction, drift = WD_V3(0, 0, 0);
+    float step = stem->length_m / (float)stem->steps;
+    add_node(skeleton, p, d, stem->along_m);
+    for (int i = 1; i <= stem->steps; i++) {
+        float t = ((float)i - 0.5f) / (float)stem->steps;
+        drift = wd_v3_mad(wd_v3_scale(drift, 0.5f), wd_random_vec3(&random), 1);
+        d = wd_v3_unit(wd_v3_mad(d, drift, stem->wander * step));
+        d = bend_up(d, wd_mixf(stem->upturn, stem->tip_upturn, wd_smoothf(0.3f, 0.9f, t)) * step);
+        struct wd_vec3 next = wd_v3_mad(p, d, step);
+        if (wd_tree_envelope_share(form, next) > 1.04f) {
+            struct wd_vec3 out = wd_v3_unit_or(WD_V3(p.x, p.y, 0), WD_V3(0, 0, 1));
+            d = wd_v3_unit(wd_v3_mad(d, out, -0.6f * fmaxf(wd_v3_dot(d, out), 0)));
+            next = wd_v3_mad(p, d, 0.6f * step);
+        }
+        branch->length_m += wd_v3_length(wd_v3_sub(next, p));
+        p = next;
+        add_node(skeleton, p, d, stem->along_m + branch->length_m);
+    }
+    branch->node_count = skeleton->node_count - branch->first_node;
+}
+
+/* The trunk keeps upright; where limbs are strong it leans away from each in turn, so that it
+ * dissolves into them. */
+static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
+{
+    const struct wd_species *species = form->species;
+    enum { STEPS = 30 };
+    struct stem stem = {.order = WD_TRUNK, .parent = -1, .key = wd_hash2(form->key, 0x7)};
+    struct wd_random random = wd_random_of(stem.key, 0x57e);
+    struct wd_branch *branch = add_branch(skeleton, &stem);
+    float step = form->height_m / STEPS, loose = 1 - species->apical_dominance;
+    struct wd_vec3 p = WD_V3(0, 0, 0), drift = WD_V3(0, 0, 0);
+    struct wd_vec3 d = wd_v3_unit(WD_V3(0.06f * loose * wd_random_signed(&random),
+                                        0.06f * loose * wd_random_signed(&random), 1));
+    add_node(skeleton, p, d, 0);
+    for (int i = 1; i <= STEPS; i++) {
+        float inside = wd_smoothf(form->crown_base_m, form->height_m, p.z);
+        drift = wd_v3_mad(wd_v3_scale(drift, 0.45f), wd_random_vec3(&random), 1);
+        float bend = species->trunk_wander * (1 + 4 * loose * inside) * step;
+        d = wd_v3_mad(d, drift, bend);
+        d = wd_v3_add(d, WD_V3(-0.03f * p.x * step, -0.03f * p.y * step, 0.10f * step));
+        d = wd_v3_unit(d);
+        p = wd_v3_mad(p, d, step / fmaxf(d.z, 0.5f));
+        branch->length_m += step / fmaxf(d.z, 0.5f);
+        add_node(skeleton, p, d, branch->length_m);
+    }
+    branch->node_count = skeleton->node_count - branch->first_node;
+}
+
+static struct wd_vec3 branch_direction(struct wd_vec3 axis, float around_rad, float angle_rad)
+{
+    struct wd_vec3 side = wd_v3_side(axis), over = wd_v3_cross(side, axis);
+    return wd_v3_turn(axis, wd_v3_turn(side, over, around_rad), angle_rad);
+}
+
+/* How good a place for a new branch is: free of others, in the crown, toward light. */
+static float place_score(const struct wd_skeleton *skeleton, const struct wd_tree_form *form,
+                         struct wd_vec3 start, struct wd_vec3 d, float length_m)
+{
+    struct wd_vec3 middle = wd_v3_mad(start, d, 0.55f * length_m);
+    struct wd_vec3 end = wd_v3_mad(start, d, length_m);
+    float crowd = wd_tree_density_at(&skeleton->crowd, middle) +
+                  wd_tree_density_at(&skeleton->crowd, end);
+    float over = wd_tree_envelope_share(form, end) - 1;
+    float outward = wd_v3_dot(d, wd_tree_crown_direction(form, start));
+    return 0.35f * outward + 0.2f * d.z - 0.5f * crowd - (over > 0 ? 2 * over : 0);
+}
+
+static void mark_crowd(struct wd_skeleton *skeleton, const struct wd_branch *branch)
+{
+    float step = branch->length_m / (float)branch->node_count;
+    for (size_t i = branch->node_count / 3; i < branch->node_count; i++)
+        wd_tree_density_add(&skeleton->crowd, skeleton->nodes[branch->first_node + i].position_m,
+                            step);
+}
+
+/* A joint where a branch of `order` is to start. */
+struct joint {
+    int parent;
+    float share;     /* along the parent */
+    float height;    /* 0 crown base .. 1 top, for the angle */
+    float around_rad, jitter_rad;
+    float length_m;
+    uint32_t key;
+};
+
+static int steps_of(int order, float length_m)
+{
+    static const int most[3] = {9, 5, 2};
+    int steps = 2 + (int)(length_m * (order == 0 ? 1.6f : 2.5f));
+    return steps < most[order] ? steps : most[order];
+}
+
+static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order,
+                       const struct joint *joint)
+{
+    enum { TRIES = 5 };
+    const struct wd_branch_order *spec = &form->species->orders[order];
+    struct wd_random random = wd_random_of(joint->key, 0x101);
+    struct stem stem = {.order = order, .parent = joint->parent, .key = joint->key,
+                        .upturn = spec->upturn, .tip_upturn = spec->tip_upturn,
+                        .wander = spec->wander};
+    struct wd_vec3 axis;
+    const struct wd_branch *parent = &skeleton->branches[joint->parent];
+    stem.start = wd_branch_point(skeleton, parent, joint->share, &axis, &stem.parent_node);
+    stem.along_m = skeleton->nodes[stem.parent_node].along_m;
+    float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], joint->height);
+    angle *= (float)(WD_PI / 180) * wd_random_range(&random, 0.88f, 1.12f);
+    float best = -1e30f;
+    for (int i = 0; i < TRIES; i++) {
+        float around = joint->around_rad + joint->jitter_rad * wd_random_signed(&random);
+        struct wd_vec3 d = branch_direction(axis, around, angle);
+        float score = place_score(skeleton, form, stem.start, d, joint->length_m);
+        if (score > best) {
+            best = score;
+            stem.direction = d;
+        }
+    }
+    struct wd_vec3 ahead = bend_up(stem.direction, 0.3f * spec->upturn * joint->length_m);
+    stem.length_m = wd_tree_envelope_reach_m(form, stem.start, ahead, joint->length_m);
+    stem.length_m *= wd_random_range(&random, 0.9f, 1.05f);
+    if (stem.length_m < 0.3f * joint->length_m)
+        stem.length_m = 0.3f * joint->length_m;
+    stem.steps = steps_of(order, stem.length_m);
+    grow_stem(skeleton, form, &stem);
+    if (order < 2)
+        mark_crowd(skeleton, &skeleton->branches[skeleton->branch_count - 1]);
+}
+
+static float spacing_m(const struct wd_tree_form *form, int order)
+{
+    double squeeze = wd_dpow((double)form->scale, 0.8);
+    return form->species->orders[order].spacing_m * (float)squeeze;
+}
+
+/* Limbs up the trunk, golden angle apart or in whorls, as long as the crown is wide there. */
+static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
+{
+    const struct wd_species *species = form->species;
+    struct wd_random random = wd_random_of(form->key, 0x11b5);
+    float crown = form->height_m - form->crown_base_m, spacing = spacing_m(form, 0);
+    int whorl = (int)species->whorl, index = 0;
+    for (float z = 0.1f * spacing; z < 0.985f * crown; index++) {
+        float around = (float)index * 2.3999632f + wd_random_unit(&random), t = z / crown;
+        for (int i = 0; i < whorl; i++) {
+            if (skeleton->branch_count >= WD_MAX_BRANCHES)
+                return false;
+            float lift = whorl > 1 ? 0.12f * spacing * wd_random_signed(&random) : 0;
+            float share = (form->crown_base_m + z + lift) / form->height_m;
+            struct joint joint = {.share = wd_clampf(share, 0.02f, 0.99f), .height = t,
+                                  .jitter_rad = whorl > 1 ? 0.25f : 0.8f};
+            joint.around_rad = around + (float)i * (float)(2 * WD_PI) / (float)whorl;
+            joint.length_m = 1.6f * form->crown_radius_m * species->orders[0].length_ratio;
+            joint.length_m *= wd_random_range(&random, 0.75f, 1.0f);
+            joint.key = wd_hash3(form->key, 0x11b, (uint32_t)(index * 16 + i));
+            grow_joint(skeleton, form, 0, &joint);
+        }
+        z += spacing * wd_random_range(&random, 0.8f, 1.2f) * (1 - 0.35f * t);
+    }
+    return true;
+}
+
+/* Branches of one order along one parent, left and right in turn. */
+static bool grow_along(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order,
+                       int parent_index)
+{
+    const struct wd_branch_order *spec = &form->species->orders[order];
+    struct wd_branch parent = skeleton->branches[parent_index];
+    struct wd_random random = wd_random_of(parent.key, 0xa1);
+    float spacing = spacing_m(form, order), start = spec->start, crown_low = form->crown_base_m;
+    if (parent.order == WD_TRUNK)
+        start = wd_mixf(crown_low / form->height_m, 1, 0.72f);
+    float limb = parent.length_m * (parent.order == WD_TRUNK ? 0.25f : 1), index = 0;
+    for (float at = start * parent.length_m; at < 0.99f * parent.length_m; index++) {
+        if (skeleton->branch_count >= WD_MAX_BRANCHES)
+            return false;
+        float share = at / parent.length_m, z = skeleton->nodes[parent.first_node].position_m.z;
+        struct joint joint = {.parent = parent_index, .share = share};
+        joint.height = wd_clampf((z - crown_low) / (form->height_m - crown_low), 0, 1);
+        float left = wd_random_range(&random, 0, 1) < 0.08f ? 0.5f : 0;
+        float turn = ((int)index & 1) + left;
+        joint.around_rad = (float)WD_PI * turn;
+        joint.jitter_rad = (1 - spec->flatness) * (float)WD_PI * 0.55f;
+        joint.length_m = spec->length_ratio * limb * (1.15f - 0.75f * share);
+        joint.length_m *= wd_random_range(&random, 0.8f, 1.1f);
+        joint.key = wd_hash3(parent.key, 0xb0, (uint32_t)index);
+        grow_joint(skeleton, form, order, &joint);
+        at += spacing * wd_random_range(&random, 0.7f, 1.3f);
+    }
+    return true;
+}
+
+/* Order by order, so that branches of one order compete for the same gaps. Twigs also stand on the
+ * ends of everything thicker. */
+static bool grow_order(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order)
+{
+    int count = (int)skeleton->branch_count;
+    bool leader = form->species->apical_dominance < 0.9f;
+    for (int i = 0; i < count; i++) {
+        int parent = skeleton->branches[i].order;
+        bool next = parent == order - 1 || (parent == WD_TRUNK && leader && order == 1);
+        if (next && !grow_along(skeleton, form, order, i))
+            return false;
+    }
+    return true;
+}
+
+bool wd_skeleton_grow(struct wd_skeleton *skeleton, const struct wd_tree_form *form,
+                      const struct wd_log *log)
+{
+    *skeleton = (struct wd_skeleton){0};
+    float reach = 1.3f * form->crown_radius_m;
+    wd_tree_density_init(&skeleton->crowd, WD_V3(-reach, -reach, 0),
+                         WD_V3(reach, reach, 1.1f * form->height_m),
+                         fmaxf(0.12f * form->crown_radius_m, 0.05f));
+    grow_trunk(skeleton, form);
+    bool ok = grow_limbs(skeleton, form);
+    for (int order = 1; ok && order < (int)form->species->order_count; order++)
+        ok = grow_order(skeleton, form, order);
+    if (!ok) {
+        wd_skeleton_finish(skeleton);
+        return wd_error(log, "species %s at %g m has more than %d branches; allowed are wider "
+                             "spacing_m or fewer orders",
+                        form->species->name, (double)form->height_m, WD_MAX_BRANCHES);
+    }
+    wd_skeleton_set_radii(skeleton, form);
+    return true;
+}

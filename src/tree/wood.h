@@ -1,0 +1,22 @@
+/* wood.h: tubes around a skeleton. */
+#ifndef WD_TREE_WOOD_H
+#define WD_TREE_WOOD_H
+
+#include "tree/mesh.h"
+#include "tree/skeleton.h"
+
+struct wd_wood_style {
+    float least_radius_m; /* branches thinner than this at their base are left out */
+    int node_step;        /* 1: a ring at every node; n: at every n-th and at the ends */
+    int most_sides;       /* of the trunk; thinner branches have fewer, down to 3 */
+};
+
+/* Appends the wood. `crown` gives the sky openness of each place (its light already swept). */
+void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
+                  const struct wd_tree_form *form, const struct wd_tree_density *crown,
+                  const struct wd_wood_style *style);
+
+/* Triangles that wd_wood_mesh would make. */
+size_t wd_wood_triangles(const struct wd_skeleton *skeleton, const struct wd_wood_style *style);
+
+#endif
