@@ -1,0 +1,41 @@
+/* What the G-buffer says of a pixel. Expects `frame` and the four images. */
+
+struct wd_pixel {
+    vec3 ray;         /* rel of a point on the pixel's ray at 1 m along the view axis */
+    vec3 direction;   /* unit */
+    float axis_m;     /* distance along the view axis; infinite for the sky */
+    vec3 rel;
+    vec3 albedo;
+    float openness;
+    vec3 normal;
+    uint material;
+    uint surface;     /* tree + 1, or 0 */
+};
+
+vec3 pixel_ray(ivec2 at)
+{
+    vec2 clip = (vec2(at) + 0.5) / vec2(frame.width, frame.height) * 2.0 - 1.0;
+    return (frame.rel_from_clip * vec4(clip, 0.0, 1.0)).xyz;
+}
+
+bool pixel_is_sky(float depth)
+{
+    return depth <= 0.0;
+}
+
+wd_pixel gbuffer_pixel(ivec2 at, float depth)
+{
+    wd_pixel pixel;
+    pixel.ray = pixel_ray(at);
+    pixel.direction = normalize(pixel.ray);
+    pixel.axis_m = frame.near_m / max(depth, 1e-30);
+    pixel.rel = pixel.ray * pixel.axis_m;
+    vec4 albedo = texelFetch(gbuffer_albedo, at, 0);
+    vec4 normal = texelFetch(gbuffer_normal, at, 0);
+    pixel.albedo = albedo.rgb;
+    pixel.openness = albedo.a;
+    pixel.normal = normalize(normal.xyz * 2.0 - 1.0 + vec3(0.0, 0.0, 1e-6));
+    pixel.material = uint(normal.w * 3.0 + 0.5);
+    pixel.surface = texelFetch(gbuffer_surface, at, 0).x;
+    return pixel;
+}

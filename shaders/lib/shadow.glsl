@@ -1,0 +1,53 @@
+/* Shadows of trees (cascaded maps) and of the ground (a field of shadow heights).
+ * Expects `frame`, `push` (wd_light_push), `shadow_map` (sampler2DArrayShadow) and
+ * SUN_HEIGHT_AT(index). */
+
+/* The cascade for a distance along the view axis; WD_CASCADES beyond the last. Slices overlap by a
+ * tenth, and noise picks one of both, so that no seam shows. */
+uint shadow_cascade(float axis_m, float noise)
+{
+    vec4 beyond = step(frame.cascade_far_m * (0.9 + 0.1 * noise), vec4(axis_m));
+    return uint(dot(beyond, vec4(1.0)));
+}
+
+/* Share of the sun that trees let through to `rel`. The disc of taps (Vogel 1979) is as wide as
+ * the penumbra of a caster some 10 m off, at least a texel and a half. */
+float tree_shadow(vec3 rel, vec3 normal, uint cascade, float noise)
+{
+    if (cascade >= WD_CASCADES || frame.shadow_taps == 0u)
+        return 1.0;
+    float texel_m = frame.cascade_texel_m[cascade];
+    vec3 from = rel + normal * texel_m * 1.2 + frame.sun_direction * texel_m * 0.8;
+    vec3 at = (frame.shadow_from_rel[cascade] * vec4(from, 1.0)).xyz;
+    if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0))))
+        return 1.0;
+    float texel = 1.0 / float(textureSize(shadow_map, 0).x);
+    float radius = max(1.5, 0.05 / texel_m) * texel;
+    float turn = noise * 6.2831853;
+    vec2 spin = vec2(cos(turn), sin(turn));
+    float lit = 0.0;
+    for (uint i = 0u; i < frame.shadow_taps; i++) {
+        float r = sqrt((float(i) + 0.5) / float(frame.shadow_taps)) * radius;
+        lit += texture(shadow_map, vec4(at.xy + spin * r, float(cascade), at.z));
+        spin = vec2(-0.7373688 * spin.x - 0.6754903 * spin.y,
+                    0.6754903 * spin.x - 0.7373688 * spin.y); /* the golden angle on */
+    }
+    return lit / float(frame.shadow_taps);
+}
+
+/* Share of the sun's disc over the ground's own horizon. The field says below which height a place
+ * lies in the shadow of ground farther toward the sun. */
+float ground_shadow(vec3 rel)
+{
+    vec2 at = clamp((rel.xy + push.camera_m) / push.sun_cell_m, vec2(0.0),
+                    vec2(push.sun_width - 1u, push.sun_height - 1u) - 0.001);
+    uvec2 cell = uvec2(at);
+    vec2 share = at - vec2(cell);
+    uint first = cell.y * push.sun_width + cell.x;
+    float south = mix(SUN_HEIGHT_AT(first), SUN_HEIGHT_AT(first + 1u), share.x);
+    first += push.sun_width;
+    float north = mix(SUN_HEIGHT_AT(first), SUN_HEIGHT_AT(first + 1u), share.x);
+    float height_m = rel.z + float(frame.camera_mm[2]) * 0.001 + frame.camera_frac_m.z;
+    float above_m = height_m - mix(south, north, share.y);
+    return smoothstep(-push.sun_soft_m, push.sun_soft_m, above_m);
+}

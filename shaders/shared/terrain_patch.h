@@ -1,0 +1,46 @@
+/* terrain_patch.h: the tiles that the ground is drawn with: CDLOD (Strugar 2009).
+ *
+ * A patch is a grid of 8 x 8 cells, each 2^level terrain cells wide. A patch of level k is drawn
+ * beyond range[k - 1] and morphs into level k + 1 before range[k] ends; see src/frame/passes/
+ * terrain.c for why no cracks are left. */
+#ifndef WD_SHARED_TERRAIN_PATCH_H
+#define WD_SHARED_TERRAIN_PATCH_H
+
+#include "shared/types.h"
+
+#define WD_PATCH_CELLS 8
+#define WD_PATCH_VERTICES 81
+#define WD_TERRAIN_LEVELS 16
+
+/* values of wd_terrain_patch.edge */
+#define WD_EDGE_NONE 0
+#define WD_EDGE_SOUTH 1 /* a curtain that hangs from that side of the patch */
+#define WD_EDGE_EAST 2
+#define WD_EDGE_NORTH 3
+#define WD_EDGE_WEST 4
+
+struct wd_terrain_patch {
+    uint32_t column, row; /* of its south-west sample */
+    uint32_t level;
+    uint32_t edge;
+};
+WD_STATIC_ASSERT_SIZE(wd_terrain_patch, 16);
+
+/* How the ground lies about the camera. */
+struct wd_terrain_view {
+    int32_t camera_cell[2];     /* the camera stands over this cell, */
+    WD_VEC2(camera_offset_m);   /* so far from its south-west sample */
+    float cell_m;
+    float above_m;              /* of the camera over the highest ground; 0 below */
+    float curtain_m;            /* where curtains end, above the world's zero */
+    uint32_t width, height;     /* samples */
+    uint32_t has_holes;
+    WD_VEC2(extent_m);
+    WD_VEC2(slopes_scale);      /* slopes image: coordinates = metres * scale + offset */
+    WD_VEC2(slopes_offset);
+    WD_VEC2(cover_scale);       /* cover image: coordinates = metres * scale */
+    WD_VEC2(camera_m);          /* local; for image coordinates only */
+    WD_VEC2(morph[WD_TERRAIN_LEVELS]); /* distance at which morphing begins; 1 / its span */
+};
+
+#endif
