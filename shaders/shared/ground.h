@@ -4,23 +4,22 @@
  * diagonal from south-west to north-east. Places are whole millimetres, and a place becomes a
  * cell and a 24-bit share of it by one 32 x 32 bit multiplication: no rounding differs.
  *
- * A shader that includes this defines before: WD_GROUND(member), WD_HEIGHT_AT(index) in metres and
- * WD_HOLE_AT(index), nonzero where the ground is cut out. */
+ * A shader includes place_layer.h, declares its buffers, and defines before it includes this:
+ * WD_GROUND(member), WD_HEIGHT_AT(index) in metres and WD_HOLE_AT(index), nonzero where the ground
+ * is cut out. */
 #ifndef WD_SHARED_GROUND_H
 #define WD_SHARED_GROUND_H
 
-#include "shared/types.h"
+#include "shared/place_layer.h"
 
 #ifdef __STDC_VERSION__
 #include <math.h>
-#define WD_STRUCT struct
 #define WD_INT(x) ((int32_t)(x))
 #define WD_UINT(x) ((uint32_t)(x))
 #define WD_FLOAT(x) ((float)(x))
 #define WD_FLOOR(x) floorf(x)
 #define WD_MULTIPLY_HIGH(a, b) ((uint32_t)(((uint64_t)(a) * (b)) >> 32))
 #else
-#define WD_STRUCT
 #define WD_INT(x) int(x)
 #define WD_UINT(x) uint(x)
 #define WD_FLOAT(x) float(x)
@@ -32,20 +31,6 @@ uint WD_MULTIPLY_HIGH(uint a, uint b)
     return high;
 }
 #endif
-
-/* How a coordinate in millimetres becomes cells: cells = mm * inverse / 2^(32 + shift). The inverse
- * is rounded up, so that a sample's own place falls into the cell that begins there. */
-struct wd_axis {
-    uint32_t inverse, shift; /* shift at most 31 */
-};
-
-struct wd_ground {
-    int32_t extent_mm[2];    /* east, north; the ground is where 0 <= x, y <= extent */
-    uint32_t width, height;  /* samples, at least 2 each; row 0 in the south */
-    WD_STRUCT wd_axis axis;  /* cells of the grid */
-    float half_per_m;        /* 1 / (2 * cell in metres) */
-    uint32_t has_holes;
-};
 
 #ifdef __STDC_VERSION__
 struct wd_ground_input {
