@@ -35,6 +35,7 @@ enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_fores
     *result = NULL;
     struct wd_forest *forest = wd_alloc(sizeof *forest);
     forest->log = params->log;
+    const struct wd_scene_params scene = {.data_dir = params->data_dir};
     struct watch watch = {&params->progress, false};
     const struct wd_progress progress = {watch_report, &watch};
     struct wd_world_params world = {
@@ -45,7 +46,7 @@ enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_fores
         .log = &forest->log,
     };
     if ((params->seed && !parse_seed(params->seed, &world.seed, &forest->log)) ||
-        !wd_scene_load_with(&forest->scene, params->scene_path, params->data_dir, &forest->log) ||
+        !wd_scene_load_with(&forest->scene, params->scene_path, &scene, &forest->log) ||
         !wd_world_init(&forest->world, &forest->scene, &world)) {
         wd_forest_destroy(&forest);
         return watch.stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_INPUT;

@@ -1,0 +1,107 @@
+/* The structs of shaders/shared have the same offsets in C as in compiled SPIR-V. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "shared/forest.h"
+#include "shared/frame.h"
+
+static const uint32_t words[] =
+#include "layout.comp.inc"
+    ;
+enum { WORD_COUNT = sizeof words / sizeof *words };
+
+struct member {
+    const char *type, *name;
+    size_t offset;
+};
+#define M(type, name) {#type, #name, offsetof(struct type, name)}
+
+static const struct member members[] = {
+    M(wd_tree, x_mm), M(wd_tree, y_mm), M(wd_tree, z_mm), M(wd_tree, id), M(wd_tree, kind),
+    M(wd_tree, size), M(wd_tree, look), M(wd_tree, random),
+    M(wd_tree_vertex, position_m), M(wd_tree_vertex, normal), M(wd_tree_vertex, uv),
+    M(wd_tree_vertex, tint), M(wd_tree_vertex, kind),
+    M(wd_model, height_m), M(wd_model, crown_m), M(wd_model, half_width_m),
+    M(wd_model, half_depth_m), M(wd_model, bottom_m), M(wd_model, top_m), M(wd_model, flexibility),
+    M(wd_model, look_layer), M(wd_model, card_layer), M(wd_model, transmittance),
+    M(wd_model, crown_base_m),
+    M(wd_layer_fade, near_begin_m), M(wd_layer_fade, near_end_m), M(wd_layer_fade, far_begin_m),
+    M(wd_layer_fade, far_end_m),
+    M(wd_instance, tree), M(wd_instance, show),
+    M(wd_tree_push, variants), M(wd_tree_push, cascade), M(wd_tree_push, level),
+    M(wd_tree_push, show),
+#define F(name) M(wd_frame_uniforms, name)
+    F(clip_from_rel), F(rel_from_clip), F(previous_clip_from_rel), F(steady_clip_from_rel),
+    F(shadow_from_rel), F(cascade_far_m), F(cascade_texel_m), F(cascade_depth_m), F(camera_mm),
+    F(time_s), F(camera_frac_m), F(previous_time_s), F(sun_direction), F(sun_cos_radius),
+    F(sun_irradiance), F(sky_turbidity), F(sky_irradiance), F(sky_strength), F(sky_glow), F(near_m),
+    F(sky_horizon), F(fog_per_m), F(fog_height_m), F(fog_base_m), F(wind_speed_mps), F(wind_gust),
+    F(wind_toward), F(water_level_m), F(water_clarity_m), F(water_color), F(exposure), F(grass),
+    F(rock_slope), F(soil), F(snow_line_m), F(rock), F(tree_line_m), F(litter), F(terrain_cell_m),
+    F(width), F(height), F(terrain_width), F(terrain_height), F(sample_index), F(sample_count),
+    F(view_mode), F(shadow_taps),
+};
+
+enum { OP_NAME = 5, OP_MEMBER_NAME = 6, OP_MEMBER_DECORATE = 72, DECORATION_OFFSET = 35 };
+
+/* Name of a type by its id, or NULL. */
+static const char *type_name(uint32_t id)
+{
+    for (size_t at = 5; at < WORD_COUNT; at += words[at] >> 16) {
+        if ((words[at] & 0xffff) == OP_NAME && words[at + 1] == id)
+            return (const char *)&words[at + 2];
+    }
+    return NULL;
+}
+
+static long decorated_offset(uint32_t type, uint32_t member)
+{
+    for (size_t at = 5; at < WORD_COUNT; at += words[at] >> 16) {
+        if ((words[at] & 0xffff) == OP_MEMBER_DECORATE && words[at + 1] == type &&
+            words[at + 2] == member && words[at + 3] == DECORATION_OFFSET)
+            return words[at + 4];
+    }
+    return -1;
+}
+
+static const struct member *find(const char *type, const char *name)
+{
+    for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
+        if (strcmp(members[i].type, type) == 0 && strcmp(members[i].name, name) == 0)
+            return &members[i];
+    }
+    return NULL;
+}
+
+static void every_member_lies_alike(void **state)
+{
+    (void)state;
+    size_t checked = 0;
+    for (size_t at = 5; at < WORD_COUNT; at += words[at] >> 16) {
+        if ((words[at] & 0xffff) != OP_MEMBER_NAME)
+            continue;
+        const char *type = type_name(words[at + 1]), *name = (const char *)&words[at + 3];
+        long offset = decorated_offset(words[at + 1], words[at + 2]);
+        if (!type || strncmp(type, "wd_", 3) != 0 || offset < 0)
+            continue;
+        const struct member *member = find(type, name);
+        if (!member)
+            fail_msg("%s.%s is in the shader, but not in this test's table", type, name);
+        else if ((long)member->offset != offset)
+            fail_msg("%s.%s: C has it at %zu, SPIR-V at %ld", type, name, member->offset, offset);
+        checked++;
+    }
+    assert_int_equal(checked, sizeof members / sizeof *members);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_member_lies_alike)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
