@@ -65,7 +65,8 @@ static void describe_model(struct wd_model *model, const struct preparation *wor
         .crown_base_m = grown->crown_base_m,
     };
     for (int k = 0; k < 3; k++)
-        model->transmittance[k] = species->leaf.transmittance[k] / fmaxf(species->leaf.color[k], 1e-3f);
+        model->transmittance[k] =
+            species->leaf.transmittance[k] / fmaxf(species->leaf.color[k], 1e-3f);
 }
 
 /* --- uploading --------------------------------------------------------------------------- */
@@ -74,12 +75,18 @@ static bool make_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu, const char
                         VkBufferUsageFlags usage, const void *data, size_t size)
 {
     const struct wd_buffer_params params = {name, size, usage, WD_MEMORY_DEVICE};
-    if (usage == VK_BUFFER_USAGE_STORAGE_BUFFER_BIT &&
-        size > gpu->properties.limits.maxStorageBufferRange)
-        return wd_error(gpu->log, "%s: %zu MB are more than the %u MB that %s can bind at once", name,
-                        size >> 20, gpu->properties.limits.maxStorageBufferRange >> 20,
-                        gpu->properties.deviceName);
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
+}
+
+/* A table that shaders see whole. */
+static bool make_table(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
+                       const void *data, size_t size)
+{
+    uint32_t limit = gpu->properties.limits.maxStorageBufferRange;
+    if (size > limit)
+        return wd_error(gpu->log, "%s: %zu MB are more than the %u MB that %s can bind at once",
+                        name, size >> 20, limit >> 20, gpu->properties.deviceName);
+    return make_buffer(buffer, gpu, name, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, data, size);
 }
 
 /* Two triangles a card: corners 0 1 2, 2 1 3. */
@@ -108,9 +115,11 @@ static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
     for (uint32_t i = 0; i < forest->model_count; i++) {
         for (int level = 0; level < 2; level++) {
             const struct wd_tree_mesh *mesh = level_mesh(&work->grown[i], level);
-            forest->ranges[i][level] = (struct wd_mesh_range){
-                (uint32_t)index_count, mesh->index_count, (int32_t)vertex_count};
-            vertex_count += mesh->vertex_count;
+            forest->ranges[i][level] =
+                (struct wd_mesh_range){(uint32_t)index_count, mesh->index_count,
+                                       (uint32_t)vertex_count, mesh->vertex_count};
+            vertex_count += (mesh->vertex_count + WD_MESH_ALIGNMENT - 1) / WD_MESH_ALIGNMENT *
+                            WD_MESH_ALIGNMENT;
             index_count += mesh->index_count;
         }
     }
@@ -120,17 +129,17 @@ static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
         for (int level = 0; level < 2; level++) {
             const struct wd_tree_mesh *mesh = level_mesh(&work->grown[i], level);
             const struct wd_mesh_range *range = &forest->ranges[i][level];
-            memcpy(vertices + range->vertex_offset, mesh->vertices,
+            memcpy(vertices + range->first_vertex, mesh->vertices,
                    mesh->vertex_count * sizeof *vertices);
             memcpy(indices + range->first_index, mesh->indices,
                    mesh->index_count * sizeof *indices);
         }
     }
-    bool ok = make_buffer(&forest->vertices, gpu, "tree vertices",
-                          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, vertices,
-                          vertex_count * sizeof *vertices) &&
-              make_buffer(&forest->indices, gpu, "tree indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
-                          indices, index_count * sizeof *indices);
+    bool ok =
+        make_buffer(&forest->vertices, gpu, "tree vertices", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                    vertices, vertex_count * sizeof *vertices) &&
+        make_buffer(&forest->indices, gpu, "tree indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
+                    indices, index_count * sizeof *indices);
     free(vertices);
     free(indices);
     return ok;
@@ -150,10 +159,10 @@ static bool make_card_image(struct wd_image *image, struct wd_gpu *gpu, const ch
         .view = WD_IMAGE_ARRAY,
     };
     if (params.layers > gpu->properties.limits.maxImageArrayLayers)
-        return wd_error(gpu->log,
-                        "%u tree models need %u image layers, %s has %u: use fewer species or variants",
-                        models, params.layers, gpu->properties.deviceName,
-                        gpu->properties.limits.maxImageArrayLayers);
+        return wd_error(
+            gpu->log,
+            "%u tree models need %u image layers, %s has %u: use fewer species or variants", models,
+            params.layers, gpu->properties.deviceName, gpu->properties.limits.maxImageArrayLayers);
     return wd_image_init(image, gpu, &params);
 }
 
@@ -235,8 +244,8 @@ static bool upload_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
         forest->max_tree_height_m =
             fmaxf(forest->max_tree_height_m, 0.01f * (float)(world->trees[i].size & 0xffffu));
     size_t count = world->tree_count ? world->tree_count : 1;
-    return make_buffer(&forest->trees, gpu, "trees", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                       world->tree_count ? world->trees : &none, count * sizeof none);
+    return make_table(&forest->trees, gpu, "trees", world->tree_count ? world->trees : &none,
+                      count * sizeof none);
 }
 
 static bool upload_fades(struct wd_forest_device *forest, struct wd_gpu *gpu)
@@ -245,12 +254,12 @@ static bool upload_fades(struct wd_forest_device *forest, struct wd_gpu *gpu)
     forest->host_fades = wd_alloc_array(count, sizeof *forest->host_fades);
     for (size_t i = 1; i < count; i++) {
         const struct wd_scene_layer *layer = &forest->scene->layers[i - 1];
-        forest->host_fades[i] = (struct wd_layer_fade){
-            (float)layer->fade_near_m[0], (float)layer->fade_near_m[1],
-            (float)layer->fade_far_m[0], (float)layer->fade_far_m[1]};
+        forest->host_fades[i] =
+            (struct wd_layer_fade){(float)layer->fade_near_m[0], (float)layer->fade_near_m[1],
+                                   (float)layer->fade_far_m[0], (float)layer->fade_far_m[1]};
     }
-    return make_buffer(&forest->fades, gpu, "layer fades", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                       forest->host_fades, count * sizeof *forest->host_fades);
+    return make_table(&forest->fades, gpu, "layer fades", forest->host_fades,
+                      count * sizeof *forest->host_fades);
 }
 
 static bool prepare(struct preparation *work, struct wd_gpu *gpu)
@@ -267,8 +276,8 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     double grown = wd_clock_s();
     forest->grown_us = (uint64_t)((grown - start) * 1e6);
     bool ok = prepare_cards(work, gpu) && upload_meshes(work, gpu) &&
-              make_buffer(&forest->models, gpu, "tree models", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                          forest->host_models, forest->model_count * sizeof *forest->host_models) &&
+              make_table(&forest->models, gpu, "tree models", forest->host_models,
+                         forest->model_count * sizeof *forest->host_models) &&
               wd_looks_upload(&forest->looks, gpu, work->looks,
                               (uint32_t)params->scene->species_file_count);
     forest->baked_us = (uint64_t)((wd_clock_s() - grown) * 1e6);

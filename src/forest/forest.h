@@ -8,11 +8,14 @@
 #include "shared/forest.h"
 #include "world/world.h"
 
-/* Where a model's triangles are in the common buffers. */
+/* Where a mesh is in the common buffers. Its indices count from its own first vertex: the vertex
+ * buffer is bound from there, since all of it may be more than a device binds at once. */
 struct wd_mesh_range {
     uint32_t first_index, index_count;
-    int32_t vertex_offset;
+    uint32_t first_vertex, vertex_count; /* first: a multiple of WD_MESH_ALIGNMENT */
 };
+/* Vertices; a multiple of every storage buffer alignment (256 bytes) that Vulkan allows. */
+#define WD_MESH_ALIGNMENT 64
 
 struct wd_forest_device {
     const struct wd_scene *scene;

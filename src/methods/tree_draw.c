@@ -23,7 +23,10 @@ static const uint32_t tree_card_shadow_frag[] =
 #include "tree_card_shadow.frag.inc"
     ;
 
-#define SPIRV(words) {words, sizeof words, #words}
+#define SPIRV(words)                                                                               \
+    {                                                                                              \
+        words, sizeof words, #words                                                                \
+    }
 
 /* --- pipelines --------------------------------------------------------------------------- */
 
@@ -124,43 +127,56 @@ static bool upload_instances(const struct wd_tree_draw *draw, const struct wd_in
 }
 
 static void draw_indexed(const struct wd_tree_draw *draw, uint32_t indices, uint32_t instances,
-                         const struct wd_mesh_range *range, uint32_t first_instance)
+                         uint32_t first_index, int32_t vertex_offset, uint32_t first_instance)
 {
-    wd_cmd_draw_indexed(draw->cmd, &(VkDrawIndexedIndirectCommand){indices, instances,
-                                                                   range->first_index,
-                                                                   range->vertex_offset,
-                                                                   first_instance});
+    wd_cmd_draw_indexed(draw->cmd, &(VkDrawIndexedIndirectCommand){indices, instances, first_index,
+                                                                   vertex_offset, first_instance});
     draw->stats->draw_calls++;
     draw->stats->triangles += (uint64_t)indices / 3 * instances;
+}
+
+static void bind_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_range *range,
+                      uint32_t level, struct wd_binding instances)
+{
+    const struct wd_forest_device *forest = draw->forest;
+    const struct wd_pipeline *pipeline = &draw->pipelines->mesh[draw->pass];
+    const struct wd_binding vertices = {
+        .buffer = &forest->vertices,
+        .offset = (VkDeviceSize)range->first_vertex * sizeof(struct wd_tree_vertex),
+        .size = (VkDeviceSize)range->vertex_count * sizeof(struct wd_tree_vertex),
+    };
+    const struct wd_binding bindings[] = {draw->uniforms,
+                                          WD_BIND_BUFFER(&forest->trees),
+                                          WD_BIND_BUFFER(&forest->models),
+                                          vertices,
+                                          instances,
+                                          WD_BIND_IMAGE(&forest->looks, forest->look_sampler)};
+    const struct wd_tree_push push = tree_push(draw, level);
+    wd_cmd_bind(draw->cmd, pipeline, bindings);
+    wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
+    wd_cmd_bind_indices(draw->cmd, &forest->indices);
 }
 
 static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selection *selection,
                         enum wd_draw_grouping grouping)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const struct wd_pipeline *pipeline = &draw->pipelines->mesh[draw->pass];
     struct wd_binding instances;
     if (!selection->mesh_count ||
         !upload_instances(draw, selection->meshes, selection->mesh_count, &instances))
         return;
-    const struct wd_binding bindings[] = {
-        draw->uniforms, WD_BIND_BUFFER(&forest->trees), WD_BIND_BUFFER(&forest->models),
-        WD_BIND_BUFFER(&forest->vertices), instances,
-        WD_BIND_IMAGE(&forest->looks, forest->look_sampler)};
-    wd_cmd_bind(draw->cmd, pipeline, bindings);
-    wd_cmd_bind_indices(draw->cmd, &forest->indices);
     for (size_t i = 0; i < selection->batch_count; i++) {
         const struct wd_mesh_batch *batch = &selection->batches[i];
         const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
-        const struct wd_tree_push push = tree_push(draw, batch->level);
-        wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
+        bind_mesh(draw, range, batch->level, instances);
         draw->stats->trees[batch->level] += batch->count;
         if (grouping == WD_DRAW_GROUPED) {
-            draw_indexed(draw, range->index_count, batch->count, range, batch->first);
+            draw_indexed(draw, range->index_count, batch->count, range->first_index, 0,
+                         batch->first);
             continue;
         }
         for (uint32_t k = 0; k < batch->count; k++)
-            draw_indexed(draw, range->index_count, 1, range, batch->first + k);
+            draw_indexed(draw, range->index_count, 1, range->first_index, 0, batch->first + k);
     }
 }
 
@@ -169,10 +185,13 @@ static uint32_t bind_cards(const struct wd_tree_draw *draw, const struct wd_pipe
                            struct wd_binding instances)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const struct wd_binding bindings[] = {
-        draw->uniforms, WD_BIND_BUFFER(&forest->trees), WD_BIND_BUFFER(&forest->models), instances,
-        WD_BIND_IMAGE(&forest->card_albedo, forest->card_sampler),
-        WD_BIND_IMAGE(&forest->card_normal, forest->card_sampler), WD_BIND_BUFFER(&forest->fades)};
+    const struct wd_binding bindings[] = {draw->uniforms,
+                                          WD_BIND_BUFFER(&forest->trees),
+                                          WD_BIND_BUFFER(&forest->models),
+                                          instances,
+                                          WD_BIND_IMAGE(&forest->card_albedo, forest->card_sampler),
+                                          WD_BIND_IMAGE(&forest->card_normal, forest->card_sampler),
+                                          WD_BIND_BUFFER(&forest->fades)};
     bool shadow = draw->pass == WD_PASS_SHADOW;
     const struct wd_tree_push push = tree_push(draw, WD_LEVEL_CARD);
     wd_cmd_bind(draw->cmd, pipeline, bindings);
@@ -188,8 +207,7 @@ static void draw_card_range(const struct wd_tree_draw *draw, uint32_t begin, uin
     uint32_t vertices = indices / 6 * 4;
     for (uint32_t at = begin; at < end; at += batch) {
         uint32_t count = end - at < batch ? end - at : batch;
-        const struct wd_mesh_range range = {0, 0, (int32_t)(at * vertices)};
-        draw_indexed(draw, count * indices, 1, &range, 0);
+        draw_indexed(draw, count * indices, 1, 0, (int32_t)(at * vertices), 0);
     }
     draw->stats->trees[WD_LEVEL_CARD] += end - begin;
 }

@@ -1,0 +1,145 @@
+#include "weald/forest.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/file.h"
+#include "base/log.h"
+#include "world/inventory.h"
+#include "world/terrain.h"
+
+static bool has_ending(const char *path, const char *ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcasecmp(path + length - tail, ending) == 0;
+}
+
+/* --- scenes and species ------------------------------------------------------------------ */
+
+/* Both end in .json; only species have allometry. */
+static bool is_species(const char *path, bool *species, const struct wd_log *log)
+{
+    enum { MAX_BYTES = 64 << 20 };
+    char *text;
+    size_t size;
+    if (!wd_file_read(path, MAX_BYTES, log, &text, &size))
+        return false;
+    *species = strstr(text, "\"allometry\"") && !strstr(text, "\"terrain\"");
+    free(text);
+    return true;
+}
+
+static bool check_json(const char *path, const char *data_dir, const struct wd_log *log)
+{
+    bool species_file;
+    if (!is_species(path, &species_file, log))
+        return false;
+    if (species_file) {
+        struct wd_arena arena = {0};
+        struct wd_species species;
+        bool ok = wd_species_load(&species, path, &arena, log);
+        wd_arena_finish(&arena);
+        return ok;
+    }
+    const struct wd_scene_params params = {.data_dir = data_dir};
+    struct wd_scene scene;
+    if (!wd_scene_load_with(&scene, path, &params, log))
+        return false;
+    wd_scene_finish(&scene);
+    return true;
+}
+
+/* --- inventories ------------------------------------------------------------------------- */
+
+static bool check_number(const struct wd_csv *csv, int column, bool positive)
+{
+    double value = 0.0;
+    if (column < 0)
+        return true;
+    enum wd_csv_value kind = wd_csv_number(csv, column, &value);
+    if (kind == WD_CSV_NUMBER && positive && value < 0.0)
+        return wd_error(csv->log, "%s:%llu: %s is %g: a size is never negative", csv->path,
+                        (unsigned long long)csv->line, csv->header[column], value);
+    return kind != WD_CSV_BAD;
+}
+
+static bool check_rows(struct wd_csv *csv)
+{
+    enum { MAX_FAULTS = 20 };
+    const struct wd_scene_inventory wanted = {0};
+    struct wd_inventory_columns columns;
+    if (!wd_inventory_find_columns(&columns, csv, &wanted, csv->log))
+        return false;
+    int faults = 0;
+    uint64_t rows = 0;
+    for (;;) {
+        enum wd_csv_row row = wd_csv_next(csv);
+        if (row == WD_CSV_END)
+            break;
+        if (row == WD_CSV_ERROR)
+            return false;
+        rows++;
+        bool ok = check_number(csv, columns.x, false) & check_number(csv, columns.y, false) &
+                  check_number(csv, columns.dbh, true) & check_number(csv, columns.height, true) &
+                  check_number(csv, columns.crown, true);
+        if (!ok && ++faults == MAX_FAULTS)
+            return wd_error(csv->log, "%s: more faults are not listed", csv->path);
+    }
+    if (rows == 0)
+        return wd_error(csv->log, "%s: there is no tree after the header row", csv->path);
+    return faults == 0;
+}
+
+static bool check_csv(const char *path, const struct wd_log *log)
+{
+    struct wd_csv csv;
+    if (!wd_csv_open(&csv, path, NULL, log))
+        return false;
+    bool ok = check_rows(&csv);
+    wd_csv_close(&csv);
+    return ok;
+}
+
+/* --- rasters ----------------------------------------------------------------------------- */
+
+/* Reads the raster as ground would be, coarsely. */
+static bool check_raster(const char *path, const struct wd_log *log)
+{
+    enum { COARSE_SAMPLES = 65536 };
+    struct wd_scene scene = {
+        .path = "",
+        .terrain = {.kind = WD_TERRAIN_RASTER,
+                    .file = path,
+                    .band = 1,
+                    .nodata = NAN,
+                    .vertical_scale = 1.0},
+    };
+    struct wd_terrain terrain;
+    if (!wd_terrain_init(&terrain, &scene, 0, COARSE_SAMPLES, NULL, log))
+        return false;
+    wd_terrain_finish(&terrain);
+    return true;
+}
+
+enum wd_result wd_file_check(const char *path, const char *data_dir, const struct wd_log *log)
+{
+    if (!wd_file_exists(path)) {
+        wd_error(log, "%s: there is no such file", path);
+        return WD_ERROR_INPUT;
+    }
+    bool ok = has_ending(path, ".json")  ? check_json(path, data_dir, log)
+              : has_ending(path, ".csv") ? check_csv(path, log)
+                                         : check_raster(path, log);
+    return ok ? WD_OK : WD_ERROR_INPUT;
+}
+
+char *wd_schema_text(const char *kind)
+{
+    if (strcmp(kind, "scene") == 0)
+        return wd_keys_schema(&wd_scene_keys, "scene.schema.json");
+    if (strcmp(kind, "species") == 0)
+        return wd_keys_schema(&wd_species_keys, "species.schema.json");
+    return NULL;
+}
