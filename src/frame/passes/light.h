@@ -1,0 +1,38 @@
+/* light.h: from G-buffer and shadow maps to radiance: sun, sky, crowns, water, haze. */
+#ifndef WD_FRAME_PASSES_LIGHT_H
+#define WD_FRAME_PASSES_LIGHT_H
+
+#include "forest/forest.h"
+#include "frame/sun_field.h"
+#include "frame/targets.h"
+#include "frame/view.h"
+
+struct wd_light_pass {
+    struct wd_pipeline light, velocity;
+    VkSampler nearest, shadow;
+    struct wd_sun_field sun_field; /* of the newest forest */
+};
+
+bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu);
+void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu);
+
+struct wd_light_params {
+    struct wd_targets *targets;
+    const struct wd_forest_device *forest; /* wd_forest_device_use has been called */
+    const struct wd_view *view;
+    const struct wd_frame_uniforms *frame;
+    struct wd_binding uniforms;            /* the same, on the device */
+};
+/* Stores radiance where frame->sample_index is 0, else adds to it. */
+void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
+                          const struct wd_light_params *params);
+
+/* Writes 2 floats a pixel into `velocity_px`: see wd_picture.velocity_px. */
+void wd_light_pass_record_velocity(struct wd_light_pass *pass, struct wd_cmd *cmd,
+                                   const struct wd_light_params *params,
+                                   struct wd_buffer *velocity_px);
+
+/* Forgets what is kept of a forest; no frame that uses it may be in flight. */
+void wd_light_pass_drop_forest(struct wd_light_pass *pass, struct wd_gpu *gpu);
+
+#endif

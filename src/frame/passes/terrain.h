@@ -1,0 +1,33 @@
+/* terrain.h: the ground into the G-buffer. */
+#ifndef WD_FRAME_PASSES_TERRAIN_H
+#define WD_FRAME_PASSES_TERRAIN_H
+
+#include "forest/ground.h"
+#include "frame/passes/terrain_patches.h"
+#include "frame/targets.h"
+#include "frame/view.h"
+
+struct wd_terrain_pass {
+    struct wd_pipeline pipeline;
+    struct wd_buffer indices;
+    struct wd_patch_list patches; /* scratch */
+    uint64_t triangles;           /* of the newest record */
+};
+
+bool wd_terrain_pass_init(struct wd_terrain_pass *pass, struct wd_gpu *gpu);
+void wd_terrain_pass_finish(struct wd_terrain_pass *pass, struct wd_gpu *gpu);
+
+struct wd_terrain_params {
+    const struct wd_ground *ground; /* wd_ground_use has been called for this frame */
+    const struct wd_view *view;
+    struct wd_binding uniforms;     /* struct wd_frame_uniforms */
+    float error_px;                 /* wanted bound of the mesh's error on screen */
+};
+/* Records one indexed draw into an open rendering of the G-buffer (wd_targets_begin_gbuffer).
+ *
+ * The ground needs no pass into the shadow maps: its own shadows, at any distance, are in the light
+ * pass (frame/sun_field.h), and the maps hold what stands on it. */
+void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
+                            const struct wd_terrain_params *params);
+
+#endif
