@@ -2,6 +2,11 @@
 
 #include "viewer/viewer.h"
 
+static bool keep_running(void *user)
+{
+    return !cli_session_interrupted(user);
+}
+
 enum cli_status cli_view(struct cli_session *session)
 {
     const struct cli_options *options = session->options;
@@ -23,6 +28,8 @@ enum cli_status cli_view(struct cli_session *session)
         .threads = options->threads,
         .log = session->log,
         .progress = session->progress,
+        .keep_running = keep_running,
+        .user = session,
     };
     if (!wd_viewer_display_present(&session->log))
         return CLI_NO_DISPLAY;

@@ -18,7 +18,9 @@ struct wd_viewer_params {
     enum wd_validation validation;
     unsigned threads;
     struct wd_log log;
-    struct wd_progress progress; /* asked once a frame, stage "viewer": false closes the window */
+    struct wd_progress progress; /* of loading */
+    bool (*keep_running)(void *user); /* asked once a frame; false closes the window. May be NULL */
+    void *user;
 };
 
 /* Whether a window could be opened here; says why not. */

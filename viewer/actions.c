@@ -1,0 +1,167 @@
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "state.h"
+
+#define NOTICE_SECONDS 4.0
+#define SCREENSHOT_SAMPLES 4
+
+void viewer_notice(struct viewer_state *viewer, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(viewer->notice, sizeof viewer->notice, format, args);
+    va_end(args);
+    viewer->notice_until_s = viewer_seconds() + NOTICE_SECONDS;
+}
+
+static double ground_m(const void *forest, double x_m, double y_m)
+{
+    return wd_forest_ground_m(forest, x_m, y_m);
+}
+
+struct viewer_ground viewer_ground(const struct viewer_state *viewer)
+{
+    return (struct viewer_ground){ground_m, viewer->forest};
+}
+
+void viewer_act_gait(struct viewer_state *viewer)
+{
+    bool walking = viewer->motion.gait == VIEWER_WALK;
+    viewer->motion.gait = walking ? VIEWER_FLY : VIEWER_WALK;
+    viewer->motion.fall_mps = 0;
+    viewer->motion.grounded = false;
+    viewer_notice(viewer, walking ? "flying" : "on foot");
+}
+
+void viewer_act_method(struct viewer_state *viewer)
+{
+    const char *const *names = wd_method_names();
+    size_t i = 0;
+    while (names[i] && strcmp(names[i], viewer->method))
+        i++;
+    viewer->method = names[i] && names[i + 1] ? names[i + 1] : names[0];
+    viewer_notice(viewer, "method %s", viewer->method);
+}
+
+void viewer_act_lod(struct viewer_state *viewer)
+{
+    viewer->view = viewer->view == WD_VIEW_LOD ? WD_VIEW_LIT : WD_VIEW_LOD;
+    if (viewer->view == WD_VIEW_LOD)
+        viewer_notice(viewer, "red: mesh, yellow: reduced mesh, blue: billboard");
+}
+
+void viewer_act_times(struct viewer_state *viewer)
+{
+    viewer->times_shown = !viewer->times_shown;
+}
+
+void viewer_act_help(struct viewer_state *viewer)
+{
+    viewer->help_shown = !viewer->help_shown;
+}
+
+void viewer_act_grab(struct viewer_state *viewer)
+{
+    viewer->grabbed = !viewer->grabbed;
+    SDL_SetRelativeMouseMode(viewer->grabbed ? SDL_TRUE : SDL_FALSE);
+}
+
+void viewer_act_quit(struct viewer_state *viewer)
+{
+    viewer->quit = true;
+}
+
+void viewer_act_play(struct viewer_state *viewer)
+{
+    if (!viewer->params->path && !wd_forest_path_name(viewer->forest, 0))
+        viewer_notice(viewer, "this scene has no path");
+    else
+        viewer->path_time_s = viewer->path_time_s < 0 ? 0 : -1;
+}
+
+void viewer_act_next_camera(struct viewer_state *viewer)
+{
+    uint32_t scene_count = 0;
+    while (wd_forest_camera_name(viewer->forest, scene_count))
+        scene_count++;
+    uint32_t index = (viewer->camera_index + 1) % (scene_count + (uint32_t)viewer->cameras.count);
+    viewer->camera_index = index;
+    viewer->path_time_s = -1;
+    if (index >= scene_count) {
+        const struct viewer_saved_camera *saved = &viewer->cameras.saved[index - scene_count];
+        viewer->motion.camera = saved->camera;
+        viewer->camera_name = saved->name;
+    } else {
+        viewer->camera_name = wd_forest_camera_name(viewer->forest, index);
+        wd_forest_get_camera(viewer->forest, viewer->camera_name, &viewer->motion.camera);
+    }
+    viewer->motion.grounded = false;
+    viewer_notice(viewer, "camera %s", viewer->camera_name);
+}
+
+void viewer_act_save_camera(struct viewer_state *viewer)
+{
+    if (viewer_cameras_save(&viewer->cameras, &viewer->motion.camera))
+        viewer_notice(viewer, "%s saved in %s",
+                      viewer->cameras.saved[viewer->cameras.count - 1].name, viewer->cameras.path);
+    else
+        viewer_notice(viewer, "the camera could not be saved in %s", viewer->cameras.path);
+}
+
+/* DIR/weald-YYYYmmdd-HHMMSS.png, with -2, -3 ... where one was taken in the same second. */
+static char *screenshot_name(const char *directory)
+{
+    char stamp[32];
+    time_t now = time(NULL);
+    struct tm local;
+    strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", localtime_r(&now, &local));
+    char *name = NULL;
+    for (int i = 1; i < 1000; i++) {
+        char suffix[8] = "";
+        if (i > 1)
+            snprintf(suffix, sizeof suffix, "-%d", i);
+        if (asprintf(&name, "%s/weald-%s%s.png", directory ? directory : ".", stamp, suffix) < 0)
+            return NULL;
+        if (access(name, F_OK))
+            return name;
+        free(name);
+    }
+    return NULL;
+}
+
+void viewer_act_screenshot(struct viewer_state *viewer)
+{
+    char *name = screenshot_name(viewer->params->screenshot_dir);
+    if (!name) {
+        viewer_notice(viewer, "no free name for a screenshot");
+        return;
+    }
+    struct wd_render_params params = {
+        .camera = viewer->motion.camera,
+        .time_s = viewer->now_s - viewer->begin_s,
+        .previous_time_s = viewer->now_s - viewer->begin_s,
+        .width = viewer->swapchain.extent.width,
+        .height = viewer->swapchain.extent.height,
+        .samples = SCREENSHOT_SAMPLES,
+        .method = viewer->method,
+        .view = viewer->view,
+    };
+    struct wd_picture picture = {0};
+    bool ok = wd_renderer_wait(viewer->renderer) == WD_OK &&
+              wd_renderer_render(viewer->renderer, &params, &picture) == WD_OK &&
+              wd_picture_write(&picture, name, &viewer->params->log) == WD_OK;
+    viewer->screenshot_count += ok;
+    viewer_notice(viewer, ok ? "%s" : "%s could not be written", name);
+    wd_picture_finish(&picture);
+    free(name);
+}
+
+void viewer_act_report(struct viewer_state *viewer)
+{
+    viewer_report(viewer, "key");
+}

@@ -1,0 +1,271 @@
+#include "viewer.h"
+
+#include <SDL_vulkan.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "message.h"
+#include "state.h"
+
+#define DEFAULT_WIDTH 1280
+#define DEFAULT_HEIGHT 720
+#define HIDDEN_WAIT_MS 100
+
+double viewer_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}
+
+bool wd_viewer_display_present(const struct wd_log *log)
+{
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+    if (SDL_Init(SDL_INIT_VIDEO))
+        return viewer_error(log, "no window can be opened: %s", SDL_GetError());
+    const char *driver = SDL_GetCurrentVideoDriver();
+    bool real = driver && strcmp(driver, "dummy") && strcmp(driver, "offscreen");
+    SDL_Quit();
+    return real || viewer_error(log, "no window can be opened: there is no display");
+}
+
+static bool open_window(struct viewer_state *viewer)
+{
+    const struct wd_viewer_params *params = viewer->params;
+    struct wd_forest_info info;
+    char title[256];
+    wd_forest_get_info(viewer->forest, &info);
+    snprintf(title, sizeof title, "weald: %s", info.name);
+    viewer->window =
+        SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
+                         (int)(params->width ? params->width : DEFAULT_WIDTH),
+                         (int)(params->height ? params->height : DEFAULT_HEIGHT),
+                         SDL_WINDOW_VULKAN | SDL_WINDOW_RESIZABLE | SDL_WINDOW_HIDDEN |
+                             SDL_WINDOW_ALLOW_HIGHDPI);
+    return viewer->window ||
+           viewer_error(&params->log, "no window can be opened: %s", SDL_GetError());
+}
+
+static enum wd_result open_renderer(struct viewer_state *viewer)
+{
+    const struct wd_viewer_params *params = viewer->params;
+    const char *extensions[16];
+    unsigned count = 16;
+    if (!SDL_Vulkan_GetInstanceExtensions(viewer->window, &count, extensions)) {
+        viewer_error(&params->log, "the window takes no Vulkan pictures: %s", SDL_GetError());
+        return WD_ERROR_DEVICE;
+    }
+    struct wd_renderer_params renderer = {
+        .gpu = params->gpu,
+        .validation = params->validation,
+        .threads = params->threads,
+        .progress = params->progress,
+        .log = params->log,
+    };
+    enum wd_result result =
+        wd_renderer_create_presenting(&viewer->renderer, extensions, count, &renderer);
+    return result == WD_OK ? wd_renderer_set_forest(viewer->renderer, viewer->forest) : result;
+}
+
+static bool open_swapchain(struct viewer_state *viewer)
+{
+    struct wd_vulkan_handles vulkan;
+    wd_renderer_get_vulkan(viewer->renderer, &vulkan);
+    return viewer_swapchain_init(&viewer->swapchain, viewer->window, &vulkan,
+                                 &viewer->params->log) &&
+           viewer_swapchain_rebuild(&viewer->swapchain) == VIEWER_SWAP_READY &&
+           viewer_overlay_init(&viewer->overlay, &viewer->swapchain);
+}
+
+static enum wd_result choose_start(struct viewer_state *viewer)
+{
+    const struct wd_viewer_params *params = viewer->params;
+    struct wd_render_defaults defaults;
+    wd_forest_get_render_defaults(viewer->forest, &defaults);
+    viewer->method = params->method ? params->method : defaults.method;
+    viewer->view = params->view;
+    viewer->motion.speed_factor = 1;
+    viewer->motion.gait = params->walk ? VIEWER_WALK : VIEWER_FLY;
+    viewer->path_time_s = params->path ? 0 : -1;
+    viewer->camera_name = params->camera ? params->camera : wd_forest_camera_name(viewer->forest, 0);
+    const char *name;
+    for (uint32_t i = 0; (name = wd_forest_camera_name(viewer->forest, i)); i++)
+        if (!strcmp(name, viewer->camera_name))
+            viewer->camera_index = i;
+    struct wd_camera unused;
+    enum wd_result result =
+        wd_forest_get_camera(viewer->forest, params->camera, &viewer->motion.camera);
+    if (result == WD_OK && params->path)
+        result = wd_forest_get_path_camera(viewer->forest, params->path, 0, &unused, NULL);
+    return result;
+}
+
+static enum wd_result open_viewer(struct viewer_state *viewer)
+{
+    enum wd_result result = choose_start(viewer);
+    if (result != WD_OK)
+        return result;
+    if (!viewer_cameras_init(&viewer->cameras, viewer->params->scene_path, &viewer->params->log))
+        return WD_ERROR_INPUT;
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+    if (SDL_Init(SDL_INIT_VIDEO)) {
+        viewer_error(&viewer->params->log, "no window can be opened: %s", SDL_GetError());
+        return WD_ERROR_DEVICE;
+    }
+    if (!open_window(viewer))
+        return WD_ERROR_DEVICE;
+    result = open_renderer(viewer);
+    if (result == WD_OK && !open_swapchain(viewer))
+        result = WD_ERROR_DEVICE;
+    return result;
+}
+
+static void close_viewer(struct viewer_state *viewer)
+{
+    if (viewer->swapchain.vulkan.device)
+        vkDeviceWaitIdle(viewer->swapchain.vulkan.device);
+    viewer_overlay_finish(&viewer->overlay);
+    viewer_swapchain_finish(&viewer->swapchain);
+    wd_renderer_destroy(&viewer->renderer);
+    viewer_cameras_finish(&viewer->cameras);
+    if (viewer->window)
+        SDL_DestroyWindow(viewer->window);
+    SDL_Quit();
+}
+
+/* A window that is minimised or has no area costs nothing. */
+static void handle_events(struct viewer_state *viewer)
+{
+    SDL_Event event;
+    if ((viewer->minimised || viewer->no_area) && SDL_WaitEventTimeout(&event, HIDDEN_WAIT_MS)) {
+        viewer_panels_event(&event);
+        viewer_input_event(viewer, &event);
+    }
+    while (SDL_PollEvent(&event)) {
+        viewer_panels_event(&event);
+        viewer_input_event(viewer, &event);
+    }
+}
+
+static void play_path(struct viewer_state *viewer)
+{
+    double duration_s;
+    if (viewer->path_time_s < 0)
+        return;
+    viewer->path_time_s += viewer->step_s;
+    wd_forest_get_path_camera(viewer->forest, viewer->params->path, viewer->path_time_s,
+                              &viewer->motion.camera, &duration_s);
+    if (viewer->path_time_s >= duration_s)
+        viewer->path_time_s = -1;
+}
+
+static void advance(struct viewer_state *viewer)
+{
+    double now_s = viewer_seconds();
+    viewer->step_s = now_s - viewer->now_s;
+    viewer->now_s = now_s;
+    viewer_input_step(viewer);
+    play_path(viewer);
+}
+
+static bool rebuild(struct viewer_state *viewer)
+{
+    vkDeviceWaitIdle(viewer->swapchain.vulkan.device);
+    enum viewer_swap_state state = viewer_swapchain_rebuild(&viewer->swapchain);
+    viewer->no_area = state == VIEWER_SWAP_HIDDEN;
+    viewer->stale = viewer->no_area;
+    return state == VIEWER_SWAP_HIDDEN ||
+           (state == VIEWER_SWAP_READY &&
+            viewer_overlay_resize(&viewer->overlay, &viewer->swapchain));
+}
+
+static enum wd_result draw_forest(struct viewer_state *viewer,
+                                  const struct viewer_overlay_frame *frame, uint32_t index)
+{
+    double time_s = viewer->now_s - viewer->begin_s;
+    struct wd_render_params params = {
+        .camera = viewer->motion.camera,
+        .time_s = time_s,
+        .previous_time_s = time_s - viewer->step_s,
+        .width = viewer->swapchain.extent.width,
+        .height = viewer->swapchain.extent.height,
+        .samples = 1,
+        .method = viewer->method,
+        .view = viewer->view,
+        .timing = viewer->times_shown ? WD_TIME_PASSES : WD_TIME_OFF,
+    };
+    struct wd_vulkan_target target = {
+        .image = viewer->swapchain.images[index],
+        .format = viewer->swapchain.format.format,
+        .width = params.width,
+        .height = params.height,
+        .layout_after = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+        .wait = frame->acquired,
+        .signal = frame->drawn,
+    };
+    return wd_renderer_draw(viewer->renderer, &params, &target);
+}
+
+static enum wd_result draw_frame(struct viewer_state *viewer)
+{
+    struct viewer_overlay_frame *frame =
+        &viewer->overlay.frames[viewer->frame_count % VIEWER_FRAMES_IN_FLIGHT];
+    uint32_t index;
+    if (!viewer_overlay_begin(&viewer->overlay, frame))
+        return WD_ERROR_DEVICE;
+    enum viewer_swap_state state =
+        viewer_swapchain_acquire(&viewer->swapchain, frame->acquired, &index);
+    if (state == VIEWER_SWAP_STALE)
+        viewer->stale = true;
+    if (state != VIEWER_SWAP_READY)
+        return state == VIEWER_SWAP_FAILED ? WD_ERROR_DEVICE : WD_OK;
+
+    struct viewer_texts texts;
+    struct viewer_panels_content content = viewer_status(viewer, &texts);
+    enum wd_result result = draw_forest(viewer, frame, index);
+    if (result != WD_OK)
+        return result;
+    if (!viewer_overlay_draw(&viewer->overlay, frame, &viewer->swapchain, index, &content))
+        return WD_ERROR_DEVICE;
+    state = viewer_swapchain_present(&viewer->swapchain, index);
+    viewer->stale = viewer->stale || state == VIEWER_SWAP_STALE;
+    viewer->frame_count++;
+    double frame_ms = (viewer_seconds() - viewer->now_s) * 1e3;
+    viewer->frame_ms += (frame_ms - viewer->frame_ms) * (viewer->frame_count == 1 ? 1 : 0.2);
+    return state == VIEWER_SWAP_FAILED ? WD_ERROR_DEVICE : WD_OK;
+}
+
+static enum wd_result run_loop(struct viewer_state *viewer)
+{
+    const struct wd_viewer_params *params = viewer->params;
+    enum wd_result result = WD_OK;
+    viewer->begin_s = viewer->now_s = viewer_seconds();
+    SDL_ShowWindow(viewer->window);
+    while (result == WD_OK && !viewer->quit) {
+        if (params->keep_running && !params->keep_running(params->user))
+            return WD_ERROR_INTERRUPTED;
+        handle_events(viewer);
+        advance(viewer);
+        if (viewer->minimised)
+            continue;
+        if (viewer->stale && !rebuild(viewer))
+            result = WD_ERROR_DEVICE;
+        else if (!viewer->no_area)
+            result = draw_frame(viewer);
+    }
+    return result;
+}
+
+enum wd_result wd_viewer_run(const struct wd_forest *forest, const struct wd_viewer_params *params)
+{
+    struct viewer_state viewer = {.params = params, .forest = forest};
+    enum wd_result result = open_viewer(&viewer);
+    if (result == WD_OK) {
+        result = run_loop(&viewer);
+        if (!viewer_report(&viewer, "exit") && result == WD_OK)
+            result = WD_ERROR_OUTPUT;
+    }
+    close_viewer(&viewer);
+    return result;
+}
