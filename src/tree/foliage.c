@@ -32,7 +32,7 @@ static float leafy_from(const struct wd_tree_form *form, const struct wd_branch 
     if (branch->order == last)
         return tuft ? 0.45f : 0.12f;
     if (branch->order == last - 1 && branch->order >= 0)
-        return form->species->form == WD_FORM_CONIFER && last < 2 ? 0.35f : 0.75f;
+        return form->species->form == WD_FORM_CONIFER && last < 2 ? 0.35f : 0.55f;
     return branch->order == WD_TRUNK ? 0.975f : 0.9f;
 }
 
@@ -78,7 +78,8 @@ static void weigh_carriers(struct carriers *carriers, struct wd_foliage *foliage
         size_t node;
         struct wd_vec3 p = wd_branch_point(skeleton, &skeleton->branches[carrier->branch], 0.7f,
                                            &d, &node);
-        carrier->weight = carrier->length_m * (0.4f + wd_tree_density_sky(&foliage->crown, p));
+        float sky = wd_tree_density_sky(&foliage->crown, p);
+        carrier->weight = carrier->length_m * (0.25f + sky + sky * sky);
         carriers->weight += carrier->weight;
     }
     for (size_t i = 0; i < (size_t)foliage->crown.size[0] * (size_t)foliage->crown.size[1] *
@@ -128,7 +129,7 @@ static void turn_shoot(struct wd_leaf *leaf, const struct wd_tree_form *form, st
                                            wd_random_range(random, 0.5f, 1)));
     leaf->axis = wd_v3_unit(wd_v3_mad(axis, wd_random_vec3(random), 0.15f));
     struct wd_vec3 light = wd_v3_mad(WD_V3(0, 0, 1), leaf->shading, 0.5f);
-    leaf->normal = wd_v3_square(wd_v3_mad(light, wd_random_vec3(random), 0.3f), leaf->axis);
+    leaf->normal = wd_v3_square(wd_v3_mad(light, wd_random_vec3(random), 1.3f), leaf->axis);
 }
 
 /* Leaves differ a little one by one, more from branch to branch; those in the light are paler. */
@@ -167,7 +168,8 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
         turn_broadleaf(leaf, form, twig, side, &random);
     leaf->size_m = wd_mixf(1.2f, 0.85f, wd_clampf(1.5f * leaf->sky, 0, 1)) *
                    wd_random_range(&random, 0.8f, 1.15f);
-    leaf->position_m = p;
+    float loose = needles ? 0.02f : 0.4f * form->species->orders[form->species->order_count - 1].spacing_m;
+    leaf->position_m = wd_v3_mad(p, wd_random_vec3(&random), loose * form->scale);
     leaf->flexibility = skeleton->nodes[node].flexibility;
     int parent = branch->parent >= 0 ? branch->parent : 0;
     tint_leaf(leaf, skeleton->branches[parent].key, &random);
@@ -188,7 +190,7 @@ static void shuffle(struct wd_leaf *leaves, size_t count, uint32_t key)
 static float leaf_area_m2(const struct wd_tree_form *form)
 {
     float projection = (float)WD_PI * form->crown_radius_m * form->crown_radius_m;
-    return 0.9f * projection * form->species->leaf.area_index;
+    return 1.05f * projection * form->species->leaf.area_index;
 }
 
 /* Small trees draw fewer leaves, and never smaller ones than real. */

@@ -32,7 +32,7 @@ static void set_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *f
         float clear = 1 - 0.16f * wd_clampf(node->position_m.z / form->crown_base_m, 0, 1);
         float carried = clear * sqrtf(node->load / all);
         float taper = (float)wd_dpow((double)height, 0.85);
-        node->radius_m = fmaxf(base * wd_mixf(carried, taper, leader * leader), TIP_RADIUS_M);
+        node->radius_m = fmaxf(base * (leader > 0.85f ? taper : carried), TIP_RADIUS_M);
     }
 }
 

@@ -94,8 +94,14 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     branch->node_count = skeleton->node_count - branch->first_node;
 }
 
-/* The trunk keeps upright; where limbs are strong it leans away from each in turn, so that it
- * dissolves into them. */
+/* Share of the crown's length up to which there is a trunk: above, it has dissolved into limbs. */
+static float trunk_end(const struct wd_tree_form *form)
+{
+    float leader = form->species->apical_dominance;
+    return leader > 0.85f ? 1 : 0.22f + 0.8f * leader;
+}
+
+/* The trunk keeps upright as far as it goes. */
 static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
     const struct wd_species *species = form->species;
@@ -103,7 +109,8 @@ static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *
     struct stem stem = {.order = WD_TRUNK, .parent = -1, .key = wd_hash2(form->key, 0x7)};
     struct wd_random random = wd_random_of(stem.key, 0x57e);
     struct wd_branch *branch = add_branch(skeleton, &stem);
-    float step = form->height_m / STEPS, loose = 1 - species->apical_dominance;
+    float crown = form->height_m - form->crown_base_m;
+    float step = (form->crown_base_m + crown * trunk_end(form)) / STEPS, loose = 1 - species->apical_dominance;
     struct wd_vec3 p = WD_V3(0, 0, 0), drift = WD_V3(0, 0, 0);
     struct wd_vec3 d = wd_v3_unit(WD_V3(0.06f * loose * wd_random_signed(&random),
                                         0.06f * loose * wd_random_signed(&random), 1));
@@ -214,23 +221,26 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
     const struct wd_species *species = form->species;
     struct wd_random random = wd_random_of(form->key, 0x11b5);
     float crown = form->height_m - form->crown_base_m, spacing = spacing_m(form, 0);
+    float end = crown * trunk_end(form), top = form->crown_base_m + end;
     int whorl = (int)species->whorl, index = 0;
-    for (float z = 0.1f * spacing; z < 0.985f * crown; index++) {
-        float around = (float)index * 2.3999632f + wd_random_unit(&random), t = z / crown;
+    for (float z = 0.1f * spacing; z < 0.985f * end; index++) {
+        float around = (float)index * 2.3999632f + wd_random_unit(&random), t = z / end;
         for (int i = 0; i < whorl; i++) {
             if (skeleton->branch_count >= WD_MAX_BRANCHES)
                 return false;
             float lift = whorl > 1 ? 0.12f * spacing * wd_random_signed(&random) : 0;
-            float share = (form->crown_base_m + z + lift) / form->height_m;
-            struct joint joint = {.share = wd_clampf(share, 0.02f, 0.99f), .height = t,
+            float share = (form->crown_base_m + z + lift) / top;
+            struct joint joint = {.share = wd_clampf(share, 0.02f, 0.99f), .height = z / end,
                                   .jitter_rad = whorl > 1 ? 0.25f : 0.8f};
             joint.around_rad = around + (float)i * (float)(2 * WD_PI) / (float)whorl;
             joint.length_m = 1.6f * form->crown_radius_m * species->orders[0].length_ratio;
+            if (end < crown)
+                joint.length_m = fmaxf(joint.length_m, joint.height * (crown - z));
             joint.length_m *= wd_random_range(&random, 0.75f, 1.0f);
             joint.key = wd_hash3(form->key, 0x11b, (uint32_t)(index * 16 + i));
             grow_joint(skeleton, form, 0, &joint);
         }
-        z += spacing * wd_random_range(&random, 0.8f, 1.2f) * (1 - 0.35f * t);
+        z += spacing * wd_random_range(&random, 0.8f, 1.2f) * (1 - 0.4f * t);
     }
     return true;
 }
@@ -270,7 +280,7 @@ static bool grow_along(struct wd_skeleton *skeleton, const struct wd_tree_form *
 static bool grow_order(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order)
 {
     int count = (int)skeleton->branch_count;
-    bool leader = form->species->apical_dominance < 0.9f;
+    bool leader = form->species->form == WD_FORM_BROADLEAF && trunk_end(form) > 0.7f;
     for (int i = 0; i < count; i++) {
         int parent = skeleton->branches[i].order;
         bool next = parent == order - 1 || (parent == WD_TRUNK && leader && order == 1);

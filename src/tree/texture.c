@@ -75,9 +75,9 @@ static int repeats(float over_m, float scale_cm)
 /* Long ridges that part and join again, broken across here and there. */
 static struct bark_point fissured(uint32_t key, float u, float v, int across)
 {
-    float bend = 1.3f * (tile_fractal(key, u, v, 6, 4) - 0.5f) * 6 / (float)across;
+    float bend = 2.2f * (tile_fractal(key, u, v, 5, 3) - 0.5f) / (float)across;
     float x = (u + bend) * (float)across;
-    int along = across / 4 < 2 ? 2 : across / 4;
+    int along = across / 5 < 2 ? 2 : across / 5;
     x -= floorf(x / (float)across) * (float)across;
     uint32_t plate = 0;
     float edge = cell_edge(key ^ 0xf15, x, v * (float)along, across, along, &plate);

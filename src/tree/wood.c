@@ -127,9 +127,10 @@ static void join_rings(const struct tube *tube, uint32_t low, uint32_t high)
     }
 }
 
-static void close_tip(const struct tube *tube, const struct ring *ring, uint32_t low)
+static void close_tip(const struct tube *tube, const struct ring *ring, uint32_t low,
+                      float beyond_m)
 {
-    struct wd_vec3 p = ring->center_m;
+    struct wd_vec3 p = wd_v3_mad(ring->center_m, ring->direction, beyond_m);
     float normal[3] = {ring->direction.x, ring->direction.y, ring->direction.z};
     struct wd_tree_vertex vertex = {
         .position_m = {p.x, p.y, p.z},
@@ -143,18 +144,21 @@ static void close_tip(const struct tube *tube, const struct ring *ring, uint32_t
         wd_tree_mesh_add_triangle(tube->mesh, low + i, low + i + 1, tip);
 }
 
-/* Rings share their vertices with the next segment; the frame is carried along without twist. */
+/* Rings share their vertices with the next segment; the frame is carried along without twist. A
+ * thin branch ends in a point, a trunk that has dissolved in a blunt end between its limbs. */
 static void add_tube(const struct tube *tube, const struct ring *rings, int count)
 {
     struct wd_vec3 side = wd_v3_side(rings[0].direction);
     uint32_t low = add_ring(tube, &rings[0], side);
-    for (int i = 1; i < count - 1; i++) {
+    float end = rings[count - 1].radius_m;
+    int tubes = end > 0.02f ? count : count - 1;
+    for (int i = 1; i < tubes; i++) {
         side = wd_v3_square(side, rings[i].direction);
         uint32_t high = add_ring(tube, &rings[i], side);
         join_rings(tube, low, high);
         low = high;
     }
-    close_tip(tube, &rings[count - 1], low);
+    close_tip(tube, &rings[count - 1], low, tubes == count ? 0.7f * end : 0);
 }
 
 void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,

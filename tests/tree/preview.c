@@ -45,8 +45,8 @@ static void paint_ground(struct wd_raster *raster, int horizon)
         for (int x = 0; x < raster->width; x++) {
             float *rgb = &raster->rgb[3 * ((size_t)y * (size_t)raster->width + (size_t)x)];
             float t = (float)y / (float)raster->height;
-            const float sky[3] = {0.45f + 0.25f * t, 0.58f + 0.2f * t, 0.78f + 0.1f * t};
-            const float grass[3] = {0.16f, 0.19f, 0.09f};
+            const float sky[3] = {0.14f + 0.12f * t, 0.22f + 0.12f * t, 0.36f + 0.1f * t};
+            const float grass[3] = {0.08f, 0.10f, 0.04f};
             memcpy(rgb, y < horizon ? sky : grass, sizeof sky);
         }
 }
@@ -73,8 +73,8 @@ static bool write_png(const char *path, const struct wd_raster *raster)
         float sum = 0;
         for (size_t j = 0; j < SAMPLES * SAMPLES; j++) {
             size_t at = (y + j / SAMPLES) * (size_t)raster->width + x + j % SAMPLES;
-            float light = 1.6f * raster->rgb[3 * at + i % 3];
-            sum += 1.25f * light / (light + 0.55f);
+            float light = 2.0f * raster->rgb[3 * at + i % 3];
+            sum += light * (2.51f * light + 0.03f) / (light * (2.43f * light + 0.59f) + 0.14f);
         }
         pixels[i] = wd_srgb_encode(fminf(sum / (SAMPLES * SAMPLES), 1));
     }
@@ -125,7 +125,8 @@ static void paint_swatches(struct wd_raster *raster, const struct wd_raster_look
             size_t at = (size_t)(y + 8) * (size_t)raster->width +
                         (size_t)(raster->width - 2 * SIZE - 8 + x);
             for (size_t i = 0; i < 3; i++)
-                raster->rgb[3 * at + i] = wd_srgb_decode(look[4 * (ty * TEXTURE + tx) + i]);
+                raster->rgb[3 * at + i] =
+                    2 * wd_srgb_decode(look[4 * (ty * TEXTURE + tx) + i]);
         }
 }
 
