@@ -95,7 +95,10 @@ char *wd_json_blank_comments(const char *path, const char *text, size_t size,
                  spot.column);
         return NULL;
     }
-    if (strspn(text, " \t\r\n") >= size) {
+    size_t blanks = 0;
+    while (blanks < size && memchr(" \t\r\n", text[blanks], 4))
+        blanks++;
+    if (blanks == size) {
         wd_error(log, "%s:1:1: the file is empty; it should hold a JSON object: { ... }", path);
         return NULL;
     }

@@ -164,8 +164,8 @@ bool wd_keys_read_object(const struct wd_keys *table, json_t *json,
         else
             ok = read_default(key, place, object) && ok;
     }
-    if (ok && table->check)
-        ok = table->check(object, place);
+    if (table->check && (ok || table->check_always))
+        ok = table->check(object, place) && ok;
     return ok;
 }
 

@@ -84,6 +84,8 @@ struct wd_keys {
     size_t size;               /* sizeof the struct it fills */
     /* Checks across keys, or NULL; reports with wd_keys_error and returns false. */
     bool (*check)(void *object, const struct wd_keys_place *place);
+    bool check_always;         /* even after errors in its keys: their members may be zero, and
+                                  arrays hold zeroed items */
 };
 
 /* Logs "file:line:column: path.key: message". `key` NULL points at the object itself. Returns false. */

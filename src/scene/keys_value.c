@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/dmath.h"
+#include "base/color.h"
 #include "scene/keys_reader.h"
 #include "scene/nearest.h"
 
@@ -261,12 +261,6 @@ static int hex_digit(char c)
                                   : -1;
 }
 
-/* IEC 61966-2-1 */
-static float linear_from_srgb(double value)
-{
-    return (float)(value <= 0.04045 ? value / 12.92 : wd_dpow((value + 0.055) / 1.055, 2.4));
-}
-
 static bool read_color(const struct wd_key *key, json_t *json, const struct wd_keys_place *place,
                        float color[3])
 {
@@ -278,7 +272,7 @@ static bool read_color(const struct wd_key *key, json_t *json, const struct wd_k
             int high = hex_digit(text[1 + 2 * i]), low = hex_digit(text[2 + 2 * i]);
             if (high < 0 || low < 0)
                 return refuse(key, json, place);
-            color[i] = linear_from_srgb((high * 16 + low) / 255.0);
+            color[i] = wd_srgb_decode((uint8_t)(high * 16 + low));
         }
         return true;
     }
@@ -413,12 +407,11 @@ static bool read_string_map(const struct wd_key *key, json_t *json,
     json_t *value;
     json_object_foreach(json, name, value)
     {
-        if (!string_allowed(value)) {
-            ok = refuse_pair(key, name, value, place);
-            continue;
-        }
         pair->name = wd_arena_strdup(place->reader->arena, name);
-        pair->value = wd_arena_strdup(place->reader->arena, json_string_value(value));
+        if (!string_allowed(value))
+            ok = refuse_pair(key, name, value, place);
+        else
+            pair->value = wd_arena_strdup(place->reader->arena, json_string_value(value));
         pair++;
     }
     return ok;

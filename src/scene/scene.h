@@ -37,7 +37,7 @@ struct wd_scene_map {
     size_t class_count;
     double *class_density;   /* parallel to classes: probability of each; NULL: 1 */
     size_t class_density_count;
-    float value_range[2];    /* otherwise: value at probability 0 and at 1 */
+    float value_range[2];    /* otherwise: value at probability 0 and at 1; may fall */
 };
 
 struct wd_scene_share {
@@ -102,6 +102,7 @@ struct wd_scene_camera {
     double pitch_deg;        /* up */
     double fov_deg;          /* vertical */
     bool absolute;           /* z is above the world's zero, not above the ground */
+    bool automatic;          /* no camera was given: the renderer frames the scene */
 };
 
 struct wd_scene_path {
@@ -116,7 +117,8 @@ struct wd_scene {
     const char *name;
     int64_t seed;
     struct wd_scene_terrain terrain;
-    struct wd_string_pair *species_files; /* name -> file, beside the scene file */
+    struct wd_string_pair *species_files; /* name -> file, ready to open; once loaded, also those
+                                             that layers and inventories name */
     size_t species_file_count;
     struct wd_species *species; /* loaded, parallel to species_files */
     int64_t variants;        /* grown individuals a species */
@@ -179,8 +181,17 @@ struct wd_scene {
 
 extern const struct wd_keys wd_scene_keys;
 
+/* What a scene is loaded with. */
+struct wd_scene_params {
+    const char *data_dir;    /* what ${data} in file names stands for; NULL: none */
+};
+
 /* Reads a scene file and every species file it names. On failure `*scene` is `{0}`; all errors
- * that can be found in one pass have been logged. */
+ * that can be found in one pass have been logged. A species without an entry in "species" is
+ * looked for as species/NAME.json and ../species/NAME.json beside the scene file, then among the
+ * installed ones. File names that begin with ${data} become absolute. `params` may be NULL. */
+bool wd_scene_load_with(struct wd_scene *scene, const char *path,
+                        const struct wd_scene_params *params, const struct wd_log *log);
 bool wd_scene_load(struct wd_scene *scene, const char *path, const struct wd_log *log);
 void wd_scene_finish(struct wd_scene *scene);
 

@@ -1,0 +1,55 @@
+#include "scene/scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+
+enum { MAX_SCENE_BYTES = 16 << 20 };
+
+bool wd_scene_load_with(struct wd_scene *scene, const char *path,
+                        const struct wd_scene_params *params, const struct wd_log *log)
+{
+    *scene = (struct wd_scene){0};
+    char *text;
+    size_t size;
+    if (!wd_file_read(path, MAX_SCENE_BYTES, log, &text, &size))
+        return false;
+    struct wd_arena arena = {0};
+    bool ok = wd_keys_read_with(&wd_scene_keys, path, text, size, params, &arena, log, scene);
+    free(text);
+    if (ok)
+        scene->arena = arena;
+    else
+        wd_arena_finish(&arena);
+    return ok;
+}
+
+bool wd_scene_load(struct wd_scene *scene, const char *path, const struct wd_log *log)
+{
+    return wd_scene_load_with(scene, path, NULL, log);
+}
+
+void wd_scene_finish(struct wd_scene *scene)
+{
+    wd_arena_finish(&scene->arena);
+    *scene = (struct wd_scene){0};
+}
+
+const struct wd_scene_camera *wd_scene_find_camera(const struct wd_scene *scene, const char *name)
+{
+    for (size_t i = 0; i < scene->camera_count; i++) {
+        if (strcmp(scene->cameras[i].name, name) == 0)
+            return &scene->cameras[i];
+    }
+    return NULL;
+}
+
+int wd_scene_find_species(const struct wd_scene *scene, const char *name)
+{
+    for (size_t i = 0; i < scene->species_file_count; i++) {
+        if (strcmp(scene->species_files[i].name, name) == 0)
+            return (int)i;
+    }
+    return -1;
+}

@@ -1,0 +1,211 @@
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "scene/scene_parts.h"
+
+enum { MAX_SPECIES = 255, FOLDER_COUNT = 3 };
+
+struct loader {
+    const struct wd_keys_place *root;
+    struct wd_string_pair *files;
+    size_t count, capacity;
+    char *folders[FOLDER_COUNT]; /* where species without a file are looked for, in order */
+};
+
+static void open_folders(struct loader *loader)
+{
+    const char *scene_path = wd_keys_path(loader->root);
+    loader->folders[0] = wd_path_beside(scene_path, "species");
+    loader->folders[1] = wd_path_beside(scene_path, "../species");
+    loader->folders[2] = wd_strdup(WD_DATA_DIR "/species");
+}
+
+static void finish(struct loader *loader)
+{
+    for (size_t i = 0; i < FOLDER_COUNT; i++)
+        free(loader->folders[i]);
+    free(loader->files);
+}
+
+static bool has(const struct loader *loader, const char *name)
+{
+    for (size_t i = 0; i < loader->count; i++) {
+        if (strcmp(loader->files[i].name, name) == 0)
+            return true;
+    }
+    return false;
+}
+
+static void add(struct loader *loader, const char *name, const char *file)
+{
+    struct wd_arena *arena = wd_keys_arena(loader->root);
+    struct wd_string_pair *pair = wd_push(loader->files, loader->count, loader->capacity);
+    *pair = (struct wd_string_pair){wd_arena_strdup(arena, name), wd_arena_strdup(arena, file)};
+}
+
+struct names {
+    const char **items;
+    size_t count, capacity;
+};
+
+static void push_name(struct names *names, const char *name, size_t length, struct wd_arena *arena)
+{
+    for (size_t i = 0; i < names->count; i++) {
+        if (strlen(names->items[i]) == length && strncmp(names->items[i], name, length) == 0)
+            return;
+    }
+    char *copy = wd_arena_alloc(arena, length + 1);
+    memcpy(copy, name, length);
+    *wd_push(names->items, names->count, names->capacity) = copy;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Every species there is: those the scene names and those lying in the folders, sorted. */
+static struct names known_names(const struct loader *loader)
+{
+    struct names names = {0};
+    struct wd_arena *arena = wd_keys_arena(loader->root);
+    for (size_t i = 0; i < loader->count; i++)
+        push_name(&names, loader->files[i].name, strlen(loader->files[i].name), arena);
+    for (size_t i = 0; i < FOLDER_COUNT; i++) {
+        DIR *folder = opendir(loader->folders[i]);
+        for (struct dirent *entry; folder && (entry = readdir(folder));) {
+            size_t length = strlen(entry->d_name);
+            if (length > 5 && strcmp(entry->d_name + length - 5, ".json") == 0)
+                push_name(&names, entry->d_name, length - 5, arena);
+        }
+        if (folder)
+            closedir(folder);
+    }
+    if (names.count)
+        qsort(names.items, names.count, sizeof *names.items, compare_names);
+    return names;
+}
+
+static bool unknown_species(const struct loader *loader, const char *name,
+                            const struct wd_keys_place *place, const char *key)
+{
+    struct names names = known_names(loader);
+    const char *near = wd_nearest_name(name, names.items, names.count);
+    char hint[80] = "", list[512] = "";
+    if (near)
+        snprintf(hint, sizeof hint, "; did you mean \"%.40s\"?", near);
+    size_t used = 0;
+    for (size_t i = 0; i < names.count && used < sizeof list; i++)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%.40s", used ? ", " : "",
+                                 names.items[i]);
+    free(names.items);
+    return wd_keys_error(place, key, "unknown species \"%.60s\"%s Known are: %s", name,
+                         near ? hint : ".", used ? list : "none");
+}
+
+/* Finds the file of a species that has no entry in the scene. A name is no path. */
+static bool want(struct loader *loader, const char *name, const struct wd_keys_place *place,
+                 const char *key)
+{
+    if (!name || has(loader, name)) /* no name: an error that has been reported */
+        return true;
+    for (size_t i = 0; i < FOLDER_COUNT && !strchr(name, '/') && name[0] != '.'; i++) {
+        char *file = wd_format("%s/%s.json", loader->folders[i], name);
+        bool found = wd_file_exists(file);
+        if (found)
+            add(loader, name, file);
+        free(file);
+        if (found)
+            return true;
+    }
+    return unknown_species(loader, name, place, key);
+}
+
+static bool take_entries(struct loader *loader, const struct wd_scene *scene)
+{
+    const struct wd_keys_place *root = loader->root;
+    struct wd_keys_place map = {root->reader, root, "species", 0};
+    bool ok = true;
+    for (size_t i = 0; i < scene->species_file_count; i++) {
+        struct wd_string_pair entry = scene->species_files[i];
+        if (!entry.value || !wd_scene_expand_file(&entry.value, entry.name, &map)) {
+            ok = false;
+            continue;
+        }
+        char *file = wd_path_beside(wd_keys_path(root), entry.value);
+        if (wd_file_exists(file))
+            add(loader, entry.name, file);
+        else
+            ok = wd_keys_error(&map, entry.name, "there is no file %.200s", file);
+        free(file);
+    }
+    return ok;
+}
+
+static bool take_layers(struct loader *loader, const struct wd_scene *scene)
+{
+    const struct wd_keys_place *root = loader->root;
+    struct wd_keys_place list = {root->reader, root, "layers", 0};
+    bool ok = true;
+    for (size_t i = 0; i < scene->layer_count; i++) {
+        struct wd_keys_place layer = {root->reader, &list, NULL, i};
+        struct wd_keys_place shares = {root->reader, &layer, "species", 0};
+        for (size_t j = 0; j < scene->layers[i].species_count; j++) {
+            const char *name = scene->layers[i].species[j].name;
+            ok = want(loader, name, &shares, name) && ok;
+        }
+    }
+    return ok;
+}
+
+static bool take_inventories(struct loader *loader, const struct wd_scene *scene)
+{
+    const struct wd_keys_place *root = loader->root;
+    struct wd_keys_place list = {root->reader, root, "inventories", 0};
+    bool ok = true;
+    for (size_t i = 0; i < scene->inventory_count; i++) {
+        const struct wd_scene_inventory *inventory = &scene->inventories[i];
+        struct wd_keys_place here = {root->reader, &list, NULL, i};
+        struct wd_keys_place map = {root->reader, &here, "species", 0};
+        for (size_t j = 0; j < inventory->species_count; j++)
+            ok = want(loader, inventory->species[j].value, &map, inventory->species[j].name) && ok;
+        if (ok && loader->count == 0)
+            ok = wd_keys_error(&here, NULL, "names no species; say which its trees are: "
+                               "\"species\": { \"*\": \"oak\" }");
+    }
+    return ok;
+}
+
+static bool load_all(struct loader *loader, struct wd_scene *scene)
+{
+    struct wd_arena *arena = wd_keys_arena(loader->root);
+    if (loader->count > MAX_SPECIES)
+        return wd_keys_error(loader->root, "species", "the scene has %zu species; allowed are %d",
+                             loader->count, MAX_SPECIES);
+    size_t bytes = loader->count * sizeof *loader->files;
+    scene->species_files = wd_arena_alloc(arena, bytes + 1);
+    if (bytes)
+        memcpy(scene->species_files, loader->files, bytes);
+    scene->species_file_count = loader->count;
+    scene->species = wd_arena_alloc(arena, loader->count * sizeof *scene->species + 1);
+    bool ok = true;
+    for (size_t i = 0; i < loader->count; i++)
+        ok = wd_species_load(&scene->species[i], loader->files[i].value, arena,
+                             wd_keys_log(loader->root)) && ok;
+    return ok;
+}
+
+bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *place)
+{
+    struct loader loader = {.root = place};
+    open_folders(&loader);
+    bool ok = take_entries(&loader, scene);
+    ok = take_layers(&loader, scene) && ok;
+    ok = take_inventories(&loader, scene) && ok;
+    ok = load_all(&loader, scene) && ok;
+    finish(&loader);
+    return ok;
+}

@@ -1,0 +1,179 @@
+#include "scene/scene_parts.h"
+
+#define SCENE(member) offsetof(struct wd_scene, member)
+#define IN(group, member) (SCENE(group.member) - SCENE(group))
+#define GROUP(title, keys, group) {title, keys, sizeof(((struct wd_scene *)0)->group), NULL}
+
+static const char *const terrain_kinds[] = {"flat", "diamond-square", "raster", NULL};
+static const char *const nodata_rules[] = {"fill", "cut", NULL};
+static const char *const raster_units[] = {"metres", NULL};
+static const char *const methods[] = {"octree", "separate", NULL};
+
+#define TERRAIN(member) offsetof(struct wd_scene_terrain, member)
+static const struct wd_key terrain_keys[] = {
+    {"kind", WD_KEY_ENUM, TERRAIN(kind), .fallback = "\"flat\"", .choices = terrain_kinds,
+     .doc = "Flat ground, diamond-square fractal, or a raster file."},
+    {"size_m", WD_KEY_VECTOR, TERRAIN(size_m), 1, 1e6, "[1000, 1000]",
+     "flat, diamond-square: extent to the east and north, in metres.", .length = 2},
+    {"cell_m", WD_KEY_DOUBLE, TERRAIN(cell_m), 0, 10000, "0",
+     "Distance between samples in metres; 0: the raster's own, or 1024 samples a side."},
+    {"relief_m", WD_KEY_DOUBLE, TERRAIN(relief_m), 0, 12000, "200",
+     "diamond-square: highest minus lowest, in metres."},
+    {"roughness", WD_KEY_DOUBLE, TERRAIN(roughness), 0, 4, "0.9",
+     "diamond-square: fall of the offsets by 2^-y a pass; low is rough, smooth from 0.8."},
+    {"valley", WD_KEY_DOUBLE, TERRAIN(valley), 0, 1, "0",
+     "diamond-square: 0 none, 1 a valley carved from south to north."},
+    {"base_m", WD_KEY_DOUBLE, TERRAIN(base_m), -12000, 12000, "0",
+     "Added to every height, in metres."},
+    {"file", WD_KEY_STRING, TERRAIN(file), .doc = "raster: any GDAL raster, beside the scene."},
+    {"crs", WD_KEY_STRING, TERRAIN(crs),
+     .doc = "raster: coordinates to assume where the file has none, such as \"EPSG:4326\"."},
+    {"target_crs", WD_KEY_STRING, TERRAIN(target_crs),
+     .doc = "raster: coordinates in metres to reproject to; by default the UTM zone for degrees."},
+    {"unit", WD_KEY_STRING, TERRAIN(unit), .choices = raster_units,
+     .doc = "raster without coordinates: \"metres\" says that x and y are metres already."},
+    {"band", WD_KEY_INTEGER, TERRAIN(band), 1, 10000, "1", "raster: band, from 1."},
+    {"nodata", WD_KEY_DOUBLE, TERRAIN(nodata), .flags = WD_KEY_NAN_IF_ABSENT,
+     .doc = "raster: value that means missing, besides the file's own."},
+    {"nodata_rule", WD_KEY_ENUM, TERRAIN(nodata_rule), .fallback = "\"fill\"",
+     .choices = nodata_rules, .doc = "raster: missing heights are filled, or cut out."},
+    {"window_m", WD_KEY_NUMBERS, TERRAIN(window_m), -1e8, 1e8, .length = 4,
+     .count_offset = TERRAIN(window_count),
+     .doc = "raster: xmin, ymin, xmax, ymax in the target coordinates; all where absent."},
+    {"vertical_scale", WD_KEY_DOUBLE, TERRAIN(vertical_scale), 0, 1000, "1",
+     "Factor on every height.", .flags = WD_KEY_EXCLUSIVE_MIN},
+    {0},
+};
+static const struct wd_keys terrain_table = {
+    "terrain", terrain_keys, sizeof(struct wd_scene_terrain), wd_scene_check_terrain};
+
+static const struct wd_key sun_keys[] = {
+    {"azimuth_deg", WD_KEY_DOUBLE, IN(sun, azimuth_deg), -360, 360, "150",
+     "Where the sun stands, clockwise from north, in degrees."},
+    {"elevation_deg", WD_KEY_DOUBLE, IN(sun, elevation_deg), -90, 90, "35",
+     "Height of the sun above the horizon in degrees."},
+    {"angular_diameter_deg", WD_KEY_DOUBLE, IN(sun, angular_diameter_deg), 0, 20, "0.53",
+     "Width of the sun's disc in degrees; softens shadows."},
+    {"strength", WD_KEY_DOUBLE, IN(sun, strength), 0, 1000, "1", "1: the sun of a clear day."},
+    {0},
+};
+static const struct wd_keys sun_table = GROUP("sun", sun_keys, sun);
+
+static const struct wd_key sky_keys[] = {
+    {"turbidity", WD_KEY_DOUBLE, IN(sky, turbidity), 1.5, 20, "2.5", "1.8 clear to 10 hazy."},
+    {"strength", WD_KEY_DOUBLE, IN(sky, strength), 0, 1000, "1", "Factor on the sky's light."},
+    {0},
+};
+static const struct wd_keys sky_table = GROUP("sky", sky_keys, sky);
+
+static const struct wd_key fog_keys[] = {
+    {"visibility_m", WD_KEY_DOUBLE, IN(fog, visibility_m), 1, 1e7, "30000",
+     "Distance at which contrast falls to 2%, in metres."},
+    {"height_m", WD_KEY_DOUBLE, IN(fog, height_m), 1, 1e6, "1200",
+     "The haze thins by e over this height, in metres."},
+    {"base_m", WD_KEY_DOUBLE, IN(fog, base_m), -12000, 12000, "0",
+     "Height of full density above the world's zero, in metres."},
+    {0},
+};
+static const struct wd_keys fog_table = GROUP("fog", fog_keys, fog);
+
+static const struct wd_key wind_keys[] = {
+    {"speed_mps", WD_KEY_DOUBLE, IN(wind, speed_mps), 0, 60, "3",
+     "Mean speed at 10 m in metres a second."},
+    {"direction_deg", WD_KEY_DOUBLE, IN(wind, direction_deg), -360, 360, "250",
+     "Where the wind blows from, clockwise from north, in degrees."},
+    {"gust", WD_KEY_DOUBLE, IN(wind, gust), 0, 2, "0.4", "Gusts as a share of the mean speed."},
+    {0},
+};
+static const struct wd_keys wind_table = GROUP("wind", wind_keys, wind);
+
+static const struct wd_key water_keys[] = {
+    {"enabled", WD_KEY_BOOL, IN(water, enabled), .fallback = "false",
+     .doc = "Whether there is water."},
+    {"level_m", WD_KEY_DOUBLE, IN(water, level_m), -12000, 12000, "0",
+     "Height of the water above the world's zero, in metres."},
+    {"color", WD_KEY_COLOR, IN(water, color), .fallback = "[0.008, 0.02, 0.018]",
+     .doc = "Colour of deep water (linear)."},
+    {"clarity_m", WD_KEY_DOUBLE, IN(water, clarity_m), 0, 100, "2.5",
+     "Depth at which the ground fades by e, in metres.", .flags = WD_KEY_EXCLUSIVE_MIN},
+    {0},
+};
+static const struct wd_keys water_table = GROUP("water", water_keys, water);
+
+static const struct wd_key ground_keys[] = {
+    {"grass", WD_KEY_COLOR, IN(ground, grass), .fallback = "[0.075, 0.105, 0.035]",
+     .doc = "Colour of grass (linear albedo)."},
+    {"soil", WD_KEY_COLOR, IN(ground, soil), .fallback = "[0.13, 0.095, 0.065]",
+     .doc = "Colour of bare soil (linear albedo)."},
+    {"rock", WD_KEY_COLOR, IN(ground, rock), .fallback = "[0.2, 0.19, 0.175]",
+     .doc = "Colour of rock (linear albedo)."},
+    {"litter", WD_KEY_COLOR, IN(ground, litter), .fallback = "[0.1, 0.07, 0.045]",
+     .doc = "Colour of litter below trees (linear albedo)."},
+    {"rock_slope_deg", WD_KEY_DOUBLE, IN(ground, rock_slope_deg), 0, 90, "40",
+     "Slopes steeper than this show rock, in degrees."},
+    {"snow_line_m", WD_KEY_DOUBLE, IN(ground, snow_line_m), -12000, 12000, "0",
+     "Snow lies above this height over the world's zero, in metres; 0: nowhere."},
+    {"tree_line_m", WD_KEY_DOUBLE, IN(ground, tree_line_m), -12000, 12000, "0",
+     "Grass thins above this height over the world's zero, in metres; 0: nowhere."},
+    {0},
+};
+static const struct wd_keys ground_table = GROUP("ground", ground_keys, ground);
+
+static const struct wd_key quality_keys[] = {
+    {"width", WD_KEY_INTEGER, IN(quality, width), 1, 32768, "1280", "Width in pixels."},
+    {"height", WD_KEY_INTEGER, IN(quality, height), 1, 32768, "720", "Height in pixels."},
+    {"samples", WD_KEY_INTEGER, IN(quality, samples), 1, 65536, "4", "Samples a pixel."},
+    {"mesh_distance_m", WD_KEY_DOUBLE, IN(quality, mesh_distance_m), 0, 1e6, "60",
+     "Full meshes are drawn nearer than this, for a tree of 20 m, in metres."},
+    {"reduced_distance_m", WD_KEY_DOUBLE, IN(quality, reduced_distance_m), 0, 1e6, "250",
+     "Reduced meshes are drawn nearer than this, for a tree of 20 m, in metres."},
+    {"blend", WD_KEY_DOUBLE, IN(quality, blend), 0, 0.9, "0.25",
+     "Share of a distance over which levels blend."},
+    {"max_cull_depth", WD_KEY_INTEGER, IN(quality, max_cull_depth), 1, 16, "7",
+     "octree: depth down to which octants are culled."},
+    {"shadow_size", WD_KEY_INTEGER, IN(quality, shadow_size), 16, 16384, "2048",
+     "Texels a side of a shadow cascade."},
+    {"shadow_distance_m", WD_KEY_DOUBLE, IN(quality, shadow_distance_m), 1, 1e6, "2500",
+     "Shadows reach this far from the camera, in metres."},
+    {"shadow_taps", WD_KEY_INTEGER, IN(quality, shadow_taps), 1, 64, "5",
+     "Shadow look-ups a pixel."},
+    {"exposure_ev", WD_KEY_DOUBLE, IN(quality, exposure_ev), -20, 20, "0",
+     "Stops added to the automatic exposure."},
+    {"terrain_error_px", WD_KEY_DOUBLE, IN(quality, terrain_error_px), 0, 100, "1.5",
+     "Terrain may be off by this many pixels.", .flags = WD_KEY_EXCLUSIVE_MIN},
+    {0},
+};
+static const struct wd_keys quality_table = GROUP("quality", quality_keys, quality);
+
+static const struct wd_key scene_keys[] = {
+    {"name", WD_KEY_STRING, SCENE(name), .doc = "Title; the file's name where absent."},
+    {"seed", WD_KEY_INTEGER, SCENE(seed), 0, 4294967295.0, "1",
+     "The same seed makes the same world."},
+    {"terrain", WD_KEY_OBJECT, SCENE(terrain), .table = &terrain_table, .doc = "The ground."},
+    {"species", WD_KEY_STRING_MAP, SCENE(species_files), .count_offset = SCENE(species_file_count),
+     .doc = "Names of species and their files, beside the scene; others are looked for in species/ "
+            "and ../species/ beside the scene, then among the installed ones."},
+    {"variants", WD_KEY_INTEGER, SCENE(variants), 1, 64, "5", "Individuals grown a species."},
+    {"layers", WD_KEY_LIST, SCENE(layers), .table = &wd_scene_layer_keys,
+     .count_offset = SCENE(layer_count), .doc = "Trees placed by rule."},
+    {"inventories", WD_KEY_LIST, SCENE(inventories), .table = &wd_scene_inventory_keys,
+     .count_offset = SCENE(inventory_count), .doc = "Trees from tables."},
+    {"sun", WD_KEY_OBJECT, SCENE(sun), .table = &sun_table, .doc = "Sun."},
+    {"sky", WD_KEY_OBJECT, SCENE(sky), .table = &sky_table, .doc = "Sky."},
+    {"fog", WD_KEY_OBJECT, SCENE(fog), .table = &fog_table, .doc = "Haze."},
+    {"wind", WD_KEY_OBJECT, SCENE(wind), .table = &wind_table, .doc = "Wind."},
+    {"water", WD_KEY_OBJECT, SCENE(water), .table = &water_table, .doc = "Water."},
+    {"ground", WD_KEY_OBJECT, SCENE(ground), .table = &ground_table, .doc = "Look of the ground."},
+    {"cameras", WD_KEY_LIST, SCENE(cameras), .table = &wd_scene_camera_keys,
+     .count_offset = SCENE(camera_count),
+     .doc = "Points of view; without any, one is made that overlooks the scene."},
+    {"paths", WD_KEY_LIST, SCENE(paths), .table = &wd_scene_path_keys,
+     .count_offset = SCENE(path_count), .doc = "Camera paths for films."},
+    {"method", WD_KEY_STRING, SCENE(method), .fallback = "\"octree\"", .choices = methods,
+     .doc = "How trees are drawn."},
+    {"quality", WD_KEY_OBJECT, SCENE(quality), .table = &quality_table,
+     .doc = "Size of the picture and effort spent on it."},
+    {0},
+};
+const struct wd_keys wd_scene_keys = {"scene", scene_keys, sizeof(struct wd_scene), wd_scene_check,
+                                      .check_always = true};

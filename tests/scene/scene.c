@@ -1,0 +1,255 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/file.h"
+#include "log.h"
+#include "scene/scene.h"
+
+static char *species_dir;
+
+/* A fresh folder with scenes/ beside species/, the latter the project's own. */
+struct fixture {
+    char root[64], scene_path[272];
+    struct collected log;
+    struct wd_scene scene;
+};
+
+static int setup(void **state)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    strcpy(f->root, "/tmp/weald-scene-XXXXXX");
+    char path[256];
+    if (!mkdtemp(f->root))
+        return -1;
+    snprintf(path, sizeof path, "%s/scenes", f->root);
+    snprintf(f->scene_path, sizeof f->scene_path, "%s/a.json", path);
+    mkdir(path, 0777);
+    snprintf(path, sizeof path, "%s/species", f->root);
+    *state = f;
+    return symlink(species_dir, path);
+}
+
+static int teardown(void **state)
+{
+    struct fixture *f = *state;
+    char path[256];
+    wd_scene_finish(&f->scene);
+    unlink(f->scene_path);
+    snprintf(path, sizeof path, "%s/species", f->root);
+    unlink(path);
+    snprintf(path, sizeof path, "%s/scenes", f->root);
+    rmdir(path);
+    rmdir(f->root);
+    free(f);
+    return 0;
+}
+
+static bool load_with(struct fixture *f, const char *text, const char *data_dir)
+{
+    wd_scene_finish(&f->scene);
+    f->log = (struct collected){0};
+    struct wd_log log = {collect, &f->log};
+    FILE *file = fopen(f->scene_path, "wb");
+    fputs(text, file);
+    fclose(file);
+    struct wd_scene_params params = {.data_dir = data_dir};
+    return wd_scene_load_with(&f->scene, f->scene_path, &params, &log);
+}
+
+static bool load(struct fixture *f, const char *text)
+{
+    return load_with(f, text, NULL);
+}
+
+static void species_are_found_and_loaded(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"species\": {\"eiche\": \"../species/oak.json\"},"
+                        " \"layers\": [{\"species\": {\"spruce\": 3, \"eiche\": 1}}]}"));
+    assert_int_equal(f->scene.species_file_count, 2);
+    int oak = wd_scene_find_species(&f->scene, "eiche");
+    int spruce = wd_scene_find_species(&f->scene, "spruce");
+    assert_true(oak == 0 && spruce == 1);
+    assert_int_equal(wd_scene_find_species(&f->scene, "beech"), -1);
+    assert_string_equal(f->scene.species[oak].name, "oak");
+    assert_string_equal(f->scene.species[spruce].name, "spruce");
+    assert_true(f->scene.species[spruce].form == WD_FORM_CONIFER);
+    assert_true(f->scene.layers[0].species[0].share == 3);
+    assert_string_equal(f->scene.layers[0].name, "layer 1");
+    assert_string_equal(f->scene.name, "a");
+    assert_int_equal(f->log.errors + f->log.warnings, 0);
+}
+
+struct wrong {
+    const char *text, *message;
+};
+
+static void unknown_species_are_errors(void **state)
+{
+    struct fixture *f = *state;
+    static const struct wrong cases[] = {
+        {"{\"layers\": [{\"species\": {\"oka\": 1}}]}",
+         ":1:33: layers[0].species.oka: unknown species \"oka\"; did you mean \"oak\"? Known are: "},
+        {"{\"layers\": [{\"species\": \"zzzzzz\"}]}", "unknown species \"zzzzzz\". Known are: "},
+        {"{\"layers\": [{\"species\": \"../species/oak\"}]}", "unknown species \"../species/oak\""},
+        {"{\"species\": {\"oak\": \"no.json\"}}", "species.oak: there is no file "},
+        {"{\"inventories\": [{\"file\": \"a.csv\", \"species\": {\"*\": \"spruze\"}}]}",
+         "inventories[0].species.*: unknown species \"spruze\"; did you mean \"spruce\"?"},
+        {"{\"inventories\": [{\"file\": \"a.csv\"}]}", "inventories[0]: names no species"},
+        {"{\"species\": {\"me\": \"a.json\"}}", "\"latin\" is missing"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_false(load(f, cases[i].text));
+        assert_true(logged(&f->log, cases[i].message));
+        struct wd_scene zero = {0};
+        assert_memory_equal(&f->scene, &zero, sizeof zero);
+    }
+}
+
+static void checks_across_keys_hold(void **state)
+{
+    struct fixture *f = *state;
+    static const struct wrong cases[] = {
+        {"{\"terrain\": {\"kind\": \"raster\"}}", "terrain: a raster terrain needs \"file\""},
+        {"{\"terrain\": {\"file\": \"a.tif\"}}", "terrain.file: only a terrain of"},
+        {"{\"terrain\": {\"kind\": \"raster\", \"file\": \"a\", \"window_m\": [1, 1, 0, 2]}}",
+         "terrain.window_m: found [1, 1, 0, 2]"},
+        {"{\"terrain\": {\"size_m\": [0, 1]}}", "terrain.size_m[0]: found 0"},
+        {"{\"layers\": [{\"species\": {\"oak\": 0}}]}", "the shares sum to 0"},
+        {"{\"layers\": [{\"species\": {}}]}", "the shares sum to 0"},
+        {"{\"layers\": [{\"species\": {\"oak\": -1}}]}", "layers[0].species.oak: found -1"},
+        {"{\"layers\": [{\"spacing_m\": 4}]}", "layers[0]: \"species\" is missing"},
+        {"{\"layers\": [{\"species\": \"oak\", \"density\": 2}]}", "layers[0].density: found 2"},
+        {"{\"layers\": [{\"species\": \"oak\", \"placement\": \"canopy\"}]}",
+         "canopy placement needs \"canopy\""},
+        {"{\"layers\": [{\"species\": \"oak\", \"map\": {\"file\": \"a.tif\"}}]}",
+         "layers[0].map: needs \"classes\""},
+        {"{\"layers\": [{\"species\": \"oak\", \"map\": {\"classes\": 1}}]}",
+         "layers[0].map: \"file\" is missing"},
+        {"{\"layers\": [{\"species\": \"oak\", \"map\": {\"file\": \"a\", \"classes\": [1, 2],"
+         " \"class_density\": [1]}}]}",
+         "class_density: found 1 numbers for 2 classes"},
+        {"{\"layers\": [{\"species\": \"oak\", \"height_m\": [9, 2]}]}", "height_m: found [9, 2]"},
+        {"{\"layers\": [{\"species\": \"oak\", \"altitude_m\": [9, 2]}]}", "found 2 after 9"},
+        {"{\"layers\": [{\"species\": \"oak\", \"height_m\": -3}]}", "height_m: found -3"},
+        {"{\"layers\": [{\"name\": \"a\", \"species\": \"oak\"}, {\"name\": \"a\", \"species\": "
+         "\"oak\"}]}",
+         "layers[1].name: \"a\" is the name of layers[0] already"},
+        {"{\"cameras\": [{\"name\": \"a\", \"position_m\": [0, 0, 1], \"look_at_m\": [0, 0, 1]}]}",
+         "cameras[0].look_at_m: is the camera's own position"},
+        {"{\"cameras\": [{\"name\": \"a\", \"position_m\": [0, 0, 1], \"look_at_m\": [0, 0]}]}",
+         "look_at_m: found a list of 2; allowed is a list of 3 numbers"},
+        {"{\"paths\": [{\"name\": \"a\", \"keys\": [{\"position_m\": [0, 0, 1]}]}]}",
+         "paths[0].keys: found 1; a path needs at least two keys"},
+        {"{\"quality\": {\"width\": 0}}", "quality.width: found 0; allowed is a whole number from "
+                                          "1 to 32768"},
+        {"{\"quality\": {\"width\": 100000}}", "quality.width: found 100000"},
+        {"{\"method\": \"octre\"}", "method: found \"octre\"; did you mean \"octree\"?"},
+        {"{\"species\": {\"oak\": \"../species/oak.json\"}, \"inventories\": [{\"file\": \"a\", "
+         "\"delimiter\": \"xy\", \"frame\": \"EPSG:x\"}]}",
+         "delimiter: found \"xy\""},
+        {"{\"species\": {\"oak\": \"../species/oak.json\"}, \"inventories\": [{\"file\": \"a\", "
+         "\"frame\": \"EPSG:32610\", \"rotate_deg\": 3}]}",
+         "rotate_deg: only the local frame"},
+        {"{\"species\": {\"oak\": \"../species/oak.json\"}, \"inventories\": [{\"file\": \"a\", "
+         "\"dead\": \"D\"}]}",
+         "dead: needs \"columns\""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_false(load(f, cases[i].text));
+        assert_true(logged(&f->log, cases[i].message));
+    }
+}
+
+static void all_errors_come_in_one_pass(void **state)
+{
+    struct fixture *f = *state;
+    assert_false(load(f, "{\"seed\": -1, \"layers\": [{\"species\": \"oka\", \"jitter\": 2}],\n"
+                         "\"wind\": {\"sped_mps\": 1}}"));
+    assert_int_equal(f->log.errors, 4);
+    assert_true(logged(&f->log, "a.json:2:10: wind.sped_mps: unknown key; did you mean"));
+}
+
+static void data_directory_is_put_into_names(void **state)
+{
+    struct fixture *f = *state;
+    const char *text = "{\"terrain\": {\"kind\": \"raster\", \"file\": \"${data}/a.tif\"}}";
+    assert_false(load(f, text));
+    assert_true(logged(&f->log, "terrain.file: found \"${data}/a.tif\", but no data directory"));
+    assert_true(logged(&f->log, "--data DIR"));
+    assert_true(load_with(f, text, f->root));
+    char wanted[128];
+    snprintf(wanted, sizeof wanted, "%s/a.tif", f->root);
+    assert_string_equal(f->scene.terrain.file, wanted);
+    assert_false(load_with(f, text, "/nowhere/at/all"));
+    assert_true(logged(&f->log, "/nowhere/at/all does not exist"));
+    assert_false(load(f, "{\"terrain\": {\"kind\": \"raster\", \"file\": \"${date}/a.tif\"}}"));
+    assert_true(logged(&f->log, "the one variable there is is ${data}"));
+}
+
+static void unreadable_files_are_errors(void **state)
+{
+    struct fixture *f = *state;
+    struct wd_log log = {collect, &f->log};
+    assert_false(wd_scene_load(&f->scene, "/nowhere/a.json", &log));
+    assert_true(logged(&f->log, "/nowhere/a.json: cannot be opened"));
+    assert_false(wd_scene_load(&f->scene, f->root, &log));
+    assert_true(logged(&f->log, "is a directory"));
+}
+
+static void cameras_are_found_by_name(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"cameras\": [{\"name\": \"a\", \"position_m\": [1, 2, 3]}, {\"name\": "
+                        "\"b\", \"position_m\": [4, 5, 6], \"look_at_m\": [0, 0, 0]}]}"));
+    assert_null(wd_scene_find_camera(&f->scene, "c"));
+    const struct wd_scene_camera *b = wd_scene_find_camera(&f->scene, "b");
+    assert_true(b->position_m[2] == 6 && b->look_at_count == 3 && b->fov_deg == 50);
+    assert_false(b->automatic);
+}
+
+static void allometry_inverts(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"layers\": [{\"species\": {\"spruce\": 1, \"oak\": 1}}]}"));
+    for (size_t i = 0; i < 2; i++) {
+        const struct wd_species *species = &f->scene.species[i];
+        const struct wd_allometry *a = &species->allometry;
+        double last = 0;
+        for (double dbh = 1; dbh < 60; dbh += 1) {
+            double height = wd_species_height_m(species, dbh);
+            double libm = 1.3 + a->height_a * pow(1 - exp(-a->height_b * dbh), a->height_c);
+            assert_true(fabs(height - libm) < 1e-9 && height > last);
+            assert_true(fabs(wd_species_dbh_cm(species, height) - dbh) < 1e-6);
+            assert_true(wd_species_crown_m(species, dbh) > 0);
+            last = height;
+        }
+        assert_true(wd_species_height_m(species, -1) == 1.3);
+        assert_true(wd_species_dbh_cm(species, 1e6) > 399 && wd_species_dbh_cm(species, 0) < 0.51);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2)
+        return 2;
+    species_dir = argv[1];
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(species_are_found_and_loaded, setup, teardown),
+        cmocka_unit_test_setup_teardown(unknown_species_are_errors, setup, teardown),
+        cmocka_unit_test_setup_teardown(checks_across_keys_hold, setup, teardown),
+        cmocka_unit_test_setup_teardown(all_errors_come_in_one_pass, setup, teardown),
+        cmocka_unit_test_setup_teardown(data_directory_is_put_into_names, setup, teardown),
+        cmocka_unit_test_setup_teardown(unreadable_files_are_errors, setup, teardown),
+        cmocka_unit_test_setup_teardown(cameras_are_found_by_name, setup, teardown),
+        cmocka_unit_test_setup_teardown(allometry_inverts, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
