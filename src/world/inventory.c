@@ -90,7 +90,8 @@ static bool read_tree(struct reader *reader)
         !read_size(reader, columns->crown, columns->crown_m, most_crown_m, "m", &tree.crown_m))
         return false;
     const char *name = columns->species >= 0 ? reader->csv.fields[columns->species] : "";
-    int species = wd_species_names_find(&reader->names, name);
+    tree.name = (uint32_t)wd_species_names_find(&reader->names, name);
+    int species = reader->names.names[tree.name].species;
     if (!present || species < 0)
         return true; /* names that are not found are reported together */
     tree.species = (uint32_t)species;
@@ -106,12 +107,13 @@ static bool check_species_column(struct reader *reader, const struct wd_scene *s
     if (reader->columns.species >= 0)
         return true;
     if (scene->species_file_count == 1) {
-        struct wd_species_name *any = wd_push(reader->names.names, reader->names.count,
-                                              reader->names.capacity);
-        *any = (struct wd_species_name){wd_strdup(""), 0, 0};
+        struct wd_species_name *only = wd_push(reader->names.names, reader->names.count,
+                                               reader->names.capacity);
+        *only = (struct wd_species_name){wd_strdup(""), 0, 0};
         return true;
     }
-    if (wd_species_names_find(&reader->names, "") >= 0)
+    size_t any = wd_species_names_find(&reader->names, "");
+    if (reader->names.names[any].species >= 0)
         return true;
     char *names = wd_csv_names(&reader->csv);
     wd_error(reader->log, "%s:1: no column for the species was recognised; name it in "

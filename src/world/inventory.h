@@ -10,6 +10,7 @@
 struct wd_inventory_tree {
     double x, y;        /* in the file's frame */
     uint32_t species;   /* index into scene->species */
+    uint32_t name;      /* number of the species' name in the file */
     uint32_t row;       /* line in the file */
     float dbh_cm, height_m, crown_m; /* 0: not given */
 };
@@ -62,7 +63,8 @@ struct wd_species_names {
     } *names;
     size_t count, capacity;
 };
-int wd_species_names_find(struct wd_species_names *names, const char *name);
+/* Its index in names->names, where it is added when it is new. */
+size_t wd_species_names_find(struct wd_species_names *names, const char *name);
 /* False, with an error that lists them, when any name was not found. */
 bool wd_species_names_check(const struct wd_species_names *names, const char *path,
                             const struct wd_log *log);

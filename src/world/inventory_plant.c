@@ -149,49 +149,64 @@ static bool plant_all(struct planting *planting, const double *x, const double *
     return true;
 }
 
-/* Place, species and order of a planted tree. */
+/* A planted tree beside its row. */
 struct stand {
     int32_t x_mm, y_mm;
-    uint32_t species, index;
+    const struct wd_inventory_tree *tree;
+    uint32_t index; /* in the list */
 };
 
-static int compare_stands(const void *first, const void *second)
+/* By place, then by what was measured; 0: the same tree twice. */
+static int compare_measured(const struct stand *a, const struct stand *b)
 {
-    const struct stand *a = first, *b = second;
     if (a->x_mm != b->x_mm)
         return a->x_mm < b->x_mm ? -1 : 1;
     if (a->y_mm != b->y_mm)
         return a->y_mm < b->y_mm ? -1 : 1;
-    if (a->species != b->species)
-        return a->species < b->species ? -1 : 1;
-    return a->index < b->index ? -1 : a->index > b->index;
+    if (a->tree->name != b->tree->name)
+        return a->tree->name < b->tree->name ? -1 : 1;
+    if (a->tree->dbh_cm != b->tree->dbh_cm)
+        return a->tree->dbh_cm < b->tree->dbh_cm ? -1 : 1;
+    if (a->tree->height_m != b->tree->height_m)
+        return a->tree->height_m < b->tree->height_m ? -1 : 1;
+    if (a->tree->crown_m != b->tree->crown_m)
+        return a->tree->crown_m < b->tree->crown_m ? -1 : 1;
+    return 0;
 }
 
-/* Marks trees of one species on one millimetre, all but the first row's, by size 0. */
+static int compare_stands(const void *first, const void *second)
+{
+    const struct stand *a = first, *b = second;
+    int order = compare_measured(a, b);
+    return order != 0 ? order : a->index < b->index ? -1 : a->index > b->index;
+}
+
+/* Marks rows that repeat an earlier one's place, species and sizes, by size 0. Stems of other
+ * sizes on the same place are neighbours that were mapped coarsely: they stay. */
 static void drop_duplicates(struct planting *planting)
 {
+    struct wd_inventory *inventory = planting->inventory;
     size_t count = planting->trees.count;
     struct wd_tree *trees = planting->trees.trees;
     struct stand *stands = wd_alloc_array(count, sizeof *stands);
     for (size_t i = 0; i < count; i++)
-        stands[i] = (struct stand){trees[i].x_mm, trees[i].y_mm, WD_TREE_SPECIES(trees[i]),
-                                   (uint32_t)i};
+        stands[i] = (struct stand){trees[i].x_mm, trees[i].y_mm,
+                                   &inventory->trees[planting->planted[i]], (uint32_t)i};
     qsort(stands, count, sizeof *stands, compare_stands);
     uint32_t first_line = 0;
     for (size_t i = 1; i < count; i++) {
-        if (stands[i].x_mm != stands[i - 1].x_mm || stands[i].y_mm != stands[i - 1].y_mm ||
-            stands[i].species != stands[i - 1].species)
+        if (compare_measured(&stands[i], &stands[i - 1]) != 0)
             continue;
-        uint32_t line = planting->inventory->trees[planting->planted[stands[i].index]].row;
+        uint32_t line = stands[i].tree->row;
         first_line = first_line == 0 || line < first_line ? line : first_line;
         trees[stands[i].index].size = 0;
-        planting->inventory->report.duplicates++;
+        inventory->report.duplicates++;
     }
     free(stands);
     if (first_line > 0)
-        wd_warn(planting->params->log, "%s:%u: %" PRIu64 " rows repeat the place and species of an "
-                "earlier one and are left out; this is the first", planting->inventory->path,
-                first_line, planting->inventory->report.duplicates);
+        wd_warn(planting->params->log, "%s:%u: %" PRIu64 " rows repeat the place, species and sizes "
+                "of an earlier one and are left out; this is the first", inventory->path,
+                first_line, inventory->report.duplicates);
 }
 
 static bool take(struct planting *planting, struct wd_tree_list *list)

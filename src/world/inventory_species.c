@@ -42,17 +42,17 @@ static int look_up(const struct wd_species_names *names, const char *name)
     return mapped ? wd_scene_find_species(names->scene, mapped) : -1;
 }
 
-int wd_species_names_find(struct wd_species_names *names, const char *name)
+size_t wd_species_names_find(struct wd_species_names *names, const char *name)
 {
     for (size_t i = 0; i < names->count; i++)
         if (strcmp(names->names[i].name, name) == 0) {
             names->names[i].count++;
-            return names->names[i].species;
+            return i;
         }
     int species = look_up(names, name);
     struct wd_species_name *added = wd_push(names->names, names->count, names->capacity);
     *added = (struct wd_species_name){wd_strdup(name), species, 1};
-    return species;
+    return names->count - 1;
 }
 
 static int most_frequent_first(const void *first, const void *second)
@@ -76,7 +76,7 @@ bool wd_species_names_check(const struct wd_species_names *names, const char *pa
     char *list = wd_strdup("");
     for (size_t i = 0; i < count && i < MOST_LISTED; i++) {
         char *longer = wd_format("%s%s\"%s\" (%" PRIu64 ")", list, i ? ", " : "",
-                                 *missing[i].name ? missing[i].name : "empty", missing[i].count);
+                                 *missing[i].name ? missing[i].name : "(empty)", missing[i].count);
         free(list);
         list = longer;
     }

@@ -2,6 +2,7 @@
 #include "world/placement.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/dmath.h"
@@ -54,15 +55,16 @@ static void set_altitude(struct wd_place_layer *to, const struct wd_scene_layer 
         to->altitude[1] = ramp_between(high, high - fade - 1e-3);
 }
 
-static bool set_patches(struct wd_place_layer *to, const struct wd_scene_layer *from,
-                        const struct wd_log *log)
+static bool set_patches(struct wd_placement *placement, const struct wd_log *log)
 {
+    struct wd_place_layer *to = &placement->input.layer;
+    const struct wd_scene_layer *from = placement->layer;
     to->has_patches = from->patchiness > 0.0;
     if (!to->has_patches)
         return true;
     if (!(from->patch_size_m >= 0.1 && from->patch_size_m <= 1e6))
-        return wd_error(log, "layer %s: patch_size_m: %g, 0.1 .. 1000000 is allowed", from->name,
-                        from->patch_size_m);
+        return wd_error(log, "%s: patch_size_m: %g, 0.1 .. 1000000 is allowed",
+                        placement->name, from->patch_size_m);
     to->patchiness = (float)from->patchiness;
     to->patch_axis[0] = wd_axis_of(from->patch_size_m * 1000.0);
     to->patch_axis[1] = wd_axis_of(from->patch_size_m * 500.0);
@@ -88,13 +90,15 @@ static void set_sizes(struct wd_place_layer *to, const struct wd_scene_layer *fr
     to->tint = (uint32_t)(fmin(fmax(from->tint, 0.0), 1.0) * 127.0 + 0.5);
 }
 
-static bool set_cells(struct wd_place_layer *to, const struct wd_scene_layer *from,
-                      const struct wd_ground *ground, const struct wd_log *log)
+static bool set_cells(struct wd_placement *placement, const struct wd_log *log)
 {
+    struct wd_place_layer *to = &placement->input.layer;
+    const struct wd_scene_layer *from = placement->layer;
+    const struct wd_ground *ground = &placement->input.ground.ground;
     if (from->placement == WD_PLACE_CANOPY)
         return true;
     if (!(from->spacing_m >= 0.01 && from->spacing_m <= 100000.0))
-        return wd_error(log, "layer %s: spacing_m: %g, 0.01 .. 100000 is allowed", from->name,
+        return wd_error(log, "%s: spacing_m: %g, 0.01 .. 100000 is allowed", placement->name,
                         from->spacing_m);
     to->cell_mm = (uint32_t)(from->spacing_m * 1000.0 + 0.5);
     to->columns = ((uint32_t)ground->extent_mm[0] + to->cell_mm - 1) / to->cell_mm;
@@ -119,13 +123,17 @@ static bool set_layer(struct wd_placement *placement, const struct wd_placement_
     set_slope(to, from);
     set_altitude(to, from, params->terrain);
     set_sizes(to, from);
-    return set_patches(to, from, params->log) && set_cells(to, from, ground, params->log);
+    return set_patches(placement, params->log) && set_cells(placement, params->log);
 }
 
 bool wd_placement_init(struct wd_placement *placement, const struct wd_placement_params *params,
                        size_t layer_index)
 {
     *placement = (struct wd_placement){.layer = &params->scene->layers[layer_index]};
+    if (placement->layer->name)
+        snprintf(placement->name, sizeof placement->name, "layer %s", placement->layer->name);
+    else
+        snprintf(placement->name, sizeof placement->name, "layers[%zu]", layer_index);
     if (wd_ground_input_init(&placement->input.ground, params->terrain, params->log) &&
         set_layer(placement, params, layer_index) && wd_layer_tables_init(placement, params) &&
         wd_layer_map_load(placement, params)) {

@@ -20,6 +20,8 @@ static float probability(const struct wd_scene_map *map, float value)
     if (map->class_count > 0)
         return class_probability(map, value);
     double low = map->value_range[0], high = map->value_range[1];
+    if (low == 0.0 && high == 0.0)
+        high = 1.0; /* not given */
     if (low == high)
         return value >= map->value_range[0] ? 1.0f : 0.0f;
     return (float)fmin(fmax(((double)value - low) / (high - low), 0.0), 1.0);

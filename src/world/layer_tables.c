@@ -35,8 +35,8 @@ static bool push_counts(struct wd_placement *placement, const struct wd_log *log
         push_threshold(placement, 1.0 - fmin(fmax(layer->density, 0.0), 1.0));
     } else if (layer->placement == WD_PLACE_POISSON) {
         if (!(layer->density >= 0.0 && layer->density <= 64.0))
-            return wd_error(log, "layer %s: density: %g trees a square, 0 .. 64 is allowed; "
-                            "take smaller squares (spacing_m)", layer->name, layer->density);
+            return wd_error(log, "%s: density: %g trees a square, 0 .. 64 is allowed; "
+                            "take smaller squares (spacing_m)", placement->name, layer->density);
         double term = wd_dexp(-layer->density), sum = term;
         for (int count = 1; push_threshold(placement, sum) && count < 200; count++) {
             term = term * layer->density / (double)count;
@@ -90,22 +90,23 @@ static size_t list_picks(const struct wd_placement *placement, const struct wd_s
     return count;
 }
 
-static bool check_species(const struct wd_scene_layer *layer, const struct wd_scene *scene,
+static bool check_species(const struct wd_placement *placement, const struct wd_scene *scene,
                           const struct wd_log *log)
 {
+    const struct wd_scene_layer *layer = placement->layer;
     double total = 0.0;
     for (size_t i = 0; i < layer->species_count; i++) {
         const struct wd_scene_share *share = &layer->species[i];
         if (wd_scene_find_species(scene, share->name) < 0)
-            return wd_error(log, "layer %s: species \"%s\" is not in the scene", layer->name,
-                            share->name);
+            return wd_error(log, "%s: species \"%s\" is not in the scene",
+                            placement->name, share->name);
         if (!(share->share >= 0.0 && share->share < 1e9))
-            return wd_error(log, "layer %s: share of %s is %g, 0 or more is wanted", layer->name,
-                            share->name, share->share);
+            return wd_error(log, "%s: share of %s is %g, 0 or more is wanted",
+                            placement->name, share->name, share->share);
         total += share->share;
     }
     if (!(total > 0.0))
-        return wd_error(log, "layer %s: no species with a share above 0", layer->name);
+        return wd_error(log, "%s: no species with a share above 0", placement->name);
     return true;
 }
 
@@ -113,7 +114,7 @@ bool wd_layer_tables_init(struct wd_placement *placement, const struct wd_placem
 {
     struct wd_place_layer *to = &placement->input.layer;
     const struct wd_scene *scene = params->scene;
-    if (!check_species(placement->layer, scene, params->log) ||
+    if (!check_species(placement, scene, params->log) ||
         !push_counts(placement, params->log))
         return false;
     struct pick *picks = wd_alloc_array(placement->layer->species_count, sizeof *picks);

@@ -130,7 +130,7 @@ static bool fill_batch(struct fill *fill, size_t count, const struct wd_placemen
     wd_jobs_run(params->threads, count, plant_tile, fill);
     for (size_t i = 0; i < count; i++) {
         if (list->count + fill->tiles[i].count > params->max_trees)
-            return wd_too_many_trees(params, placement->layer->name);
+            return wd_too_many_trees(params, placement->name);
         join(list, &fill->tiles[i]);
     }
     return true;

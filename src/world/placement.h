@@ -40,6 +40,7 @@ struct wd_placement {
     uint32_t *table;
     size_t table_count, table_capacity;
     const struct wd_scene_layer *layer;
+    char name[64]; /* for messages */
 };
 bool wd_placement_init(struct wd_placement *placement, const struct wd_placement_params *params,
                        size_t layer_index);

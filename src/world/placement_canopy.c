@@ -181,7 +181,7 @@ static bool plant_tops(const struct wd_placement *placement, const struct top_li
         if (!verdict.accepted)
             continue;
         if (trees->count >= params->max_trees)
-            return wd_too_many_trees(params, placement->layer->name);
+            return wd_too_many_trees(params, placement->name);
         uint32_t height_cm = (uint32_t)((double)top->height_m * 100.0 + 0.5);
         struct wd_tree tree = wd_place_grow(&placement->input, key, x_mm, y_mm, verdict.z_mm,
                                             height_cm);
@@ -195,8 +195,8 @@ bool wd_canopy_fill(const struct wd_placement *placement, const struct wd_placem
 {
     const struct wd_scene_layer *layer = placement->layer;
     if (layer->canopy.file == NULL)
-        return wd_error(params->log, "layer %s: placement \"canopy\" needs canopy.file, a raster "
-                        "of canopy heights in metres", layer->name);
+        return wd_error(params->log, "%s: placement \"canopy\" needs canopy.file, a raster "
+                        "of canopy heights in metres", placement->name);
     struct wd_raster raster;
     if (!wd_raster_load(&raster, params->scene, &layer->canopy, params->terrain,
                         WD_RESAMPLE_MAX, UINT64_C(1) << 26, params->log))

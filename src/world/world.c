@@ -27,12 +27,12 @@ static bool plant_layers(const struct wd_placement_params *params, struct wd_tre
         size_t before = list->count;
         bool ok = wd_placement_init(&placement, params, i) &&
                   wd_placement_fill(&placement, params, list);
+        if (ok)
+            wd_info(params->log, "%s: %zu trees", placement.name, list->count - before);
         wd_placement_finish(&placement);
         if (!ok)
             return false;
         layers->ends[i] = list->count;
-        wd_info(params->log, "layer %s: %zu trees", params->scene->layers[i].name,
-                list->count - before);
     }
     return true;
 }

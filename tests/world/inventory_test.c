@@ -1,0 +1,451 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/memory.h"
+#include "small_scene.h"
+#include "world/world.h"
+
+struct capture {
+    char errors[8192], others[8192];
+};
+
+static void keep(void *user, enum wd_log_level level, const char *message)
+{
+    struct capture *capture = user;
+    char *text = level == WD_LOG_ERROR ? capture->errors : capture->others;
+    size_t used = strlen(text);
+    snprintf(text + used, sizeof capture->errors - used, "%s\n", message);
+}
+
+static struct capture captured;
+static const struct wd_log sink = {keep, &captured};
+static const char *const path = "inventory_test.csv";
+
+static void write_file(const char *text)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static bool make(struct small_scene *small, struct wd_world *world)
+{
+    captured = (struct capture){"", ""};
+    small->scene.path = NULL;
+    return wd_world_init(world, &small->scene, &(struct wd_world_params){.log = &sink});
+}
+
+static void make_or_fail(struct small_scene *small, struct wd_world *world)
+{
+    if (!make(small, world))
+        fail_msg("%s", captured.errors);
+}
+
+static void assert_said(const char *text, const char *part)
+{
+    if (!strstr(text, part))
+        fail_msg("\"%s\" is not in \"%s\"", part, text);
+}
+
+/* Tree by the order of placement. */
+static struct wd_tree tree_at(const struct wd_world *world, size_t index)
+{
+    return world->trees[world->tree_of_id[index + 1]];
+}
+
+static void assert_stands(const struct wd_world *world, size_t index, int32_t x_mm, int32_t y_mm)
+{
+    struct wd_tree tree = tree_at(world, index);
+    assert_int_equal(tree.x_mm, x_mm);
+    assert_int_equal(tree.y_mm, y_mm);
+}
+
+static void test_positions_and_sizes(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path);
+    write_file("id,x,y,species,dbh,height,crown_diameter\n"
+               "1,10.5,20.25,oak,40,21.5,9.5\n"
+               "2,30,40,Picea abies,40,,\n"
+               "3,50,60,SPRUCE,,25,\n"
+               "4,70,80,whatever,,,\n");
+    make_or_fail(&small, &world);
+    assert_int_equal(world.tree_count, 4);
+    assert_stands(&world, 0, 10500, 20250);
+    struct wd_tree tree = tree_at(&world, 0);
+    assert_int_equal(tree.z_mm, 100000);
+    assert_int_equal(tree.size, 2150 | 950 << 16);
+    tree = tree_at(&world, 1);
+    assert_int_equal(WD_TREE_SPECIES(tree), 1);
+    const struct wd_species *spruce = &small.species[1];
+    assert_int_equal(tree.size & 0xffff,
+                     (uint32_t)floor(wd_species_height_m(spruce, 40.0) * 100.0 + 0.5));
+    assert_int_equal(tree.size >> 16,
+                     (uint32_t)floor(wd_species_crown_m(spruce, 40.0) * 100.0 + 0.5));
+    tree = tree_at(&world, 2);
+    assert_int_equal(WD_TREE_SPECIES(tree), 1);
+    assert_int_equal(tree.size & 0xffff, 2500);
+    double crown_m = wd_species_crown_m(spruce, wd_species_dbh_cm(spruce, 25.0));
+    assert_true(fabs((tree.size >> 16) - crown_m * 100.0) < 1.0);
+    tree = tree_at(&world, 3);
+    assert_int_equal(WD_TREE_SPECIES(tree), 0);
+    assert_int_equal(tree.size & 0xffff, 2000); /* typical */
+    assert_int_equal(world.species_counts[1], 2);
+    assert_int_equal(world.inventories[0].rows, 4);
+    assert_int_equal(world.inventories[0].planted, 4);
+    for (size_t i = 0; i < 4; i++)
+        assert_int_equal(world.layer_of_tree[i], 255);
+    assert_said(captured.others, "4 rows, 4 planted");
+    wd_world_finish(&world);
+}
+
+static void test_mapping_units_and_commas(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    struct wd_string_pair names[] = {{"Fi", "spruce"}, {"bi", "birch"}, {"*", "oak"}};
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->species = names;
+    inventory->species_count = 3;
+    inventory->columns.x = "Rechts";
+    inventory->columns.y = "Hoch";
+    inventory->columns.species = "Art";
+    inventory->columns.dbh = "BHD";
+    inventory->columns.height = "Hoehe";
+    inventory->dbh_unit = "mm";
+    inventory->height_unit = "ft";
+    inventory->height_m[0] = 5.0f;
+    inventory->height_m[1] = 6.0f;
+    write_file("\xef\xbb\xbfRechts;Hoch;Art;BHD;Hoehe\r\n"
+               "10,5;20,25;Fi;305,5;50\r\n11,5;20,25;Bi;;\r\n12,5;20;Ei;400;\r\n");
+    make_or_fail(&small, &world);
+    assert_stands(&world, 0, 10500, 20250);
+    struct wd_tree tree = tree_at(&world, 0);
+    assert_int_equal(WD_TREE_SPECIES(tree), 1);
+    assert_int_equal(tree.size & 0xffff, 1524);
+    double crown_m = wd_species_crown_m(&small.species[1], 30.55);
+    assert_true(fabs((tree.size >> 16) - crown_m * 100.0) < 1.0);
+    tree = tree_at(&world, 1);
+    assert_int_equal(WD_TREE_SPECIES(tree), 2);
+    assert_in_range(tree.size & 0xffff, 500, 600);
+    tree = tree_at(&world, 2);
+    assert_int_equal(WD_TREE_SPECIES(tree), 0);
+    wd_world_finish(&world);
+}
+
+static void test_dead_duplicates_outside_invalid(void **state)
+{
+    (void)state;
+    static const char *dead[] = {"D", "fallen"};
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->dead = dead;
+    inventory->dead_count = 2;
+    write_file("x,y,species,dbh,status\n"
+               "10,10,oak,30,A\n"
+               "10,10,oak,30,A\n"      /* duplicate */
+               "10,10,spruce,30,A\n"   /* another species may stand there */
+               "10,10,oak,12,A\n"      /* another stem, mapped coarsely */
+               "10.0004,10,oak,30,\n"  /* within the millimetre */
+               "20,20,oak,30,d\n"      /* dead */
+               "30,20,oak,-5,Fallen\n" /* dead: its size does not matter */
+               "-1,20,oak,30,A\n"      /* outside */
+               "500,20,oak,30,A\n"     /* outside */
+               ",20,oak,30,A\n"        /* no position */
+               "40,40,oak,0,A\n");     /* not measured */
+    make_or_fail(&small, &world);
+    const struct wd_inventory_report *report = &world.inventories[0];
+    assert_int_equal(report->rows, 11);
+    assert_int_equal(report->planted, 4);
+    assert_int_equal(report->duplicates, 2);
+    assert_int_equal(report->dead, 2);
+    assert_int_equal(report->outside, 2);
+    assert_int_equal(report->invalid, 1);
+    assert_said(captured.others, "inventory_test.csv:11: 1 rows have no position");
+    assert_said(captured.others, "inventory_test.csv:3: 2 rows repeat");
+    assert_said(captured.others, "2 trees stand outside");
+    wd_world_finish(&world);
+
+    inventory->outside = WD_OUTSIDE_KEEP;
+    make_or_fail(&small, &world);
+    assert_int_equal(world.inventories[0].planted, 6);
+    assert_int_equal(world.inventories[0].outside, 2);
+    assert_stands(&world, 3, -1000, 20000);
+    wd_world_finish(&world);
+
+    inventory->outside = WD_OUTSIDE_ERROR;
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "inventory_test.csv:9: stands at (-1.000, 20.000), outside");
+}
+
+static void test_rotation_and_offset(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->rotate_deg = 90.0;
+    inventory->offset_m[0] = 100.0;
+    inventory->offset_m[1] = 50.0;
+    write_file("x,y\n10,0\n0,20\n");
+    make_or_fail(&small, &world);
+    assert_stands(&world, 0, 100000, 60000);
+    assert_stands(&world, 1, 80000, 50000);
+    wd_world_finish(&world);
+}
+
+static void test_fitted_ground(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small.scene.terrain.size_m[0] = small.scene.terrain.size_m[1] = 0.0;
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->frame = "projected";
+    write_file("x,y,height_m\n493471.123,5821351.4567,20\n493571,5821251,10\n");
+    make_or_fail(&small, &world);
+    assert_int_equal(world.inventories[0].planted, 2);
+    assert_true(world.terrain.origin_m[0] == 493421.0);
+    assert_true(world.terrain.origin_m[1] == 5821201.0);
+    assert_stands(&world, 0, 50123, 150457);
+    assert_stands(&world, 1, 150000, 50000);
+    assert_true(wd_terrain_extent_x_m(&world.terrain) >= 200.0);
+    wd_world_finish(&world);
+
+    /* local coordinates, also negative ones, fit as well */
+    inventory->frame = "local";
+    write_file("x,y,height_m\n-5,-8,3\n5,2,3\n");
+    make_or_fail(&small, &world);
+    assert_int_equal(world.inventories[0].planted, 2);
+    assert_true(world.terrain.origin_m[0] == -55.0 && world.terrain.origin_m[1] == -58.0);
+    assert_stands(&world, 0, 50000, 50000);
+    wd_world_finish(&world);
+}
+
+/* Ground of a given size is laid under the data. */
+static void test_ground_under_data(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path)->frame = "projected";
+    write_file("x,y\n500000,6000000\n500100,6000200\n");
+    make_or_fail(&small, &world);
+    assert_int_equal(world.inventories[0].planted, 2);
+    assert_stands(&world, 0, 150000, 50000);
+    assert_stands(&world, 1, 250000, 250000);
+    wd_world_finish(&world);
+}
+
+static void expect_error(const char *text, const char *part)
+{
+    struct small_scene small;
+    struct wd_world world;
+    const struct wd_world nothing = {0};
+    small_scene_init(&small);
+    small_scene_inventory(&small, path);
+    write_file(text);
+    assert_false(make(&small, &world));
+    assert_memory_equal(&world, &nothing, sizeof world);
+    assert_said(captured.errors, part);
+    const char *line = strchr(captured.errors, '\n');
+    assert_true(line && line[1] == 0); /* one message */
+}
+
+static void test_errors(void **state)
+{
+    (void)state;
+    expect_error("x,y,dbh\n1,2,NaN\n", "inventory_test.csv:2: column dbh: \"NaN\" is not a number");
+    expect_error("x,y,dbh\n1,2,-3\n", "inventory_test.csv:2: column dbh: -3 is negative");
+    expect_error("x,y,height\n1,2,3\n1,2,1700\n",
+                 "inventory_test.csv:3: column height: 1700 is too much");
+    expect_error("x,y\n1,nan\n", "inventory_test.csv:2: column y");
+    expect_error("x,y\n1,2,3\n", "inventory_test.csv:2: 3 fields, but the header has 2");
+    expect_error("x,y\n", "no trees");
+    expect_error("x;y,z\n1,2\n", "no column for x was recognised");
+    expect_error("px1,y\n1,2\n", "no column for x was recognised; name it in columns.x; the header "
+                                 "has: px1, y");
+    expect_error("x,y\n5000,5000\n", "no tree stands on the ground");
+    expect_error("x,y\n,2\n", "no living tree");
+}
+
+static void test_wrong_column(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path)->columns.dbh = "dhb_cm";
+    write_file("x,y,dbh_cm,height\n1,2,3,4\n");
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "columns.dbh: no column \"dhb_cm\"; the header has: x, y, dbh_cm, "
+                                 "height; did you mean \"dbh_cm\"?");
+}
+
+static void test_unmapped_species(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path)->species_count = 0;
+    write_file("x,y,species\n1,2,elm\n2,2,oak\n3,2,ash\n4,2,elm\n5,2,\n");
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "3 species names are not mapped to a species of the scene: "
+                                 "\"elm\" (2), \"(empty)\" (1), \"ash\" (1)");
+    write_file("x,y\n1,2\n");
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "no column for the species");
+    small.scene.species_file_count = 1;
+    make_or_fail(&small, &world); /* there is only one it can be */
+    assert_int_equal(world.tree_count, 1);
+    wd_world_finish(&world);
+}
+
+static void test_delimiter_given_wrongly(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path)->delimiter = ";";
+    write_file("x,y\n1,2\n");
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "is the delimiter right?");
+}
+
+/* ---- real inventories ---- */
+
+static char *real_file(const char *name)
+{
+    char *file = wd_format("%s/inventories/%s", WD_TEST_DATA, name);
+    if (access(file, R_OK) == 0)
+        return file;
+    print_message("%s is not here: skipped\n", file);
+    free(file);
+    return NULL;
+}
+
+static void check_real(const char *name, void (*change)(struct wd_scene_inventory *inventory),
+                       uint64_t rows, uint64_t planted, uint64_t duplicates)
+{
+    char *file = real_file(name);
+    if (!file)
+        skip();
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small.scene.terrain.size_m[0] = small.scene.terrain.size_m[1] = 0.0;
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, file);
+    if (change)
+        change(inventory);
+    make_or_fail(&small, &world);
+    print_message("%s", strstr(captured.others, "inventory "));
+    assert_int_equal(world.inventories[0].rows, rows);
+    assert_int_equal(world.inventories[0].planted, planted);
+    assert_int_equal(world.inventories[0].duplicates, duplicates);
+    assert_int_equal(world.tree_count, planted);
+    assert_true(wd_terrain_extent_x_m(&world.terrain) < 5000.0);
+    wd_world_finish(&world);
+    free(file);
+}
+
+static void test_bei(void **state)
+{
+    (void)state;
+    check_real("bei.csv", NULL, 3604, 3604, 0);
+}
+
+static void set_projected(struct wd_scene_inventory *inventory)
+{
+    inventory->frame = "projected";
+}
+
+static void test_quesnel(void **state)
+{
+    (void)state;
+    check_real("quesnel_treetops.csv", set_projected, 24465, 24465, 0);
+}
+
+static void set_nouragues(struct wd_scene_inventory *inventory)
+{
+    inventory->frame = "projected";
+    inventory->columns.x = "x_utm22n";
+    inventory->columns.y = "y_utm22n";
+}
+
+static void test_nouragues(void **state)
+{
+    (void)state;
+    check_real("nouragues_trees.csv", set_nouragues, 2050, 2050, 0);
+}
+
+static void test_boreas(void **state)
+{
+    (void)state;
+    check_real("boreasNS.csv", NULL, 1418, 1418, 0);
+    check_real("boreasSP.csv", NULL, 420, 420, 0);
+}
+
+static void test_lansing(void **state)
+{
+    (void)state;
+    check_real("lansing.csv", NULL, 2251, 2250, 1);
+}
+
+static void test_finpines(void **state)
+{
+    (void)state;
+    check_real("finpines.csv", NULL, 126, 126, 0);
+    check_real("longleaf.csv", NULL, 584, 584, 0);
+}
+
+static int remove_file(void **state)
+{
+    (void)state;
+    unlink(path);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_positions_and_sizes),
+        cmocka_unit_test(test_mapping_units_and_commas),
+        cmocka_unit_test(test_dead_duplicates_outside_invalid),
+        cmocka_unit_test(test_rotation_and_offset),
+        cmocka_unit_test(test_fitted_ground),
+        cmocka_unit_test(test_ground_under_data),
+        cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_wrong_column),
+        cmocka_unit_test(test_unmapped_species),
+        cmocka_unit_test(test_delimiter_given_wrongly),
+        cmocka_unit_test(test_bei),
+        cmocka_unit_test(test_quesnel),
+        cmocka_unit_test(test_nouragues),
+        cmocka_unit_test(test_boreas),
+        cmocka_unit_test(test_lansing),
+        cmocka_unit_test(test_finpines),
+    };
+    return cmocka_run_group_tests_name("inventory", tests, NULL, remove_file);
+}
