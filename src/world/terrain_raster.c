@@ -177,6 +177,14 @@ static double grid_samples(const double extent_m[2], double cell_m)
     return samples_of(extent_m[0], cell_m) * samples_of(extent_m[1], cell_m);
 }
 
+/* The same of whole blocks of step x step pixels. */
+static double block_samples(const double extent_m[2], double pixel_m, double step)
+{
+    double lost_m = (step - 1) * pixel_m;
+    const double left_m[2] = {extent_m[0] - lost_m, extent_m[1] - lost_m};
+    return grid_samples(left_m, pixel_m * step);
+}
+
 /* The raster's own spacing, coarser by whole pixels or finer by powers of two. */
 static double choose_cell(struct dem *dem, double pixel_m, const double extent_m[2])
 {
@@ -193,8 +201,8 @@ static double choose_cell(struct dem *dem, double pixel_m, const double extent_m
         return cell_m * factor;
     }
     if (own > most) {
-        double step = ceil(sqrt(own / most));
-        while (grid_samples(extent_m, pixel_m * step) > most)
+        double step = fmax(2, floor(sqrt(own / most)));
+        while (block_samples(extent_m, pixel_m, step) > most)
             step++;
         return pixel_m * step;
     }
