@@ -42,6 +42,7 @@ struct wd_species {
                                  the crown's length from its base */
     float crown_lobes;        /* depth of the crown's bulges, share of its radius */
     float crown_open;         /* crown diameter in the open over that in a forest, same stem */
+    float stem_open;          /* stem diameter in the open over that in a forest, same height */
     float trunk_wander;       /* radians per metre */
     float apical_dominance;   /* 1: one leader to the top; 0: the trunk dissolves into limbs */
     float root_flare;         /* stem radius at the ground over that at 1.3 m */

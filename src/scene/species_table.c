@@ -127,6 +127,8 @@ static const struct wd_key species_keys[] = {
      "Depth of the crown's bulges as a share of its radius."},
     {"crown_open", WD_KEY_FLOAT, FIELD(crown_open), 1, 4, "1.4",
      "Crown diameter in the open over that in a forest, for the same stem."},
+    {"stem_open", WD_KEY_FLOAT, FIELD(stem_open), 1, 4, "1.4",
+     "Stem diameter in the open over that in a forest, for the same height."},
     {"trunk_wander", WD_KEY_FLOAT, FIELD(trunk_wander), 0, 2, "0.03",
      "Random bending of the trunk, radians per metre."},
     {"apical_dominance", WD_KEY_FLOAT, FIELD(apical_dominance), 0, 1, "0.6",

@@ -1,5 +1,6 @@
 #include "tree/foliage.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -31,6 +32,8 @@ static float leafy_from(const struct wd_tree_form *form, const struct wd_branch 
     bool tuft = form->species->leaf.phyllotaxis == WD_PHYLLOTAXIS_WHORLED;
     if (branch->order == last)
         return tuft ? 0.45f : 0.12f;
+    if (branch->order == last - 1 && branch->order >= 0 && tuft)
+        return 0.85f;
     if (branch->order == last - 1 && branch->order >= 0)
         return form->species->form == WD_FORM_CONIFER && last < 2 ? 0.35f : 0.55f;
     return branch->order == WD_TRUNK ? 0.975f : 0.9f;
@@ -79,7 +82,7 @@ static void weigh_carriers(struct carriers *carriers, struct wd_foliage *foliage
         struct wd_vec3 p = wd_branch_point(skeleton, &skeleton->branches[carrier->branch], 0.7f,
                                            &d, &node);
         float sky = wd_tree_density_sky(&foliage->crown, p);
-        carrier->weight = carrier->length_m * (0.25f + sky + sky * sky);
+        carrier->weight = carrier->length_m * (0.35f + sky);
         carriers->weight += carrier->weight;
     }
     for (size_t i = 0; i < (size_t)foliage->crown.size[0] * (size_t)foliage->crown.size[1] *
@@ -197,12 +200,13 @@ static float leaf_area_m2(const struct wd_tree_form *form)
 static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
 {
     const struct wd_species *species = form->species;
-    double scale = wd_dpow((double)form->scale, 1.5);
-    double count = (double)species->leaf.count * (double)form->detail * (scale < 1.3 ? scale : 1.3);
-    float real_m = 0.01f * species->leaf.length_cm;
-    if (species->leaf.shape == WD_LEAF_NEEDLES)
-        real_m = 0.10f; /* a shoot of one year */
-    double most = (double)(area_m2 / (wd_leaf_unit_area(species) * real_m * real_m));
+    bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
+    double spread = wd_dpow((double)form->spread, 1.5);
+    double count = (double)species->leaf.count * (double)form->detail * fmin(spread, needles ? 1 : 1.2);
+    double real_m = 0.01 * (double)species->leaf.length_cm;
+    if (needles)
+        real_m = 0.10; /* a shoot of one year */
+    double most = (double)(area_m2 / wd_leaf_unit_area(species)) / (real_m * real_m);
     if (count > most)
         count = most;
     return count < 40 ? 40 : (size_t)count;

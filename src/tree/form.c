@@ -5,11 +5,16 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
 {
     float height = params->height_m > 0 ? params->height_m : species->typical_height_m;
     float open = params->openness;
-    double dbh_cm = wd_species_dbh_cm(species, height) * (1 + 0.2 * (double)open);
+    double dbh_cm = wd_species_dbh_cm(species, height) *
+                    (double)wd_mixf(1, species->stem_open, open);
     struct wd_random random = wd_random_of(params->seed, 0x7ee5);
     float crown = (float)wd_species_crown_m(species, dbh_cm);
     crown *= wd_mixf(1, species->crown_open, open) * wd_random_range(&random, 0.92f, 1.08f);
+    float typical_crown = (float)wd_species_crown_m(
+        species, wd_species_dbh_cm(species, (double)species->typical_height_m));
     float clear = wd_mixf(species->crown_base_forest, species->crown_base_open, open);
+    float length = height * (1 - clear) /
+                   (species->typical_height_m * (1 - species->crown_base_forest));
     return (struct wd_tree_form){
         .species = species,
         .key = wd_hash2(params->seed, 0x600d),
@@ -20,6 +25,7 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
         .dbh_m = (float)dbh_cm * 0.01f,
         .crown_base_m = height * clear * wd_random_range(&random, 0.94f, 1.04f),
         .crown_radius_m = 0.5f * crown,
+        .spread = 0.5f * (crown / typical_crown + length),
         .lobe_m = wd_clampf(0.3f * crown, 0.5f, 3.0f),
     };
 }

@@ -16,6 +16,7 @@ struct wd_tree_form {
     float dbh_m;
     float crown_base_m;
     float crown_radius_m; /* of the envelope at its widest */
+    float spread;         /* size of the crown over that of a typical forest tree */
     float lobe_m;         /* size of the envelope's bulges */
 };
 

@@ -4,6 +4,7 @@
 #include "tree/wood.h"
 
 enum {
+    FULL_WOOD_TRIANGLES = 26000,
     REDUCED_WOOD_TRIANGLES = 1600,
     REDUCED_LEAVES = 2600, /* two triangles each */
 };
@@ -25,11 +26,20 @@ static bool check_params(const struct wd_species *species, const struct wd_grow_
     return true;
 }
 
+/* Leaves out the thinnest branches until the rest fits the budget. */
+static void fit_wood(struct wd_wood_style *style, const struct wd_skeleton *skeleton,
+                     size_t triangles)
+{
+    while (wd_wood_triangles(skeleton, style) > triangles)
+        style->least_radius_m = 1.08f * style->least_radius_m + 1e-4f;
+}
+
 static void build_full(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                        const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
     float least = form->species->leaf.shape == WD_LEAF_NEEDLES ? 0.0055f : 0;
     struct wd_wood_style style = {least * fminf(form->scale, 1), 1, 12};
+    fit_wood(&style, skeleton, (size_t)(FULL_WOOD_TRIANGLES * fmaxf(form->detail, 1)));
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
     wd_foliage_mesh(mesh, foliage, form->species);
@@ -40,8 +50,7 @@ static void build_reduced(struct wd_tree_mesh *mesh, const struct wd_skeleton *s
                           const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
     struct wd_wood_style style = {0.002f, 4, 5};
-    while (wd_wood_triangles(skeleton, &style) > REDUCED_WOOD_TRIANGLES)
-        style.least_radius_m *= 1.1f;
+    fit_wood(&style, skeleton, REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
     wd_foliage_mesh_reduced(mesh, foliage, form->species, REDUCED_LEAVES);
@@ -61,7 +70,8 @@ static float crown_radius_m(const struct wd_foliage *foliage)
     enum { SECTORS = 16 };
     float reach[SECTORS] = {0}, sum = 0;
     for (size_t i = 0; i < foliage->count; i++) {
-        struct wd_vec3 p = foliage->leaves[i].position_m;
+        const struct wd_leaf *leaf = &foliage->leaves[i];
+        struct wd_vec3 p = wd_v3_mad(leaf->position_m, leaf->axis, leaf->size_m);
         double turn = wd_datan2((double)p.y, (double)p.x) / (2 * WD_PI) + 0.5;
         int sector = (int)(turn * SECTORS) % SECTORS;
         reach[sector] = fmaxf(reach[sector], sqrtf(p.x * p.x + p.y * p.y));

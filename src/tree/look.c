@@ -36,7 +36,7 @@ uint32_t wd_bark_tint_at(const struct wd_bark_tint *bark, float height, float ra
                          float sky)
 {
     float up = wd_smoothf(bark->upper_from, bark->upper_from + 0.25f, height);
-    float thin = 1 - wd_smoothf(0.008f, 0.045f, radius_m), rgb[3];
+    float thin = 1 - wd_smoothf(0.012f, 0.06f, radius_m), rgb[3];
     for (int i = 0; i < 3; i++)
         rgb[i] = wd_mixf(wd_mixf(bark->lower[i], bark->upper[i], up), bark->twig[i], thin);
     return wd_pack_tint(rgb, sky);

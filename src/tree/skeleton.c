@@ -82,6 +82,10 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
         d = wd_v3_unit(wd_v3_mad(d, drift, stem->wander * step));
         d = bend_up(d, wd_mixf(stem->upturn, stem->tip_upturn, wd_smoothf(0.3f, 0.9f, t)) * step);
         struct wd_vec3 next = wd_v3_mad(p, d, step);
+        if (next.z < 0.35f && d.z < 0) {
+            d = wd_v3_unit(WD_V3(d.x, d.y, 0.1f));
+            next = wd_v3_mad(p, d, step);
+        }
         if (wd_tree_envelope_share(form, next) > 1.04f) {
             struct wd_vec3 out = wd_v3_unit_or(WD_V3(p.x, p.y, 0), WD_V3(0, 0, 1));
             d = wd_v3_unit(wd_v3_mad(d, out, -0.6f * fmaxf(wd_v3_dot(d, out), 0)));
@@ -211,7 +215,7 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
 
 static float spacing_m(const struct wd_tree_form *form, int order)
 {
-    double squeeze = wd_dpow((double)form->scale, 0.8);
+    double squeeze = wd_dpow((double)form->spread, order == 0 ? 0.8 : 1.0);
     return form->species->orders[order].spacing_m * (float)squeeze;
 }
 
@@ -223,7 +227,7 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
     float crown = form->height_m - form->crown_base_m, spacing = spacing_m(form, 0);
     float end = crown * trunk_end(form), top = form->crown_base_m + end;
     int whorl = (int)species->whorl, index = 0;
-    for (float z = 0.1f * spacing; z < 0.985f * end; index++) {
+    for (float z = 0.1f * spacing; z < 0.98f * end; index++) {
         float around = (float)index * 2.3999632f + wd_random_unit(&random), t = z / end;
         for (int i = 0; i < whorl; i++) {
             if (skeleton->branch_count >= WD_MAX_BRANCHES)
@@ -236,11 +240,12 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
             joint.length_m = 1.6f * form->crown_radius_m * species->orders[0].length_ratio;
             if (end < crown)
                 joint.length_m = fmaxf(joint.length_m, joint.height * (crown - z));
-            joint.length_m *= wd_random_range(&random, 0.75f, 1.0f);
+            joint.length_m *= wd_random_range(&random, 0.85f, 1.0f);
             joint.key = wd_hash3(form->key, 0x11b, (uint32_t)(index * 16 + i));
             grow_joint(skeleton, form, 0, &joint);
         }
-        z += spacing * wd_random_range(&random, 0.8f, 1.2f) * (1 - 0.4f * t);
+        float dense = end < crown ? 0.7f + 0.7f * t : 1 - 0.4f * t;
+        z += spacing * wd_random_range(&random, 0.8f, 1.2f) * dense;
     }
     return true;
 }

@@ -75,15 +75,18 @@ static int repeats(float over_m, float scale_cm)
 /* Long ridges that part and join again, broken across here and there. */
 static struct bark_point fissured(uint32_t key, float u, float v, int across)
 {
-    float bend = 2.2f * (tile_fractal(key, u, v, 5, 3) - 0.5f) / (float)across;
+    float bend = 2.2f * (tile_fractal(key, u, v, 5, 3) - 0.5f) / (float)across +
+                 0.9f * (tile_fractal(key ^ 0x77, u, v, 24, 12) - 0.5f) / (float)across;
     float x = (u + bend) * (float)across;
-    int along = across / 5 < 2 ? 2 : across / 5;
+    int along = across / 6 < 2 ? 2 : across / 6;
     x -= floorf(x / (float)across) * (float)across;
     uint32_t plate = 0;
     float edge = cell_edge(key ^ 0xf15, x, v * (float)along, across, along, &plate);
     float rough = tile_fractal(key ^ 0x9, u, v, 48, 16);
-    return (struct bark_point){wd_smoothf(0.06f, 0.40f, edge + 0.25f * (rough - 0.5f)),
-                               0.75f + 0.3f * rough + 0.2f * wd_hash_unit(plate), 0};
+    float fine = tile_fractal(key ^ 0x19, u, v, 96, 24);
+    return (struct bark_point){wd_smoothf(0.0f, 0.5f, edge + 0.5f * (rough - 0.5f)),
+                               0.55f + 0.45f * rough + 0.35f * fine + 0.1f * wd_hash_unit(plate),
+                               0};
 }
 
 static struct bark_point scaly(uint32_t key, float u, float v, int across)

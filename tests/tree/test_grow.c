@@ -1,0 +1,344 @@
+#include "tree_test.h"
+
+#include "raster.h"
+
+static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size)
+{
+    const uint8_t *bytes = data;
+    for (size_t i = 0; i < size; i++)
+        hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    return hash;
+}
+
+static uint64_t hash_mesh(uint64_t hash, const struct wd_tree_mesh *mesh)
+{
+    hash = hash_bytes(hash, mesh->vertices, mesh->vertex_count * sizeof *mesh->vertices);
+    return hash_bytes(hash, mesh->indices, mesh->index_count * sizeof *mesh->indices);
+}
+
+static uint64_t hash_model(const struct wd_tree_model *model)
+{
+    return hash_mesh(hash_mesh(0xcbf29ce484222325u, &model->full), &model->reduced);
+}
+
+static struct wd_tree_model grow(const struct wd_species *species, uint32_t seed, float height_m,
+                                 float openness)
+{
+    struct wd_tree_model model;
+    struct wd_grow_params params = {.seed = seed, .height_m = height_m, .openness = openness};
+    assert_true(wd_tree_grow(&model, species, &params, NULL));
+    return model;
+}
+
+/* Runs `check` on a forest-grown, an open-grown, a young and a tall tree of every species. */
+static void for_all(void (*check)(const struct wd_species *species,
+                                  const struct wd_tree_model *model, float height_m))
+{
+    struct wd_arena arena = {0};
+    for (int s = 0; s < SPECIES_COUNT; s++) {
+        struct wd_species species = test_species(&arena, test_species_names[s]);
+        const float cases[][2] = {{0, 0}, {0, 1}, {3, 0.5f}, {species.height_range_m[1], 0.2f},
+                                  {species.height_range_m[0], 0}};
+        for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+            struct wd_tree_model model = grow(&species, 3 + (uint32_t)i, cases[i][0], cases[i][1]);
+            check(&species, &model, cases[i][0] > 0 ? cases[i][0] : species.typical_height_m);
+            wd_tree_model_finish(&model);
+        }
+    }
+    wd_arena_finish(&arena);
+}
+
+static void same_parameters_same_bytes(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    struct wd_species species = test_species(&arena, "oak");
+    struct wd_tree_model a = grow(&species, 7, 20, 0.3f), b = grow(&species, 7, 20, 0.3f);
+    struct wd_tree_model other = grow(&species, 8, 20, 0.3f);
+    assert_true(hash_model(&a) == hash_model(&b));
+    assert_true(hash_model(&a) != hash_model(&other));
+    wd_tree_model_finish(&a);
+    wd_tree_model_finish(&b);
+    wd_tree_model_finish(&other);
+    wd_arena_finish(&arena);
+}
+
+/* The same on every compiler and optimisation level. When growth or a species file changes on
+ * purpose, the failing test prints the new numbers. */
+static void known_hashes(void **state)
+{
+    static const uint64_t expected[SPECIES_COUNT] = {1, 2, 3, 4, 5};
+    struct wd_arena arena = {0};
+    int wrong = 0;
+    (void)state;
+    for (int s = 0; s < SPECIES_COUNT; s++) {
+        struct wd_species species = test_species(&arena, test_species_names[s]);
+        struct wd_tree_model model = grow(&species, 1, 0, 0.25f);
+        if (hash_model(&model) != expected[s]) {
+            print_error("%s: 0x%016llx\n", test_species_names[s],
+                        (unsigned long long)hash_model(&model));
+            wrong++;
+        }
+        wd_tree_model_finish(&model);
+    }
+    wd_arena_finish(&arena);
+    assert_int_equal(wrong, 0);
+}
+
+static void check_mesh(const struct wd_tree_mesh *mesh)
+{
+    assert_true(mesh->index_count % 3 == 0 && mesh->wood_index_count % 3 == 0);
+    assert_true(mesh->wood_index_count > 0 && mesh->wood_index_count < mesh->index_count);
+    for (uint32_t i = 0; i < mesh->index_count; i++) {
+        assert_true(mesh->indices[i] < mesh->vertex_count);
+        uint32_t leaf = mesh->vertices[mesh->indices[i]].kind & WD_VERTEX_LEAF;
+        assert_int_equal(leaf != 0, i >= mesh->wood_index_count);
+    }
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            float p = mesh->vertices[i].position_m[axis];
+            assert_true(isfinite(p));
+            assert_true(p >= mesh->min_m[axis] && p <= mesh->max_m[axis]);
+        }
+}
+
+static void check_model(const struct wd_species *species, const struct wd_tree_model *model,
+                        float height_m)
+{
+    check_mesh(&model->full);
+    check_mesh(&model->reduced);
+    assert_float_equal(model->height_m / height_m, 1, 1e-4);
+    assert_float_equal(model->full.max_m[2] / height_m, 1, 0.03);
+    assert_float_equal(model->reduced.max_m[2] / height_m, 1, 0.06);
+    assert_true(model->full.min_m[2] <= -0.01f && model->full.min_m[2] >= -0.4f);
+    assert_true(model->crown_radius_m > 0.02f * height_m && model->crown_radius_m < height_m);
+    assert_true(model->crown_base_m >= 0 && model->crown_base_m < height_m);
+    double dbh = wd_species_dbh_cm(species, (double)height_m) * 0.01;
+    assert_true((double)model->dbh_m > 0.8 * dbh && (double)model->dbh_m < 2 * dbh);
+}
+
+static void models_are_sound(void **state)
+{
+    (void)state;
+    for_all(check_model);
+}
+
+/* The middle of a wood triangle lies on the side of its branch that its vertices' normals say. */
+static void check_winding(const struct wd_species *species, const struct wd_tree_model *model,
+                          float height_m)
+{
+    const struct wd_tree_mesh *mesh = &model->full;
+    uint32_t inward = 0;
+    (void)species, (void)height_m;
+    for (uint32_t i = 0; i < mesh->wood_index_count; i += 3) {
+        const struct wd_tree_vertex *v[3];
+        float normal[3], sum[3] = {0};
+        for (uint32_t k = 0; k < 3; k++) {
+            v[k] = &mesh->vertices[mesh->indices[i + k]];
+            wd_unpack_normal(v[k]->normal, normal);
+            for (int axis = 0; axis < 3; axis++)
+                sum[axis] += normal[axis];
+        }
+        float a[3], b[3];
+        for (int axis = 0; axis < 3; axis++) {
+            a[axis] = v[1]->position_m[axis] - v[0]->position_m[axis];
+            b[axis] = v[2]->position_m[axis] - v[0]->position_m[axis];
+        }
+        float face = sum[0] * (a[1] * b[2] - a[2] * b[1]) + sum[1] * (a[2] * b[0] - a[0] * b[2]) +
+                     sum[2] * (a[0] * b[1] - a[1] * b[0]);
+        inward += face < 0;
+    }
+    assert_true(inward * 1000 <= mesh->wood_index_count / 3); /* sharp bends of twigs */
+}
+
+static void wood_faces_outward(void **state)
+{
+    (void)state;
+    for_all(check_winding);
+}
+
+static void budgets_of_mature_trees_hold(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    for (int s = 0; s < SPECIES_COUNT; s++)
+        for (int open = 0; open <= 1; open++) {
+            struct wd_species species = test_species(&arena, test_species_names[s]);
+            struct wd_tree_model model = grow(&species, 11, 0, (float)open);
+            assert_in_range(model.full.index_count / 3, 40000, 100000);
+            assert_in_range(model.reduced.index_count / 3, 4000, 8000);
+            double radius = (double)model.crown_radius_m;
+            double index = (double)model.leaf_area_m2 / (3.14159265 * radius * radius);
+            double wanted = (double)species.leaf.area_index;
+            assert_true(index > 0.75 * wanted && index < 1.3 * wanted);
+            wd_tree_model_finish(&model);
+        }
+    wd_arena_finish(&arena);
+}
+
+struct sample {
+    double area, tint[4], normal[3], position[3];
+};
+
+static struct sample sample_leaves(const struct wd_tree_mesh *mesh, uint32_t count)
+{
+    struct sample sample = {0};
+    for (uint32_t t = 0; t < count; t++) {
+        double area = test_leaf_area(mesh, t, 1);
+        const struct wd_tree_vertex *v =
+            &mesh->vertices[mesh->indices[mesh->wood_index_count + 3 * t]];
+        float normal[3];
+        wd_unpack_normal(v->normal, normal);
+        sample.area += area;
+        for (int i = 0; i < 4; i++)
+            sample.tint[i] += area * (double)(v->tint >> (8 * i) & 255) / 255;
+        for (int i = 0; i < 3; i++) {
+            sample.normal[i] += area * (double)normal[i];
+            sample.position[i] += area * (double)v->position_m[i];
+        }
+    }
+    for (int i = 0; i < 4; i++)
+        sample.tint[i] /= sample.area;
+    for (int i = 0; i < 3; i++) {
+        sample.normal[i] /= sample.area;
+        sample.position[i] /= sample.area;
+    }
+    return sample;
+}
+
+static void assert_alike(const struct sample *a, const struct sample *b, double crown_m)
+{
+    for (int i = 0; i < 4; i++)
+        assert_float_equal(a->tint[i], b->tint[i], 0.02);
+    for (int i = 0; i < 3; i++) {
+        assert_float_equal(a->normal[i], b->normal[i], 0.04);
+        assert_float_equal(a->position[i], b->position[i], 0.06 * crown_m);
+    }
+}
+
+static void check_prefix(const struct wd_species *species, const struct wd_tree_model *model,
+                         float height_m)
+{
+    uint32_t all = test_leaf_triangles(&model->full), part = all / 4;
+    (void)species;
+    if (height_m < 5)
+        return; /* too few leaves for statistics */
+    struct sample whole = sample_leaves(&model->full, all);
+    struct sample prefix = sample_leaves(&model->full, part);
+    assert_float_equal(4 * prefix.area / whole.area, 1, 0.03);
+    assert_alike(&prefix, &whole, (double)model->crown_radius_m);
+}
+
+static void any_prefix_of_leaves_is_fair(void **state)
+{
+    (void)state;
+    for_all(check_prefix);
+}
+
+static double coverage(const struct wd_tree_mesh *mesh, const struct wd_species *species,
+                       float height_m, float azimuth_rad, float elevation_rad)
+{
+    enum { SIDE = 400 };
+    uint8_t texel[4] = {128, 128, 128, 255};
+    struct wd_raster_looks looks = {1, texel, texel, species};
+    struct wd_raster_view view = {0.5f * SIDE, 0.8f * SIDE, 0.6f * SIDE / height_m, azimuth_rad,
+                                  elevation_rad};
+    struct wd_raster raster;
+    wd_raster_init(&raster, SIDE, SIDE);
+    wd_raster_tree(&raster, mesh, &looks, &view);
+    double share = wd_raster_coverage(&raster);
+    wd_raster_finish(&raster);
+    return share;
+}
+
+static void reduced_mesh_keeps_area_and_coverage(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    for (int s = 0; s < SPECIES_COUNT; s++)
+        for (int open = 0; open <= 1; open++) {
+            struct wd_species species = test_species(&arena, test_species_names[s]);
+            struct wd_tree_model model = grow(&species, 5, 0, 0.6f * (float)open);
+            const struct wd_tree_mesh *full = &model.full, *reduced = &model.reduced;
+            uint32_t full_count = test_leaf_triangles(full);
+            uint32_t reduced_count = test_leaf_triangles(reduced);
+            double ratio = test_leaf_area(reduced, 0, reduced_count) /
+                           test_leaf_area(full, 0, full_count);
+            assert_float_equal(ratio, 1, 0.1);
+            struct sample a = sample_leaves(full, full_count);
+            struct sample b = sample_leaves(reduced, reduced_count);
+            assert_alike(&a, &b, 1.5 * (double)model.crown_radius_m);
+            for (int view = 0; view < 3; view++) {
+                float azimuth = 2.1f * (float)view, up = view == 2 ? 0.9f : 0.05f;
+                double one = coverage(full, &species, model.height_m, azimuth, up);
+                double two = coverage(reduced, &species, model.height_m, azimuth, up);
+                print_message("%s open %d view %d: reduced covers %+.1f%%\n",
+                              test_species_names[s], open, view, 100 * (two / one - 1));
+                assert_float_equal(two / one, 1, 0.12);
+            }
+            wd_tree_model_finish(&model);
+        }
+    wd_arena_finish(&arena);
+}
+
+static void absurd_parameters_are_refused(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    struct wd_species species = test_species(&arena, "spruce");
+    static const struct {
+        struct wd_grow_params params;
+        const char *say;
+    } cases[] = {{{.height_m = 4000}, "4000 m"},       {{.height_m = -2}, "-2 m"},
+                 {{.height_m = NAN}, "nan m"},         {{.openness = 2}, "openness 2"},
+                 {{.openness = NAN}, "openness nan"},  {{.openness = -0.1f}, "openness -0.1"},
+                 {{.detail = 1e9f}, "detail 1e+09"},   {{.detail = NAN}, "detail nan"},
+                 {{.height_m = INFINITY}, "inf m"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct test_log log;
+        struct wd_tree_model model;
+        memset(&model, 0xaa, sizeof model);
+        test_log_init(&log);
+        assert_false(wd_tree_grow(&model, &species, &cases[i].params, &log.log));
+        assert_int_equal(log.count, 1);
+        assert_non_null(strstr(log.message, cases[i].say));
+        assert_non_null(strstr(log.message, "spruce"));
+        assert_null(model.full.vertices);
+        wd_tree_model_finish(&model);
+    }
+    wd_arena_finish(&arena);
+}
+
+static void too_many_branches_are_refused(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    struct wd_species species = test_species(&arena, "oak");
+    for (size_t i = 0; i < species.order_count; i++)
+        species.orders[i].spacing_m = 0.001f;
+    struct test_log log;
+    struct wd_tree_model model;
+    struct wd_grow_params params = {.seed = 1};
+    test_log_init(&log);
+    assert_false(wd_tree_grow(&model, &species, &params, &log.log));
+    assert_int_equal(log.count, 1);
+    assert_non_null(strstr(log.message, "branches"));
+    assert_null(model.full.vertices);
+    wd_arena_finish(&arena);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_parameters_same_bytes),
+        cmocka_unit_test(known_hashes),
+        cmocka_unit_test(models_are_sound),
+        cmocka_unit_test(wood_faces_outward),
+        cmocka_unit_test(budgets_of_mature_trees_hold),
+        cmocka_unit_test(any_prefix_of_leaves_is_fair),
+        cmocka_unit_test(reduced_mesh_keeps_area_and_coverage),
+        cmocka_unit_test(absurd_parameters_are_refused),
+        cmocka_unit_test(too_many_branches_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

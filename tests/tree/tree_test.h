@@ -1,0 +1,34 @@
+/* tree_test.h: what the tests of src/tree have in common. */
+#ifndef WD_TEST_TREE_TEST_H
+#define WD_TEST_TREE_TEST_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tree/grow.h"
+
+enum { SPECIES_COUNT = 5 };
+extern const char *const test_species_names[SPECIES_COUNT];
+
+/* Loads species/NAME.json of the source tree; fails the test when that does not work. */
+struct wd_species test_species(struct wd_arena *arena, const char *name);
+
+/* A log that keeps the last message. */
+struct test_log {
+    struct wd_log log;
+    char message[1024];
+    int count;
+};
+void test_log_init(struct test_log *log);
+
+/* One side, of leaf triangles [first, first + count). */
+double test_leaf_area(const struct wd_tree_mesh *mesh, uint32_t first, uint32_t count);
+uint32_t test_leaf_triangles(const struct wd_tree_mesh *mesh);
+
+#endif
