@@ -116,7 +116,9 @@ static bool start_interrupt(struct cli_interrupt *interrupt)
     sigaddset(&interrupt->signals, SIGINT);
     sigaddset(&interrupt->signals, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &interrupt->signals, NULL);
-    signal(SIGPIPE, SIG_IGN);
+    signal(SIGINT, SIG_DFL);  /* a shell's background job comes with it ignored */
+    signal(SIGPIPE, SIG_IGN); /* a dead encoder and a full quota are errors of the write, with a */
+    signal(SIGXFSZ, SIG_IGN); /* message, not the end of the process */
     if (pthread_create(&interrupt->thread, NULL, wait_for_signals, interrupt))
         return false;
     pthread_detach(interrupt->thread);

@@ -14,7 +14,7 @@ cppcheck --quiet --error-exitcode=1 --inline-suppr --std=c11 --enable=warning,po
     --suppress=normalCheckLevelMaxBranches --suppress=unknownMacro -j "$(nproc)" \
     -I include -I src -I shaders src cli viewer examples bench || failed=1
 if command -v shellcheck >/dev/null 2>&1; then
-    git ls-files '*.sh' .ci/run bench/run | xargs shellcheck || failed=1
+    git ls-files '*.sh' .ci/run bench/run | xargs shellcheck -x -P SCRIPTDIR --severity=warning || failed=1
 fi
 [ "$failed" -eq 0 ] && echo "lint: nothing found"
 exit "$failed"

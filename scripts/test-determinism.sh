@@ -3,7 +3,7 @@
 # the tests.
 set -eu
 cd "$(dirname "$0")/.."
-build=build-o0
+build="build-o0"
 
 CC=clang CXX=clang++ scripts/build.sh configure "$build" -Dbuildtype=plain -Doptimization=0 \
     -Dtests=enabled

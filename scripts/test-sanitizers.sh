@@ -2,7 +2,7 @@
 # The tests that need no GPU, under AddressSanitizer and UndefinedBehaviorSanitizer.
 set -eu
 cd "$(dirname "$0")/.."
-build=build-asan
+build="build-asan"
 
 scripts/build.sh configure "$build" -Dbuildtype=debugoptimized -Db_sanitize=address,undefined \
     -Db_lundef=false -Dtests=enabled

@@ -3,8 +3,8 @@
 #   sizes.sh ROOT
 set -eu
 cd "$1"
-find src include shaders cli viewer bench examples -name '*.[ch]' -o -name '*.cpp' -o -name '*.glsl' \
-    -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' | xargs wc -l |
+find src include shaders cli viewer bench examples -type f \( -name '*.[ch]' -o -name '*.cpp' \
+    -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' \) -exec wc -l {} + |
     awk '$2 != "total" && ($1 > 800 || ($2 ~ /embed.c$/ && $1 > 150)) {
              print $2 ": " $1 " lines"; bad++ }
          END { exit bad > 0 }'

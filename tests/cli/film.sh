@@ -1,0 +1,99 @@
+#!/bin/sh
+# Films: whole, stopped, and impossible ones.
+set -u
+. "$(dirname "$0")/lib.sh"
+mkdir "$scratch/cache" "$scratch/out"
+XDG_CACHE_HOME=$scratch/cache
+export XDG_CACHE_HOME
+out=$scratch/out
+size="--size 64x48 --gpu software"
+
+frames() { # frames in a film that can be decoded
+    ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 "$1"
+}
+complete_png() { # a PNG ends with an IEND chunk
+    [ "$(tail -c 8 "$1" | head -c 4)" = IEND ]
+}
+
+# shellcheck disable=SC2086
+{
+    expect 0 'fly.mp4: 5 frames' render "$tiny" -o "$out/fly.mp4" --path fly --frames 5 $size
+    expect 0 'wind.mp4: 3 frames' render "$tiny" -o "$out/wind.mp4" --camera west --frames 3 $size
+    expect 0 '8 frames' render "$tiny" -o "$out/speed.mp4" --path fly --fps 2 $size
+    expect 0 '3 frames' render "$tiny" -o "$out/f-%05d.png" --path fly --frames 3 $size
+    expect 0 '2 frames' render "$tiny" -o "$out/e-%d.exr" --path fly --frames 2 $size
+    expect 1 'even' render "$tiny" -o "$out/odd.mp4" --frames 2 --size 63x47 --gpu software
+    expect 1 'none' render "$tiny" -o "$out/none/f.mp4" --frames 2 $size
+    expect 1 'nowhere' render "$tiny" -o "$out/p.mp4" --path nowhere $size
+    expect 1 . render "$tiny" -o "$out/g-%s.png" --frames 2 $size
+    expect 1 . render "$tiny" -o "$out/g-%d-%d.png" --frames 2 $size
+    expect 1 . render "$tiny" -o "$out/none/g-%d.png" --frames 2 $size
+}
+check 'fly.mp4 has 5 frames' test "$(frames "$out/fly.mp4")" = 5
+check 'speed.mp4 has 4 s at 2 a second' test "$(frames "$out/speed.mp4")" = 8
+check 'the camera moves' sh -c "! cmp -s '$out'/f-00000.png '$out'/f-00001.png"
+check 'numbered pictures' complete_png "$out/f-00002.png"
+check 'numbered layers' test -s "$out/e-1.exr"
+rm -f "$out"/*
+
+# start NAME OPTION...: a long film in the background
+start() {
+    name=$1
+    shift
+    # shellcheck disable=SC2086
+    "$weald" render "$tiny" -o "$out/$name" --frames 4000 $size "$@" >"$scratch/log" 2>&1 &
+    pid=$!
+}
+# await FILE-TEST...: until it holds, at most a minute
+await() {
+    for _ in $(seq 600); do
+        "$@" >/dev/null 2>&1 && return 0
+        sleep 0.1
+    done
+    return 1
+}
+stop() { # stop SIGNAL STATUS
+    kill "-$1" "$pid"
+    status=0
+    wait "$pid" || status=$?
+    check "$1: exit status $2, was $status" test "$status" -eq "$2"
+}
+
+start 's-%05d.png' --path fly
+check 'frames appear while filming' await test -e "$out/s-00003.png"
+stop INT 130
+check 'the message counts what is kept' grep -qE 'finished [0-9]+ of 4000' "$scratch/log"
+bad=0
+for file in "$out"/s-*.png; do
+    complete_png "$file" || bad=$((bad + 1))
+done
+check 'every picture left is whole' test "$bad" -eq 0
+check 'nothing else is left' sh -c "! ls -A '$out' | grep -vE '^s-[0-9]{5}\\.png$'"
+rm -f "$out"/*
+
+start stopped.mp4 --path fly
+check 'progress in plain lines' await grep -q 'frames 0%' "$scratch/log"
+sleep 1
+stop INT 130
+kept=$(frames "$out/stopped.mp4")
+check "a stopped film plays ($kept frames)" test "${kept:-0}" -gt 0
+said=$(sed -n 's/.*finished \([0-9]*\) of.*/\1/p' "$scratch/log")
+check "and has as many frames as said ($said)" test "$kept" = "$said"
+check 'nothing else is left' sh -c "! ls -A '$out' | grep -vx stopped.mp4"
+rm -f "$out"/*
+
+start ended.mp4 --path fly
+check 'a film begins' await grep -q 'frames 0%' "$scratch/log"
+stop TERM 143
+check 'its encoder is gone and the file plays' test "$(frames "$out/ended.mp4")" -gt 0
+rm -f "$out"/*
+
+status=0
+(
+    ulimit -f 8
+    # shellcheck disable=SC2086
+    exec "$weald" render "$tiny" -o "$out/full.mp4" --path fly --frames 60 $size
+) >"$scratch/output" 2>&1 || status=$?
+check "full disk in a film: exit 1, was $status" test "$status" -eq 1
+check 'full disk in a film: nothing half written' sh -c "! ls -A '$out' | grep ."
+finish

@@ -1,0 +1,78 @@
+#!/bin/sh
+# Pictures on software Vulkan, and outputs that cannot be.
+set -u
+. "$(dirname "$0")/lib.sh"
+mkdir "$scratch/cache" "$scratch/out"
+XDG_CACHE_HOME=$scratch/cache
+export XDG_CACHE_HOME
+soft="--gpu software"
+out=$scratch/out
+
+# shellcheck disable=SC2086  # $soft is two words
+{
+    expect 0 "a.png: 160x90, 1 sample, .* MB, .* s" render "$tiny" -o "$out/a.png" $soft
+    expect 0 . render "$tiny" -o "$out/threads.png" $soft --threads 3
+    expect 0 . render "$tiny" -o "$out/seed.png" $soft --seed 8
+    expect 0 . render "$tiny" -o "$out/lod.png" $soft --view lod
+    expect 0 . render "$tiny" -o "$out/west.png" $soft --camera west
+    expect 0 . render "$tiny" -o "$out/path.png" $soft --path fly --time 2
+    expect 0 . render "$tiny" -o "$out/separate.png" $soft --method separate
+    expect 0 'validate.png: ' render "$tiny" -o "$out/validate.png" $soft --gpu-validate
+    expect 0 'trees .*[0-9]' render "$tiny" -o "$out/times.png" $soft --times
+    expect 0 'whole frame' render "$tiny" -o "$out/times.png" $soft --times
+    expect 0 '33x47, 3 samples' render "$tiny" -o "$out/small.png" $soft --size 33x47 --samples 3
+    expect 0 '1x1' render "$tiny" -o "$out/pixel.png" $soft --size 1x1
+    expect 0 'layers.exr: ' render "$tiny" -o "$out/layers.exr" $soft
+}
+check 'threads change no picture' cmp "$out/a.png" "$out/threads.png"
+check 'validation changes no picture' cmp "$out/a.png" "$out/validate.png"
+for other in seed lod west path; do
+    check "$other changes the picture" sh -c "! cmp -s '$out/a.png' '$out/$other.png'"
+done
+colors() { # distinct colours of a picture
+    ffmpeg -v error -i "$1" -f rawvideo -pix_fmt rgb24 - | od -An -v -w3 -tx1 | sort -u | wc -l
+}
+check 'a picture has many colours' test "$(colors "$out/a.png")" -gt 200
+size=$(ffprobe -v error -show_entries stream=width,height -of csv=p=0 "$out/small.png")
+check 'size 33x47' test "$size" = 33,47
+size=$(ffprobe -v error -show_entries stream=width,height -of csv=p=0 "$out/layers.exr")
+check 'EXR can be read' test "$size" = 160,90
+for layer in Z N.X albedo.R species tree_id velocity.X; do
+    check "EXR names layer $layer" grep -aqF "$layer" "$out/layers.exr"
+done
+check '--quiet prints nothing' sh -c \
+    "'$weald' render '$tiny' -o '$out/q.png' $soft --quiet 2>&1 | ( ! grep . )"
+
+# What cannot be, with an older file in place that must survive.
+cp "$out/a.png" "$out/keep.png"
+# shellcheck disable=SC2086
+{
+    expect 1 'there' render "$tiny" -o "$out/keep.png" $soft --camera nowhere
+    expect 1 'south.*west' render "$tiny" -o "$out/keep.png" $soft --camera nowhere
+    expect 1 'fly' render "$tiny" -o "$out/keep.png" $soft --path nowhere
+    expect 1 'no-such-gpu' render "$tiny" -o "$out/keep.png" --gpu no-such-gpu
+    expect 1 'does not exist' render "$tiny" -o "$out/none/a.png" $soft
+    expect 1 'is a directory' render "$tiny" -o "$out" $soft
+    mkdir "$out/dir.png"
+    expect 1 'is a directory' render "$tiny" -o "$out/dir.png" $soft
+    expect 1 'cannot be written' render "$tiny" -o /proc/a.png $soft
+    ln -s /dev/full "$out/full.png"
+    expect 1 'device' render "$tiny" -o "$out/full.png" $soft
+}
+check 'a failed render keeps the older file' cmp "$out/a.png" "$out/keep.png"
+
+# A full disk, as a limit on the size of files: one block of 512 bytes.
+for name in keep.png full.exr; do
+    status=0
+    (
+        ulimit -f 1
+        exec "$weald" render "$tiny" -o "$out/$name" --gpu software
+    ) >"$scratch/limit" 2>&1 || status=$?
+    check "full disk: exit 1 for $name" test "$status" -eq 1
+    check "full disk: message for $name" grep -q "$name" "$scratch/limit"
+done
+check 'full disk: older file kept' cmp "$out/a.png" "$out/keep.png"
+check 'full disk: nothing half written' test ! -e "$out/full.exr"
+left=$(find "$out" -name '.*' -o -name '*tmp*' -o -name '*weald-*' | head -3)
+check "no temporary files are left: $left" test -z "$left"
+finish

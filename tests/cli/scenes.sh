@@ -1,0 +1,95 @@
+#!/bin/sh
+# Good and bad scenes, species and inventories through `info` and `check`: no GPU.
+set -u
+. "$(dirname "$0")/lib.sh"
+
+expect 0 'trees +200 ' info "$tiny"
+expect 0 'oak' info "$tiny"
+expect 0 'camera +west: at -20' info "$tiny"
+expect 0 'path +fly: 4.0 s' info "$tiny"
+check 'info --json: 200 trees, sums agree' sh -c "'$weald' info '$tiny' --json |
+    jq -e '.tree_count == 200 and ([.species[].tree_count] | add) == 200 and
+           (.cameras | map(.name)) == [\"south\", \"west\"] and .paths[0].duration_s == 4 and
+           (.devices | length) > 0 and .octant_count > 0 and .host_bytes > 0'"
+forest_hash() { "$weald" info "$tiny" --json "$@" | jq -r .hash; }
+one=$(forest_hash --threads 1)
+check 'the same forest from 1 and 7 threads' test "$one" = "$(forest_hash --threads 7)"
+check 'another forest from another seed' test "$one" != "$(forest_hash --seed 8)"
+expect 1 'seed' info "$tiny" --seed banana
+expect 0 'tiny.json: ok' check "$tiny"
+expect 0 'oak.json: ok' check "$root/species/oak.json"
+
+# bad NAME PATTERN: the file $scratch/NAME.json is refused by both commands, by name
+bad() {
+    expect 1 "$2" check "$scratch/$1.json"
+    expect 1 "$2" info "$scratch/$1.json"
+    expect 1 "$2" render "$scratch/$1.json" -o "$scratch/out.png" --gpu software
+    check "$1: no picture" test ! -e "$scratch/out.png"
+}
+# change NAME JQ-PROGRAM: the tiny scene, changed
+sed 's,^ *//.*,,' "$tiny" >"$scratch/plain.json"
+change() { jq "$2" "$scratch/plain.json" >"$scratch/$1.json"; }
+
+bad missing 'missing.json.*[Nn]o such file'
+: >"$scratch/empty.json"
+bad empty 'empty.json'
+head -c 300 "$tiny" >"$scratch/truncated.json"
+bad truncated 'truncated.json:[0-9]+:[0-9]+'
+head -c 4096 /dev/urandom >"$scratch/binary.json"
+bad binary 'binary.json'
+mkdir "$scratch/directory.json"
+bad directory 'directory.json.*directory'
+printf '[1, 2]' >"$scratch/list.json"
+bad list 'list.json:1:'
+printf '{"name": "a", "name": ' >"$scratch/cut.json"
+bad cut 'cut.json:1:'
+change unknown '. + {"terain": {}}'
+bad unknown 'terain.*did you mean.*terrain'
+change type '.terrain.size_m = "large"'
+bad type 'size_m'
+change negative '.layers[0].spacing_m = -4'
+bad negative 'spacing_m.*-4'
+change height '.layers[0].height_m = [-3, 5]'
+bad height 'height_m'
+change species '.layers[0].species = {"oakk": 1}'
+bad species 'oakk'
+change raster '.terrain = {"kind": "raster", "file": "nowhere.tif"}'
+bad raster 'nowhere.tif'
+sed 's/"seed": 7/"seed": NaN/' "$scratch/plain.json" >"$scratch/nan.json"
+bad nan 'nan.json:[0-9]+'
+sed 's/"relief_m": 6/"relief_m": 1e999/' "$scratch/plain.json" >"$scratch/infinite.json"
+bad infinite 'infinite.json:[0-9]+'
+expect 1 'binary.json' check "$tiny" "$scratch/binary.json"
+expect 1 'tiny.json: ok' check "$scratch/binary.json" "$tiny"
+expect 1 'nowhere' info "$scratch/raster.json" --data /nowhere
+
+# inventories
+inventory() { # inventory NAME: a scene that plants $scratch/NAME.csv
+    jq --arg file "$1.csv" 'del(.layers) | .inventories = [{"file": $file, "species": "oak",
+        "columns": {"x": "x_m", "y": "y_m", "height": "height_m"}}]' \
+        "$scratch/plain.json" >"$scratch/$1.json"
+}
+printf 'x_m,y_m,height_m\n10,10,12\n20,20,13\n30.5,12.25,9\n' >"$scratch/good.csv"
+inventory good
+expect 0 'trees +3 ' info "$scratch/good.json"
+printf '\357\273\277x_m,y_m,height_m\r\n"10","10","12"\r\n20,20,13\r\n' >"$scratch/bom.csv"
+inventory bom
+expect 0 'trees +2 ' info "$scratch/bom.json"
+printf 'x_m,y_m,height_m\n10,10,12\n20,20\n30,30,9\n' >"$scratch/ragged.csv"
+inventory ragged
+expect 1 'ragged.csv:3' info "$scratch/ragged.json"
+printf 'x_m;y_m;height_m\n10;10;12\n' >"$scratch/semicolon.csv"
+inventory semicolon
+expect 1 'semicolon.csv' info "$scratch/semicolon.json"
+printf 'x_m,y_m,height_m\n"10,5","10,5","12,0"\n' >"$scratch/comma.csv"
+inventory comma
+expect 1 'comma.csv:2' info "$scratch/comma.json"
+printf 'x_m,y_m,height_m\n' | iconv -t UTF-16 >"$scratch/utf16.csv"
+inventory utf16
+expect 1 'utf16.csv.*UTF-16' info "$scratch/utf16.json"
+printf 'x_m,y_m,height_m\n' >"$scratch/none.csv"
+inventory none
+expect 1 'none.csv' info "$scratch/none.json"
+inventory absent
+expect 1 'absent.csv' info "$scratch/absent.json"
+finish

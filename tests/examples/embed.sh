@@ -1,0 +1,36 @@
+#!/bin/sh
+# The example of embedding draws a forest: as built here, and compiled against an installed weald.
+#   embed.sh EMBED ROOT BUILD CC
+set -eu
+embed=$1
+root=$2
+build=$3
+compiler=$4
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+export XDG_CACHE_HOME="$scratch/cache"
+mkdir "$scratch/cache"
+
+"$embed" "$root/tests/viewer/tiny.json" "$scratch/built.ppm"
+[ "$(head -c 14 "$scratch/built.ppm" | tr '\n' ' ')" = 'P6 640 360 255' ]
+colors=$(tail -c +16 "$scratch/built.ppm" | od -An -v -w3 -tx1 | sort -u | wc -l)
+echo "the picture has $colors colours"
+[ "$colors" -gt 500 ]
+
+DESTDIR=$scratch/installed meson install -C "$build" --no-rebuild --quiet
+pc=$(find "$scratch/installed" -name weald.pc)
+[ -n "$pc" ]
+PKG_CONFIG_SYSROOT_DIR=$scratch/installed
+PKG_CONFIG_PATH=$(dirname "$pc")
+export PKG_CONFIG_SYSROOT_DIR PKG_CONFIG_PATH
+# A system root is put before every directory, also before Vulkan's: only weald's flags are asked for.
+flags=$(pkg-config --cflags --libs weald | sed "s,$scratch/installed/usr/include ,/usr/include ,g")
+# shellcheck disable=SC2086  # one word a flag
+"$compiler" "$root/examples/embed.c" $flags -lvulkan -o "$scratch/embed"
+libraries=$(dirname "$(find "$scratch/installed" -name 'libweald.so' | head -1)")
+LD_LIBRARY_PATH=$libraries "$scratch/embed" "$root/tests/viewer/tiny.json" "$scratch/installed.ppm"
+cmp "$scratch/built.ppm" "$scratch/installed.ppm"
+echo "the installed library draws the same picture"
+
+! "$embed" "$scratch/nowhere.json" "$scratch/none.ppm" 2>"$scratch/log"
+grep -q nowhere.json "$scratch/log"
