@@ -350,6 +350,19 @@ static void degrees_become_metres(void **state)
         assert_float_equal(wd_terrain_height(&terrain, x - terrain.origin_m[0],
                                              y - terrain.origin_m[1]), expected_m, 0.02);
     }
+    double *origin_m = terrain.origin_m;
+    double window_m[4] = {origin_m[0] + 1000, origin_m[1] + 500, origin_m[0] + 2000,
+                          origin_m[1] + 1500};
+    struct wd_scene scene = scene_of("/vsimem/degrees.tif");
+    scene.terrain.window_m = window_m;
+    scene.terrain.window_count = 4;
+    struct wd_terrain part = read_scene(&scene);
+    assert_float_equal(wd_terrain_extent_x_m(&part), 1000, 100);
+    for (double at = 0; at < 900; at += 37)
+        assert_float_equal(wd_terrain_height(&part, at, 900 - at),
+                           wd_terrain_height(&terrain, part.origin_m[0] - origin_m[0] + at,
+                                             part.origin_m[1] - origin_m[1] + 900 - at), 0.02);
+    wd_terrain_finish(&part);
     wd_terrain_finish(&terrain);
 }
 
