@@ -14,7 +14,9 @@ struct wd_world_params {
     const struct wd_log *log;
 };
 
-/* What became of an inventory's rows. */
+/* What became of an inventory's rows: each is counted once, but with the rule "keep" those outside
+ * are planted as well. invalid: without a position; duplicates: place, species and sizes as in an
+ * earlier row. */
 struct wd_inventory_report {
     uint64_t rows, planted, dead, duplicates, outside, invalid;
 };
@@ -23,7 +25,8 @@ struct wd_inventory_report {
  * (terrain.origin_m in projected coordinates), z 0 is the terrain's vertical datum. */
 struct wd_world {
     struct wd_terrain terrain;
-    struct wd_tree *trees;          /* in octree order; ids 1.. follow the order of placement */
+    struct wd_tree *trees;          /* in octree order; ids 1.. follow the order of placement:
+                                       inventories by row, then layers by cell */
     size_t tree_count;
     uint32_t *tree_of_id;           /* tree_of_id[id] is an index into trees; [0] unused */
     uint64_t *species_counts;       /* parallel to scene->species */
@@ -38,6 +41,10 @@ struct wd_world {
     uint32_t seed;
 };
 
+/* Reads the inventories, makes the ground, plants. Made-up ground lies where inventories with
+ * projected coordinates are; flat ground of size 0 x 0 m fits the inventories with 50 m to spare,
+ * and then local coordinates too count from its terrain.origin_m. The same world for any number of
+ * threads. On failure, or when the progress report asks to stop, `*world` is `{0}`. */
 bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
                    const struct wd_world_params *params);
 void wd_world_finish(struct wd_world *world);

@@ -257,6 +257,36 @@ static void test_ground_under_data(void **state)
     wd_world_finish(&world);
 }
 
+#ifdef HAVE_GDAL
+/* Longitude and latitude on made-up ground: the UTM zone of the data. 0.001 degrees are 111.3 m
+ * along the equator and 110.6 m along a meridian; UTM shortens by 0.9996 at its middle. */
+static void test_degrees(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small.scene.terrain.size_m[0] = small.scene.terrain.size_m[1] = 0.0;
+    small_scene_inventory(&small, path)->frame = "EPSG:4326";
+    write_file("lon,lat\n9.0,0.0\n9.001,0.001\n");
+    make_or_fail(&small, &world);
+    assert_non_null(strstr(world.terrain.crs, "32N"));
+    struct wd_tree first = tree_at(&world, 0), second = tree_at(&world, 1);
+    assert_in_range(second.x_mm - first.x_mm, 111200, 111330);
+    assert_in_range(second.y_mm - first.y_mm, 110480, 110600);
+    assert_true(world.terrain.origin_m[0] == 499950.0);
+    wd_world_finish(&world);
+
+    /* metres of a CRS that is named */
+    small.inventories[0].frame = "EPSG:32610";
+    write_file("x,y\n493471,5821351\n493571,5821251\n");
+    make_or_fail(&small, &world);
+    assert_stands(&world, 0, 50000, 150000);
+    assert_non_null(strstr(world.terrain.crs, "10N"));
+    wd_world_finish(&world);
+}
+#endif
+
 static void expect_error(const char *text, const char *part)
 {
     struct small_scene small;
@@ -436,6 +466,9 @@ int main(void)
         cmocka_unit_test(test_rotation_and_offset),
         cmocka_unit_test(test_fitted_ground),
         cmocka_unit_test(test_ground_under_data),
+#ifdef HAVE_GDAL
+        cmocka_unit_test(test_degrees),
+#endif
         cmocka_unit_test(test_errors),
         cmocka_unit_test(test_wrong_column),
         cmocka_unit_test(test_unmapped_species),
