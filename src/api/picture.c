@@ -92,14 +92,10 @@ static bool read_albedo(struct wd_picture *picture, struct wd_renderer *renderer
 
 static bool read_velocity(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
 {
-    float *wide = read_target(renderer, &renderer->frame.targets.velocity, 16);
-    if (!wide)
-        return false;
-    picture->velocity_px = wd_alloc_array(pixels * 2, sizeof(float));
-    for (size_t i = 0; i < pixels * 2; i++)
-        picture->velocity_px[i] = wide[i / 2 * 4 + i % 2];
-    free(wide);
-    return true;
+    size_t size = pixels * 2 * sizeof(float);
+    picture->velocity_px = wd_alloc(size);
+    return wd_buffer_read(&renderer->gpu, &renderer->frame.velocity_px, 0, picture->velocity_px,
+                          size);
 }
 
 static bool read_trees(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers,

@@ -25,8 +25,22 @@ void wd_frame_finish(struct wd_frame *frame)
     wd_light_pass_finish(&frame->light, frame->gpu);
     wd_post_pass_finish(&frame->post, frame->gpu);
     wd_targets_finish(&frame->targets, frame->gpu);
+    wd_buffer_finish(&frame->velocity_px, frame->gpu);
     wd_selection_finish(&frame->selection);
     *frame = (struct wd_frame){0};
+}
+
+static bool prepare_velocity(struct wd_frame *frame)
+{
+    VkDeviceSize size = (VkDeviceSize)frame->targets.width * frame->targets.height * 2 * sizeof(float);
+    const struct wd_buffer_params params = {"velocity", size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                            WD_MEMORY_DEVICE};
+    if (frame->params.velocity == WD_VELOCITY_OFF || frame->velocity_px.size == size)
+        return true;
+    if (!wd_frames_wait(&frame->ring))
+        return false;
+    wd_buffer_finish(&frame->velocity_px, frame->gpu);
+    return wd_buffer_init(&frame->velocity_px, frame->gpu, &params);
 }
 
 bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *params)
@@ -34,11 +48,163 @@ bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *para
     struct wd_targets *targets = &frame->targets;
     uint32_t shadow_size = (uint32_t)params->forest->scene->quality.shadow_size;
     frame->params = *params;
-    if (targets->width == params->width && targets->height == params->height &&
-        targets->shadow_size == shadow_size)
-        return true;
-    if (!wd_frames_wait(&frame->ring))
-        return false;
-    wd_targets_finish(targets, frame->gpu);
-    return wd_targets_init(targets, frame->gpu, params->width, params->height, shadow_size);
+    if (targets->width != params->width || targets->height != params->height ||
+        targets->shadow_size != shadow_size) {
+        if (!wd_frames_wait(&frame->ring))
+            return false;
+        wd_targets_finish(targets, frame->gpu);
+        if (!wd_targets_init(targets, frame->gpu, params->width, params->height, shadow_size))
+            return false;
+    }
+    return prepare_velocity(frame);
+}
+
+void wd_frame_drop_forest(struct wd_frame *frame)
+{
+    wd_light_pass_drop_forest(&frame->light, frame->gpu);
+}
+
+/* --- recording --------------------------------------------------------------------------- */
+
+/* What the steps of one sample share. */
+struct recording {
+    struct wd_frame *frame;
+    struct wd_cmd *cmd;
+    struct wd_view view, cascades[WD_CASCADES];
+    struct wd_frame_uniforms values;
+    struct wd_binding uniforms;
+};
+
+static void record_trees(const struct recording *r, const struct wd_view *view,
+                         enum wd_tree_pass pass)
+{
+    struct wd_frame *frame = r->frame;
+    struct wd_draw_stats stats = {0};
+    const struct wd_tree_draw draw = {
+        .cmd = r->cmd,
+        .pipelines = &frame->trees,
+        .forest = frame->params.forest,
+        .view = view,
+        .pass = pass,
+        .uniforms = r->uniforms,
+        .stats = &stats,
+    };
+    if (frame->params.forest->world->tree_count)
+        frame->params.method->record(&draw, &frame->selection);
+    frame->stats.draw_calls += stats.draw_calls;
+    frame->stats.triangles += stats.triangles;
+    if (pass == WD_PASS_CAMERA)
+        frame->camera_stats = stats;
+}
+
+/* The maps hold what stands on the ground; the ground's own shadows are in the light pass. */
+static void record_shadows(const struct recording *r)
+{
+    struct wd_targets *targets = &r->frame->targets;
+    wd_cmd_scope_begin(r->cmd, "shadow trees");
+    for (uint32_t i = 0; i < WD_CASCADES; i++) {
+        const struct wd_rendering rendering = {
+            .width = targets->shadow_size,
+            .height = targets->shadow_size,
+            .depth = &targets->shadow,
+                .depth_view = targets->shadow_layers[i],
+            .depth_load = WD_LOAD_CLEAR,
+        };
+        wd_cmd_begin_rendering(r->cmd, &rendering);
+        if (r->values.shadow_taps)
+            record_trees(r, &r->cascades[i], WD_PASS_SHADOW);
+        wd_cmd_end_rendering(r->cmd);
+    }
+    wd_cmd_scope_end(r->cmd);
+}
+
+static void record_terrain(const struct recording *r)
+{
+    struct wd_frame *frame = r->frame;
+    const struct wd_terrain_params terrain = {
+        .ground = &frame->params.forest->ground,
+        .view = &r->view,
+        .uniforms = r->uniforms,
+        .error_px = (float)frame->params.forest->scene->quality.terrain_error_px,
+    };
+    wd_cmd_scope_begin(r->cmd, "terrain");
+    wd_targets_begin_gbuffer(&frame->targets, r->cmd, WD_LOAD_CLEAR);
+    wd_terrain_pass_record(&frame->terrain, r->cmd, &terrain);
+    wd_cmd_end_rendering(r->cmd);
+    wd_cmd_scope_end(r->cmd);
+    frame->stats.draw_calls++;
+    frame->stats.triangles += frame->terrain.triangles;
+}
+
+static void record_gbuffer(const struct recording *r)
+{
+    record_terrain(r);
+    wd_cmd_scope_begin(r->cmd, "trees");
+    wd_targets_begin_gbuffer(&r->frame->targets, r->cmd, WD_LOAD_KEEP);
+    record_trees(r, &r->view, WD_PASS_CAMERA);
+    wd_cmd_end_rendering(r->cmd);
+    wd_cmd_scope_end(r->cmd);
+}
+
+static void record_light(const struct recording *r)
+{
+    struct wd_frame *frame = r->frame;
+    const struct wd_light_params light = {&frame->targets, frame->params.forest, &r->view,
+                                          &r->values, r->uniforms};
+    wd_cmd_scope_begin(r->cmd, "light");
+    wd_light_pass_record(&frame->light, r->cmd, &light);
+    if (frame->params.velocity == WD_VELOCITY_ON && r->values.sample_index + 1 == r->values.sample_count)
+        wd_light_pass_record_velocity(&frame->light, r->cmd, &light, &frame->velocity_px);
+    wd_cmd_scope_end(r->cmd);
+}
+
+static void record_display(const struct recording *r)
+{
+    const struct wd_post_params post = {
+        .targets = &r->frame->targets,
+        .uniforms = r->uniforms,
+        .exposure_ev = (float)r->frame->params.forest->scene->quality.exposure_ev,
+    };
+    wd_cmd_scope_begin(r->cmd, "post");
+    wd_post_pass_record(&r->frame->post, r->cmd, &post);
+    wd_cmd_scope_end(r->cmd);
+}
+
+static void prepare_recording(struct recording *r, uint32_t index)
+{
+    const struct wd_frame_params *params = &r->frame->params;
+    const struct wd_uniforms_params uniforms = {
+        .forest = params->forest,
+        .camera = params->camera,
+        .previous_camera = params->previous_camera,
+        .time_s = params->time_s,
+        .previous_time_s = params->previous_time_s,
+        .width = params->width,
+        .height = params->height,
+        .shadow_size = r->frame->targets.shadow_size,
+        .sample_index = index,
+        .sample_count = params->samples,
+        .view_mode = params->view_mode,
+    };
+    wd_uniforms_init(&r->values, &r->view, r->cascades, &uniforms);
+    r->frame->near_m = r->values.near_m;
+    r->frame->stats = (struct wd_draw_stats){0};
+    void *memory = wd_cmd_upload(r->cmd, sizeof r->values, &r->uniforms);
+    if (memory)
+        memcpy(memory, &r->values, sizeof r->values);
+}
+
+void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index)
+{
+    struct recording r = {.frame = frame, .cmd = cmd};
+    prepare_recording(&r, index);
+    if (cmd->failed)
+        return;
+    wd_forest_device_use(frame->params.forest, cmd);
+    if (index == 0)
+        record_shadows(&r);
+    record_gbuffer(&r);
+    record_light(&r);
+    if (index + 1 == frame->params.samples)
+        record_display(&r);
 }

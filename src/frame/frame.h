@@ -11,7 +11,7 @@
 
 /* What a frame shows. */
 struct wd_frame_params {
-    const struct wd_forest_device *forest;
+    struct wd_forest_device *forest;
     const struct wd_method *method;
     struct wd_camera camera, previous_camera;
     double time_s, previous_time_s;
@@ -25,6 +25,7 @@ struct wd_frame {
     struct wd_gpu *gpu;
     struct wd_frames ring;
     struct wd_targets targets;
+    struct wd_buffer velocity_px; /* 2 floats a pixel, once it has been asked for */
     struct wd_tree_pipelines trees;
     struct wd_terrain_pass terrain;
     struct wd_light_pass light;

@@ -1,7 +1,5 @@
 #include "frame/targets.h"
 
-#include "shared/frame.h"
-
 bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t width,
                      uint32_t height, uint32_t shadow_size)
 {
@@ -19,7 +17,6 @@ bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t wi
         {&targets->depth, {"depth", WD_DEPTH_FORMAT, width, height, 1, 1, depth, 0}},
         {&targets->radiance, {"radiance", WD_RADIANCE_FORMAT, width, height, 1, 1, storage, 0}},
         {&targets->display, {"display", WD_DISPLAY_FORMAT, width, height, 1, 1, storage, 0}},
-        {&targets->velocity, {"velocity", WD_VELOCITY_FORMAT, width, height, 1, 1, storage, 0}},
         {&targets->shadow,
          {"shadow", WD_DEPTH_FORMAT, shadow_size, shadow_size, WD_CASCADES, 1, depth,
           WD_IMAGE_ARRAY}},
@@ -32,6 +29,12 @@ bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t wi
             return false;
         }
     }
+    for (uint32_t i = 0; i < WD_CASCADES; i++) {
+        if (!wd_image_layer_view(gpu, &targets->shadow, i, 0, &targets->shadow_layers[i])) {
+            wd_targets_finish(targets, gpu);
+            return false;
+        }
+    }
     return true;
 }
 
@@ -39,7 +42,11 @@ void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu)
 {
     struct wd_image *images[] = {&targets->albedo,   &targets->normal,  &targets->surface,
                                  &targets->depth,    &targets->radiance, &targets->display,
-                                 &targets->velocity, &targets->shadow};
+                                 &targets->shadow};
+    for (uint32_t i = 0; i < WD_CASCADES; i++) {
+        if (targets->shadow_layers[i])
+            vkDestroyImageView(gpu->device, targets->shadow_layers[i], NULL);
+    }
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
         wd_image_finish(images[i], gpu);
     *targets = (struct wd_targets){0};

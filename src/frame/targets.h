@@ -3,13 +3,13 @@
 #define WD_FRAME_TARGETS_H
 
 #include "gpu/command.h"
+#include "shared/frame.h"
 
 #define WD_ALBEDO_FORMAT VK_FORMAT_R8G8B8A8_SRGB
 #define WD_NORMAL_FORMAT VK_FORMAT_A2B10G10R10_UNORM_PACK32
 #define WD_SURFACE_FORMAT VK_FORMAT_R32_UINT
 #define WD_DEPTH_FORMAT VK_FORMAT_D32_SFLOAT
 #define WD_RADIANCE_FORMAT VK_FORMAT_R32G32B32A32_SFLOAT
-#define WD_VELOCITY_FORMAT VK_FORMAT_R32G32B32A32_SFLOAT
 #define WD_DISPLAY_FORMAT VK_FORMAT_R8G8B8A8_UNORM
 
 struct wd_targets {
@@ -17,8 +17,8 @@ struct wd_targets {
     struct wd_image albedo, normal, surface, depth; /* the G-buffer: shaders/shared/frame.h */
     struct wd_image radiance;                       /* storage: sum over the samples so far */
     struct wd_image display;                        /* storage: tone-mapped, sRGB-encoded bytes */
-    struct wd_image velocity;                       /* storage: x, y: pixels moved, right and down */
     struct wd_image shadow;                         /* depth, WD_CASCADES layers */
+    VkImageView shadow_layers[WD_CASCADES];
     uint32_t shadow_size;
 };
 

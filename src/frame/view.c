@@ -25,7 +25,7 @@ enum wd_side wd_frustum_box(const struct wd_frustum *frustum, const float min[3]
     return side;
 }
 
-void wd_matrix_multiply(float result[4][4], const float a[4][4], const float b[4][4])
+void wd_matrix_multiply(float result[4][4], float a[4][4], float b[4][4])
 {
     mat4 left, right, product;
     memcpy(left, a, sizeof left);
@@ -34,7 +34,7 @@ void wd_matrix_multiply(float result[4][4], const float a[4][4], const float b[4
     memcpy(result, product, sizeof product);
 }
 
-void wd_matrix_invert(float result[4][4], const float m[4][4])
+void wd_matrix_invert(float result[4][4], float m[4][4])
 {
     mat4 from, inverse;
     memcpy(from, m, sizeof from);

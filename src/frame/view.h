@@ -53,7 +53,7 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
                       const struct wd_cascades_params *params);
 
 /* Matrices are columns of rows, as GLSL's. */
-void wd_matrix_multiply(float result[4][4], const float a[4][4], const float b[4][4]);
-void wd_matrix_invert(float result[4][4], const float m[4][4]);
+void wd_matrix_multiply(float result[4][4], float a[4][4], float b[4][4]);
+void wd_matrix_invert(float result[4][4], float m[4][4]);
 
 #endif
