@@ -110,6 +110,7 @@ static bool make_up(struct wd_terrain *terrain, const struct wd_inventory *inven
     struct bounds bounds;
     if (!bound(&bounds, inventories, count, !placed, crs, params->log))
         return false;
+    scene.terrain.target_crs = crs;
     if (fit)
         fit_flat(&scene, window_m, &bounds, params->log);
     if (!wd_terrain_init(terrain, &scene, params->seed, 0, params->progress, params->log))

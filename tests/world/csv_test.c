@@ -202,7 +202,7 @@ static void test_damage(void **state)
 {
     (void)state;
     static const char text[] = "\"x\",y;z\r\n1,\"a\"\"b\",2\r\n\"3\",4\n";
-    static const char bytes[] = {'"', ',', '\r', '\n', ' ', 'x', (char)0xff};
+    static const char bytes[] = {'"', ',', '\r'};
     char damaged[sizeof text];
     for (size_t size = 0; size < sizeof text; size++)
         for (size_t i = 0; i < sizeof bytes * size + 1; i++) {
