@@ -6,6 +6,10 @@ root=$2
 tiny=$root/tests/viewer/tiny.json
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+[ -x "$weald" ] || {
+    echo "there is no program $weald"
+    exit 1
+}
 cases=0
 failures=0
 

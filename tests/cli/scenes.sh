@@ -13,6 +13,7 @@ check 'info --json: 200 trees, sums agree' sh -c "'$weald' info '$tiny' --json |
            (.devices | length) > 0 and .octant_count > 0 and .host_bytes > 0'"
 forest_hash() { "$weald" info "$tiny" --json "$@" | jq -r .hash; }
 one=$(forest_hash --threads 1)
+check 'the forest has a hash' test -n "$one"
 check 'the same forest from 1 and 7 threads' test "$one" = "$(forest_hash --threads 7)"
 check 'another forest from another seed' test "$one" != "$(forest_hash --seed 8)"
 expect 1 'seed' info "$tiny" --seed banana
@@ -27,7 +28,7 @@ bad() {
     check "$1: no picture" test ! -e "$scratch/out.png"
 }
 # change NAME JQ-PROGRAM: the tiny scene, changed
-sed 's,^ *//.*,,' "$tiny" >"$scratch/plain.json"
+sed -e 's,^ *//.*,,' -e "s,\.\./\.\./,$root/,g" "$tiny" >"$scratch/plain.json"
 change() { jq "$2" "$scratch/plain.json" >"$scratch/$1.json"; }
 
 bad missing 'missing.json.*[Nn]o such file'
@@ -65,7 +66,7 @@ expect 1 'nowhere' info "$scratch/raster.json" --data /nowhere
 
 # inventories
 inventory() { # inventory NAME: a scene that plants $scratch/NAME.csv
-    jq --arg file "$1.csv" 'del(.layers) | .inventories = [{"file": $file, "species": "oak",
+    jq --arg file "$1.csv" 'del(.layers) | .inventories = [{"file": $file, "species": {"*": "oak"},
         "columns": {"x": "x_m", "y": "y_m", "height": "height_m"}}]' \
         "$scratch/plain.json" >"$scratch/$1.json"
 }
