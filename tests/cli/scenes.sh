@@ -55,7 +55,9 @@ bad height 'height_m'
 change species '.layers[0].species = {"oakk": 1}'
 bad species 'oakk'
 change raster '.terrain = {"kind": "raster", "file": "nowhere.tif"}'
-bad raster 'nowhere.tif'
+expect 1 'nowhere.tif' info "$scratch/raster.json"
+expect 1 'nowhere.tif' render "$scratch/raster.json" -o "$scratch/out.png" --gpu software
+check 'raster: no picture' test ! -e "$scratch/out.png"
 sed 's/"seed": 7/"seed": NaN/' "$scratch/plain.json" >"$scratch/nan.json"
 bad nan 'nan.json:[0-9]+'
 sed 's/"relief_m": 6/"relief_m": 1e999/' "$scratch/plain.json" >"$scratch/infinite.json"
@@ -79,9 +81,13 @@ expect 0 'trees +2 ' info "$scratch/bom.json"
 printf 'x_m,y_m,height_m\n10,10,12\n20,20\n30,30,9\n' >"$scratch/ragged.csv"
 inventory ragged
 expect 1 'ragged.csv:3' info "$scratch/ragged.json"
+# A semicolon is seen to be the delimiter.
 printf 'x_m;y_m;height_m\n10;10;12\n' >"$scratch/semicolon.csv"
 inventory semicolon
-expect 1 'semicolon.csv' info "$scratch/semicolon.json"
+expect 0 'trees +1 ' info "$scratch/semicolon.json"
+printf 'x_m|y_m|height_m\n10|10|12\n' >"$scratch/pipes.csv"
+inventory pipes
+expect 1 'pipes.csv' info "$scratch/pipes.json"
 printf 'x_m,y_m,height_m\n"10,5","10,5","12,0"\n' >"$scratch/comma.csv"
 inventory comma
 expect 1 'comma.csv:2' info "$scratch/comma.json"
