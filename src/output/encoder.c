@@ -168,7 +168,8 @@ static bool fail(struct wd_encoder *encoder, const char *what, const struct wd_l
     return false;
 }
 
-/* write() with SIGPIPE held back: one that this call caused is taken from the pending ones. */
+/* write() with SIGPIPE held back: one that this call caused is taken from the pending ones. It
+ * comes with a short count, too, when the reader dies in the middle. */
 static ssize_t write_quietly(int pipe, const void *data, size_t size)
 {
     sigset_t pipe_signal, before, pending;
@@ -178,7 +179,7 @@ static ssize_t write_quietly(int pipe, const void *data, size_t size)
     pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);
     ssize_t wrote = write(pipe, data, size);
     int error = errno;
-    if (wrote < 0 && error == EPIPE && !sigismember(&pending, SIGPIPE)) {
+    if (wrote < (ssize_t)size && !sigismember(&pending, SIGPIPE)) {
         struct timespec no_time = {0};
         while (sigtimedwait(&pipe_signal, NULL, &no_time) < 0 && errno == EINTR)
             ;
