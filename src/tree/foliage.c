@@ -172,6 +172,9 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
     leaf->size_m = wd_mixf(1.2f, 0.85f, wd_clampf(1.5f * leaf->sky, 0, 1)) *
                    wd_random_range(&random, 0.8f, 1.15f);
     float loose = needles ? 0.02f : 0.4f * form->species->orders[form->species->order_count - 1].spacing_m;
+    if (needles) /* a spire ends in short shoots */
+        leaf->size_m *= wd_clampf(2.2f * wd_tree_envelope_m(form, WD_V3(0, 0, p.z)) /
+                                      form->crown_radius_m, 0.62f, 1);
     leaf->position_m = wd_v3_mad(p, wd_random_vec3(&random), loose * form->scale);
     leaf->flexibility = skeleton->nodes[node].flexibility;
     int parent = branch->parent >= 0 ? branch->parent : 0;
@@ -212,6 +215,17 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
     return count < 40 ? 40 : (size_t)count;
 }
 
+/* Sprays that would hang into the ground lie on it. */
+static void lift_leaf(struct wd_leaf *leaf)
+{
+    float room = 0.03f - leaf->position_m.z;
+    if (leaf->axis.z * leaf->size_m >= room)
+        return;
+    leaf->axis = wd_v3_unit(WD_V3(leaf->axis.x, leaf->axis.y,
+                                  wd_clampf(room / leaf->size_m, -0.9f, 0.5f)));
+    leaf->normal = wd_v3_square(leaf->normal, leaf->axis);
+}
+
 static void scale_leaves(struct wd_foliage *foliage, const struct wd_species *species,
                          float area_m2)
 {
@@ -219,8 +233,10 @@ static void scale_leaves(struct wd_foliage *foliage, const struct wd_species *sp
     for (size_t i = 0; i < foliage->count; i++)
         sum += unit * foliage->leaves[i].size_m * foliage->leaves[i].size_m;
     float grow = sum > 0 ? sqrtf(area_m2 / sum) : 0;
-    for (size_t i = 0; i < foliage->count; i++)
+    for (size_t i = 0; i < foliage->count; i++) {
         foliage->leaves[i].size_m *= grow;
+        lift_leaf(&foliage->leaves[i]);
+    }
     foliage->area_m2 = area_m2;
 }
 

@@ -40,6 +40,7 @@ struct brush {
     const struct wd_leaf *leaf;
     struct wd_vec3 side;
     uint32_t tint;
+    float own; /* share of the sheet's own normal; the rest is the crown's */
 };
 
 /* Vertex at (across, along, above) in units of `size_m`; `facing` is the sheet's own normal. */
@@ -49,7 +50,7 @@ static uint32_t add_vertex(const struct brush *brush, struct wd_vec3 p, struct w
     const struct wd_leaf *leaf = brush->leaf;
     if (wd_v3_dot(facing, leaf->shading) < 0)
         facing = wd_v3_scale(facing, -1);
-    struct wd_vec3 n = wd_v3_unit_or(wd_v3_mix(leaf->shading, facing, 0.4f), leaf->shading);
+    struct wd_vec3 n = wd_v3_unit_or(wd_v3_mix(leaf->shading, facing, brush->own), leaf->shading);
     float normal[3] = {n.x, n.y, n.z}, bend = leaf->flexibility + 45 * stiff;
     struct wd_tree_vertex vertex = {
         .position_m = {p.x, p.y, p.z},
@@ -152,7 +153,7 @@ static void add_leaf(const struct brush *brush, const struct wd_species *species
 static struct brush brush_of(struct wd_tree_mesh *mesh, const struct wd_leaf *leaf)
 {
     return (struct brush){mesh, leaf, wd_v3_cross(leaf->axis, leaf->normal),
-                          wd_pack_tint(leaf->tint, leaf->sky)};
+                          wd_pack_tint(leaf->tint, leaf->sky), 0.4f};
 }
 
 static struct wd_vec3 corner(const struct wd_tree_mesh *mesh, uint32_t i)
@@ -206,9 +207,13 @@ void wd_foliage_mesh_reduced(struct wd_tree_mesh *mesh, const struct wd_foliage 
     float kite = 0.5f * outline.width * sqrtf(1 + outline.fold * outline.fold), sum = 0;
     for (size_t i = 0; i < count; i++)
         sum += kite * foliage->leaves[i].size_m * foliage->leaves[i].size_m;
-    float grow = sum > 0 ? sqrtf(foliage->area_m2 / sum) : 1;
+    /* the needles of a tuft hide one another, a kite does not hide itself */
+    float seen = is_tuft(species) ? 0.905f : 1;
+    float grow = sum > 0 ? sqrtf(seen * foliage->area_m2 / sum) : 1;
     for (size_t i = 0; i < count; i++) {
         struct brush brush = brush_of(mesh, &foliage->leaves[i]);
+        if (is_tuft(species)) /* a kite faces one way, the needles it stands for all ways */
+            brush.own = 0.1f;
         add_kite(&brush, &outline, grow * brush.leaf->size_m, 0.5f * (1 - 1 / grow));
     }
 }

@@ -79,8 +79,9 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     for (int i = 1; i <= stem->steps; i++) {
         float t = ((float)i - 0.5f) / (float)stem->steps;
         drift = wd_v3_mad(wd_v3_scale(drift, 0.5f), wd_random_vec3(&random), 1);
-        d = wd_v3_unit(wd_v3_mad(d, drift, stem->wander * step));
-        d = bend_up(d, wd_mixf(stem->upturn, stem->tip_upturn, wd_smoothf(0.3f, 0.9f, t)) * step);
+        float bend = wd_mixf(stem->upturn, stem->tip_upturn, wd_smoothf(0.3f, 0.9f, t));
+        d = wd_v3_unit(wd_v3_mad(d, drift, fminf(stem->wander * step, 0.35f)));
+        d = bend_up(d, wd_clampf(bend * step / form->spread, -0.8f, 0.8f));
         struct wd_vec3 next = wd_v3_mad(p, d, step);
         if (next.z < 0.35f && d.z < 0) {
             d = wd_v3_unit(WD_V3(d.x, d.y, 0.1f));

@@ -194,17 +194,29 @@ static float needle_shade(float u, float v)
     return 0.72f + 0.5f * (1 - wd_smoothf(0.35f, 1.0f, within)) + 0.18f * v;
 }
 
-void wd_species_leaf_texture(const struct wd_species *species, uint32_t size, uint8_t *rgba)
+/* Brightness at a texel, with fine mottling. */
+static float leaf_texel(const struct wd_species *species, uint32_t key, float u, float v)
 {
     bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
+    float shade = needles ? needle_shade(u, v) : leaf_shade(u, v);
+    return shade * (0.94f + 0.12f * tile_fractal(key, u, v, 10, 10));
+}
+
+/* The mean of the texture times the mean tint is the species' albedo. */
+void wd_species_leaf_texture(const struct wd_species *species, uint32_t size, uint8_t *rgba)
+{
+    enum { GRID = 64 };
     uint32_t key = wd_hash2((uint32_t)species->leaf.shape, 0x1eaf);
+    float mean = 0;
+    for (int i = 0; i < GRID * GRID; i++)
+        mean += leaf_texel(species, key, ((float)(i % GRID) + 0.5f) / GRID,
+                           ((float)(i / GRID) + 0.5f) / GRID) / (GRID * GRID);
     for (uint32_t y = 0; y < size; y++)
         for (uint32_t x = 0; x < size; x++) {
             float u = ((float)x + 0.5f) / (float)size, v = ((float)y + 0.5f) / (float)size, rgb[3];
-            float shade = needles ? needle_shade(u, v) : leaf_shade(u, v);
-            shade *= 0.94f + 0.12f * tile_fractal(key, u, v, 10, 10);
+            float shade = leaf_texel(species, key, u, v) / (mean * WD_LEAF_TINT_MEAN);
             for (int i = 0; i < 3; i++)
-                rgb[i] = species->leaf.color[i] * shade / WD_LEAF_TINT_MEAN;
+                rgb[i] = species->leaf.color[i] * shade;
             put_texel(&rgba[4 * ((size_t)y * size + x)], rgb);
         }
 }

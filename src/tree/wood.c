@@ -49,7 +49,7 @@ static int trunk_rings(const struct wd_skeleton *skeleton, const struct wd_tree_
     static const float heights[] = {-1, 0, 0.25f, 0.6f, 1.1f, 1.9f};
     struct ring nodes[MAX_RINGS];
     int node_count = gather_rings(skeleton, &skeleton->branches[0], node_step, nodes), count = 0;
-    float dbh = form->dbh_m, below = -fminf(0.3f, 0.75f * dbh);
+    float dbh = form->dbh_m, below = -wd_clampf(0.75f * dbh, 0.02f, 0.3f);
     for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
         float z = heights[i] < 0 ? below : heights[i] * dbh;
         float share = wd_clampf(z / fmaxf(nodes[1].center_m.z, 0.01f), -1, 1);
@@ -57,6 +57,7 @@ static int trunk_rings(const struct wd_skeleton *skeleton, const struct wd_tree_
         ring.center_m = wd_v3_mix(nodes[0].center_m, nodes[1].center_m, share);
         ring.radius_m = wd_mixf(nodes[0].radius_m, nodes[1].radius_m, fmaxf(share, 0));
         ring.along_m = z;
+        ring.direction = wd_v3_unit(wd_v3_mix(WD_V3(0, 0, 1), ring.direction, fmaxf(share, 0)));
         if (count == 0 || z < 0.95f * nodes[1].center_m.z)
             rings[count++] = ring;
     }

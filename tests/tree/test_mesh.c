@@ -10,7 +10,7 @@ static void packed_normals_come_back(void **state)
         double dot = 0;
         for (int k = 0; k < 3; k++)
             dot += (double)n[k] * (double)back[k];
-        assert_true(dot > 0.9999999);
+        assert_true(dot > 0.999999);
     }
 }
 
