@@ -10,6 +10,8 @@ bool wd_sampler_init(VkSampler *sampler, struct wd_gpu *gpu, enum wd_sampler_kin
                                    : shadow ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER
                                             : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     float most = gpu->properties.limits.maxSamplerAnisotropy;
+    /* llvmpipe walks the footprint's whole ellipse for each sample: seconds a frame at low angles */
+    bool stretched = trilinear && !gpu->software && (gpu->features & WD_GPU_FEATURE_ANISOTROPY);
     const VkSamplerCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
         .magFilter = filter,
@@ -18,7 +20,7 @@ bool wd_sampler_init(VkSampler *sampler, struct wd_gpu *gpu, enum wd_sampler_kin
         .addressModeU = address,
         .addressModeV = address,
         .addressModeW = address,
-        .anisotropyEnable = trilinear && (gpu->features & WD_GPU_FEATURE_ANISOTROPY),
+        .anisotropyEnable = stretched,
         .maxAnisotropy = most < 8 ? most : 8,
         .compareEnable = shadow,
         .compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL,
