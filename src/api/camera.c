@@ -90,9 +90,9 @@ enum wd_result wd_forest_get_camera(const struct wd_forest *forest, const char *
 
 static double catmull_rom(const double p[4], double t)
 {
-    return p[1] + 0.5 * t * ((p[2] - p[0]) +
-                             t * ((2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3]) +
-                                  t * (3.0 * (p[1] - p[2]) + p[3] - p[0])));
+    return p[1] + 0.5 * t *
+                      ((p[2] - p[0]) + t * ((2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3]) +
+                                            t * (3.0 * (p[1] - p[2]) + p[3] - p[0])));
 }
 
 /* The turn from `from` to `to` the short way round. */

@@ -35,8 +35,8 @@ static struct wd_gpu_params gpu_params(const struct wd_renderer_params *params)
 {
     return (struct wd_gpu_params){
         .name = params->gpu,
-        .validation = params->validation == WD_VALIDATION_ON ? WD_GPU_VALIDATION_ON
-                                                             : WD_GPU_VALIDATION_OFF,
+        .validation =
+            params->validation == WD_VALIDATION_ON ? WD_GPU_VALIDATION_ON : WD_GPU_VALIDATION_OFF,
     };
 }
 
@@ -139,7 +139,8 @@ static bool check(const struct wd_renderer *renderer, const struct wd_render_par
         return wd_error(log, "field of view of %g radians: between 0 and pi is possible", fov);
     for (int k = 0; k < 3; k++) {
         if (!(fabs(params->camera.position_m[k]) < 2.0e6))
-            return wd_error(log, "camera at %g, %g, %g m: within 2,000 km of the origin is possible",
+            return wd_error(log,
+                            "camera at %g, %g, %g m: within 2,000 km of the origin is possible",
                             params->camera.position_m[0], params->camera.position_m[1],
                             params->camera.position_m[2]);
     }

@@ -41,48 +41,63 @@ bool wd_film_path(const char *path)
     return strchr(path, '%') || container(path);
 }
 
-static bool open_sequence(struct wd_film *film, const char *path, const struct wd_log *log)
+bool wd_film_sequence_check(const char *path, const struct wd_log *log)
 {
-    const char *percent = strchr(path, '%');
+    const char *percent = strchr(path, '%'), *slash = strrchr(path, '/');
     unsigned digits;
-    size_t length = conversion(percent, &digits);
-    const char *slash = strrchr(path, '/');
-    if (length == 0 || strchr(percent + 1, '%') || (slash && slash > percent) ||
-        strcmp(extension(path), "png") != 0)
-        return wd_error(log, "%s: not a name for a sequence of frames; give one number, like "
-                        "frame-%%05d.png", path);
+    size_t length = percent ? conversion(percent, &digits) : 0;
+    if (length == 0 || strchr(percent + 1, '%') || (slash && slash > percent))
+        return wd_error(log,
+                        "%s: not a name for a sequence of frames; give one number, like "
+                        "frame-%%05d.png",
+                        path);
+    return true;
+}
+
+static bool open_sequence(struct wd_film_writer *film, const char *path, const struct wd_log *log)
+{
+    if (!wd_film_sequence_check(path, log))
+        return false;
+    if (strcmp(extension(path), "png") != 0)
+        return wd_error(log, "%s: frames of a film are .png files", path);
     film->pattern = wd_strdup(path);
     return true;
 }
 
-static bool open_film(struct wd_film *film, const struct wd_film_params *params,
+static bool open_film(struct wd_film_writer *film, const struct wd_film_writer_params *params,
                       const struct wd_log *log)
 {
     const char *format = container(params->path);
     if (!format)
-        return wd_error(log, "%s: films are .mp4, .mov or .mkv files, or frames like "
-                        "frame-%%05d.png", params->path);
+        return wd_error(log,
+                        "%s: films are .mp4, .mov or .mkv files, or frames like "
+                        "frame-%%05d.png",
+                        params->path);
     if (params->width % 2 || params->height % 2)
-        return wd_error(log, "%s: a film's width and height must be even; found %u x %u, %u x %u "
-                        "would do", params->path, params->width, params->height,
+        return wd_error(log,
+                        "%s: a film's width and height must be even; found %u x %u, %u x %u "
+                        "would do",
+                        params->path, params->width, params->height,
                         params->width + params->width % 2, params->height + params->height % 2);
     if (params->width > MAX_FILM_SIDE_PX || params->height > MAX_FILM_SIDE_PX)
         return wd_error(log, "%s: found %u x %u pixels; a film has at most %d a side", params->path,
                         params->width, params->height, MAX_FILM_SIDE_PX);
     struct wd_encoder_params encoder = {
         .ffmpeg = params->ffmpeg ? params->ffmpeg : "ffmpeg",
-        .path = params->path, .format = format,
-        .width = params->width, .height = params->height,
+        .path = params->path,
+        .format = format,
+        .width = params->width,
+        .height = params->height,
         .frame_rate = params->frame_rate != 0 ? params->frame_rate : 30,
         .crf = params->crf ? params->crf : 16,
     };
     return wd_encoder_open(&film->encoder, &encoder, log);
 }
 
-bool wd_film_open(struct wd_film *film, const struct wd_film_params *params,
-                  const struct wd_log *log)
+bool wd_film_writer_open(struct wd_film_writer *film, const struct wd_film_writer_params *params,
+                         const struct wd_log *log)
 {
-    *film = (struct wd_film){.width = params->width, .height = params->height};
+    *film = (struct wd_film_writer){.width = params->width, .height = params->height};
     bool ok;
     if (params->width < 1 || params->height < 1 || params->width > MAX_SIDE_PX ||
         params->height > MAX_SIDE_PX)
@@ -98,28 +113,27 @@ bool wd_film_open(struct wd_film *film, const struct wd_film_params *params,
         ok = strchr(params->path, '%') ? open_sequence(film, params->path, log)
                                        : open_film(film, params, log);
     if (!ok)
-        *film = (struct wd_film){0};
+        *film = (struct wd_film_writer){0};
     return ok;
 }
 
 /* The pattern is the user's: its number is put in by hand, never by printf of foreign text. */
-static char *frame_name(const struct wd_film *film)
+char *wd_film_frame_name(const char *pattern, uint64_t frame)
 {
-    const char *percent = strchr(film->pattern, '%');
+    const char *percent = strchr(pattern, '%');
     unsigned digits;
     size_t length = conversion(percent, &digits);
     char number[32];
     snprintf(number, sizeof number, percent[1] == '0' ? "%0*llu" : "%*llu", (int)digits,
-             (unsigned long long)film->frames);
-    return wd_format("%.*s%s%s", (int)(percent - film->pattern), film->pattern, number,
-                     percent + length);
+             (unsigned long long)frame);
+    return wd_format("%.*s%s%s", (int)(percent - pattern), pattern, number, percent + length);
 }
 
-bool wd_film_add_frame(struct wd_film *film, const uint8_t *rgb, const struct wd_log *log)
+bool wd_film_writer_add(struct wd_film_writer *film, const uint8_t *rgb, const struct wd_log *log)
 {
     bool ok;
     if (film->pattern) {
-        char *name = frame_name(film);
+        char *name = wd_film_frame_name(film->pattern, film->frames);
         ok = wd_png_write(name, rgb, film->width, film->height, log);
         free(name);
     } else {
@@ -128,25 +142,25 @@ bool wd_film_add_frame(struct wd_film *film, const uint8_t *rgb, const struct wd
     if (ok)
         film->frames++;
     else
-        wd_film_discard(film);
+        wd_film_writer_discard(film);
     return ok;
 }
 
-bool wd_film_commit(struct wd_film *film, const struct wd_log *log)
+bool wd_film_writer_commit(struct wd_film_writer *film, const struct wd_log *log)
 {
     bool ok = true;
     if (!film->pattern && film->frames == 0)
-        ok = wd_error(log, "%s: the film has no frames and is not written",
-                      film->encoder.file.path);
+        ok =
+            wd_error(log, "%s: the film has no frames and is not written", film->encoder.file.path);
     else if (!film->pattern)
         ok = wd_encoder_commit(&film->encoder, log);
-    wd_film_discard(film);
+    wd_film_writer_discard(film);
     return ok;
 }
 
-void wd_film_discard(struct wd_film *film)
+void wd_film_writer_discard(struct wd_film_writer *film)
 {
     wd_encoder_discard(&film->encoder);
     free(film->pattern);
-    *film = (struct wd_film){0};
+    *film = (struct wd_film_writer){0};
 }

@@ -4,7 +4,7 @@
 
 #include "output/encoder.h"
 
-struct wd_film_params {
+struct wd_film_writer_params {
     const char *path;    /* .mp4, .mov or .mkv; or frame-%05d.png, one file a frame from 0 */
     uint32_t width, height; /* both even for a film file */
     double frame_rate;   /* frames a second; 0: 30 */
@@ -12,8 +12,8 @@ struct wd_film_params {
     const char *ffmpeg;  /* program; NULL: "ffmpeg" on the PATH */
 };
 
-/* `{0}` is closed. A film is open from wd_film_open until commit, discard, or a failed frame. */
-struct wd_film {
+/* `{0}` is closed. A film is open from wd_film_writer_open until commit, discard, or a failed frame. */
+struct wd_film_writer {
     struct wd_encoder encoder; /* film file */
     char *pattern;             /* sequence: the name with its %d; NULL: a film file */
     uint32_t width, height;
@@ -23,14 +23,19 @@ struct wd_film {
 /* Whether `path` names a film or a sequence, as against a single picture. */
 bool wd_film_path(const char *path);
 
-bool wd_film_open(struct wd_film *film, const struct wd_film_params *params,
+/* Numbered pictures: whether the name holds exactly one number like %d or %05d, and the name of
+ * one of them; free() it. */
+bool wd_film_sequence_check(const char *path, const struct wd_log *log);
+char *wd_film_frame_name(const char *pattern, uint64_t frame);
+
+bool wd_film_writer_open(struct wd_film_writer *film, const struct wd_film_writer_params *params,
                   const struct wd_log *log);
 /* `rgb`: width * height sRGB pixels, rows from the top. On failure the film is discarded. */
-bool wd_film_add_frame(struct wd_film *film, const uint8_t *rgb, const struct wd_log *log);
+bool wd_film_writer_add(struct wd_film_writer *film, const uint8_t *rgb, const struct wd_log *log);
 /* The film appears under its name with the frames it has (at least one). After an interruption
  * this keeps what is finished. */
-bool wd_film_commit(struct wd_film *film, const struct wd_log *log);
+bool wd_film_writer_commit(struct wd_film_writer *film, const struct wd_log *log);
 /* Drops a film file; frames of a sequence stay, each is whole. Accepts `{0}`. */
-void wd_film_discard(struct wd_film *film);
+void wd_film_writer_discard(struct wd_film_writer *film);
 
 #endif

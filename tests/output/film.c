@@ -15,13 +15,13 @@ static char *make_program(struct fixture *f, const char *body)
     return path;
 }
 
-static bool add_frames(struct wd_film *film, uint32_t width, uint32_t height, int count,
+static bool add_frames(struct wd_film_writer *film, uint32_t width, uint32_t height, int count,
                        const struct wd_log *log)
 {
     bool ok = true;
     for (int i = 0; i < count && ok; i++) {
         uint8_t *rgb = make_picture(width, height, (uint32_t)i + 1);
-        ok = wd_film_add_frame(film, rgb, log);
+        ok = wd_film_writer_add(film, rgb, log);
         free(rgb);
     }
     return ok;
@@ -46,13 +46,13 @@ static void films_hold_their_frames(void **state)
     struct fixture *f = *state;
     static const char *const names[] = {"a.mp4", "a.mov", "a.mkv"};
     for (size_t i = 0; i < 3; i++) {
-        struct wd_film film;
-        struct wd_film_params params = {in_folder(f, names[i]), 64, 48, .frame_rate = 25};
+        struct wd_film_writer film;
+        struct wd_film_writer_params params = {in_folder(f, names[i]), 64, 48, .frame_rate = 25};
         assert_true(wd_film_path(params.path));
-        assert_true(wd_film_open(&film, &params, &f->log));
+        assert_true(wd_film_writer_open(&film, &params, &f->log));
         assert_true(add_frames(&film, 64, 48, 7, &f->log));
         assert_false(access(f->path, F_OK) == 0); /* not before it is whole */
-        assert_true(wd_film_commit(&film, &f->log));
+        assert_true(wd_film_writer_commit(&film, &f->log));
         assert_int_equal(count_frames(f->path), 7);
         assert_int_equal(file_count(f), (int)i + 1);
     }
@@ -63,17 +63,17 @@ static void films_hold_their_frames(void **state)
 static void colours_are_kept(void **state)
 {
     struct fixture *f = *state;
-    struct wd_film film;
-    struct wd_film_params params = {in_folder(f, "a.mp4"), 32, 32, .crf = 1};
+    struct wd_film_writer film;
+    struct wd_film_writer_params params = {in_folder(f, "a.mp4"), 32, 32, .crf = 1};
     uint8_t rgb[32 * 32 * 3];
     for (size_t i = 0; i < sizeof rgb; i += 3) {
         rgb[i] = 30;
         rgb[i + 1] = 180;
         rgb[i + 2] = 60;
     }
-    assert_true(wd_film_open(&film, &params, &f->log));
-    assert_true(wd_film_add_frame(&film, rgb, &f->log));
-    assert_true(wd_film_commit(&film, &f->log));
+    assert_true(wd_film_writer_open(&film, &params, &f->log));
+    assert_true(wd_film_writer_add(&film, rgb, &f->log));
+    assert_true(wd_film_writer_commit(&film, &f->log));
     char *command = wd_format("ffmpeg -v error -i %s -vf scale=in_color_matrix=bt709 -f rawvideo "
                               "-pix_fmt rgb24 -", f->path);
     FILE *pipe = popen(command, "r");
@@ -88,15 +88,15 @@ static void colours_are_kept(void **state)
 static void discarded_films_leave_nothing(void **state)
 {
     struct fixture *f = *state;
-    struct wd_film film = {0};
-    wd_film_discard(&film);
-    struct wd_film_params params = {in_folder(f, "a.mp4"), 64, 48};
-    assert_true(wd_film_open(&film, &params, &f->log));
+    struct wd_film_writer film = {0};
+    wd_film_writer_discard(&film);
+    struct wd_film_writer_params params = {in_folder(f, "a.mp4"), 64, 48};
+    assert_true(wd_film_writer_open(&film, &params, &f->log));
     assert_true(add_frames(&film, 64, 48, 3, &f->log));
-    wd_film_discard(&film);
+    wd_film_writer_discard(&film);
     assert_int_equal(file_count(f), 0);
-    assert_true(wd_film_open(&film, &params, &f->log));
-    assert_false(wd_film_commit(&film, &f->log));
+    assert_true(wd_film_writer_open(&film, &params, &f->log));
+    assert_false(wd_film_writer_commit(&film, &f->log));
     assert_true(logged(f, "the film has no frames"));
     assert_int_equal(file_count(f), 0);
 }
@@ -104,11 +104,11 @@ static void discarded_films_leave_nothing(void **state)
 static void sequences_are_written_frame_by_frame(void **state)
 {
     struct fixture *f = *state;
-    struct wd_film film;
-    struct wd_film_params params = {in_folder(f, "f-%03d.png"), 9, 5};
-    assert_true(wd_film_open(&film, &params, &f->log));
+    struct wd_film_writer film;
+    struct wd_film_writer_params params = {in_folder(f, "f-%03d.png"), 9, 5};
+    assert_true(wd_film_writer_open(&film, &params, &f->log));
     assert_true(add_frames(&film, 9, 5, 3, &f->log));
-    wd_film_discard(&film); /* what is finished stays */
+    wd_film_writer_discard(&film); /* what is finished stays */
     assert_int_equal(file_count(f), 3);
     struct wd_image8 image;
     assert_true(wd_png_read(&image, in_folder(f, "f-002.png"), &f->log));
@@ -122,7 +122,7 @@ static void names_and_sizes_are_checked(void **state)
 {
     struct fixture *f = *state;
     static const struct {
-        struct wd_film_params params;
+        struct wd_film_writer_params params;
         const char *message;
     } cases[] = {
         {{"/tmp/a.mp4", 63, 48}, "must be even; found 63 x 48, 64 x 48 would do"},
@@ -139,24 +139,24 @@ static void names_and_sizes_are_checked(void **state)
         {{"/nowhere/at/all/a.mp4", 64, 48}, "No such file or directory"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct wd_film film;
+        struct wd_film_writer film;
         f->text[0] = '\0';
-        assert_false(wd_film_open(&film, &cases[i].params, &f->log));
+        assert_false(wd_film_writer_open(&film, &cases[i].params, &f->log));
         assert_true(logged(f, cases[i].message));
     }
     mkdir(in_folder(f, "d.mp4"), 0777);
-    struct wd_film film;
-    struct wd_film_params params = {f->path, 64, 48};
-    assert_false(wd_film_open(&film, &params, &f->log));
+    struct wd_film_writer film;
+    struct wd_film_writer_params params = {f->path, 64, 48};
+    assert_false(wd_film_writer_open(&film, &params, &f->log));
     assert_true(logged(f, "d.mp4: is a directory"));
 }
 
 static void missing_ffmpeg_is_told(void **state)
 {
     struct fixture *f = *state;
-    struct wd_film film;
-    struct wd_film_params params = {in_folder(f, "a.mp4"), 64, 48, .ffmpeg = "no-such-ffmpeg"};
-    assert_false(wd_film_open(&film, &params, &f->log));
+    struct wd_film_writer film;
+    struct wd_film_writer_params params = {in_folder(f, "a.mp4"), 64, 48, .ffmpeg = "no-such-ffmpeg"};
+    assert_false(wd_film_writer_open(&film, &params, &f->log));
     assert_true(logged(f, "need the program no-such-ffmpeg, which is not there; install"));
     assert_int_equal(file_count(f), 0);
 }
@@ -167,9 +167,9 @@ static void failing_ffmpeg_is_told(void **state)
 {
     struct fixture *f = *state;
     char *program = make_program(f, "echo first >&2; echo the disk is on fire >&2; exit 3");
-    struct wd_film film;
-    struct wd_film_params params = {in_folder(f, "a.mp4"), 640, 480, .ffmpeg = program};
-    assert_true(wd_film_open(&film, &params, &f->log));
+    struct wd_film_writer film;
+    struct wd_film_writer_params params = {in_folder(f, "a.mp4"), 640, 480, .ffmpeg = program};
+    assert_true(wd_film_writer_open(&film, &params, &f->log));
     assert_false(add_frames(&film, 640, 480, 4, &f->log));
     assert_true(logged(f, "a.mp4: the film cannot be written: ffmpeg stopped early: the disk is on "
                           "fire"));
@@ -177,9 +177,9 @@ static void failing_ffmpeg_is_told(void **state)
     program = make_program(f, "cat > /dev/null; echo no room >&2; exit 5");
     params.ffmpeg = program;
     params.path = in_folder(f, "a.mp4");
-    assert_true(wd_film_open(&film, &params, &f->log));
+    assert_true(wd_film_writer_open(&film, &params, &f->log));
     assert_true(add_frames(&film, 640, 480, 1, &f->log));
-    assert_false(wd_film_commit(&film, &f->log));
+    assert_false(wd_film_writer_commit(&film, &f->log));
     assert_true(logged(f, "ffmpeg failed with status 5: no room"));
     assert_int_equal(file_count(f), 1); /* the program */
     free(program);
@@ -187,10 +187,10 @@ static void failing_ffmpeg_is_told(void **state)
 
 static bool film_too_much(struct fixture *f)
 {
-    struct wd_film film;
-    struct wd_film_params params = {in_folder(f, "a.mp4"), 320, 240};
-    bool ok = wd_film_open(&film, &params, &f->log) && add_frames(&film, 320, 240, 40, &f->log) &&
-              wd_film_commit(&film, &f->log);
+    struct wd_film_writer film;
+    struct wd_film_writer_params params = {in_folder(f, "a.mp4"), 320, 240};
+    bool ok = wd_film_writer_open(&film, &params, &f->log) && add_frames(&film, 320, 240, 40, &f->log) &&
+              wd_film_writer_commit(&film, &f->log);
     return !ok && logged(f, "a.mp4: the film cannot be written: ffmpeg");
 }
 
@@ -204,13 +204,13 @@ static void full_disk_leaves_nothing(void **state)
 /* Ctrl-C reaches the whole group of the terminal; ffmpeg goes on, and the caller may commit. */
 static bool interrupted_film(struct fixture *f)
 {
-    struct wd_film film;
-    struct wd_film_params params = {in_folder(f, "a.mp4"), 64, 48};
+    struct wd_film_writer film;
+    struct wd_film_writer_params params = {in_folder(f, "a.mp4"), 64, 48};
     signal(SIGINT, SIG_IGN);
-    bool ok = wd_film_open(&film, &params, &f->log) && add_frames(&film, 64, 48, 4, &f->log);
+    bool ok = wd_film_writer_open(&film, &params, &f->log) && add_frames(&film, 64, 48, 4, &f->log);
     ok = ok && kill(film.encoder.process, SIGINT) == 0;
     return ok && getpgid(film.encoder.process) == film.encoder.process &&
-           wd_film_commit(&film, &f->log);
+           wd_film_writer_commit(&film, &f->log);
 }
 
 static void interrupt_spares_ffmpeg(void **state)

@@ -1,0 +1,167 @@
+#include "weald/renderer.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "output/exr.h"
+#include "output/film.h"
+#include "output/image.h"
+
+static bool has_ending(const char *path, const char *ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcasecmp(path + length - tail, ending) == 0;
+}
+
+/* The display layer as three bytes a pixel; free() it. */
+static uint8_t *display_rgb(const struct wd_picture *picture)
+{
+    size_t pixels = (size_t)picture->width * picture->height;
+    uint8_t *rgb = wd_alloc_array(pixels, 3);
+    for (size_t i = 0; i < pixels; i++)
+        memcpy(rgb + 3 * i, picture->display + 4 * i, 3);
+    return rgb;
+}
+
+/* --- single pictures --------------------------------------------------------------------- */
+
+static enum wd_result write_png(const struct wd_picture *picture, const char *path,
+                                const struct wd_log *log)
+{
+    if (!picture->display) {
+        wd_error(log, "%s: a PNG file shows the display layer, which the picture lacks", path);
+        return WD_ERROR_INPUT;
+    }
+    uint8_t *rgb = display_rgb(picture);
+    bool ok = wd_png_write(path, rgb, picture->width, picture->height, log);
+    free(rgb);
+    return ok ? WD_OK : WD_ERROR_OUTPUT;
+}
+
+enum { MAX_CHANNELS = 16 };
+
+static void add_channels(struct wd_exr_channel *channels, size_t *count, const char *const *names,
+                         const float *data, uint32_t stride)
+{
+    for (uint32_t k = 0; data && k < stride; k++)
+        channels[(*count)++] = (struct wd_exr_channel){names[k], WD_EXR_FLOAT, data + k, stride};
+}
+
+static enum wd_result write_exr(const struct wd_picture *picture, const char *path,
+                                const struct wd_log *log)
+{
+    static const char *const color[] = {"R", "G", "B"}, *const depth[] = {"Z"};
+    static const char *const normal[] = {"N.X", "N.Y", "N.Z"};
+    static const char *const albedo[] = {"albedo.R", "albedo.G", "albedo.B"};
+    static const char *const velocity[] = {"velocity.X", "velocity.Y"};
+    struct wd_exr_channel channels[MAX_CHANNELS];
+    struct wd_exr_params params = {picture->width, picture->height, channels, 0, NULL, 0};
+    add_channels(channels, &params.channel_count, color, picture->color, 3);
+    add_channels(channels, &params.channel_count, depth, picture->depth_m, 1);
+    add_channels(channels, &params.channel_count, normal, picture->normal, 3);
+    add_channels(channels, &params.channel_count, albedo, picture->albedo, 3);
+    add_channels(channels, &params.channel_count, velocity, picture->velocity_px, 2);
+    if (picture->species)
+        channels[params.channel_count++] =
+            (struct wd_exr_channel){"species", WD_EXR_UINT, picture->species, 1};
+    if (picture->tree_id)
+        channels[params.channel_count++] =
+            (struct wd_exr_channel){"tree_id", WD_EXR_UINT, picture->tree_id, 1};
+    if (params.channel_count == 0) {
+        wd_error(log, "%s: the picture has no layer that an EXR file could hold", path);
+        return WD_ERROR_INPUT;
+    }
+    return wd_exr_write(path, &params, log) ? WD_OK : WD_ERROR_OUTPUT;
+}
+
+enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
+                                const struct wd_log *log)
+{
+    if (has_ending(path, ".png"))
+        return write_png(picture, path, log);
+    if (has_ending(path, ".exr"))
+        return write_exr(picture, path, log);
+    wd_error(log, "%s: pictures end in .png or .exr", path);
+    return WD_ERROR_INPUT;
+}
+
+/* --- films ------------------------------------------------------------------------------- */
+
+struct wd_film {
+    struct wd_film_writer writer; /* unless `pattern` */
+    char *pattern;                /* of numbered .exr files: their name with %d */
+    uint64_t frames;
+    struct wd_log log;
+};
+
+enum wd_result wd_film_open(struct wd_film **result, const struct wd_film_params *params,
+                            const struct wd_log *log)
+{
+    const struct wd_film_writer_params writer = {.path = params->path,
+                                                 .width = params->width,
+                                                 .height = params->height,
+                                                 .frame_rate = params->frames_per_second};
+    *result = NULL;
+    if (!wd_film_path(params->path)) {
+        wd_error(log,
+                 "%s: films end in .mp4, .mov or .mkv, numbered pictures have %%d or %%05d in "
+                 "their name",
+                 params->path);
+        return WD_ERROR_INPUT;
+    }
+    struct wd_film *film = wd_alloc(sizeof *film);
+    film->log = log ? *log : (struct wd_log){0};
+    if (has_ending(params->path, ".exr")) {
+        if (!wd_film_sequence_check(params->path, log)) {
+            free(film);
+            return WD_ERROR_INPUT;
+        }
+        film->pattern = wd_strdup(params->path);
+    } else if (!wd_film_writer_open(&film->writer, &writer, log)) {
+        free(film);
+        return WD_ERROR_OUTPUT;
+    }
+    *result = film;
+    return WD_OK;
+}
+
+enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture)
+{
+    if (film->pattern) {
+        char *path = wd_film_frame_name(film->pattern, film->frames);
+        enum wd_result result = write_exr(picture, path, &film->log);
+        free(path);
+        film->frames += result == WD_OK;
+        return result;
+    }
+    if (!picture->display) {
+        wd_error(&film->log, "a film shows the display layer, which the picture lacks");
+        return WD_ERROR_INPUT;
+    }
+    uint8_t *rgb = display_rgb(picture);
+    bool ok = wd_film_writer_add(&film->writer, rgb, &film->log);
+    free(rgb);
+    film->frames += ok;
+    return ok ? WD_OK : WD_ERROR_OUTPUT;
+}
+
+enum wd_result wd_film_commit(struct wd_film **film)
+{
+    struct wd_film *f = *film;
+    bool ok = f->pattern || f->frames == 0 || wd_film_writer_commit(&f->writer, &f->log);
+    wd_film_discard(film);
+    return ok ? WD_OK : WD_ERROR_OUTPUT;
+}
+
+void wd_film_discard(struct wd_film **film)
+{
+    if (!film || !*film)
+        return;
+    wd_film_writer_discard(&(*film)->writer);
+    free((*film)->pattern);
+    free(*film);
+    *film = NULL;
+}
