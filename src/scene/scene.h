@@ -10,7 +10,8 @@ enum wd_nodata_rule { WD_NODATA_FILL, WD_NODATA_CUT };
 
 struct wd_scene_terrain {
     int kind;                /* enum wd_terrain_kind */
-    double size_m[2];        /* flat, diamond-square: east, north extent */
+    double size_m[2];        /* flat, diamond-square: east, north extent; flat and
+                                0, 0: fitted to the inventories */
     double cell_m;           /* diamond-square: sample spacing; raster: wanted spacing, 0: its own */
     double relief_m;         /* diamond-square: highest minus lowest */
     double roughness;        /* diamond-square: y of R1; smooth from 0.8 */

@@ -42,8 +42,17 @@ bool wd_scene_check_terrain(void *object, const struct wd_keys_place *place)
     struct wd_scene_terrain *terrain = object;
     if (terrain->kind == WD_TERRAIN_RASTER && !terrain->file)
         return wd_keys_error(place, NULL, "a raster terrain needs \"file\": any GDAL raster");
+    if (terrain->kind == WD_TERRAIN_DIAMOND_SQUARE &&
+        !(terrain->size_m[0] > 0 && terrain->size_m[1] > 0))
+        return wd_keys_error(place, "size_m", "found %g x %g; both must be above 0 (only flat "
+                             "ground can be fitted to inventories)", terrain->size_m[0],
+                             terrain->size_m[1]);
     if (terrain->kind != WD_TERRAIN_RASTER && terrain->file)
         return wd_keys_error(place, "file", "only a terrain of \"kind\": \"raster\" has a file");
+    if (terrain->kind == WD_TERRAIN_FLAT && (terrain->size_m[0] == 0) != (terrain->size_m[1] == 0))
+        return wd_keys_error(place, "size_m", "found %g x %g; either both are above 0, or both are "
+                             "0: fitted to the inventories", terrain->size_m[0],
+                             terrain->size_m[1]);
     const double *window = terrain->window_m;
     if (terrain->window_count && (window[0] >= window[2] || window[1] >= window[3]))
         return wd_keys_error(place, "window_m", "found [%.9g, %.9g, %.9g, %.9g]; allowed is [xmin, "
@@ -117,9 +126,6 @@ bool wd_scene_check_inventory(void *object, const struct wd_keys_place *place)
                            "or \"EPSG:n\"", inventory->frame);
     else if (inventory->rotate_deg != 0 && strcmp(inventory->frame, "local") != 0)
         ok = wd_keys_error(place, "rotate_deg", "only the local frame can be turned");
-    if (inventory->dead_count && !inventory->columns.status)
-        ok = wd_keys_error(place, "dead", "needs \"columns\": { \"status\": ... }, the column that "
-                           "these values stand in");
     return wd_scene_expand_file(&inventory->file, "file", place) && ok;
 }
 

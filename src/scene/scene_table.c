@@ -13,8 +13,9 @@ static const char *const methods[] = {"octree", "separate", NULL};
 static const struct wd_key terrain_keys[] = {
     {"kind", WD_KEY_ENUM, TERRAIN(kind), .fallback = "\"flat\"", .choices = terrain_kinds,
      .doc = "Flat ground, diamond-square fractal, or a raster file."},
-    {"size_m", WD_KEY_VECTOR, TERRAIN(size_m), 1, 1e6, "[1000, 1000]",
-     "flat, diamond-square: extent to the east and north, in metres.", .length = 2},
+    {"size_m", WD_KEY_VECTOR, TERRAIN(size_m), 0, 1e6, "[1000, 1000]",
+     "flat, diamond-square: extent to the east and north, in metres; flat and 0, 0: fitted to the "
+     "inventories.", .length = 2},
     {"cell_m", WD_KEY_DOUBLE, TERRAIN(cell_m), 0, 10000, "0",
      "Distance between samples in metres; 0: the raster's own, or 1024 samples a side."},
     {"relief_m", WD_KEY_DOUBLE, TERRAIN(relief_m), 0, 12000, "200",

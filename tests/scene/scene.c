@@ -121,7 +121,9 @@ static void checks_across_keys_hold(void **state)
         {"{\"terrain\": {\"file\": \"a.tif\"}}", "terrain.file: only a terrain of"},
         {"{\"terrain\": {\"kind\": \"raster\", \"file\": \"a\", \"window_m\": [1, 1, 0, 2]}}",
          "terrain.window_m: found [1, 1, 0, 2]"},
-        {"{\"terrain\": {\"size_m\": [0, 1]}}", "terrain.size_m[0]: found 0"},
+        {"{\"terrain\": {\"size_m\": [0, 1]}}", "terrain.size_m: found 0 x 1; either both"},
+        {"{\"terrain\": {\"kind\": \"diamond-square\", \"size_m\": [0, 0]}}", "both must be above 0"},
+        {"{\"terrain\": {\"size_m\": [5, -1]}}", "terrain.size_m[1]: found -1"},
         {"{\"layers\": [{\"species\": {\"oak\": 0}}]}", "the shares sum to 0"},
         {"{\"layers\": [{\"species\": {}}]}", "the shares sum to 0"},
         {"{\"layers\": [{\"species\": {\"oak\": -1}}]}", "layers[0].species.oak: found -1"},
@@ -158,9 +160,6 @@ static void checks_across_keys_hold(void **state)
         {"{\"species\": {\"oak\": \"../species/oak.json\"}, \"inventories\": [{\"file\": \"a\", "
          "\"frame\": \"EPSG:32610\", \"rotate_deg\": 3}]}",
          "rotate_deg: only the local frame"},
-        {"{\"species\": {\"oak\": \"../species/oak.json\"}, \"inventories\": [{\"file\": \"a\", "
-         "\"dead\": \"D\"}]}",
-         "dead: needs \"columns\""},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         assert_false(load(f, cases[i].text));
