@@ -1,0 +1,107 @@
+#include "frame/passes/terrain.h"
+
+#include <string.h>
+
+static const uint32_t terrain_vert[] =
+#include "terrain.vert.inc"
+    ;
+static const uint32_t terrain_frag[] =
+#include "terrain.frag.inc"
+    ;
+
+#define SPIRV(words) {words, sizeof words, #words}
+
+enum { PATCH_INDICES = WD_PATCH_CELLS * WD_PATCH_CELLS * 6 };
+
+/* Two triangles a cell, counter-clockwise from above, split from south-west to north-east. The
+ * host writes them once, before any submission: no barrier is ever needed. */
+static bool init_indices(struct wd_buffer *buffer, struct wd_gpu *gpu)
+{
+    const struct wd_buffer_params params = {.name = "terrain indices",
+                                            .size = PATCH_INDICES * sizeof(uint16_t),
+                                            .usage = VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
+                                            .memory = WD_MEMORY_UPLOAD};
+    if (!wd_buffer_init(buffer, gpu, &params))
+        return false;
+    uint16_t *next = buffer->mapped;
+    for (uint32_t j = 0; j < WD_PATCH_CELLS; j++) {
+        for (uint32_t i = 0; i < WD_PATCH_CELLS; i++) {
+            uint16_t south_west = (uint16_t)(j * (WD_PATCH_CELLS + 1) + i);
+            uint16_t north_west = south_west + WD_PATCH_CELLS + 1;
+            const uint16_t cell[6] = {south_west, south_west + 1, north_west + 1,
+                                      south_west, north_west + 1, north_west};
+            memcpy(next, cell, sizeof cell);
+            next += 6;
+        }
+    }
+    return true;
+}
+
+static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+{
+    const struct wd_graphics_params params = {
+        .vertex = SPIRV(terrain_vert),
+        .fragment = SPIRV(terrain_frag),
+        .bindings = {7,
+                     {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+        .color_count = 3,
+        .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
+        .depth_format = WD_DEPTH_FORMAT,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+    };
+    return wd_pipeline_init_graphics(pipeline, gpu, &params);
+}
+
+bool wd_terrain_pass_init(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
+{
+    *pass = (struct wd_terrain_pass){0};
+    bool ok = init_indices(&pass->indices, gpu) && init_pipeline(&pass->pipeline, gpu);
+    if (!ok)
+        wd_terrain_pass_finish(pass, gpu);
+    return ok;
+}
+
+void wd_terrain_pass_finish(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
+{
+    wd_pipeline_finish(&pass->pipeline, gpu);
+    wd_buffer_finish(&pass->indices, gpu);
+    wd_patch_list_finish(&pass->patches);
+    *pass = (struct wd_terrain_pass){0};
+}
+
+void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
+                            const struct wd_terrain_params *params)
+{
+    const struct wd_ground *ground = params->ground;
+    struct wd_patch_ranges ranges;
+    wd_patch_ranges_init(&ranges, ground, params->view, params->error_px);
+    wd_patches_select(&pass->patches, &ranges, ground, params->view);
+    size_t count = pass->patches.count;
+    pass->triangles = (uint64_t)count * PATCH_INDICES / 3;
+    if (!count)
+        return;
+    struct wd_binding view_binding, patch_binding;
+    struct wd_terrain_view *view = wd_cmd_upload(cmd, sizeof *view, &view_binding);
+    void *patches = wd_cmd_upload(cmd, count * sizeof *pass->patches.items, &patch_binding);
+    if (!view || !patches)
+        return;
+    wd_terrain_view_init(view, &ranges, ground, params->view);
+    memcpy(patches, pass->patches.items, count * sizeof *pass->patches.items);
+    const struct wd_binding bindings[] = {
+        params->uniforms,
+        view_binding,
+        patch_binding,
+        WD_BIND_BUFFER(&ground->heights),
+        WD_BIND_IMAGE(&ground->slopes, ground->sampler),
+        WD_BIND_IMAGE(&ground->cover, ground->sampler),
+        WD_BIND_BUFFER(&ground->holes),
+    };
+    wd_cmd_bind(cmd, &pass->pipeline, bindings);
+    vkCmdBindIndexBuffer(cmd->vk, pass->indices.buffer, 0, VK_INDEX_TYPE_UINT16);
+    if (!cmd->failed)
+        vkCmdDrawIndexed(cmd->vk, PATCH_INDICES, (uint32_t)count, 0, 0, 0);
+}

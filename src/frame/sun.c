@@ -1,0 +1,102 @@
+#include "frame/sun.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "shared/sky.h"
+
+static const float DEGREE = 3.14159265f / 180.0f;
+
+/* Full moon over sun (Kieffer and Stone 2005: some 1 / 400,000), a little redder in truth, but eyes
+ * (and films) expect it blue. Where the sun's twilight has become fainter, the moon takes over. */
+static const float MOON_SHARE = 2.5e-6f;
+static const float MOON_TINT[3] = {0.75f, 0.95f, 1.25f};
+static const float MOON_FROM_ELEVATION_DEG = -13.0f;
+static const float MOON_ELEVATION_DEG = 35.0f;
+
+static void set_direction(float direction[3], double azimuth_deg, double elevation_deg)
+{
+    double azimuth = azimuth_deg * (double)DEGREE, elevation = elevation_deg * (double)DEGREE;
+    direction[0] = (float)(sin(azimuth) * cos(elevation));
+    direction[1] = (float)(cos(azimuth) * cos(elevation));
+    direction[2] = (float)sin(elevation);
+}
+
+struct sky {
+    struct wd_sky_band band;
+    float sun[3];
+    float sun_air_mass;
+};
+
+static float radiance_toward(const struct sky *sky, const float direction[3])
+{
+    float cosine = 0;
+    for (int k = 0; k < 3; k++)
+        cosine += direction[k] * sky->sun[k];
+    return wd_sky_radiance(sky->band, wd_air_mass(direction[2]), sky->sun_air_mass,
+                           wd_air_phase(cosine), wd_haze_phase(cosine), sky->sun[2]);
+}
+
+/* On level ground: the midpoint rule over 16 rings of equal height and 32 bearings. */
+static float irradiance_of(const struct sky *sky)
+{
+    enum { RINGS = 16, BEARINGS = 32 };
+    float sum = 0;
+    for (int ring = 0; ring < RINGS; ring++) {
+        float rise = (ring + 0.5f) / RINGS, across = sqrtf(1 - rise * rise);
+        for (int bearing = 0; bearing < BEARINGS; bearing++) {
+            float turn = (bearing + 0.5f) * (360.0f / BEARINGS) * DEGREE;
+            const float direction[3] = {across * sinf(turn), across * cosf(turn), rise};
+            sum += rise * radiance_toward(sky, direction);
+        }
+    }
+    return sum * (360.0f * DEGREE) / (RINGS * BEARINGS);
+}
+
+/* Share of the disc over the horizon. */
+static float disc_share(float elevation_deg, float radius_deg)
+{
+    float x = elevation_deg / fmaxf(radius_deg, 0.01f);
+    return x <= -1 ? 0 : x >= 1 ? 1 : 0.5f + 0.75f * x - 0.25f * x * x * x;
+}
+
+/* Radiance at the horizon is linear in the haze's phase function: what is left at phase 0, and what
+ * each unit of it adds. The air's own phase is taken as its mean. */
+static void set_horizon(struct wd_frame_uniforms *uniforms, const struct sky *sky, int channel,
+                        float strength)
+{
+    float air_phase = 0.25f / (180.0f * DEGREE), mass = wd_air_mass(0);
+    float without = wd_sky_radiance(sky->band, mass, sky->sun_air_mass, air_phase, 0, sky->sun[2]);
+    float with = wd_sky_radiance(sky->band, mass, sky->sun_air_mass, air_phase, 1, sky->sun[2]);
+    uniforms->sky_horizon[channel] = without * strength;
+    uniforms->sky_glow[channel] = (with - without) * strength;
+}
+
+void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene)
+{
+    float elevation_deg = (float)scene->sun.elevation_deg;
+    double azimuth_deg = scene->sun.azimuth_deg;
+    bool moon = elevation_deg < MOON_FROM_ELEVATION_DEG;
+    if (moon) {
+        elevation_deg = MOON_ELEVATION_DEG;
+        azimuth_deg += 180.0;
+    }
+    float radius_deg = 0.5f * (float)scene->sun.angular_diameter_deg;
+    float source = (float)scene->sun.strength * (moon ? MOON_SHARE : 1.0f);
+    struct sky sky;
+    set_direction(sky.sun, azimuth_deg, elevation_deg);
+    sky.sun_air_mass = wd_air_mass(sky.sun[2]);
+    memcpy(uniforms->sun_direction, sky.sun, sizeof sky.sun);
+    uniforms->sun_cos_radius = cosf(fmaxf(radius_deg, 0.05f) * DEGREE);
+    uniforms->sky_turbidity = (float)scene->sky.turbidity;
+    uniforms->sky_strength = source * (float)scene->sky.strength;
+    for (int channel = 0; channel < 3; channel++) {
+        sky.band = wd_sky_band_of(channel, uniforms->sky_turbidity);
+        float tint = moon ? MOON_TINT[channel] : 1.0f;
+        uniforms->sun_irradiance[channel] = WD_SUN_OUTSIDE * source * tint *
+                                            wd_sun_through(sky.band, sky.sun_air_mass) *
+                                            disc_share(elevation_deg, radius_deg);
+        uniforms->sky_irradiance[channel] = irradiance_of(&sky) * uniforms->sky_strength;
+        set_horizon(uniforms, &sky, channel, uniforms->sky_strength);
+    }
+}

@@ -1,0 +1,212 @@
+#include "picture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "frame/uniforms.h"
+
+static void set_weather(struct wd_scene *scene)
+{
+    scene->sun.azimuth_deg = 215;
+    scene->sun.elevation_deg = 45;
+    scene->sun.angular_diameter_deg = 0.53;
+    scene->sun.strength = 1;
+    scene->sky.turbidity = 2.4;
+    scene->sky.strength = 1;
+    scene->fog.visibility_m = 40000;
+    scene->fog.height_m = 1200;
+    scene->wind.speed_mps = 3;
+    scene->wind.direction_deg = 250;
+    scene->wind.gust = 0.4;
+    scene->water.clarity_m = 2.5;
+    memcpy(scene->water.color, (float[3]){0.006f, 0.022f, 0.024f}, sizeof scene->water.color);
+    memcpy(scene->ground.grass, (float[3]){0.070f, 0.105f, 0.030f}, sizeof scene->ground.grass);
+    memcpy(scene->ground.soil, (float[3]){0.140f, 0.105f, 0.070f}, sizeof scene->ground.soil);
+    memcpy(scene->ground.rock, (float[3]){0.200f, 0.185f, 0.165f}, sizeof scene->ground.rock);
+    memcpy(scene->ground.litter, (float[3]){0.085f, 0.058f, 0.032f}, sizeof scene->ground.litter);
+    scene->ground.rock_slope_deg = 38;
+    scene->quality.shadow_taps = 5;
+    scene->quality.shadow_size = 64;
+    scene->quality.shadow_distance_m = 400;
+    scene->quality.terrain_error_px = 1;
+}
+
+/* Groves by a sum of waves, none where it is steep. */
+static void make_cover(struct wd_world *world)
+{
+    const struct wd_terrain *terrain = &world->terrain;
+    world->cover_cell_m = 8;
+    world->cover_width = (uint32_t)(wd_terrain_extent_x_m(terrain) / 8) + 1;
+    world->cover_height = (uint32_t)(wd_terrain_extent_y_m(terrain) / 8) + 1;
+    world->cover = wd_alloc_array((size_t)world->cover_width * world->cover_height, 1);
+    for (uint32_t j = 0; j < world->cover_height; j++) {
+        for (uint32_t i = 0; i < world->cover_width; i++) {
+            double x = i * 8.0, y = j * 8.0;
+            double wave = sin(x / 130) + sin(y / 110 + x / 300) + 0.7 * sin(x / 41 - y / 53);
+            bool steep = wd_terrain_slope_squared(terrain, x, y) > 0.5f;
+            double share = steep ? 0 : fmin(fmax(wave, 0), 1);
+            world->cover[(size_t)j * world->cover_width + i] = (uint8_t)(255 * share);
+        }
+    }
+}
+
+static bool make_forest(struct picture_test *test)
+{
+    const struct wd_buffer_params trees = {.name = "no trees",
+                                           .size = sizeof(struct wd_tree),
+                                           .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+    const struct wd_tree none = {0};
+    test->forest.scene = &test->scene;
+    test->forest.world = &test->world;
+    test->forest.variants = 1;
+    return wd_ground_init(&test->forest.ground, &test->gpu, &test->world, &test->log) &&
+           wd_buffer_init(&test->forest.trees, &test->gpu, &trees) &&
+           wd_buffer_upload(&test->gpu, &test->forest.trees, 0, &none, sizeof none);
+}
+
+bool picture_init(struct picture_test *test, uint32_t width, uint32_t height, uint32_t cells,
+                  double cell_m, double relief_m)
+{
+    const struct wd_gpu_params gpu = {.name = "software", .validation = WD_GPU_VALIDATION_ON};
+    *test = (struct picture_test){0};
+    set_weather(&test->scene);
+    test->scene.terrain.kind = WD_TERRAIN_DIAMOND_SQUARE;
+    test->scene.terrain.size_m[0] = test->scene.terrain.size_m[1] = cells * cell_m;
+    test->scene.terrain.cell_m = cell_m;
+    test->scene.terrain.relief_m = relief_m;
+    test->scene.terrain.roughness = 0.9;
+    test->scene.terrain.valley = 0.6;
+    test->scene.terrain.vertical_scale = 1;
+    if (!wd_terrain_init(&test->world.terrain, &test->scene, 7, 0, NULL, &test->log))
+        return false;
+    make_cover(&test->world);
+    return wd_gpu_init(&test->gpu, &gpu, &test->log) && wd_frames_init(&test->frames, &test->gpu) &&
+           make_forest(test) && wd_targets_init(&test->targets, &test->gpu, width, height, 64) &&
+           wd_terrain_pass_init(&test->terrain, &test->gpu) &&
+           wd_light_pass_init(&test->light, &test->gpu) &&
+           wd_post_pass_init(&test->post, &test->gpu);
+}
+
+void picture_finish(struct picture_test *test)
+{
+    wd_frames_finish(&test->frames);
+    wd_ground_finish(&test->forest.ground, &test->gpu);
+    wd_buffer_finish(&test->forest.trees, &test->gpu);
+    wd_targets_finish(&test->targets, &test->gpu);
+    wd_terrain_pass_finish(&test->terrain, &test->gpu);
+    wd_light_pass_finish(&test->light, &test->gpu);
+    wd_post_pass_finish(&test->post, &test->gpu);
+    wd_gpu_finish(&test->gpu);
+    free(test->world.cover);
+    wd_terrain_finish(&test->world.terrain);
+}
+
+static void clear_shadows(struct picture_test *test, struct wd_cmd *cmd)
+{
+    for (uint32_t layer = 0; layer < WD_CASCADES; layer++) {
+        VkImageView view;
+        if (!wd_image_layer_view(&test->gpu, &test->targets.shadow, layer, 0, &view))
+            abort();
+        const struct wd_rendering rendering = {.width = 64,
+                                               .height = 64,
+                                               .depth = &test->targets.shadow,
+                                               .depth_view = view,
+                                               .depth_load = WD_LOAD_CLEAR};
+        wd_cmd_begin_rendering(cmd, &rendering);
+        wd_cmd_end_rendering(cmd);
+        if (!wd_frame_submit(cmd, VK_NULL_HANDLE, VK_NULL_HANDLE) ||
+            !wd_frames_wait(&test->frames) || !wd_frame_begin(&test->frames, cmd))
+            abort();
+        vkDestroyImageView(test->gpu.device, view, NULL);
+    }
+}
+
+static void record(struct picture_test *test, struct wd_cmd *cmd, struct wd_binding uniforms)
+{
+    const struct wd_terrain_params terrain = {&test->forest.ground, &test->view, uniforms, 1};
+    wd_cmd_scope_begin(cmd, "terrain");
+    wd_targets_begin_gbuffer(&test->targets, cmd, WD_LOAD_CLEAR);
+    wd_terrain_pass_record(&test->terrain, cmd, &terrain);
+    wd_cmd_end_rendering(cmd);
+    wd_cmd_scope_end(cmd);
+    const struct wd_light_params light = {&test->targets, &test->forest, &test->view,
+                                          &test->uniforms, uniforms};
+    wd_cmd_scope_begin(cmd, "light");
+    wd_light_pass_record(&test->light, cmd, &light);
+    wd_cmd_scope_end(cmd);
+    const struct wd_post_params post = {&test->targets, uniforms, 0};
+    wd_cmd_scope_begin(cmd, "post");
+    wd_post_pass_record(&test->post, cmd, &post);
+    wd_cmd_scope_end(cmd);
+}
+
+static bool draw_sample(struct picture_test *test, const struct wd_camera *camera, uint32_t index)
+{
+    struct wd_cmd cmd;
+    struct wd_view cascades[WD_CASCADES];
+    const struct wd_uniforms_params params = {
+        .forest = &test->forest,
+        .camera = *camera,
+        .previous_camera = *camera,
+        .width = test->targets.width,
+        .height = test->targets.height,
+        .shadow_size = 64,
+        .sample_index = index,
+        .sample_count = test->samples ? test->samples : 1,
+        .view_mode = test->view_mode,
+    };
+    if (!wd_frame_begin(&test->frames, &cmd))
+        return false;
+    if (test->targets.shadow.last_use == WD_USE_NONE)
+        clear_shadows(test, &cmd);
+    wd_uniforms_init(&test->uniforms, &test->view, cascades, &params);
+    struct wd_binding binding;
+    struct wd_frame_uniforms *mapped = wd_cmd_upload(&cmd, sizeof *mapped, &binding);
+    if (mapped)
+        *mapped = test->uniforms;
+    wd_ground_use(&test->forest.ground, &cmd);
+    wd_cmd_use_buffer(&cmd, &test->forest.trees, WD_USE_SHADER_READ);
+    record(test, &cmd, binding);
+    return wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE) && wd_frames_wait(&test->frames);
+}
+
+bool picture_draw(struct picture_test *test, const struct wd_camera *camera)
+{
+    bool ok = true;
+    for (uint32_t i = 0; ok && i < (test->samples ? test->samples : 1); i++)
+        ok = draw_sample(test, camera, i);
+    return ok;
+}
+
+struct wd_camera picture_camera(const struct picture_test *test, double x_m, double y_m,
+                                double above_m, double yaw_deg, double pitch_deg)
+{
+    const double degree = 3.14159265358979 / 180;
+    double ground_m = wd_terrain_height(&test->world.terrain, x_m, y_m);
+    return (struct wd_camera){.position_m = {x_m, y_m, ground_m + above_m},
+                              .yaw_rad = yaw_deg * degree,
+                              .pitch_rad = pitch_deg * degree,
+                              .fov_rad = 55 * degree};
+}
+
+static void *read_image(struct picture_test *test, struct wd_image *image)
+{
+    size_t size = (size_t)image->width * image->height * wd_format_texel_bytes(image->format);
+    void *data = wd_alloc(size);
+    if (!wd_image_read(&test->gpu, image, 0, 0, data, size))
+        abort();
+    return data;
+}
+
+uint8_t *picture_display(struct picture_test *test)
+{
+    return read_image(test, &test->targets.display);
+}
+
+float *picture_depth(struct picture_test *test)
+{
+    return read_image(test, &test->targets.depth);
+}
