@@ -1,4 +1,5 @@
 /* What the G-buffer says of a pixel. Expects `frame` and the four images. */
+#include "lib/view.glsl"
 
 struct wd_pixel {
     vec3 ray;         /* rel of a point on the pixel's ray at 1 m along the view axis */
@@ -11,17 +12,6 @@ struct wd_pixel {
     uint material;
     uint surface;     /* tree + 1, or 0 */
 };
-
-vec3 pixel_ray(ivec2 at)
-{
-    vec2 clip = (vec2(at) + 0.5) / vec2(frame.width, frame.height) * 2.0 - 1.0;
-    return (frame.rel_from_clip * vec4(clip, 0.0, 1.0)).xyz;
-}
-
-bool pixel_is_sky(float depth)
-{
-    return depth <= 0.0;
-}
 
 wd_pixel gbuffer_pixel(ivec2 at, float depth)
 {

@@ -12,30 +12,33 @@ struct ground_noise {
     float broad;   /* 131 m */
     float middle;  /* 16 m */
     float small_;  /* 2 m */
-    float fine;    /* 0.26 m and 0.06 m */
-    vec2 bump;     /* slope that the finest two add */
+    float fine;    /* of the size of a few pixels, at most half a metre */
+    vec2 bump;     /* slope that the smaller ones add */
 };
+
+/* Detail at whatever size pixels show best: three octaves that follow the footprint, each coming
+ * in and going out smoothly. */
+vec3 fine_noise(vec2 rel, float footprint_m)
+{
+    float octave = clamp(log2(footprint_m * 2400.0), 3.0, 8.0);
+    int bits = int(octave);
+    float rest = octave - float(bits);
+    vec3 fine = gradient_noise(lattice_at(rel, bits), 4u) * (1.0 - rest)
+                + gradient_noise(lattice_at(rel, bits + 1), 4u)
+                + gradient_noise(lattice_at(rel, bits + 2), 4u) * rest;
+    return fine * noise_share(footprint_m, 9);
+}
 
 ground_noise ground_noise_at(vec2 rel, float footprint_m)
 {
     ground_noise n;
+    vec3 fine = fine_noise(rel, footprint_m);
+    vec3 wave = gradient_noise(lattice_at(rel, 11), 3u) * noise_share(footprint_m, 11);
     n.broad = gradient_noise(lattice_at(rel, 17), 1u).x;
     n.middle = gradient_noise(lattice_at(rel, 14), 2u).x * noise_share(footprint_m, 14);
-    float near = noise_share(footprint_m, 11), nearer = noise_share(footprint_m, 8);
-    n.small_ = 0.0;
-    n.fine = 0.0;
-    n.bump = vec2(0.0);
-    if (near > 0.0) {
-        vec3 wave = gradient_noise(lattice_at(rel, 11), 3u) * near;
-        n.small_ = wave.x;
-        n.bump = wave.yz * 0.05;
-    }
-    if (nearer > 0.0) {
-        vec3 wave = gradient_noise(lattice_at(rel, 8), 4u) * nearer;
-        vec3 blades = gradient_noise(lattice_at(rel, 6), 5u) * noise_share(footprint_m, 6);
-        n.fine = wave.x + 0.8 * blades.x;
-        n.bump += wave.yz * 0.16 + blades.yz * 0.2;
-    }
+    n.small_ = wave.x;
+    n.fine = fine.x;
+    n.bump = wave.yz * 0.05 + fine.yz * 0.22;
     return n;
 }
 
@@ -53,9 +56,9 @@ vec3 grass_albedo(float height_m, float steep, ground_noise n)
 {
     float dry = clamp(0.42 + 0.8 * n.broad + 0.6 * n.middle + 0.35 * n.small_ + 0.5 * steep
                       + 0.5 * smoothstep(-400.0, 200.0, height_m - frame.tree_line_m), 0.0, 1.0);
-    vec3 straw = frame.grass * vec3(1.62, 1.14, 0.86);
-    vec3 lush = frame.grass * vec3(0.72, 0.92, 0.62);
-    return mix(lush, straw, dry) * max(1.0 + 0.45 * n.fine + 0.22 * n.small_, 0.25);
+    vec3 straw = frame.grass * vec3(1.60, 1.14, 1.10);
+    vec3 lush = frame.grass * vec3(0.74, 0.88, 0.84);
+    return mix(lush, straw, dry) * max(1.0 + 0.75 * n.fine + 0.22 * n.small_, 0.2);
 }
 
 /* Under trees: needles and leaves, moss in the broad lows, bare earth between. */

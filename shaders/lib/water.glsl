@@ -1,5 +1,5 @@
 /* A level water: reflection of the sky, glint of the sun, and what shows through.
- * Expects `frame`, lib/noise.glsl and lib/sky.glsl. */
+ * Expects `frame`, lib/noise.glsl, lib/sky.glsl and lib/view.glsl. */
 
 /* Slopes of the waves that a pixel resolves; `hidden` is the variance of those it does not (Cox and
  * Munk 1954: 0.003 + 0.00512 wind speed in all). Waves travel with the wind. */
@@ -29,17 +29,10 @@ vec3 water_glint(vec3 normal, vec3 direction, float variance)
     vec3 half_way = normalize(frame.sun_direction - direction);
     float cosine = max(dot(half_way, normal), 1e-3);
     float tangent2 = (1.0 - cosine * cosine) / (cosine * cosine);
-    float spread = exp(-tangent2 / (2.0 * variance)) / (6.2831853 * variance * pow(cosine, 4.0));
+    float spread = exp(-tangent2 / (2.0 * variance)) / (6.2831853 * variance * (cosine * cosine * cosine * cosine));
     float facing = max(dot(half_way, frame.sun_direction), 0.0);
     float fresnel = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
     return frame.sun_irradiance * (fresnel * spread / (4.0 * max(-direction.z, 0.06)));
-}
-
-/* Distance along the ray to the water, or a negative number. */
-float water_distance(vec3 direction)
-{
-    float drop = frame.water_level_m - float(frame.camera_mm[2]) * 0.001 - frame.camera_frac_m.z;
-    return drop < 0.0 && direction.z < -1e-5 ? drop / direction.z : -1.0;
 }
 
 /* `below` is the radiance of what lies under the surface, `depth_m` the way to it in water. */

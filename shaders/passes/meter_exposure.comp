@@ -33,7 +33,7 @@ float key_of(float luminance)
 {
     float nits = luminance * 41000.0;
     float key = 1.03 - 2.0 / (2.0 + log2(nits + 1.0) * 0.30103);
-    return 0.18 * clamp(key / 0.62, 0.04, 1.1);
+    return 0.21 * clamp(key / 0.62, 0.04, 1.1);
 }
 
 void main()

@@ -4,6 +4,8 @@
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer View { wd_terrain_view view; };
+layout(constant_id = 0) const uint HAS_HOLES = 1u;
+
 layout(set = 0, binding = 4) uniform sampler2D slopes;
 layout(set = 0, binding = 5) uniform sampler2D cover_map;
 layout(scalar, set = 0, binding = 6) readonly buffer Holes { uint holes[]; };
@@ -43,15 +45,27 @@ vec3 curtain_normal()
                                    : vec3(-1.0, 0.0, 0.0);
 }
 
+/* Size of the pixel on the ground: a mean of its length away from the eye and its width. Taken from
+ * distance and slope, as differences between pixels are wrong where triangles end. */
+float footprint_of(float distance_m, vec2 slope)
+{
+    vec3 normal = normalize(vec3(-slope, 1.0));
+    float facing = abs(dot(normal, in_rel)) / distance_m;
+    return distance_m * view.pixel_rad / sqrt(max(facing, 0.02));
+}
+
 void main()
 {
     vec2 local_m = in_rel.xy + view.camera_m;
-    if (view.has_holes != 0u && is_hole(local_m))
+    if (HAS_HOLES != 0u && is_hole(local_m))
         discard;
-    vec2 slope = texture(slopes, local_m * view.slopes_scale + view.slopes_offset).xy;
-    float cover = texture(cover_map, local_m * view.cover_scale).x;
-    float footprint_m = max(length(dFdx(in_rel.xy)), length(dFdy(in_rel.xy)));
-    ground_look look = ground_cover(in_rel, slope, cover, footprint_m);
+    float distance_m = length(in_rel);
+    float level = log2(distance_m * view.pixel_rad * 1.5);
+    vec2 slope = textureLod(slopes, local_m * view.slopes_scale + view.slopes_offset,
+                            level - log2(view.slopes_texel_m)).xy;
+    float cover = textureLod(cover_map, local_m * view.cover_scale,
+                             level - log2(view.cover_texel_m)).x;
+    ground_look look = ground_cover(in_rel, slope, cover, footprint_of(distance_m, slope));
     if (in_curtain > 0.0) {
         look.albedo = frame.soil * (0.75 + 0.25 * cos(in_rel.z * 1.3));
         look.normal = curtain_normal();

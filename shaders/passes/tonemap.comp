@@ -31,9 +31,9 @@ vec3 agx_curve(vec3 x)
 /* More contrast and colour than AgX's flat base look: slope, power, saturation (ASC CDL). */
 vec3 look(vec3 color)
 {
-    color = pow(max(color, 0.0), vec3(1.28)) * 1.06;
+    color = pow(max(color, 0.0), vec3(1.30)) * 1.08;
     float luma = dot(color, vec3(0.2126, 0.7152, 0.0722));
-    return luma + 1.32 * (color - luma);
+    return luma + 1.22 * (color - luma);
 }
 
 vec3 tone_map(vec3 radiance)

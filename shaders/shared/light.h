@@ -10,6 +10,51 @@ struct wd_light_push {
     float sun_soft_m;    /* half the height over which its shadows fade */
     uint32_t sun_width, sun_height;
     uint32_t variants;   /* models a species */
+    uint32_t tile_columns, tile_rows;
+};
+
+/* What a tile of pixels shows; each list of tiles is shaded by a pipeline with these parts. */
+#define WD_TILE 8
+#define WD_PART_SKY 1u
+#define WD_PART_GROUND 2u /* any surface */
+#define WD_PART_TREES 4u
+#define WD_PART_WATER 8u
+#define WD_PART_ALL 15u
+#define WD_TILE_LISTS 6
+#define WD_SKY_M 1e9f     /* distances from here on are the sky's */
+
+/* The cheapest list whose parts are enough. */
+WD_FUNC uint32_t wd_tile_list_of(uint32_t parts)
+{
+    uint32_t trees = (parts & WD_PART_TREES) != 0u ? 2u : 0u;
+    if ((parts & WD_PART_WATER) != 0u)
+        return 5u;
+    if ((parts & WD_PART_GROUND) == 0u)
+        return 0u;
+    return 1u + trees + ((parts & WD_PART_SKY) != 0u ? 1u : 0u);
+}
+
+WD_FUNC uint32_t wd_tile_list_parts(uint32_t list)
+{
+    if (list == 0u)
+        return WD_PART_SKY;
+    if (list == 5u)
+        return WD_PART_ALL;
+    return WD_PART_GROUND | (list >= 3u ? WD_PART_TREES : 0u) | (list % 2u == 0u ? WD_PART_SKY : 0u);
+}
+
+struct wd_tile_groups {
+    uint32_t x, y, z; /* as vkCmdDispatchIndirect takes them */
+};
+
+/* Head of the tile buffer; behind it stand WD_TILE_LISTS lists, each as long as there are tiles. */
+struct wd_tile_lists {
+#ifdef __STDC_VERSION__
+    struct wd_tile_groups groups[WD_TILE_LISTS];
+#else
+    wd_tile_groups groups[WD_TILE_LISTS];
+#endif
+    uint32_t count[WD_TILE_LISTS];
 };
 
 /* Metering: 256 classes of log2 luminance, then the exposure they come to. */

@@ -93,7 +93,7 @@ WD_FUNC float wd_sky_radiance(WD_STRUCT wd_sky_band band, float v, float s, floa
     float once = WD_ABS(apart) > 0.01f * s ? v * (through_sun - through_view) / apart
                                            : tau * v * through_sun;
     float height = sun_rise > 0.0f ? sun_rise : 0.0f;
-    float again = 0.30f * (height + 0.02f) * (1.0f - through_sun) * (1.0f - through_view);
+    float again = 0.40f * (height + 0.02f) * (1.0f - through_sun) * (1.0f - through_view);
     float above = WD_EXP(-band.ozone * (s < 12.0f ? s : 12.0f)); /* ozone lies above the air */
     return (WD_SUN_OUTSIDE * phase * once + again) * above * wd_twilight(sun_rise);
 }

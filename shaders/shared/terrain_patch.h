@@ -40,6 +40,8 @@ struct wd_terrain_view {
     WD_VEC2(slopes_offset);
     WD_VEC2(cover_scale);       /* cover image: coordinates = metres * scale */
     WD_VEC2(camera_m);          /* local; for image coordinates only */
+    float slopes_texel_m, cover_texel_m;
+    float pixel_rad;            /* angle that a pixel spans */
     WD_VEC2(morph[WD_TERRAIN_LEVELS]); /* distance at which morphing begins; 1 / its span */
 };
 

@@ -107,20 +107,13 @@ void picture_finish(struct picture_test *test)
 static void clear_shadows(struct picture_test *test, struct wd_cmd *cmd)
 {
     for (uint32_t layer = 0; layer < WD_CASCADES; layer++) {
-        VkImageView view;
-        if (!wd_image_layer_view(&test->gpu, &test->targets.shadow, layer, 0, &view))
-            abort();
         const struct wd_rendering rendering = {.width = 64,
                                                .height = 64,
                                                .depth = &test->targets.shadow,
-                                               .depth_view = view,
+                                               .depth_view = test->targets.shadow_layers[layer],
                                                .depth_load = WD_LOAD_CLEAR};
         wd_cmd_begin_rendering(cmd, &rendering);
         wd_cmd_end_rendering(cmd);
-        if (!wd_frame_submit(cmd, VK_NULL_HANDLE, VK_NULL_HANDLE) ||
-            !wd_frames_wait(&test->frames) || !wd_frame_begin(&test->frames, cmd))
-            abort();
-        vkDestroyImageView(test->gpu.device, view, NULL);
     }
 }
 
@@ -160,8 +153,7 @@ static bool draw_sample(struct picture_test *test, const struct wd_camera *camer
     };
     if (!wd_frame_begin(&test->frames, &cmd))
         return false;
-    if (test->targets.shadow.last_use == WD_USE_NONE)
-        clear_shadows(test, &cmd);
+    clear_shadows(test, &cmd);
     wd_uniforms_init(&test->uniforms, &test->view, cascades, &params);
     struct wd_binding binding;
     struct wd_frame_uniforms *mapped = wd_cmd_upload(&cmd, sizeof *mapped, &binding);

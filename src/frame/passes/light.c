@@ -1,37 +1,68 @@
 #include "frame/passes/light.h"
 
-#include "shared/light.h"
+#include <stddef.h>
 
 static const uint32_t light_comp[] =
 #include "light.comp.inc"
     ;
+static const uint32_t light_args_comp[] =
+#include "light_args.comp.inc"
+    ;
+static const uint32_t light_tiles_comp[] =
+#include "light_tiles.comp.inc"
+    ;
 static const uint32_t light_velocity_comp[] =
 #include "light_velocity.comp.inc"
+    ;
+static const uint32_t light_view_comp[] =
+#include "light_view.comp.inc"
     ;
 
 #define SPIRV(words) {words, sizeof words, #words}
 
-static bool init_light(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+/* --- pipelines ----------------------------------------------------------------------------- */
+
+static const VkDescriptorType IMAGE = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+static const VkDescriptorType BUFFER = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+
+static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
-    const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    const struct wd_compute_params params = {
-        .shader = SPIRV(light_comp),
+    struct wd_compute_params params = {
+        .shader = SPIRV(light_view_comp),
         .bindings = {10,
-                     {buffer, image, image, image, image, image, buffer, buffer, buffer,
-                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},
+                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
-    return wd_pipeline_init_compute(pipeline, gpu, &params);
+    bool ok = wd_pipeline_init_compute(&pass->view, gpu, &params);
+    params.shader = (struct wd_spirv)SPIRV(light_comp);
+    params.bindings.count = 11;
+    for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
+        const uint32_t constants[] = {wd_tile_list_parts(list), list};
+        params.constants = (struct wd_spec_constants){2, constants};
+        ok = wd_pipeline_init_compute(&pass->light[list], gpu, &params);
+    }
+    return ok;
+}
+
+static bool init_sorting(struct wd_light_pass *pass, struct wd_gpu *gpu)
+{
+    const struct wd_compute_params tiles = {
+        .shader = SPIRV(light_tiles_comp),
+        .bindings = {4, {BUFFER, IMAGE, IMAGE, BUFFER}},
+        .push_size = sizeof(struct wd_light_push),
+    };
+    const struct wd_compute_params args = {.shader = SPIRV(light_args_comp),
+                                           .bindings = {1, {BUFFER}}};
+    return wd_pipeline_init_compute(&pass->tiles, gpu, &tiles) &&
+           wd_pipeline_init_compute(&pass->args, gpu, &args);
 }
 
 static bool init_velocity(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
-    const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const struct wd_compute_params params = {
         .shader = SPIRV(light_velocity_comp),
-        .bindings = {8, {buffer, image, image, image, image, buffer, buffer, buffer}},
+        .bindings = {8, {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
     return wd_pipeline_init_compute(pipeline, gpu, &params);
@@ -40,7 +71,8 @@ static bool init_velocity(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_light_pass){0};
-    bool ok = init_light(&pass->light, gpu) && init_velocity(&pass->velocity, gpu) &&
+    bool ok = init_shading(pass, gpu) && init_sorting(pass, gpu) &&
+              init_velocity(&pass->velocity, gpu) &&
               wd_sampler_init(&pass->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
               wd_sampler_init(&pass->shadow, gpu, WD_SAMPLER_SHADOW);
     if (!ok)
@@ -50,12 +82,16 @@ bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu)
 
 void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
-    wd_pipeline_finish(&pass->light, gpu);
-    wd_pipeline_finish(&pass->velocity, gpu);
+    struct wd_pipeline *others[] = {&pass->tiles, &pass->args, &pass->view, &pass->velocity};
+    for (uint32_t list = 0; list < WD_TILE_LISTS; list++)
+        wd_pipeline_finish(&pass->light[list], gpu);
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        wd_pipeline_finish(others[i], gpu);
     if (pass->nearest)
         vkDestroySampler(gpu->device, pass->nearest, NULL);
     if (pass->shadow)
         vkDestroySampler(gpu->device, pass->shadow, NULL);
+    wd_buffer_finish(&pass->lists, gpu);
     wd_sun_field_finish(&pass->sun_field, gpu);
     *pass = (struct wd_light_pass){0};
 }
@@ -64,6 +100,8 @@ void wd_light_pass_drop_forest(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     wd_sun_field_finish(&pass->sun_field, gpu);
 }
+
+/* --- recording ----------------------------------------------------------------------------- */
 
 static void use_gbuffer(struct wd_cmd *cmd, struct wd_targets *targets)
 {
@@ -82,7 +120,9 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
         .sun_soft_m = pass->sun_field.soft_m,
         .sun_width = pass->sun_field.width,
         .sun_height = pass->sun_field.height,
-        .variants = params->forest->variants,
+        .variants = params->forest->variants ? params->forest->variants : 1,
+        .tile_columns = (params->targets->width + WD_TILE - 1) / WD_TILE,
+        .tile_rows = (params->targets->height + WD_TILE - 1) / WD_TILE,
     };
 }
 
@@ -92,12 +132,58 @@ static struct wd_binding models_of(const struct wd_forest_device *forest)
     return WD_BIND_BUFFER(forest->models.buffer ? &forest->models : &forest->trees);
 }
 
+static bool fit_lists(struct wd_light_pass *pass, struct wd_cmd *cmd, uint64_t tiles)
+{
+    const struct wd_buffer_params params = {
+        .name = "light tiles",
+        .size = sizeof(struct wd_tile_lists) + tiles * WD_TILE_LISTS * sizeof(uint32_t),
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+    };
+    if (pass->lists.size == params.size)
+        return true;
+    wd_cmd_defer_buffer(cmd, &pass->lists);
+    return wd_buffer_init(&pass->lists, cmd->gpu, &params);
+}
+
+static void sort_tiles(struct wd_light_pass *pass, struct wd_cmd *cmd,
+                       const struct wd_light_params *params, const struct wd_light_push *push)
+{
+    const struct wd_targets *targets = params->targets;
+    wd_cmd_use_buffer(cmd, &pass->lists, WD_USE_TRANSFER_WRITE);
+    vkCmdFillBuffer(cmd->vk, pass->lists.buffer, 0, sizeof(struct wd_tile_lists), 0);
+    wd_cmd_use_buffer(cmd, &pass->lists, WD_USE_COMPUTE_WRITE);
+    const struct wd_binding tiles[] = {
+        params->uniforms, WD_BIND_IMAGE(&targets->surface, pass->nearest),
+        WD_BIND_IMAGE(&targets->depth, pass->nearest), WD_BIND_BUFFER(&pass->lists)};
+    wd_cmd_bind(cmd, &pass->tiles, tiles);
+    wd_cmd_push(cmd, &pass->tiles, push, sizeof *push);
+    wd_cmd_dispatch(cmd, push->tile_columns, push->tile_rows, 1);
+    wd_cmd_use_buffer(cmd, &pass->lists, WD_USE_COMPUTE_WRITE);
+    wd_cmd_bind(cmd, &pass->args, &WD_BIND_BUFFER(&pass->lists));
+    wd_cmd_dispatch(cmd, 1, 1, 1);
+    wd_cmd_use_buffer(cmd, &pass->lists, WD_USE_INDIRECT);
+}
+
+static void shade_lists(struct wd_light_pass *pass, struct wd_cmd *cmd,
+                        const struct wd_binding *bindings, const struct wd_light_push *push)
+{
+    for (uint32_t list = 0; list < WD_TILE_LISTS; list++) {
+        VkDeviceSize offset = offsetof(struct wd_tile_lists, groups[list]);
+        wd_cmd_bind(cmd, &pass->light[list], bindings);
+        wd_cmd_push(cmd, &pass->light[list], push, sizeof *push);
+        wd_cmd_dispatch_indirect(cmd, &pass->lists, offset);
+    }
+}
+
 void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
                           const struct wd_light_params *params)
 {
     struct wd_targets *targets = params->targets;
     wd_sun_field_update(&pass->sun_field, cmd, params->forest->ground.terrain,
                         params->frame->sun_direction);
+    const struct wd_light_push push = push_of(pass, params);
+    if (!fit_lists(pass, cmd, (uint64_t)push.tile_columns * push.tile_rows))
+        cmd->failed = true;
     use_gbuffer(cmd, targets);
     wd_cmd_use_image(cmd, &targets->shadow, WD_USE_COMPUTE_READ);
     wd_cmd_use_image(cmd, &targets->radiance, WD_USE_COMPUTE_WRITE);
@@ -114,11 +200,16 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_BUFFER(&params->forest->trees),
         models_of(params->forest),
         WD_BIND_STORAGE_IMAGE(&targets->radiance),
+        WD_BIND_BUFFER(&pass->lists),
     };
-    const struct wd_light_push push = push_of(pass, params);
-    wd_cmd_bind(cmd, &pass->light, bindings);
-    wd_cmd_push(cmd, &pass->light, &push, sizeof push);
-    wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);
+    if (params->frame->view_mode == WD_MODE_LIT) {
+        sort_tiles(pass, cmd, params, &push);
+        shade_lists(pass, cmd, bindings, &push);
+        return;
+    }
+    wd_cmd_bind(cmd, &pass->view, bindings);
+    wd_cmd_push(cmd, &pass->view, &push, sizeof push);
+    wd_cmd_dispatch(cmd, push.tile_columns, push.tile_rows, 1);
 }
 
 void wd_light_pass_record_velocity(struct wd_light_pass *pass, struct wd_cmd *cmd,
@@ -141,5 +232,5 @@ void wd_light_pass_record_velocity(struct wd_light_pass *pass, struct wd_cmd *cm
     const struct wd_light_push push = push_of(pass, params);
     wd_cmd_bind(cmd, &pass->velocity, bindings);
     wd_cmd_push(cmd, &pass->velocity, &push, sizeof push);
-    wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);
+    wd_cmd_dispatch(cmd, push.tile_columns, push.tile_rows, 1);
 }

@@ -6,9 +6,13 @@
 #include "frame/sun_field.h"
 #include "frame/targets.h"
 #include "frame/view.h"
+#include "shared/light.h"
 
 struct wd_light_pass {
-    struct wd_pipeline light, velocity;
+    struct wd_pipeline tiles, args;            /* sort tiles by what they show */
+    struct wd_pipeline light[WD_TILE_LISTS];   /* shade one list each */
+    struct wd_pipeline view, velocity;
+    struct wd_buffer lists;                    /* struct wd_tile_lists and the lists */
     VkSampler nearest, shadow;
     struct wd_sun_field sun_field; /* of the newest forest */
 };

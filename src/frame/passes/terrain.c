@@ -37,7 +37,7 @@ static bool init_indices(struct wd_buffer *buffer, struct wd_gpu *gpu)
     return true;
 }
 
-static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t has_holes)
 {
     const struct wd_graphics_params params = {
         .vertex = SPIRV(terrain_vert),
@@ -48,6 +48,7 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+        .constants = {1, &has_holes},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
@@ -59,7 +60,8 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 bool wd_terrain_pass_init(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_terrain_pass){0};
-    bool ok = init_indices(&pass->indices, gpu) && init_pipeline(&pass->pipeline, gpu);
+    bool ok = init_indices(&pass->indices, gpu) && init_pipeline(&pass->whole, gpu, 0) &&
+              init_pipeline(&pass->holed, gpu, 1);
     if (!ok)
         wd_terrain_pass_finish(pass, gpu);
     return ok;
@@ -67,7 +69,8 @@ bool wd_terrain_pass_init(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
 
 void wd_terrain_pass_finish(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
 {
-    wd_pipeline_finish(&pass->pipeline, gpu);
+    wd_pipeline_finish(&pass->whole, gpu);
+    wd_pipeline_finish(&pass->holed, gpu);
     wd_buffer_finish(&pass->indices, gpu);
     wd_patch_list_finish(&pass->patches);
     *pass = (struct wd_terrain_pass){0};
@@ -100,7 +103,7 @@ void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(&ground->cover, ground->sampler),
         WD_BIND_BUFFER(&ground->holes),
     };
-    wd_cmd_bind(cmd, &pass->pipeline, bindings);
+    wd_cmd_bind(cmd, ground->terrain->hole ? &pass->holed : &pass->whole, bindings);
     vkCmdBindIndexBuffer(cmd->vk, pass->indices.buffer, 0, VK_INDEX_TYPE_UINT16);
     if (!cmd->failed)
         vkCmdDrawIndexed(cmd->vk, PATCH_INDICES, (uint32_t)count, 0, 0, 0);

@@ -8,7 +8,7 @@
 #include "frame/view.h"
 
 struct wd_terrain_pass {
-    struct wd_pipeline pipeline;
+    struct wd_pipeline whole, holed; /* ground without and with holes */
     struct wd_buffer indices;
     struct wd_patch_list patches; /* scratch */
     uint64_t triangles;           /* of the newest record */

@@ -153,6 +153,9 @@ void wd_terrain_view_init(struct wd_terrain_view *out, const struct wd_patch_ran
         .cover_scale = {(float)(1 / (ground->cover_cell_m * cover->width)),
                         (float)(1 / (ground->cover_cell_m * cover->height))},
         .camera_m = {(float)view->eye_m[0], (float)view->eye_m[1]},
+        .slopes_texel_m = (float)texel_m,
+        .cover_texel_m = (float)ground->cover_cell_m,
+        .pixel_rad = 1 / view->pixels_per_radian,
     };
     for (int k = 0; k < 2; k++) {
         double cell = floor(view->eye_m[k] / terrain->cell_m);

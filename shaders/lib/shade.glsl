@@ -1,0 +1,113 @@
+/* Light on ground, wood and leaves. Every costly step stands here once, whatever the material:
+ * software devices run both sides of a branch.
+ * Expects `frame`, `push` (wd_light_push), `trees`, `models`, PARTS and the libraries of noise, sky,
+ * shadow, gbuffer, tree and crown. */
+
+const float PER_PI = 0.318309886;
+
+/* Skylight on a surface, with what the ground throws back from below. Under a canopy it has come
+ * through leaves. */
+vec3 ambient(vec3 normal, float openness)
+{
+    float up = 0.5 + 0.5 * normal.z;
+    float toward = dot(normal.xy, frame.sun_direction.xy);
+    vec3 sky = frame.sky_irradiance * (up * (1.0 + 0.25 * toward));
+    vec3 lit_ground = frame.sun_irradiance * (0.35 * max(frame.sun_direction.z, 0.0))
+                      + 0.6 * frame.sky_irradiance;
+    vec3 leafy = mix(vec3(1.15, 1.0, 0.62), vec3(1.0), openness);
+    return (sky + lit_ground * frame.grass * (1.0 - up)) * leafy * openness;
+}
+
+/* Leaves turned every way, seen and lit from directions whose cosine is given: mean share of their
+ * reflected (x) and transmitted (y) light relative to a lit wall (Ross 1981). */
+vec2 leaf_cloud(float cosine)
+{
+    /* acos within 0.02 (Lagarde 2014) */
+    float x = min(abs(cosine), 1.0);
+    float angle = (1.5707963 - 0.21 * x) * sqrt(1.0 - x);
+    angle = cosine < 0.0 ? 3.14159265 - angle : angle;
+    float sine = sqrt(1.0 - x * x);
+    return vec2(sine + (3.14159265 - angle) * cosine, sine - angle * cosine) * (2.0 / 9.4247780);
+}
+
+/* One leaf with its own normal: which side the sun and the eye are on. */
+vec2 leaf_blade(vec3 normal, vec3 eye)
+{
+    float facing = dot(normal, frame.sun_direction) * (dot(normal, eye) < 0.0 ? -1.0 : 1.0);
+    return vec2(max(facing, 0.0), max(-facing, 0.0));
+}
+
+/* What light meets at a pixel. */
+struct wd_place {
+    vec3 rel;           /* where it is taken to be */
+    vec3 normal;        /* for skylight and for the shadow maps */
+    float own;          /* share of the sun left after the tree's own leaves */
+    float ahead_m;      /* how far toward the sun to go before asking the maps */
+    vec2 sides;         /* share of the sun reflected and transmitted toward the eye */
+    vec3 transmittance; /* over albedo */
+    float gloss;
+};
+
+wd_place ground_place(wd_pixel pixel)
+{
+    wd_place place;
+    place.rel = pixel.rel;
+    place.normal = pixel.normal;
+    place.own = 1.0;
+    place.ahead_m = 0.0;
+    place.sides = vec2(max(dot(pixel.normal, frame.sun_direction), 0.0), 0.0);
+    place.transmittance = vec3(0.0);
+    place.gloss = 0.0;
+    return place;
+}
+
+/* Near, the maps hold each leaf and the crown's depth adds little; far, they hold crowns only: the
+ * crown is left behind before the map is asked, and depth along the sun does the rest. */
+wd_place leaf_place(wd_pixel pixel, uint cascade)
+{
+    wd_tree tree = trees[pixel.surface - 1u];
+    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                            + WD_TREE_VARIANT(tree) % push.variants];
+    wd_crown crown = crown_of(tree, model);
+    bool card = pixel.material == WD_MATERIAL_CARD;
+    vec3 eye = -pixel.direction;
+    float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
+    float mapped = cascade == 0u && !card ? 0.6 : 0.0;
+    wd_place place;
+    place.rel = card ? crown_card_place(crown, pixel.rel) : pixel.rel;
+    float path_m = crown_path_m(crown, place.rel);
+    place.own = mix(crown_through(crown, path_m), 1.0, mapped);
+    place.ahead_m = mapped > 0.0 ? 0.0 : path_m + frame.cascade_texel_m[min(cascade, 3u)];
+    vec3 outward = crown_normal(crown, place.rel);
+    float cosine = dot(eye, frame.sun_direction);
+    float hotspot = 1.0 + 0.3 * smoothstep(0.9, 1.0, cosine);
+    place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.normal, eye), near) * hotspot;
+    place.transmittance = model.transmittance;
+    float shine = abs(dot(pixel.normal, normalize(frame.sun_direction + eye)));
+    shine *= shine;
+    shine *= shine;
+    shine *= shine;
+    place.gloss = 0.05 * near * shine * shine * shine;
+    place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
+    return place;
+}
+
+vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share)
+{
+    float noise = pixel_noise(at, frame.sample_index);
+    uint cascade = shadow_cascade(pixel.axis_m, noise);
+    wd_place place = ground_place(pixel);
+    if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u && pixel.material >= WD_MATERIAL_LEAF)
+        place = leaf_place(pixel, cascade);
+    sun_share = place.own * ground_shadow(place.rel);
+    sun_share *= tree_shadow(place.rel + frame.sun_direction * place.ahead_m, place.normal, cascade,
+                             noise);
+    if (cascade >= WD_CASCADES && pixel.surface == 0u)
+        sun_share *= pixel.openness * pixel.openness; /* no map so far out: cover stands for it */
+    vec3 transmitted = pixel.albedo * place.transmittance;
+    vec3 sunlit = pixel.albedo * place.sides.x + transmitted * place.sides.y + place.gloss;
+    vec3 skylit = pixel.albedo + 0.4 * transmitted;
+    vec3 light = frame.sun_irradiance * sun_share * sunlit
+                 + ambient(place.normal, pixel.openness) * skylit;
+    return light * PER_PI;
+}

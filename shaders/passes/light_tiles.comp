@@ -1,0 +1,48 @@
+#version 460
+/* Sorts the picture's tiles by what their pixels show into one list a pipeline of the light pass.
+ * The order within a list may vary; the picture does not depend on it. */
+#include "shared/frame.h"
+#include "shared/light.h"
+
+layout(local_size_x = WD_TILE, local_size_y = WD_TILE) in;
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(set = 0, binding = 1) uniform usampler2D gbuffer_surface;
+layout(set = 0, binding = 2) uniform sampler2D gbuffer_depth;
+layout(scalar, set = 0, binding = 3) buffer Tiles { wd_tile_lists lists; uint tiles[]; };
+layout(scalar, push_constant) uniform Push { wd_light_push push; };
+
+#include "lib/view.glsl"
+
+shared uint parts;
+
+uint pixel_parts(ivec2 at)
+{
+    float depth = texelFetch(gbuffer_depth, at, 0).x;
+    uint surface = texelFetch(gbuffer_surface, at, 0).x;
+    vec3 ray = pixel_ray(at);
+    uint found = pixel_is_sky(depth) ? WD_PART_SKY
+                 : surface == 0u     ? WD_PART_GROUND
+                                     : WD_PART_GROUND | WD_PART_TREES;
+    float water_m = water_distance(ray); /* in units of the ray: along the view axis */
+    if (water_m > 0.0 && water_m * depth < frame.near_m)
+        found |= WD_PART_WATER;
+    return found;
+}
+
+void main()
+{
+    if (gl_LocalInvocationIndex == 0u)
+        parts = 0u;
+    barrier();
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x < int(frame.width) && at.y < int(frame.height))
+        atomicOr(parts, pixel_parts(at));
+    barrier();
+    if (gl_LocalInvocationIndex == 0u) {
+        uint list = wd_tile_list_of(parts);
+        uint slot = atomicAdd(lists.count[list], 1u);
+        uint tile = gl_WorkGroupID.y * push.tile_columns + gl_WorkGroupID.x;
+        tiles[list * push.tile_columns * push.tile_rows + slot] = tile;
+    }
+}
