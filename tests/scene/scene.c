@@ -1,3 +1,4 @@
+#include <dirent.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -235,6 +236,36 @@ static void allometry_inverts(void **state)
     }
 }
 
+/* The project's own scenes; the folder of species stands in for the data, which is not opened. */
+static void own_scenes_load(void **state)
+{
+    (void)state;
+    char *folder_path = wd_path_beside(species_dir, "scenes");
+    DIR *folder = opendir(folder_path);
+    assert_non_null(folder);
+    int loaded = 0;
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        size_t length = strlen(entry->d_name);
+        if (length < 6 || strcmp(entry->d_name + length - 5, ".json") != 0)
+            continue;
+        struct collected all = {0};
+        struct wd_log log = {collect, &all};
+        struct wd_scene_params params = {.data_dir = species_dir};
+        struct wd_scene scene;
+        char *path = wd_format("%s/%s", folder_path, entry->d_name);
+        if (!wd_scene_load_with(&scene, path, &params, &log) || all.warnings)
+            fail_msg("%s", all.text);
+        assert_non_null(wd_scene_find_camera(&scene, "overview"));
+        assert_false(scene.cameras[0].automatic);
+        wd_scene_finish(&scene);
+        free(path);
+        loaded++;
+    }
+    closedir(folder);
+    free(folder_path);
+    assert_true(loaded > 0);
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2)
@@ -248,6 +279,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(data_directory_is_put_into_names, setup, teardown),
         cmocka_unit_test_setup_teardown(unreadable_files_are_errors, setup, teardown),
         cmocka_unit_test_setup_teardown(cameras_are_found_by_name, setup, teardown),
+        cmocka_unit_test(own_scenes_load),
         cmocka_unit_test_setup_teardown(allometry_inverts, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
