@@ -77,7 +77,9 @@ const char *wd_keys_allowed(const struct wd_key *key, char *buffer, size_t size)
         else
             snprintf(buffer, size, "a list of numbers, each %s", number);
         break;
-    case WD_KEY_STRING_MAP: snprintf(buffer, size, "an object of texts: { \"name\": \"text\" }"); break;
+    case WD_KEY_STRING_MAP:
+        snprintf(buffer, size, "an object of texts: { \"name\": \"text\" }");
+        break;
     case WD_KEY_NUMBER_MAP:
         snprintf(buffer, size, "a name, or an object { \"name\": number }, each %s", number);
         break;
