@@ -20,8 +20,9 @@ vec3 fog_through(vec3 direction, float length_m)
     return exp(-FOG_BANDS * (frame.fog_per_m * fog_path_m(direction, length_m)));
 }
 
-vec3 apply_fog(vec3 radiance, vec3 direction, float length_m)
+/* `sunlit`: share of the way on which the ground lets the sun reach the haze. */
+vec3 apply_fog(vec3 radiance, vec3 direction, float length_m, float sunlit)
 {
     vec3 through = fog_through(direction, length_m);
-    return mix(horizon_radiance(direction), radiance, through);
+    return mix(horizon_radiance(direction, mix(0.3, 1.0, sunlit)), radiance, through);
 }

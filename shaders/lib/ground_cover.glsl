@@ -20,7 +20,7 @@ struct ground_noise {
  * in and going out smoothly. */
 vec3 fine_noise(vec2 rel, float footprint_m)
 {
-    float octave = clamp(log2(footprint_m * 2400.0), 3.0, 8.0);
+    float octave = clamp(log2(footprint_m * 1500.0), 3.0, 8.0);
     int bits = int(octave);
     float rest = octave - float(bits);
     vec3 fine = gradient_noise(lattice_at(rel, bits), 4u) * (1.0 - rest)

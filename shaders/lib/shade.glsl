@@ -14,7 +14,7 @@ vec3 ambient(vec3 normal, float openness)
     vec3 sky = frame.sky_irradiance * (up * (1.0 + 0.25 * toward));
     vec3 lit_ground = frame.sun_irradiance * (0.35 * max(frame.sun_direction.z, 0.0))
                       + 0.6 * frame.sky_irradiance;
-    vec3 leafy = mix(vec3(1.15, 1.0, 0.62), vec3(1.0), openness);
+    vec3 leafy = mix(vec3(0.95, 1.05, 0.75), vec3(1.0), openness);
     return (sky + lit_ground * frame.grass * (1.0 - up)) * leafy * openness;
 }
 
@@ -46,6 +46,7 @@ struct wd_place {
     vec2 sides;         /* share of the sun reflected and transmitted toward the eye */
     vec3 transmittance; /* over albedo */
     float gloss;
+    float wax;          /* of leaves: mean reflection of their surface, white */
 };
 
 wd_place ground_place(wd_pixel pixel)
@@ -58,6 +59,7 @@ wd_place ground_place(wd_pixel pixel)
     place.sides = vec2(max(dot(pixel.normal, frame.sun_direction), 0.0), 0.0);
     place.transmittance = vec3(0.0);
     place.gloss = 0.0;
+    place.wax = 0.0;
     return place;
 }
 
@@ -87,26 +89,30 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     shine *= shine;
     shine *= shine;
     shine *= shine;
-    place.gloss = 0.05 * near * shine * shine * shine;
+    place.gloss = 0.05 * near * shine * shine * shine + 0.010;
+    place.wax = 0.012;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     return place;
 }
 
-vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share)
+/* `sun_share` is what of the sun reaches the place, `ground_share` what the ground leaves of it. */
+vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share)
 {
     float noise = pixel_noise(at, frame.sample_index);
     uint cascade = shadow_cascade(pixel.axis_m, noise);
     wd_place place = ground_place(pixel);
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u && pixel.material >= WD_MATERIAL_LEAF)
         place = leaf_place(pixel, cascade);
-    sun_share = place.own * ground_shadow(place.rel);
-    sun_share *= tree_shadow(place.rel + frame.sun_direction * place.ahead_m, place.normal, cascade,
-                             noise);
-    if (cascade >= WD_CASCADES && pixel.surface == 0u)
-        sun_share *= pixel.openness * pixel.openness; /* no map so far out: cover stands for it */
+    ground_share = ground_shadow(place.rel);
+    vec3 ahead = place.rel + frame.sun_direction * place.ahead_m;
+    sun_share = place.own * ground_share * tree_shadow(ahead, place.normal, cascade, noise);
+    if (pixel.surface == 0u) { /* no maps so far out: the canopy's cover stands for its shadow */
+        float out_of_maps = smoothstep(0.75, 1.0, pixel.axis_m / frame.cascade_far_m.w);
+        sun_share *= mix(1.0, pixel.openness * pixel.openness, out_of_maps);
+    }
     vec3 transmitted = pixel.albedo * place.transmittance;
     vec3 sunlit = pixel.albedo * place.sides.x + transmitted * place.sides.y + place.gloss;
-    vec3 skylit = pixel.albedo + 0.4 * transmitted;
+    vec3 skylit = pixel.albedo + 0.4 * transmitted + place.wax;
     vec3 light = frame.sun_irradiance * sun_share * sunlit
                  + ambient(place.normal, pixel.openness) * skylit;
     return light * PER_PI;

@@ -14,11 +14,12 @@ vec3 sky_radiance(vec3 direction)
     return radiance * frame.sky_strength;
 }
 
-/* The sky at the horizon below or above a direction: what haze fades into. */
-vec3 horizon_radiance(vec3 direction)
+/* The sky at the horizon below or above a direction: what haze fades into. `glow` is a factor on
+ * the light that haze scatters forward. */
+vec3 horizon_radiance(vec3 direction, float glow)
 {
     float cosine = dot(direction, frame.sun_direction);
-    return frame.sky_horizon + frame.sky_glow * wd_haze_phase(cosine);
+    return frame.sky_horizon + frame.sky_glow * (wd_haze_phase(cosine) * glow);
 }
 
 /* The disc, with the darkening of its limb (Hestroffer and Magnan 1998: exponent 0.5). */

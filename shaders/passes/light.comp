@@ -36,17 +36,20 @@ layout(scalar, push_constant) uniform Push { wd_light_push push; };
 #include "lib/shade.glsl"
 
 /* Ground or sky as the eye gets it, through water and air. */
-vec3 seen(vec3 radiance, vec3 direction, float distance_m, float sun_share)
+vec3 seen(uvec2 at, vec3 radiance, vec3 direction, float distance_m, float sun_share,
+          float ground_share)
 {
     if ((PARTS & WD_PART_WATER) != 0u) {
         float water_m = water_distance(direction);
-        if (water_m > 0.0 && water_m < distance_m) {
+        if (water_m > 0.0 && water_m < distance_m && water_reaches(direction * water_m)) {
             float depth_m = distance_m < WD_SKY_M ? distance_m - water_m : 1e4;
-            radiance = water_radiance(radiance, direction, water_m, depth_m, sun_share);
+            radiance = water_radiance(radiance, direction, water_m, depth_m, sun_share,
+                                      pixel_noise(at, frame.sample_index));
             distance_m = water_m;
         }
     }
-    return distance_m < WD_SKY_M ? apply_fog(radiance, direction, distance_m) : radiance;
+    return distance_m < WD_SKY_M ? apply_fog(radiance, direction, distance_m, ground_share)
+                                 : radiance;
 }
 
 vec3 pixel_radiance(ivec2 at)
@@ -54,20 +57,20 @@ vec3 pixel_radiance(ivec2 at)
     float depth = texelFetch(gbuffer_depth, at, 0).x;
     vec3 direction = normalize(pixel_ray(at));
     vec3 radiance = vec3(0.0);
-    float distance_m = WD_SKY_M, sun_share = 1.0;
+    float distance_m = WD_SKY_M, sun_share = 1.0, ground_share = 1.0;
     if ((PARTS & WD_PART_GROUND) != 0u) {
         wd_pixel pixel = gbuffer_pixel(at, max(depth, 1e-9));
-        radiance = shade(pixel, uvec2(at), sun_share);
+        radiance = shade(pixel, uvec2(at), sun_share, ground_share);
         distance_m = length(pixel.rel);
     }
     if ((PARTS & WD_PART_SKY) != 0u && pixel_is_sky(depth)) {
         radiance = sky_radiance(direction) + sun_disc(direction);
         distance_m = WD_SKY_M;
-        sun_share = 1.0;
+        sun_share = ground_share = 1.0;
     }
     if ((PARTS & (WD_PART_GROUND | WD_PART_WATER)) == 0u)
         return radiance;
-    return seen(radiance, direction, distance_m, sun_share);
+    return seen(uvec2(at), radiance, direction, distance_m, sun_share, ground_share);
 }
 
 void main()

@@ -39,8 +39,8 @@ vec3 id_color(uint surface)
 
 vec3 view_color(wd_pixel pixel, uvec2 at)
 {
-    float sun_share;
-    shade(pixel, at, sun_share);
+    float sun_share, ground_share;
+    shade(pixel, at, sun_share, ground_share);
     switch (frame.view_mode) {
     case WD_MODE_LOD: return pixel.albedo * (0.6 + 0.4 * pixel.normal.z);
     case WD_MODE_NORMAL: return pow(pixel.normal * 0.5 + 0.5, vec3(2.2));

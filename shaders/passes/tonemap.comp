@@ -31,10 +31,13 @@ vec3 agx_curve(vec3 x)
 /* More contrast and colour than AgX's flat base look: slope, power, saturation (ASC CDL). */
 vec3 look(vec3 color)
 {
-    color = pow(max(color, 0.0), vec3(1.30)) * 1.08;
+    color = pow(max(color, 0.0), vec3(1.42)) * 1.15;
     float luma = dot(color, vec3(0.2126, 0.7152, 0.0722));
-    return luma + 1.22 * (color - luma);
+    return luma + 1.16 * (color - luma);
 }
+
+/* White balance for sun and sky together, as of a camera set to daylight. */
+const vec3 DAYLIGHT = vec3(1.04, 1.0, 0.93);
 
 vec3 tone_map(vec3 radiance)
 {
@@ -58,7 +61,7 @@ void main()
     vec3 color = sum.rgb / max(sum.a, 1.0);
     if (frame.view_mode == WD_MODE_LIT) {
         float exposure = frame.exposure > 0.0 ? frame.exposure : meter.exposure;
-        color = tone_map(color * (exposure * push.exposure_scale));
+        color = tone_map(color * DAYLIGHT * (exposure * push.exposure_scale));
     }
     color = srgb_encode(clamp(color, 0.0, 1.0));
     /* half a step of noise either way hides the steps of 8 bits in skies */

@@ -11,6 +11,8 @@ struct wd_light_push {
     uint32_t sun_width, sun_height;
     uint32_t variants;   /* models a species */
     uint32_t tile_columns, tile_rows;
+    uint32_t is_sea;     /* the water goes on beyond the terrain */
+    WD_VEC2(extent_m);   /* of the terrain */
 };
 
 /* What a tile of pixels shows; each list of tiles is shaded by a pipeline with these parts. */
@@ -59,8 +61,8 @@ struct wd_tile_lists {
 
 /* Metering: 256 classes of log2 luminance, then the exposure they come to. */
 #define WD_METER_BINS 256
-#define WD_METER_LOW -16.0f  /* log2 of luminance at class 0 */
-#define WD_METER_PER_EV 10.0f
+#define WD_METER_LOW -27.0f  /* log2 of luminance at class 0 */
+#define WD_METER_PER_EV 8.0f
 
 struct wd_meter {
     uint32_t bins[WD_METER_BINS];

@@ -86,7 +86,9 @@ WD_FUNC float wd_haze_phase(float cosine)
 WD_FUNC float wd_sky_radiance(WD_STRUCT wd_sky_band band, float v, float s, float air_phase,
                               float haze_phase, float sun_rise)
 {
+    float low = s;
     float tau = band.air + band.haze;
+    s = low / (1.0f + 0.03f * low); /* what lights the upper air has passed less of it */
     float phase = (air_phase * band.air + haze_phase * band.haze) / tau;
     float through_sun = WD_EXP(-tau * s), through_view = WD_EXP(-tau * v);
     float apart = v - s;
@@ -94,7 +96,7 @@ WD_FUNC float wd_sky_radiance(WD_STRUCT wd_sky_band band, float v, float s, floa
                                            : tau * v * through_sun;
     float height = sun_rise > 0.0f ? sun_rise : 0.0f;
     float again = 0.40f * (height + 0.02f) * (1.0f - through_sun) * (1.0f - through_view);
-    float above = WD_EXP(-band.ozone * (s < 12.0f ? s : 12.0f)); /* ozone lies above the air */
+    float above = WD_EXP(-band.ozone * low * 0.8f); /* ozone lies above the air */
     return (WD_SUN_OUTSIDE * phase * once + again) * above * wd_twilight(sun_rise);
 }
 
