@@ -11,7 +11,7 @@ static const float DEGREE = 3.14159265f / 180.0f;
  * (and films) expect it blue. Where the sun's twilight has become fainter, the moon takes over. */
 static const float MOON_SHARE = 2.5e-6f;
 static const float MOON_TINT[3] = {0.75f, 0.95f, 1.25f};
-static const float MOON_FROM_ELEVATION_DEG = -13.0f;
+static const float MOON_FROM_ELEVATION_DEG = -9.5f;
 static const float MOON_ELEVATION_DEG = 35.0f;
 
 static void set_direction(float direction[3], double azimuth_deg, double elevation_deg)

@@ -129,6 +129,8 @@ static void record(struct picture_test *test, struct wd_cmd *cmd, struct wd_bind
                                           &test->uniforms, uniforms};
     wd_cmd_scope_begin(cmd, "light");
     wd_light_pass_record(&test->light, cmd, &light);
+    if (test->velocity_px.buffer)
+        wd_light_pass_record_velocity(&test->light, cmd, &light, &test->velocity_px);
     wd_cmd_scope_end(cmd);
     const struct wd_post_params post = {&test->targets, uniforms, 0};
     wd_cmd_scope_begin(cmd, "post");
@@ -143,7 +145,7 @@ static bool draw_sample(struct picture_test *test, const struct wd_camera *camer
     const struct wd_uniforms_params params = {
         .forest = &test->forest,
         .camera = *camera,
-        .previous_camera = *camera,
+        .previous_camera = test->previous_camera ? *test->previous_camera : *camera,
         .width = test->targets.width,
         .height = test->targets.height,
         .shadow_size = 64,
@@ -201,4 +203,20 @@ uint8_t *picture_display(struct picture_test *test)
 float *picture_depth(struct picture_test *test)
 {
     return read_image(test, &test->targets.depth);
+}
+
+float *picture_velocity(struct picture_test *test, const struct wd_camera *camera,
+                        const struct wd_camera *previous)
+{
+    size_t size = (size_t)test->targets.width * test->targets.height * 2 * sizeof(float);
+    const struct wd_buffer_params params = {
+        .name = "velocity", .size = size, .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+    float *velocity_px = wd_alloc(size);
+    test->previous_camera = previous;
+    if (!wd_buffer_init(&test->velocity_px, &test->gpu, &params) || !picture_draw(test, camera) ||
+        !wd_buffer_read(&test->gpu, &test->velocity_px, 0, velocity_px, size))
+        abort();
+    wd_buffer_finish(&test->velocity_px, &test->gpu);
+    test->previous_camera = NULL;
+    return velocity_px;
 }

@@ -22,6 +22,8 @@ struct picture_test {
     struct wd_view view;
     uint32_t samples; /* 0: 1 */
     uint32_t view_mode;
+    struct wd_buffer velocity_px; /* of the newest picture_velocity */
+    const struct wd_camera *previous_camera; /* NULL: as the camera */
 };
 
 /* Opens the software device with validation and makes diamond-square ground of `cells` x `cells`
@@ -39,6 +41,9 @@ struct wd_camera picture_camera(const struct picture_test *test, double x_m, dou
 
 /* width * height * 4 bytes; free() them. */
 uint8_t *picture_display(struct picture_test *test);
+/* Draws too; width * height * 2; free() them. */
+float *picture_velocity(struct picture_test *test, const struct wd_camera *camera,
+                        const struct wd_camera *previous);
 /* width * height; free() them. */
 float *picture_depth(struct picture_test *test);
 

@@ -1,0 +1,170 @@
+/* Sun and sky, the field of shadow heights, and the wind: mathematics that C and GLSL share. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "frame/sun.h"
+#include "frame/sun_field.h"
+#include "shared/hash.h"
+#include "shared/wind.h"
+
+static struct wd_frame_uniforms sun_at(double azimuth_deg, double elevation_deg)
+{
+    struct wd_scene scene = {0};
+    struct wd_frame_uniforms uniforms = {0};
+    scene.sun.azimuth_deg = azimuth_deg;
+    scene.sun.elevation_deg = elevation_deg;
+    scene.sun.angular_diameter_deg = 0.53;
+    scene.sun.strength = scene.sky.strength = 1;
+    scene.sky.turbidity = 2.5;
+    wd_sun_fill(&uniforms, &scene);
+    return uniforms;
+}
+
+/* Sun over sky on level ground, in green. */
+static float sun_over_sky(double elevation_deg)
+{
+    struct wd_frame_uniforms u = sun_at(180, elevation_deg);
+    return u.sun_irradiance[1] * u.sun_direction[2] / u.sky_irradiance[1];
+}
+
+static void test_direction(void **state)
+{
+    (void)state;
+    struct wd_frame_uniforms east = sun_at(90, 30), south = sun_at(180, 0);
+    assert_float_equal(east.sun_direction[0], cosf(0.5235988f), 1e-5);
+    assert_float_equal(east.sun_direction[1], 0, 1e-5);
+    assert_float_equal(east.sun_direction[2], 0.5, 1e-5);
+    assert_float_equal(south.sun_direction[1], -1, 1e-5);
+}
+
+static void test_sun_and_sky(void **state)
+{
+    (void)state;
+    assert_true(sun_over_sky(60) > 3.2f && sun_over_sky(60) < 5);
+    assert_true(sun_over_sky(6) < 1);
+    for (int elevation = 2; elevation < 90; elevation += 4)
+        assert_true(sun_over_sky(elevation) < sun_over_sky(elevation + 1));
+    struct wd_frame_uniforms noon = sun_at(180, 60), evening = sun_at(270, 4);
+    assert_true(noon.sky_irradiance[2] > 1.5f * noon.sky_irradiance[0]);
+    assert_true(noon.sun_irradiance[2] > 0.6f * noon.sun_irradiance[0]);
+    assert_true(evening.sun_irradiance[2] < 0.2f * evening.sun_irradiance[0]);
+}
+
+/* Less light with every degree down to the moon, and never none. */
+static void test_nightfall(void **state)
+{
+    (void)state;
+    float before = INFINITY;
+    for (int elevation = 90; elevation >= -9; elevation--) {
+        struct wd_frame_uniforms u = sun_at(270, elevation);
+        float light = u.sky_irradiance[1] + fmaxf(u.sun_direction[2], 0) * u.sun_irradiance[1];
+        assert_true(light > 0 && light < before);
+        before = light;
+    }
+    struct wd_frame_uniforms night = sun_at(270, -40);
+    float moonlight = night.sky_irradiance[1] + night.sun_direction[2] * night.sun_irradiance[1];
+    assert_true(moonlight > 1e-7f && moonlight < before);
+    assert_true(night.sun_direction[2] > 0 && night.sun_direction[0] > 0); /* across from the sun */
+    assert_true(night.sky_irradiance[2] > night.sky_irradiance[0]);
+}
+
+/* The horizon's glow takes up where the sky ends. */
+static void test_horizon(void **state)
+{
+    (void)state;
+    struct wd_frame_uniforms u = sun_at(180, 25);
+    for (int channel = 0; channel < 3; channel++)
+        assert_true(u.sky_horizon[channel] > 0.02f && u.sky_horizon[channel] < 1 &&
+                    u.sky_glow[channel] > 0);
+}
+
+/* --- shadow heights ------------------------------------------------------------------------- */
+
+enum { SIDE = 48 };
+
+static float terrain_at(const float *height_m, float x, float y)
+{
+    int i = (int)fminf(fmaxf(x, 0), SIDE - 2), j = (int)fminf(fmaxf(y, 0), SIDE - 2);
+    float u = x - i, v = y - j;
+    const float *at = height_m + j * SIDE + i;
+    float south = at[0] + u * (at[1] - at[0]);
+    float north = at[SIDE] + u * (at[SIDE + 1] - at[SIDE]);
+    return south + v * (north - south);
+}
+
+/* The height below which sample (i, j) is hidden, by marching toward the sun. */
+static float marched(const float *height_m, int i, int j, float dx, float dy, float rise, float cell)
+{
+    float highest = -1e9f;
+    for (float way = 1; way < 2 * SIDE; way += 0.05f) {
+        float x = i + way * dx, y = j + way * dy;
+        if (x < 0 || y < 0 || x > SIDE - 1 || y > SIDE - 1)
+            break;
+        highest = fmaxf(highest, terrain_at(height_m, x, y) - way * cell * rise);
+    }
+    return highest;
+}
+
+static void test_sun_field(void **state)
+{
+    (void)state;
+    static float height_m[SIDE * SIDE], field[SIDE * SIDE];
+    for (int i = 0; i < SIDE * SIDE; i++)
+        height_m[i] = 12 * sinf((i % SIDE) * 0.31f) * cosf((i / SIDE) * 0.23f);
+    float sum = 0, worst = 0;
+    int count = 0;
+    for (int bearing = 0; bearing < 360; bearing += 23) {
+        float dx = sinf(bearing * 0.0174533f), dy = cosf(bearing * 0.0174533f);
+        wd_sun_field_sweep(field, height_m, SIDE, SIDE, 5, dx, dy, 0.4f);
+        for (int j = 10; j < SIDE - 10; j += 3) {
+            for (int i = 10; i < SIDE - 10; i += 3) {
+                float stray = field[j * SIDE + i] - marched(height_m, i, j, dx, dy, 0.4f, 5);
+                sum += fabsf(stray);
+                worst = fmaxf(worst, fabsf(stray));
+                count++;
+            }
+        }
+    }
+    /* mixing between samples blurs the edges of shadows, of a relief of 24 m here */
+    assert_true(sum / count < 0.35f);
+    assert_true(worst < 2.5f);
+}
+
+/* --- wind ------------------------------------------------------------------------------------- */
+
+static void test_wind(void **state)
+{
+    (void)state;
+    const struct wd_wind wind = {8, 0.5f, 0.6f, 0.8f}, calm = {0, 0.5f, 0.6f, 0.8f};
+    float along = 0;
+    for (uint32_t i = 0; i < 500; i++) {
+        const struct wd_wind_tree tree = {i * 3.7f, i * 1.9f, 20, 0.04f, wd_hash1(i)};
+        struct wd_wind_shift top = wd_wind_offset(wind, tree, 20, i * 0.37f);
+        struct wd_wind_shift next = wd_wind_offset(wind, tree, 20, i * 0.37f + 0.001f);
+        struct wd_wind_shift foot = wd_wind_offset(wind, tree, 0, i * 0.37f);
+        struct wd_wind_shift still = wd_wind_offset(calm, tree, 20, i * 0.37f);
+        assert_true(foot.x_m == 0 && foot.y_m == 0 && foot.z_m == 0);
+        assert_true(still.x_m == 0 && still.y_m == 0 && still.z_m == 0);
+        float shift = hypotf(top.x_m, top.y_m);
+        assert_true(shift < 2 * 20 * 0.04f && top.z_m <= 0 && top.z_m > -shift);
+        assert_true(hypotf(next.x_m - top.x_m, next.y_m - top.y_m) < 0.01f);
+        along += top.x_m * wind.toward_x + top.y_m * wind.toward_y;
+    }
+    assert_float_equal(along / 500, 0.6 * 0.04 * 0.8 * 20, 0.08); /* the mean tilt, downwind */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_direction), cmocka_unit_test(test_sun_and_sky),
+        cmocka_unit_test(test_nightfall), cmocka_unit_test(test_horizon),
+        cmocka_unit_test(test_sun_field), cmocka_unit_test(test_wind),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
