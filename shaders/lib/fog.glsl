@@ -24,5 +24,5 @@ vec3 fog_through(vec3 direction, float length_m)
 vec3 apply_fog(vec3 radiance, vec3 direction, float length_m, float sunlit)
 {
     vec3 through = fog_through(direction, length_m);
-    return mix(horizon_radiance(direction, mix(0.3, 1.0, sunlit)), radiance, through);
+    return mix(horizon_radiance(direction, mix(0.45, 1.0, sunlit)), radiance, through);
 }

@@ -1,6 +1,6 @@
 /* Light on ground, wood and leaves. Every costly step stands here once, whatever the material:
  * software devices run both sides of a branch.
- * Expects `frame`, `push` (wd_light_push), `trees`, `models`, PARTS and the libraries of noise, sky,
+ * Expects `frame`, `push` (wd_light_push), `trees`, `models`, PARTS and the libraries of noise,
  * shadow, gbuffer, tree and crown. */
 
 const float PER_PI = 0.318309886;

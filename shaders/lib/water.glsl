@@ -29,8 +29,9 @@ vec3 water_glint(vec3 normal, vec3 direction, float variance)
 {
     vec3 half_way = normalize(frame.sun_direction - direction);
     float cosine = max(dot(half_way, normal), 1e-3);
-    float tangent2 = (1.0 - cosine * cosine) / (cosine * cosine);
-    float spread = exp(-tangent2 / (2.0 * variance)) / (6.2831853 * variance * (cosine * cosine * cosine * cosine));
+    float cosine2 = cosine * cosine;
+    float tangent2 = (1.0 - cosine2) / cosine2;
+    float spread = exp(-tangent2 / (2.0 * variance)) / (6.2831853 * variance * cosine2 * cosine2);
     float facing = max(dot(half_way, frame.sun_direction), 0.0);
     float fresnel = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
     return frame.sun_irradiance * (fresnel * spread / (4.0 * max(-direction.z, 0.06)));

@@ -50,7 +50,7 @@ struct wd_frame_uniforms {
     float sky_turbidity;
     WD_VEC3(sky_irradiance);         /* of the whole sky on level ground, for ambient light */
     float sky_strength;
-    WD_VEC3(sky_glow);               /* radiance of the haze at the horizon over its phase function */
+    WD_VEC3(sky_glow);               /* radiance of haze at the horizon over its phase function */
     float near_m;
     WD_VEC3(sky_horizon);            /* radiance there without the glow */
     float fog_per_m;                 /* extinction at full density */

@@ -42,7 +42,8 @@ WD_FUNC uint32_t wd_tile_list_parts(uint32_t list)
         return WD_PART_SKY;
     if (list == 5u)
         return WD_PART_ALL;
-    return WD_PART_GROUND | (list >= 3u ? WD_PART_TREES : 0u) | (list % 2u == 0u ? WD_PART_SKY : 0u);
+    uint32_t sky = list % 2u == 0u ? WD_PART_SKY : 0u;
+    return WD_PART_GROUND | sky | (list >= 3u ? WD_PART_TREES : 0u);
 }
 
 struct wd_tile_groups {

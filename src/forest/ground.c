@@ -171,8 +171,8 @@ static bool upload_mips(struct wd_image *image, struct wd_gpu *gpu, float *value
     return ok;
 }
 
-static bool make_image(struct wd_image *image, struct wd_gpu *gpu, const char *name, VkFormat format,
-                       uint32_t width, uint32_t height)
+static bool make_image(struct wd_image *image, struct wd_gpu *gpu, const char *name,
+                       VkFormat format, uint32_t width, uint32_t height)
 {
     const struct wd_image_params params = {
         .name = name,

@@ -14,13 +14,13 @@ struct wd_height_range {
 struct wd_ground_level {
     uint32_t columns, rows;
     struct wd_height_range *ranges;
-    float error_m; /* how far the mesh of this level strays from the terrain, at about 95% of places */
+    float error_m; /* how far the mesh of this level strays from the terrain at 95% of places */
 };
 
 struct wd_ground {
     const struct wd_terrain *terrain; /* must outlive this */
     struct wd_buffer heights;         /* float[width * height], metres above the world's zero */
-    struct wd_buffer holes;           /* uint8_t[width * height], padded to 4; 4 bytes without holes */
+    struct wd_buffer holes;           /* uint8_t[width * height] padded to 4; 4 bytes without holes */
     struct wd_image slopes;           /* R16G16_SFLOAT, mips: rise over run eastward, northward */
     struct wd_image cover;            /* R8, mips: canopy cover */
     VkSampler sampler;                /* trilinear, clamped, for both */

@@ -106,16 +106,16 @@ static void rebuild(struct wd_sun_field *field, struct wd_cmd *cmd,
         cmd->failed = true;
         return;
     }
-    float across = hypotf(direction[0], direction[1]);
-    float rise = direction[2] / fmaxf(across, 1e-4f);
+    float across = fmaxf(hypotf(direction[0], direction[1]), 1e-4f);
+    float rise = direction[2] / across;
     field->terrain = terrain;
     field->cell_m = (float)(step * terrain->cell_m);
     field->soft_m = 0.45f * field->cell_m * fmaxf(rise, 0.02f);
     memcpy(field->direction, direction, sizeof field->direction);
-    float *heights = thinned(terrain, step, width, height), *out = wd_alloc_array(
-        (size_t)width * height, sizeof *out);
-    wd_sun_field_sweep(out, heights, width, height, field->cell_m, direction[0] / fmaxf(across, 1e-4f),
-                       direction[1] / fmaxf(across, 1e-4f), rise);
+    float *heights = thinned(terrain, step, width, height);
+    float *out = wd_alloc_array((size_t)width * height, sizeof *out);
+    wd_sun_field_sweep(out, heights, width, height, field->cell_m, direction[0] / across,
+                       direction[1] / across, rise);
     memcpy(swept, out, (size_t)width * height * sizeof *swept);
     free(heights);
     free(out);

@@ -47,8 +47,8 @@ static void write_ppm(const char *directory, const char *name, const uint8_t *rg
 static void draw_shot(struct picture_test *test, const struct shot *shot, const char *directory)
 {
     double extent = wd_terrain_extent_x_m(&test->world.terrain);
-    struct wd_camera camera = picture_camera(test, shot->x * extent, shot->y * extent, shot->above_m,
-                                             shot->yaw_deg, shot->pitch_deg);
+    struct wd_camera camera = picture_camera(test, shot->x * extent, shot->y * extent,
+                                             shot->above_m, shot->yaw_deg, shot->pitch_deg);
     test->scene.sun.azimuth_deg = shot->sun_azimuth_deg;
     test->scene.sun.elevation_deg = shot->sun_elevation_deg;
     test->scene.water.enabled = shot->water_above_m > 0;

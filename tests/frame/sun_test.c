@@ -99,7 +99,8 @@ static float terrain_at(const float *height_m, float x, float y)
 }
 
 /* The height below which sample (i, j) is hidden, by marching toward the sun. */
-static float marched(const float *height_m, int i, int j, float dx, float dy, float rise, float cell)
+static float marched(const float *height_m, int i, int j, float dx, float dy, float rise,
+                     float cell)
 {
     float highest = -1e9f;
     for (float way = 1; way < 2 * SIDE; way += 0.05f) {

@@ -38,11 +38,11 @@ void wd_patch_ranges_init(struct wd_patch_ranges *ranges, const struct wd_ground
                           const struct wd_view *view, float error_px)
 {
     ranges->above_m = fmax(view->eye_m[2] - ground->terrain->max_m, 0.0);
-    double before = 0;
+    double before = 0, px_per_error = view->pixels_per_radian / fmax(error_px, 0.01);
     for (uint32_t k = 0; k < WD_TERRAIN_LEVELS; k++) {
         double parent = patch_width_m(ground, k + 1);
         uint32_t next = k + 1 < ground->level_count ? k + 1 : ground->level_count - 1;
-        double wanted = ground->levels[next].error_m * view->pixels_per_radian / fmax(error_px, 0.01);
+        double wanted = ground->levels[next].error_m * px_per_error;
         double range = fmin(fmax(wanted, LEAST_RANGE * parent), MOST_RANGE * parent);
         range = fmax(range, before + 1.45 * parent);
         ranges->range_m[k] = (float)range;
@@ -148,7 +148,8 @@ void wd_terrain_view_init(struct wd_terrain_view *out, const struct wd_patch_ran
         .height = terrain->height,
         .has_holes = terrain->hole != NULL,
         .extent_m = {(float)wd_terrain_extent_x_m(terrain), (float)wd_terrain_extent_y_m(terrain)},
-        .slopes_scale = {(float)(1 / (texel_m * slopes->width)), (float)(1 / (texel_m * slopes->height))},
+        .slopes_scale = {(float)(1 / (texel_m * slopes->width)),
+                         (float)(1 / (texel_m * slopes->height))},
         .slopes_offset = {0.5f / (float)slopes->width, 0.5f / (float)slopes->height},
         .cover_scale = {(float)(1 / (ground->cover_cell_m * cover->width)),
                         (float)(1 / (ground->cover_cell_m * cover->height))},
