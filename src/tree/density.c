@@ -40,6 +40,11 @@ void wd_tree_density_finish(struct wd_tree_density *density)
     *density = (struct wd_tree_density){0};
 }
 
+void wd_tree_density_clear(struct wd_tree_density *density)
+{
+    memset(density->area, 0, cell_count(density) * sizeof *density->area);
+}
+
 /* The cell whose middle lies below p on each axis and the shares toward the next ones. */
 static bool locate(const struct wd_tree_density *density, struct wd_vec3 p, int cell[3],
                    float share[3])
@@ -125,10 +130,20 @@ void wd_tree_density_blur(struct wd_tree_density *density)
     free(old);
 }
 
+/* What half a cell lets through along a way of `length_m`. */
+static void fill_transmission(const struct wd_tree_density *density, float length_m, float *half)
+{
+    size_t count = cell_count(density);
+    for (size_t i = 0; i < count; i++) {
+        double depth = 0.5 * EXTINCTION * (double)(density->area[i] * length_m);
+        half[i] = depth > 0 ? (float)wd_dexp(-depth) : 1;
+    }
+}
+
 /* Light that reaches a cell along one direction is what leaves the cell before it, times what that
  * cell lets through; half of the cell's own leaves shade its middle. */
-static void sweep(struct wd_tree_density *density, float *light, const int toward[3],
-                  float length, float weight)
+static void sweep(struct wd_tree_density *density, float *light, const float *half,
+                  const int toward[3], float weight)
 {
     const int *size = density->size;
     for (int z = size[2] - 1; z >= 0; z--)
@@ -139,30 +154,34 @@ static void sweep(struct wd_tree_density *density, float *light, const int towar
                 float in = 1;
                 if (nx >= 0 && ny >= 0 && nx < size[0] && ny < size[1] && nz < size[2])
                     in = light[cell_index(density, nx, ny, nz)];
-                float half = 1;
-                if (density->area[i] > 0)
-                    half = (float)wd_dexp(-0.5 * EXTINCTION * (double)(density->area[i] * length));
-                density->sky[i] += weight * in * half;
-                light[i] = in * half * half;
+                density->sky[i] += weight * in * half[i];
+                light[i] = in * half[i] * half[i];
             }
 }
 
+/* Directions of one steepness: up; 45 degrees; 19 degrees over the horizon. */
+struct cone {
+    float length, weight; /* way through a cell in its sides; share of the light, each */
+    int count, toward[4][3];
+};
+
 void wd_tree_density_light(struct wd_tree_density *density)
 {
-    static const struct {
-        int toward[3];
-        float length, weight;
-    } ways[9] = {{{0, 0, 1}, 1, 0.28f},
-                 {{1, 0, 1}, 1.4142136f, 0.11f}, {{-1, 0, 1}, 1.4142136f, 0.11f},
-                 {{0, 1, 1}, 1.4142136f, 0.11f}, {{0, -1, 1}, 1.4142136f, 0.11f},
-                 {{2, 2, 1}, 3, 0.07f},          {{-2, 2, 1}, 3, 0.07f},
-                 {{2, -2, 1}, 3, 0.07f},         {{-2, -2, 1}, 3, 0.07f}};
+    static const struct cone cones[3] = {
+        {1, 0.28f, 1, {{0, 0, 1}}},
+        {1.4142136f, 0.11f, 4, {{1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}}},
+        {3, 0.07f, 4, {{2, 2, 1}, {-2, 2, 1}, {2, -2, 1}, {-2, -2, 1}}},
+    };
     float *light = wd_alloc_array(cell_count(density), sizeof *light);
+    float *half = wd_alloc_array(cell_count(density), sizeof *half);
     memset(density->sky, 0, cell_count(density) * sizeof *density->sky);
-    for (int way = 0; way < 9; way++)
-        sweep(density, light, ways[way].toward, ways[way].length * density->cell_m,
-              ways[way].weight);
+    for (int c = 0; c < 3; c++) {
+        fill_transmission(density, cones[c].length * density->cell_m, half);
+        for (int way = 0; way < cones[c].count; way++)
+            sweep(density, light, half, cones[c].toward[way], cones[c].weight);
+    }
     free(light);
+    free(half);
 }
 
 struct wd_vec3 wd_tree_density_outward(const struct wd_tree_density *density, struct wd_vec3 p)

@@ -1,4 +1,4 @@
-/* density.h: leaf area on a coarse grid of cubes: how crowded a place is and how much sky it sees. */
+/* density.h: leaf area on a coarse grid of cubes: how crowded a place is and what sky it sees. */
 #ifndef WD_TREE_DENSITY_H
 #define WD_TREE_DENSITY_H
 
@@ -19,6 +19,8 @@ struct wd_tree_density {
 void wd_tree_density_init(struct wd_tree_density *density, struct wd_vec3 low_m,
                           struct wd_vec3 high_m, float cell_m);
 void wd_tree_density_finish(struct wd_tree_density *density);
+
+void wd_tree_density_clear(struct wd_tree_density *density); /* no leaves anywhere */
 
 /* Spreads `area_m2` over the eight cells around p; nothing outside the box. */
 void wd_tree_density_add(struct wd_tree_density *density, struct wd_vec3 p, float area_m2);

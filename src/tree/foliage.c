@@ -85,9 +85,7 @@ static void weigh_carriers(struct carriers *carriers, struct wd_foliage *foliage
         carrier->weight = carrier->length_m * (0.35f + sky);
         carriers->weight += carrier->weight;
     }
-    for (size_t i = 0; i < (size_t)foliage->crown.size[0] * (size_t)foliage->crown.size[1] *
-                               (size_t)foliage->crown.size[2]; i++)
-        foliage->crown.area[i] = 0;
+    wd_tree_density_clear(&foliage->crown);
     fill_crown(foliage, skeleton, carriers, area_m2 / carriers->weight, true);
     wd_tree_density_light(&foliage->crown);
     wd_tree_density_blur(&foliage->crown);
@@ -171,7 +169,8 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
         turn_broadleaf(leaf, form, twig, side, &random);
     leaf->size_m = wd_mixf(1.2f, 0.85f, wd_clampf(1.5f * leaf->sky, 0, 1)) *
                    wd_random_range(&random, 0.8f, 1.15f);
-    float loose = needles ? 0.02f : 0.4f * form->species->orders[form->species->order_count - 1].spacing_m;
+    float gap = form->species->orders[form->species->order_count - 1].spacing_m;
+    float loose = needles ? 0.02f : 0.4f * gap;
     if (needles) /* a spire ends in short shoots */
         leaf->size_m *= wd_clampf(2.2f * wd_tree_envelope_m(form, WD_V3(0, 0, p.z)) /
                                       form->crown_radius_m, 0.62f, 1);
@@ -204,8 +203,9 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
 {
     const struct wd_species *species = form->species;
     bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
-    double spread = wd_dpow((double)form->spread, 1.5);
-    double count = (double)species->leaf.count * (double)form->detail * fmin(spread, needles ? 1 : 1.2);
+    double spread = wd_dpow((double)form->spread, 1.1);
+    double count = (double)species->leaf.count * (double)form->detail;
+    count *= fmin(spread, needles ? 1 : 1.2);
     double real_m = 0.01 * (double)species->leaf.length_cm;
     if (needles)
         real_m = 0.10; /* a shoot of one year */
@@ -247,7 +247,7 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
     struct carriers carriers = {0};
     float area = leaf_area_m2(form), reach = 1.35f * form->crown_radius_m;
     size_t wanted = leaf_count(form, area);
-    float cell = fmaxf(0.09f * form->crown_radius_m, 0.03f);
+    float cell = fmaxf(0.09f * form->crown_radius_m, 0.012f * form->height_m);
     wd_tree_density_init(&foliage->crown, WD_V3(-reach, -reach, 0.6f * form->crown_base_m),
                          WD_V3(reach, reach, 1.1f * form->height_m), cell);
     gather_carriers(&carriers, skeleton, form);

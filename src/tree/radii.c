@@ -47,7 +47,8 @@ static void set_flexibility(struct wd_skeleton *skeleton, const struct wd_tree_f
         for (size_t i = 0; i < branch->node_count; i++) {
             float t = (float)i / (float)(branch->node_count - 1);
             if (branch->order == WD_TRUNK) {
-                nodes[i].flexibility = 100 * wd_clampf(nodes[i].position_m.z / form->height_m, 0, 1);
+                float height = nodes[i].position_m.z / form->height_m;
+                nodes[i].flexibility = 100 * wd_clampf(height, 0, 1);
                 continue;
             }
             float base = skeleton->nodes[branch->parent_node].flexibility;

@@ -115,7 +115,8 @@ static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *
     struct wd_random random = wd_random_of(stem.key, 0x57e);
     struct wd_branch *branch = add_branch(skeleton, &stem);
     float crown = form->height_m - form->crown_base_m;
-    float step = (form->crown_base_m + crown * trunk_end(form)) / STEPS, loose = 1 - species->apical_dominance;
+    float step = (form->crown_base_m + crown * trunk_end(form)) / STEPS;
+    float loose = 1 - species->apical_dominance;
     struct wd_vec3 p = WD_V3(0, 0, 0), drift = WD_V3(0, 0, 0);
     struct wd_vec3 d = wd_v3_unit(WD_V3(0.06f * loose * wd_random_signed(&random),
                                         0.06f * loose * wd_random_signed(&random), 1));
@@ -216,7 +217,9 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
 
 static float spacing_m(const struct wd_tree_form *form, int order)
 {
-    double squeeze = wd_dpow((double)form->spread, order == 0 ? 0.8 : 1.0);
+    /* a year's growth is long in young trees too: they have fewer branches, not smaller gaps */
+    double power = form->spread < 1 ? 0.5 : order == 0 ? 0.8 : 1.0;
+    double squeeze = wd_dpow((double)form->spread, power);
     return form->species->orders[order].spacing_m * (float)squeeze;
 }
 
