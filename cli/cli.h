@@ -102,6 +102,8 @@ __attribute__((format(printf, 2, 3))) bool cli_fail(struct cli_session *session,
 enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **forest);
 /* Tells a wrong --method from a right one before any long work. */
 bool cli_method_check(struct cli_session *session);
+/* The same for --camera and --path. */
+bool cli_places_check(struct cli_session *session, const struct wd_forest *forest);
 
 enum cli_status cli_render(struct cli_session *session);
 enum cli_status cli_view(struct cli_session *session);

@@ -146,6 +146,8 @@ enum cli_status cli_render(struct cli_session *session)
     if (!plan.film && !cli_output_probe(session, session->options->output))
         return CLI_FAILED;
     enum wd_result result = cli_forest_open(session, &forest);
+    if (result == WD_OK && !cli_places_check(session, forest))
+        result = WD_ERROR_INPUT;
     if (result == WD_OK) {
         choose_picture(session, forest, &plan);
         result = plan.film ? render_film(session, forest, &plan)

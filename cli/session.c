@@ -188,21 +188,50 @@ enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **f
     return wd_forest_create(forest, &params);
 }
 
+/* One of `names`, or a complaint that lists them. `what` is what they name. */
+static bool check_name(struct cli_session *session, const char *what, const char *name,
+                       const char *const *names)
+{
+    char known[512] = "";
+    for (const char *const *candidate = names; *candidate; candidate++) {
+        if (!strcmp(*candidate, name))
+            return true;
+        size_t used = strlen(known);
+        snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", *candidate);
+    }
+    const char *suggestion = cli_suggest(name, names);
+    if (suggestion)
+        return cli_fail(session, "there is no %s \"%s\", did you mean \"%s\"?", what, name,
+                        suggestion);
+    return cli_fail(session, "there is no %s \"%s\"; there %s: %s", what, name,
+                    *known ? "are" : "is", *known ? known : "none");
+}
+
 bool cli_method_check(struct cli_session *session)
 {
     const char *method = session->options->method;
-    char known[256] = "";
-    if (!method)
+    return !method || check_name(session, "method", method, wd_method_names());
+}
+
+enum { MAX_NAMES = 256 };
+
+static bool check_place(struct cli_session *session, const struct wd_forest *forest,
+                        const char *what, const char *name,
+                        const char *(*get)(const struct wd_forest *, uint32_t))
+{
+    const char *names[MAX_NAMES + 1];
+    uint32_t count = 0;
+    if (!name)
         return true;
-    for (const char *const *name = wd_method_names(); *name; name++) {
-        if (!strcmp(*name, method))
-            return true;
-        size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", *name);
-    }
-    const char *suggestion = cli_suggest(method, wd_method_names());
-    if (suggestion)
-        return cli_fail(session, "there is no method \"%s\", did you mean \"%s\"?", method,
-                        suggestion);
-    return cli_fail(session, "there is no method \"%s\"; there are: %s", method, known);
+    for (const char *next; count < MAX_NAMES && (next = get(forest, count)); count++)
+        names[count] = next;
+    names[count] = NULL;
+    return count == MAX_NAMES || check_name(session, what, name, names);
+}
+
+bool cli_places_check(struct cli_session *session, const struct wd_forest *forest)
+{
+    const struct cli_options *options = session->options;
+    return check_place(session, forest, "camera", options->camera, wd_forest_camera_name) &&
+           check_place(session, forest, "path", options->path, wd_forest_path_name);
 }

@@ -35,6 +35,8 @@ enum cli_status cli_view(struct cli_session *session)
         return CLI_NO_DISPLAY;
     struct wd_forest *forest = NULL;
     enum wd_result result = cli_forest_open(session, &forest);
+    if (result == WD_OK && !cli_places_check(session, forest))
+        result = WD_ERROR_INPUT;
     if (result == WD_OK)
         result = wd_viewer_run(forest, &params);
     wd_forest_destroy(&forest);

@@ -47,12 +47,13 @@ check '--quiet prints nothing' sh -c \
 cp "$out/a.png" "$out/keep.png"
 # shellcheck disable=SC2086
 {
-    expect 1 'there' render "$tiny" -o "$out/keep.png" $soft --camera nowhere
-    expect 1 'south.*west' render "$tiny" -o "$out/keep.png" $soft --camera nowhere
-    expect 1 'fly' render "$tiny" -o "$out/keep.png" $soft --path nowhere
+    expect 1 'no camera "wset", did you mean "west"' render "$tiny" -o "$out/keep.png" $soft \
+        --camera wset
+    expect 1 'there are: south, west' render "$tiny" -o "$out/keep.png" $soft --camera nowhere
+    expect 1 'there are: fly' render "$tiny" -o "$out/keep.png" $soft --path nowhere
     expect 1 'no-such-gpu' render "$tiny" -o "$out/keep.png" --gpu no-such-gpu
     expect 1 'does not exist' render "$tiny" -o "$out/none/a.png" $soft
-    expect 1 'is a directory' render "$tiny" -o "$out" $soft
+    expect 2 'must end in' render "$tiny" -o "$out" $soft
     mkdir "$out/dir.png"
     expect 1 'is a directory' render "$tiny" -o "$out/dir.png" $soft
     expect 1 'cannot be written' render "$tiny" -o /proc/a.png $soft
