@@ -5,4 +5,4 @@ set -eu
 build=$1
 shift
 folders=$(printf '%s|' "$@")
-meson introspect "$build" --tests | jq -r '.[].name' | grep -E "^(${folders%|})-"
+meson introspect "$build" --tests | jq -r '.[].name' | grep -E "^(${folders%|})(-|\$)" | grep -v -- "-gpu\$"
