@@ -32,7 +32,8 @@ void wd_frame_finish(struct wd_frame *frame)
 
 static bool prepare_velocity(struct wd_frame *frame)
 {
-    VkDeviceSize size = (VkDeviceSize)frame->targets.width * frame->targets.height * 2 * sizeof(float);
+    VkDeviceSize size =
+        (VkDeviceSize)frame->targets.width * frame->targets.height * 2 * sizeof(float);
     const struct wd_buffer_params params = {"velocity", size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                             WD_MEMORY_DEVICE};
     if (frame->params.velocity == WD_VELOCITY_OFF || frame->velocity_px.size == size)
@@ -107,7 +108,7 @@ static void record_shadows(const struct recording *r)
             .width = targets->shadow_size,
             .height = targets->shadow_size,
             .depth = &targets->shadow,
-                .depth_view = targets->shadow_layers[i],
+            .depth_view = targets->shadow_layers[i],
             .depth_load = WD_LOAD_CLEAR,
         };
         wd_cmd_begin_rendering(r->cmd, &rendering);
@@ -153,7 +154,8 @@ static void record_light(const struct recording *r)
                                           &r->values, r->uniforms};
     wd_cmd_scope_begin(r->cmd, "light");
     wd_light_pass_record(&frame->light, r->cmd, &light);
-    if (frame->params.velocity == WD_VELOCITY_ON && r->values.sample_index + 1 == r->values.sample_count)
+    if (frame->params.velocity == WD_VELOCITY_ON &&
+        r->values.sample_index + 1 == r->values.sample_count)
         wd_light_pass_record_velocity(&frame->light, r->cmd, &light, &frame->velocity_px);
     wd_cmd_scope_end(r->cmd);
 }

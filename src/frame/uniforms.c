@@ -84,8 +84,10 @@ static void fill_ground(struct wd_frame_uniforms *uniforms, const struct wd_fore
     memcpy(uniforms->rock, scene->ground.rock, sizeof uniforms->rock);
     memcpy(uniforms->litter, scene->ground.litter, sizeof uniforms->litter);
     uniforms->rock_slope = (float)tan(scene->ground.rock_slope_deg * (PI / 180.0));
-    uniforms->snow_line_m = scene->ground.snow_line_m > 0.0 ? (float)scene->ground.snow_line_m : 1e9f;
-    uniforms->tree_line_m = scene->ground.tree_line_m > 0.0 ? (float)scene->ground.tree_line_m : 1e9f;
+    uniforms->snow_line_m =
+        scene->ground.snow_line_m > 0.0 ? (float)scene->ground.snow_line_m : 1e9f;
+    uniforms->tree_line_m =
+        scene->ground.tree_line_m > 0.0 ? (float)scene->ground.tree_line_m : 1e9f;
     uniforms->terrain_cell_m = (float)terrain->cell_m;
     uniforms->terrain_width = terrain->width;
     uniforms->terrain_height = terrain->height;
