@@ -22,21 +22,23 @@ static char *file_beside(const char *scene_path)
     return asprintf(&path, "%.*s.cameras.json", (int)length, scene_path) < 0 ? NULL : path;
 }
 
-/* Beside the scene if a file is or can be there, else in the working directory. */
+/* The file's name in the working directory, or NULL if `path` is there already. */
+static const char *name_here(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : NULL;
+}
+
+/* Beside the scene, unless there is none there but one in the working directory. */
 static char *choose_path(const char *scene_path)
 {
     char *path = file_beside(scene_path);
-    const char *slash = path ? strrchr(path, '/') : NULL;
-    if (!slash || !access(path, R_OK | W_OK))
+    const char *here = path ? name_here(path) : NULL;
+    if (!here || !access(path, F_OK) || access(here, F_OK))
         return path;
-    char *directory = strndup(path, (size_t)(slash - path) + 1);
-    bool writable = directory && !access(directory, W_OK) && access(path, F_OK);
-    free(directory);
-    if (writable)
-        return path;
-    char *here = strdup(slash + 1);
+    char *chosen = strdup(here);
     free(path);
-    return here;
+    return chosen;
 }
 
 static bool read_camera(const json_t *item, struct viewer_saved_camera *saved)
@@ -120,21 +122,38 @@ static json_t *to_json(const struct viewer_cameras *cameras)
 }
 
 /* Whole or not at all: a full disk must not cost the cameras saved before. */
-static bool write_cameras(const struct viewer_cameras *cameras)
+static bool write_file(const struct viewer_cameras *cameras, const char *path)
 {
     char *temporary = NULL;
-    if (asprintf(&temporary, "%s.new", cameras->path) < 0)
-        return viewer_error(cameras->log, "out of memory");
+    if (asprintf(&temporary, "%s.new", path) < 0)
+        return false;
     json_t *root = to_json(cameras);
     bool ok = root && !json_dump_file(root, temporary, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) &&
-              !rename(temporary, cameras->path);
-    if (!ok) {
-        viewer_error(cameras->log, "%s cannot be written: %s", cameras->path, strerror(errno));
+              !rename(temporary, path);
+    int error = errno;
+    if (!ok)
         unlink(temporary);
-    }
+    errno = error;
     json_decref(root);
     free(temporary);
     return ok;
+}
+
+/* A folder of scenes that cannot be written gives way to the working directory. */
+static bool write_cameras(struct viewer_cameras *cameras)
+{
+    const char *here = name_here(cameras->path);
+    if (write_file(cameras, cameras->path))
+        return true;
+    if (!here || !write_file(cameras, here))
+        return viewer_error(cameras->log, "%s cannot be written: %s", cameras->path,
+                            strerror(errno));
+    char *path = strdup(here);
+    if (!path)
+        return viewer_error(cameras->log, "out of memory");
+    free(cameras->path);
+    cameras->path = path;
+    return true;
 }
 
 bool viewer_cameras_save(struct viewer_cameras *cameras, const struct wd_camera *camera)

@@ -91,7 +91,12 @@ static void an_unwritable_scene_folder_gives_way(void **state)
     struct viewer_cameras cameras;
     unlink("scene.cameras.json");
     assert_true(viewer_cameras_init(&cameras, "/proc/scene.json", &test_log));
+    assert_true(viewer_cameras_save(&cameras, &(struct wd_camera){.fov_rad = 1}));
     assert_string_equal(cameras.path, "scene.cameras.json");
+    viewer_cameras_finish(&cameras);
+
+    assert_true(viewer_cameras_init(&cameras, "/proc/scene.json", &test_log));
+    assert_int_equal(cameras.count, 1);
     viewer_cameras_finish(&cameras);
 }
 

@@ -74,7 +74,7 @@ hold_key() { # hold_key KEY SECONDS
     sleep "$2"
     xdotool keyup "$1"
 }
-find_window() { window=$(xdotool search --name '^weald: tiny' 2>/dev/null | head -1) && [ -n "$window" ]; }
+find_window() { window=$(xdotool search --onlyvisible --name '^weald: tiny' 2>/dev/null | head -1) && [ -n "$window" ]; }
 start() {
     : >"$report"
     before=null
