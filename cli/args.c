@@ -47,8 +47,7 @@ static const struct cli_option option_table[] = {
      "where F12 puts pictures (default: the working directory)"},
     {"report", 0, "FILE", CLI_KIND_TEXT, AT(report), 0, 0, CLI_VIEW,
      "append a line of JSON about the state at F9 and at the end"},
-    {"times", 0, NULL, CLI_KIND_FLAG, AT(times), 0, 0, CLI_RENDER,
-     "print how long each pass took"},
+    {"times", 0, NULL, CLI_KIND_FLAG, AT(times), 0, 0, CLI_RENDER, "print how long each pass took"},
     {"json", 0, NULL, CLI_KIND_FLAG, AT(json), 0, 0, CLI_INFO, "print JSON"},
     {"quiet", 'q', NULL, CLI_KIND_FLAG, AT(quiet), 0, 0, SCENE_COMMANDS | CLI_CHECK,
      "print nothing but warnings, errors and what was asked for"},
@@ -63,8 +62,8 @@ const struct cli_option *cli_option_table(void)
 
 const char *const *cli_view_names(void)
 {
-    static const char *const names[] = {"lit",    "lod",     "albedo",
-                                        "normal", "tree-id", "shadow", NULL};
+    static const char *const names[] = {"lit",     "lod",    "albedo", "normal",
+                                        "tree-id", "shadow", NULL};
     return names;
 }
 

@@ -14,11 +14,11 @@ enum cli_kind {
 };
 
 struct cli_option {
-    const char *name; /* without the dashes */
-    char letter;      /* 0: none */
+    const char *name;  /* without the dashes */
+    char letter;       /* 0: none */
     const char *value; /* as help shows it; NULL for a flag */
     enum cli_kind kind;
-    size_t offset;     /* in struct cli_options */
+    size_t offset; /* in struct cli_options */
     double min, max;
     unsigned commands; /* cli_command_bit */
     const char *help;

@@ -95,8 +95,8 @@ double cli_seconds(void);
 
 __attribute__((format(printf, 2, 3))) void cli_say(struct cli_session *session, const char *format,
                                                    ...); /* standard output unless --quiet */
-__attribute__((format(printf, 2, 3))) bool cli_fail(struct cli_session *session,
-                                                    const char *format, ...); /* returns false */
+__attribute__((format(printf, 2, 3))) bool cli_fail(struct cli_session *session, const char *format,
+                                                    ...); /* returns false */
 
 /* Opens the forest that the scene operand and the options ask for. */
 enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **forest);

@@ -9,7 +9,7 @@ struct cli_film {
     const struct wd_forest *forest;
     const struct cli_plan *plan;
     struct wd_film *output;
-    const char *path; /* NULL: the camera stands still */
+    const char *path;  /* NULL: the camera stands still */
     double duration_s; /* of the path */
     double frames_per_second;
     uint64_t frame_count, frames_done;

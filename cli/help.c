@@ -107,25 +107,27 @@ static void manual_command(FILE *to, const struct cli_command *command)
 
 void cli_help_manual(FILE *to)
 {
-    fputs(".TH WEALD 1 \"\" \"weald " WEALD_VERSION "\" \"User Commands\"\n"
-          ".SH NAME\nweald \\- draw forests from terrain, species and inventories\n"
-          ".SH SYNOPSIS\n.B weald\n.I COMMAND\n[\\fIOPTIONS\\fR]\n"
-          ".SH DESCRIPTION\n"
-          "weald reads a scene file (terrain, species, layers of trees or a tree inventory, light,\n"
-          "cameras), plants the forest and draws it with Vulkan: as a picture, a film, layers for\n"
-          "measurement, or in a window to walk through.\n"
-          ".SH COMMANDS\n",
-          to);
+    fputs(
+        ".TH WEALD 1 \"\" \"weald " WEALD_VERSION "\" \"User Commands\"\n"
+        ".SH NAME\nweald \\- draw forests from terrain, species and inventories\n"
+        ".SH SYNOPSIS\n.B weald\n.I COMMAND\n[\\fIOPTIONS\\fR]\n"
+        ".SH DESCRIPTION\n"
+        "weald reads a scene file (terrain, species, layers of trees or a tree inventory, light,\n"
+        "cameras), plants the forest and draws it with Vulkan: as a picture, a film, layers for\n"
+        "measurement, or in a window to walk through.\n"
+        ".SH COMMANDS\n",
+        to);
     for (const struct cli_command *command = cli_commands(); command->name; command++)
         manual_command(to, command);
-    fputs(".SH EXIT STATUS\n"
-          "0: done. 1: failed, the message says why. 2: the command line is wrong.\n"
-          "3: there is no display for a window. 130: stopped by Ctrl\\-C; finished frames of a film\n"
-          "are kept.\n"
-          ".SH FILES\n"
-          ".I $XDG_CACHE_HOME/weald\n(or ~/.cache/weald) holds what was made from trees once.\n"
-          "It may be deleted at any time.\n",
-          to);
+    fputs(
+        ".SH EXIT STATUS\n"
+        "0: done. 1: failed, the message says why. 2: the command line is wrong.\n"
+        "3: there is no display for a window. 130: stopped by Ctrl\\-C; finished frames of a film\n"
+        "are kept.\n"
+        ".SH FILES\n"
+        ".I $XDG_CACHE_HOME/weald\n(or ~/.cache/weald) holds what was made from trees once.\n"
+        "It may be deleted at any time.\n",
+        to);
 }
 
 enum cli_status cli_manual(struct cli_session *session)

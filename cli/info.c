@@ -177,8 +177,8 @@ static void print_json(const struct wd_forest *forest, const struct wd_forest_in
     json_text("name", info->name);
     printf("  \"seed\": %u,\n  \"hash\": \"%016llx\",\n", info->seed,
            (unsigned long long)info->hash);
-    printf("  \"tree_count\": %llu,\n  \"layer_count\": %u,\n", (unsigned long long)info->tree_count,
-           info->layer_count);
+    printf("  \"tree_count\": %llu,\n  \"layer_count\": %u,\n",
+           (unsigned long long)info->tree_count, info->layer_count);
     printf("  \"min_m\": [%.17g, %.17g, %.17g],\n  \"max_m\": [%.17g, %.17g, %.17g],\n",
            info->min_m[0], info->min_m[1], info->min_m[2], info->max_m[0], info->max_m[1],
            info->max_m[2]);

@@ -29,7 +29,8 @@ static const struct cli_command commands[] = {
      "  weald info scenes/valley.json\n"
      "  weald info scenes/valley.json --json | jq .tree_count\n",
      cli_info},
-    {"check", CLI_CHECK, "FILE...", 1, 1 << 20, "look for faults in scene, species, CSV and raster files",
+    {"check", CLI_CHECK, "FILE...", 1, 1 << 20,
+     "look for faults in scene, species, CSV and raster files",
      "Checks files without building anything: scenes and species (.json), inventories (.csv),\n"
      "rasters (anything else). Every fault is named with file, line and key. Exits with 1 if any\n"
      "file has one.",
@@ -41,8 +42,8 @@ static const struct cli_command commands[] = {
      "  weald schema scene > scene.schema.json\n", cli_schema},
     {"devices", CLI_DEVICES, "", 0, 0, "list the Vulkan devices",
      "Lists the Vulkan devices that --gpu can name.", "  weald devices\n", cli_devices},
-    {"manual", CLI_MANUAL, "", 0, 0, "print the manual page",
-     "Prints the manual page, for man(1).", "  weald manual | man -l -\n", cli_manual},
+    {"manual", CLI_MANUAL, "", 0, 0, "print the manual page", "Prints the manual page, for man(1).",
+     "  weald manual | man -l -\n", cli_manual},
     {0},
 };
 

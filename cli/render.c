@@ -20,8 +20,9 @@ static bool make_plan(struct cli_session *session, struct cli_plan *plan)
         return cli_fail(session, "%s: the output must end in .png, .exr or .mp4", options->output);
     plan->film = plan->kind >= CLI_OUTPUT_FILM;
     if (!plan->film && options->frames > 1)
-        return cli_fail(session, "%s holds one frame; for %u name a .mp4 or a pattern like "
-                                 "frame-%%05d.png",
+        return cli_fail(session,
+                        "%s holds one frame; for %u name a .mp4 or a pattern like "
+                        "frame-%%05d.png",
                         options->output, options->frames);
     if (options->camera && options->path)
         return cli_fail(session, "--camera and --path exclude each other");

@@ -49,8 +49,7 @@ static void print_quarter(struct cli_meter *meter, const char *stage, double fra
     fprintf(stderr, "weald: %s %u%%\n", stage, quarter * 25);
 }
 
-static void show_progress(struct cli_meter *meter, const char *stage, uint64_t done,
-                          uint64_t total)
+static void show_progress(struct cli_meter *meter, const char *stage, uint64_t done, uint64_t total)
 {
     double now_s = cli_seconds();
     if (meter->quiet || now_s - meter->begin_s < QUIET_SECONDS)

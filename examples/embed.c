@@ -47,12 +47,11 @@ static struct wd_vulkan_handles open_device(void)
 static VkDeviceMemory allocate(const struct wd_vulkan_handles *vk, VkMemoryRequirements need,
                                VkMemoryPropertyFlags wanted)
 {
-    VkPhysicalDeviceMemoryProperties memory;
     VkDeviceMemory block = VK_NULL_HANDLE;
+    VkPhysicalDeviceMemoryProperties memory;
     vkGetPhysicalDeviceMemoryProperties(vk->physical_device, &memory);
     for (uint32_t i = 0; i < memory.memoryTypeCount && !block; i++) {
-        const VkMemoryAllocateInfo info = {VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, NULL, need.size,
-                                           i};
+        VkMemoryAllocateInfo info = {VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, NULL, need.size, i};
         if (need.memoryTypeBits >> i & 1 && !(wanted & ~memory.memoryTypes[i].propertyFlags))
             CHECK(vkAllocateMemory(vk->device, &info, NULL, &block));
     }
@@ -60,21 +59,23 @@ static VkDeviceMemory allocate(const struct wd_vulkan_handles *vk, VkMemoryRequi
     return block;
 }
 
-static VkImage make_image(const struct wd_vulkan_handles *vk, VkDeviceMemory *memory)
+static VkImage make_image(const struct wd_vulkan_handles *vk)
 {
-    const VkImageCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, .imageType = VK_IMAGE_TYPE_2D,
-        .format = VK_FORMAT_R8G8B8A8_UNORM,
-        .extent = {WIDTH, HEIGHT, 1},
-        .mipLevels = 1, .arrayLayers = 1, .samples = VK_SAMPLE_COUNT_1_BIT,
-        .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-    };
+    const VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                    .imageType = VK_IMAGE_TYPE_2D,
+                                    .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                    .extent = {WIDTH, HEIGHT, 1},
+                                    .mipLevels = 1,
+                                    .arrayLayers = 1,
+                                    .samples = VK_SAMPLE_COUNT_1_BIT,
+                                    .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                             VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
     VkImage image;
     VkMemoryRequirements need;
     CHECK(vkCreateImage(vk->device, &info, NULL, &image));
     vkGetImageMemoryRequirements(vk->device, image, &need);
-    *memory = allocate(vk, need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-    CHECK(vkBindImageMemory(vk->device, image, *memory, 0));
+    VkDeviceMemory memory = allocate(vk, need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    CHECK(vkBindImageMemory(vk->device, image, memory, 0));
     return image;
 }
 
@@ -115,11 +116,10 @@ static void save(const struct wd_vulkan_handles *vk, VkImage image, const char *
                                  .pCommandBuffers = &commands};
     CHECK(vkQueueSubmit(vk->queue, 1, &submit, VK_NULL_HANDLE));
     CHECK(vkQueueWaitIdle(vk->queue));
-
     CHECK(vkMapMemory(vk->device, memory, 0, BYTES, 0, &pixels));
     FILE *file = fopen(path, "wb");
     CHECK(file == NULL);
-    fprintf(file, "P6\n%d %d\n255\n", WIDTH, HEIGHT);
+    fprintf(file, "P6 %d %d 255\n", WIDTH, HEIGHT);
     for (int i = 0; i < BYTES; i += 4)
         fwrite((unsigned char *)pixels + i, 1, 3, file);
     CHECK(fclose(file));
@@ -129,8 +129,7 @@ int main(int argc, char **argv)
 {
     CHECK(argc != 3);
     struct wd_vulkan_handles vk = open_device();
-    VkDeviceMemory memory;
-    VkImage image = make_image(&vk, &memory);
+    VkImage image = make_image(&vk);
     struct wd_forest *forest;
     struct wd_renderer *renderer;
     CHECK(wd_forest_create(&forest, &(struct wd_forest_params){.scene_path = argv[1]}));
@@ -138,8 +137,9 @@ int main(int argc, char **argv)
     CHECK(wd_renderer_set_forest(renderer, forest));
 
     struct wd_render_params params = {.width = WIDTH, .height = HEIGHT};
-    const struct wd_vulkan_target target = {image, VK_FORMAT_R8G8B8A8_UNORM, WIDTH, HEIGHT,
-                                            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, NULL, NULL};
+    const struct wd_vulkan_target target = {
+        image, VK_FORMAT_R8G8B8A8_UNORM, WIDTH, HEIGHT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, NULL,
+        NULL};
     CHECK(wd_forest_get_camera(forest, NULL, &params.camera));
     CHECK(wd_renderer_draw(renderer, &params, &target));
     CHECK(wd_renderer_wait(renderer));

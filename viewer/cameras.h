@@ -17,7 +17,8 @@ struct viewer_cameras {
 };
 
 /* Reads the file beside the scene, or of that name in the working directory; there may be none. A
- * file that cannot be understood is complained about and an error, so that it is not overwritten. */
+ * file that cannot be understood is complained about and an error, so that it is not overwritten.
+ */
 bool viewer_cameras_init(struct viewer_cameras *cameras, const char *scene_path,
                          const struct wd_log *log);
 void viewer_cameras_finish(struct viewer_cameras *cameras);

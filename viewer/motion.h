@@ -4,7 +4,7 @@
 
 #include "weald/forest.h"
 
-#define VIEWER_EYE_M 1.7          /* height of a walker's eye above the ground */
+#define VIEWER_EYE_M 1.7           /* height of a walker's eye above the ground */
 #define VIEWER_FLY_CLEARANCE_M 0.5 /* nearest to the ground that flying comes */
 
 enum viewer_gait {

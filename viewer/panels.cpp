@@ -4,10 +4,9 @@
 #include <backends/imgui_impl_sdl.h>
 #include <backends/imgui_impl_vulkan.h>
 
-static const ImGuiWindowFlags bare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
-                                     ImGuiWindowFlags_AlwaysAutoResize |
-                                     ImGuiWindowFlags_NoSavedSettings |
-                                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+static const ImGuiWindowFlags bare =
+    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_AlwaysAutoResize |
+    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
 extern "C" bool viewer_panels_init(const struct viewer_panels_setup *setup, VkCommandBuffer upload)
 {
@@ -62,7 +61,7 @@ extern "C" void viewer_panels_draw(const struct viewer_panels_content *content,
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const float margin = 8.0f;
     panel("status", content->status, ImVec2(margin, size.y - margin), ImVec2(0.0f, 1.0f));
-    panel("notice", content->notice, ImVec2(size.x * 0.5f, margin), ImVec2(0.5f, 0.0f));
+    panel("notice", content->notice, ImVec2(size.x - margin, margin), ImVec2(1.0f, 0.0f));
     panel("times", content->times, ImVec2(margin, margin), ImVec2(0.0f, 0.0f));
     panel("help", content->help, ImVec2(size.x * 0.5f, size.y * 0.5f), ImVec2(0.5f, 0.5f));
     ImGui::Render();

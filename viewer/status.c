@@ -3,21 +3,20 @@
 
 #include "state.h"
 
-static const char help_text[] =
-    "W A S D      move\n"
-    "Q E          down, up\n"
-    "Shift        five times as fast; the wheel sets the speed\n"
-    "right button look around\n"
-    "G            grab the mouse for looking\n"
-    "F            fly or walk\n"
-    "M            next method\n"
-    "L            colour by level of detail\n"
-    "T            times and tree counts\n"
-    "C, Shift+C   next camera, save this one\n"
-    "P            play the path\n"
-    "F9, F12      report line, screenshot\n"
-    "H            this help\n"
-    "Esc          quit";
+static const char help_text[] = "W A S D      move\n"
+                                "Q E          down, up\n"
+                                "Shift        five times as fast; the wheel sets the speed\n"
+                                "right button look around\n"
+                                "G            grab the mouse for looking\n"
+                                "F            fly or walk\n"
+                                "M            next method\n"
+                                "L            colour by level of detail\n"
+                                "T            times and tree counts\n"
+                                "C, Shift+C   next camera, save this one\n"
+                                "P            play the path\n"
+                                "F9, F12      report line, screenshot\n"
+                                "H            this help\n"
+                                "Esc          quit";
 
 static void print_status(const struct viewer_state *viewer, char *text, size_t size)
 {
@@ -31,21 +30,22 @@ static void print_times(const struct viewer_state *viewer, char *text, size_t si
 {
     struct wd_frame_stats stats;
     wd_renderer_get_stats(viewer->renderer, &stats);
-    size_t used = (size_t)snprintf(text, size, "%s\nframe %12.1f ms   GPU ms  CPU ms\n",
-                                   wd_renderer_device_name(viewer->renderer), stats.frame_ms);
+    size_t used = (size_t)snprintf(text, size, "%s\n%-22s   GPU ms  CPU ms\n",
+                                   wd_renderer_device_name(viewer->renderer), "pass");
     for (uint32_t i = 0; i < stats.pass_count && used < size; i++)
-        used += (size_t)snprintf(text + used, size - used, "  %-20s %8.2f %7.2f\n",
-                                 stats.passes[i].name, stats.passes[i].gpu_ms,
-                                 stats.passes[i].cpu_ms);
+        used +=
+            (size_t)snprintf(text + used, size - used, "  %-20s %8.2f %7.2f\n",
+                             stats.passes[i].name, stats.passes[i].gpu_ms, stats.passes[i].cpu_ms);
     if (used < size)
         snprintf(text + used, size - used,
+                 "whole frame %.1f ms\n"
                  "trees: %llu mesh, %llu reduced, %llu billboard\n"
                  "%llu draw calls, %llu triangles\n"
                  "device memory %.1f MB, at most %.1f MB",
-                 (unsigned long long)stats.trees_mesh, (unsigned long long)stats.trees_reduced,
-                 (unsigned long long)stats.trees_billboard, (unsigned long long)stats.draw_calls,
-                 (unsigned long long)stats.triangles, (double)stats.device_bytes / 1e6,
-                 (double)stats.device_bytes_peak / 1e6);
+                 stats.frame_ms, (unsigned long long)stats.trees_mesh,
+                 (unsigned long long)stats.trees_reduced, (unsigned long long)stats.trees_billboard,
+                 (unsigned long long)stats.draw_calls, (unsigned long long)stats.triangles,
+                 (double)stats.device_bytes / 1e6, (double)stats.device_bytes_peak / 1e6);
 }
 
 struct viewer_panels_content viewer_status(const struct viewer_state *viewer,

@@ -78,8 +78,7 @@ static VkExtent2D window_extent(const struct viewer_swapchain *swapchain,
         clamp((uint32_t)height, able->minImageExtent.height, able->maxImageExtent.height)};
 }
 
-static bool make_swapchain(struct viewer_swapchain *swapchain,
-                           const VkSurfaceCapabilitiesKHR *able)
+static bool make_swapchain(struct viewer_swapchain *swapchain, const VkSurfaceCapabilitiesKHR *able)
 {
     uint32_t most = able->maxImageCount ? able->maxImageCount : VIEWER_MAX_IMAGES;
     VkSwapchainKHR old = swapchain->swapchain;
@@ -173,9 +172,8 @@ static enum viewer_swap_state judge(const struct viewer_swapchain *swapchain, Vk
 enum viewer_swap_state viewer_swapchain_acquire(struct viewer_swapchain *swapchain,
                                                 VkSemaphore acquired, uint32_t *index)
 {
-    VkResult result =
-        vkAcquireNextImageKHR(swapchain->vulkan.device, swapchain->swapchain, UINT64_MAX, acquired,
-                              VK_NULL_HANDLE, index);
+    VkResult result = vkAcquireNextImageKHR(swapchain->vulkan.device, swapchain->swapchain,
+                                            UINT64_MAX, acquired, VK_NULL_HANDLE, index);
     /* A suboptimal image has been acquired all the same: it must be drawn and presented. */
     return judge(swapchain, result == VK_SUBOPTIMAL_KHR ? VK_SUCCESS : result);
 }

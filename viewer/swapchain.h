@@ -37,7 +37,6 @@ void viewer_swapchain_finish(struct viewer_swapchain *swapchain);
 enum viewer_swap_state viewer_swapchain_rebuild(struct viewer_swapchain *swapchain);
 enum viewer_swap_state viewer_swapchain_acquire(struct viewer_swapchain *swapchain,
                                                 VkSemaphore acquired, uint32_t *index);
-enum viewer_swap_state viewer_swapchain_present(struct viewer_swapchain *swapchain,
-                                                uint32_t index);
+enum viewer_swap_state viewer_swapchain_present(struct viewer_swapchain *swapchain, uint32_t index);
 
 #endif

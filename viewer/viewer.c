@@ -37,12 +37,11 @@ static bool open_window(struct viewer_state *viewer)
     char title[256];
     wd_forest_get_info(viewer->forest, &info);
     snprintf(title, sizeof title, "weald: %s", info.name);
-    viewer->window =
-        SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
-                         (int)(params->width ? params->width : DEFAULT_WIDTH),
-                         (int)(params->height ? params->height : DEFAULT_HEIGHT),
-                         SDL_WINDOW_VULKAN | SDL_WINDOW_RESIZABLE | SDL_WINDOW_HIDDEN |
-                             SDL_WINDOW_ALLOW_HIGHDPI);
+    viewer->window = SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
+                                      (int)(params->width ? params->width : DEFAULT_WIDTH),
+                                      (int)(params->height ? params->height : DEFAULT_HEIGHT),
+                                      SDL_WINDOW_VULKAN | SDL_WINDOW_RESIZABLE | SDL_WINDOW_HIDDEN |
+                                          SDL_WINDOW_ALLOW_HIGHDPI);
     return viewer->window ||
            viewer_error(&params->log, "no window can be opened: %s", SDL_GetError());
 }
@@ -88,7 +87,8 @@ static enum wd_result choose_start(struct viewer_state *viewer)
     viewer->motion.speed_factor = 1;
     viewer->motion.gait = params->walk ? VIEWER_WALK : VIEWER_FLY;
     viewer->path_time_s = params->path ? 0 : -1;
-    viewer->camera_name = params->camera ? params->camera : wd_forest_camera_name(viewer->forest, 0);
+    viewer->camera_name =
+        params->camera ? params->camera : wd_forest_camera_name(viewer->forest, 0);
     const char *name;
     for (uint32_t i = 0; (name = wd_forest_camera_name(viewer->forest, i)); i++)
         if (!strcmp(name, viewer->camera_name))

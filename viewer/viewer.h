@@ -5,10 +5,10 @@
 #include "weald/renderer.h"
 
 struct wd_viewer_params {
-    const char *scene_path;     /* its name is on the window; saved cameras lie beside it */
-    const char *camera;         /* NULL: the first */
-    const char *path;           /* played from the beginning; NULL: none */
-    const char *method;         /* NULL: the scene's */
+    const char *scene_path; /* its name is on the window; saved cameras lie beside it */
+    const char *camera;     /* NULL: the first */
+    const char *path;       /* played from the beginning; NULL: none */
+    const char *method;     /* NULL: the scene's */
     enum wd_view_mode view;
     uint32_t width, height;     /* of the window; 0: 1280x720 */
     bool walk;                  /* begin on foot */
@@ -18,7 +18,7 @@ struct wd_viewer_params {
     enum wd_validation validation;
     unsigned threads;
     struct wd_log log;
-    struct wd_progress progress; /* of loading */
+    struct wd_progress progress;      /* of loading */
     bool (*keep_running)(void *user); /* asked once a frame; false closes the window. May be NULL */
     void *user;
 };
@@ -27,7 +27,6 @@ struct wd_viewer_params {
 bool wd_viewer_display_present(const struct wd_log *log);
 
 /* Shows `forest` until the window is closed or Escape is pressed: WD_OK. */
-enum wd_result wd_viewer_run(const struct wd_forest *forest,
-                             const struct wd_viewer_params *params);
+enum wd_result wd_viewer_run(const struct wd_forest *forest, const struct wd_viewer_params *params);
 
 #endif
