@@ -14,6 +14,7 @@ layout(location = 1) flat in vec4 in_pose;
 layout(location = 2) flat in vec4 in_tint;
 layout(location = 3) flat in uvec2 in_flat;
 layout(location = 4) flat in vec3 in_flip;
+layout(location = 5) flat in float in_lod;
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
@@ -21,12 +22,11 @@ layout(location = 2) out uint out_surface;
 
 void main()
 {
-    vec4 albedo = texture(card_albedo, in_uv);
-    float lod = textureQueryLod(card_albedo, in_uv.xy).y;
-    float opacity = card_opacity(albedo.a, lod) * in_tint.a;
-    if (card_noise(in_uv, lod, in_flat.y, frame.sample_index) >= opacity)
+    vec4 albedo = textureLod(card_albedo, in_uv, in_lod);
+    float opacity = card_opacity(albedo.a, in_lod) * in_tint.a;
+    if (card_noise(in_uv, in_lod, in_flat.y, frame.sample_index) >= opacity)
         discard;
-    vec4 packed = texture(card_normal, in_uv);
+    vec4 packed = textureLod(card_normal, in_uv, in_lod);
     vec3 normal = packed.xyz * 2.0 - 1.0;
     normal.x *= in_pose.z;
     normal = vec3((in_pose.x * normal.x - in_pose.y * normal.y) * in_pose.w,

@@ -9,11 +9,11 @@ layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
 layout(location = 0) in vec3 in_uv;
 layout(location = 2) flat in vec4 in_tint;
 layout(location = 3) flat in uvec2 in_flat;
+layout(location = 5) flat in float in_lod;
 
 void main()
 {
-    float lod = textureQueryLod(card_albedo, in_uv.xy).y;
-    float opacity = card_opacity(texture(card_albedo, in_uv).a, lod) * in_tint.a;
-    if (card_noise(in_uv, lod, in_flat.y, 0u) >= opacity)
+    float opacity = card_opacity(textureLod(card_albedo, in_uv, in_lod).a, in_lod) * in_tint.a;
+    if (card_noise(in_uv, in_lod, in_flat.y, 0u) >= opacity)
         discard;
 }

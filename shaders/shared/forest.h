@@ -17,12 +17,14 @@
 #define WD_CARD_HEIGHT_TEXELS 256
 #define WD_CARD_SIDES 3
 #define WD_CARDS 4
-#define WD_CARD_VERTICES 16  /* a tree */
-#define WD_CARD_INDICES 24
+/* Drawn are the two upright ones that face the viewer most (the third is edge on, its share is 0
+ * before it could be seen to go) and the level one. */
+#define WD_CARD_VERTICES 12  /* a tree */
+#define WD_CARD_INDICES 18
 #define WD_CARD_TOP 0.62
-/* For the sun: one card turned to it and the level one. */
-#define WD_SHADOW_CARD_VERTICES 8
-#define WD_SHADOW_CARD_INDICES 12
+/* For the sun: one card that faces it. */
+#define WD_SHADOW_CARD_VERTICES 4
+#define WD_SHADOW_CARD_INDICES 6
 /* Trees that one draw of cards may hold: the length of the index pattern. */
 #define WD_CARD_BATCH 65536
 
@@ -79,6 +81,7 @@ struct wd_tree_push {
     uint32_t cascade;   /* of a shadow pass */
     uint32_t level;     /* WD_LEVEL_* of what is drawn, for LOD colouring */
     float show;         /* for draws of ranges */
+    float pixels_per_radian; /* of the camera */
 };
 
 #endif

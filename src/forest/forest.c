@@ -305,7 +305,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
               make_card_pattern(&forest->card_indices, gpu, WD_CARD_VERTICES) &&
               make_card_pattern(&forest->shadow_card_indices, gpu, WD_SHADOW_CARD_VERTICES) &&
               wd_sampler_init(&forest->look_sampler, gpu, WD_SAMPLER_TRILINEAR_REPEAT) &&
-              wd_sampler_init(&forest->card_sampler, gpu, WD_SAMPLER_TRILINEAR_CLAMP) &&
+              wd_sampler_init(&forest->card_sampler, gpu, WD_SAMPLER_LINEAR_CLAMP) &&
               (forest->model_count == 0 || prepare(&work, gpu));
     for (uint32_t i = 0; i < forest->model_count; i++)
         wd_tree_model_finish(&work.grown[i]);

@@ -105,17 +105,52 @@ static void cascade_view(struct wd_view *cascade, const struct wd_view *view, co
     cascade->frustum.count = 5;
 }
 
+/* Where cascade i ends: a fixed ratio between neighbours, drawn out so that the first begins at the
+ * nearest thing seen; that is counted in whole steps, so that a moving camera seldom changes it. */
+static double cascade_end(const struct wd_cascades_params *params, int i)
+{
+    double first = params->distance_m * pow(CASCADE_RATIO, WD_CASCADES);
+    if (params->nearest_m <= first)
+        return params->distance_m * pow(CASCADE_RATIO, WD_CASCADES - 1 - i);
+    double step = floor(log(params->nearest_m / first) / log(1.5));
+    double near = fmin(first * pow(1.5, step), 0.5 * params->distance_m);
+    return near * pow(params->distance_m / near, (i + 1.0) / WD_CASCADES);
+}
+
+/* Trees whose shadows fall short of the slice [near, far], or come from beyond it, are left to the
+ * other cascades. A shadow is taken to be no longer than on ground that falls away from the sun
+ * half as steeply as the sun stands. */
+static void keep_to_slice(struct wd_view *cascade, const struct wd_cascades_params *params,
+                          double near, double far)
+{
+    double sp = sin(params->view->camera.pitch_rad), cp = cos(params->view->camera.pitch_rad);
+    double yaw = params->view->camera.yaw_rad;
+    const double forward[3] = {sin(yaw) * cp, cos(yaw) * cp, sp};
+    double across = hypot(params->sun_direction[0], params->sun_direction[1]);
+    double rise = fmax(params->sun_direction[2], 0.05);
+    double reach = params->max_height_m * (1.0 + 2.0 * across / rise);
+    float *beyond = cascade->frustum.planes[cascade->frustum.count++];
+    float *before = cascade->frustum.planes[cascade->frustum.count++];
+    for (int k = 0; k < 3; k++) {
+        beyond[k] = (float)forward[k];
+        before[k] = (float)-forward[k];
+    }
+    beyond[3] = (float)(reach - near);
+    before[3] = (float)(reach + far);
+}
+
 void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,
                       const struct wd_cascades_params *params)
 {
     struct sun_axes axes = sun_axes(params->sun_direction);
-    double near = params->near_m;
+    double near = fmax(params->near_m, 0.66 * params->nearest_m);
     for (int i = 0; i < WD_CASCADES; i++) {
-        double far = params->distance_m * pow(CASCADE_RATIO, WD_CASCADES - 1 - i);
+        double far = cascade_end(params, i);
         struct box box = cascade_box(params, &axes, near, far);
         cascades[i] = (struct wd_view){
             .width = params->size, .height = params->size, .cascade = (uint32_t)i};
         cascade_view(&cascades[i], params->view, &box, &axes);
+        keep_to_slice(&cascades[i], params, near, far);
         memcpy(uniforms->shadow_from_rel[i], cascades[i].clip_from_rel,
                sizeof uniforms->shadow_from_rel[i]);
         for (int column = 0; column < 4; column++) {

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "frame/nearest.h"
 #include "frame/sun.h"
 
 static const float NEAR_M = 0.1f;
@@ -113,8 +114,10 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
         .view = view,
         .distance_m = (float)scene->quality.shadow_distance_m,
         .near_m = NEAR_M,
+        .nearest_m = wd_nearest_seen(forest, view),
         .size = params->shadow_size,
         .max_z_m = forest->world->terrain.max_m + forest->max_tree_height_m,
+        .max_height_m = forest->max_tree_height_m,
     };
     memcpy(sun.sun_direction, uniforms->sun_direction, sizeof sun.sun_direction);
     wd_cascades_init(cascades, uniforms, &sun);

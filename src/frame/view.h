@@ -6,9 +6,11 @@
 #include "shared/frame.h"
 #include "weald/forest.h"
 
+enum { WD_FRUSTUM_PLANES = 8 };
+
 /* Half-spaces in rel: a point is inside where dot(plane.xyz, p) + plane.w >= 0. */
 struct wd_frustum {
-    float planes[6][4];
+    float planes[WD_FRUSTUM_PLANES][4];
     uint32_t count;
 };
 
@@ -45,8 +47,10 @@ struct wd_cascades_params {
     float sun_direction[3];  /* unit, toward the sun */
     float distance_m;        /* at which the last cascade ends */
     float near_m;
+    float nearest_m;         /* distance of the nearest thing that the camera may see */
     uint32_t size;           /* texels a side */
     double max_z_m;          /* of everything that casts, local frame */
+    double max_height_m;     /* of a tree */
 };
 /* Fills the shadow members of `*uniforms` and one view a cascade. */
 void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,

@@ -1,9 +1,14 @@
 /* Static geometry in octree order (Guerrero 2006, section 3; row G5): the cards of all trees lie in
  * one soup ordered depth-first, so that any octant is one range and neighbours merge. The soup is
- * not stored: the vertex shader makes vertex i of tree i / 16. */
+ * not stored: the vertex shader makes vertex i of tree i / 12.
+ *
+ * Octants are visited from near to far, and none with more than SORTED_TREES is drawn as one range:
+ * what is hidden then fails the depth test before it is shaded. */
 #include "methods/method.h"
 
 #include <math.h>
+
+enum { SORTED_TREES = 256, MAX_CHILDREN = 8 };
 
 struct traversal {
     const struct wd_tree_draw *draw;
@@ -31,13 +36,49 @@ static void add_single(const struct traversal *t, uint32_t begin, uint32_t end)
 
 static void visit(const struct traversal *t, uint32_t index);
 
+static void relative_box(const struct traversal *t, const struct wd_octant *octant, float min[3],
+                         float max[3])
+{
+    for (int k = 0; k < 3; k++) {
+        min[k] = (float)((double)octant->min_m[k] - t->draw->view->eye_m[k]);
+        max[k] = (float)((double)octant->max_m[k] - t->draw->view->eye_m[k]);
+    }
+}
+
+/* Less is drawn sooner: distance from the eye, or from the sun for a cascade. */
+static float sort_key(const struct traversal *t, const float min[3], const float max[3])
+{
+    if (t->draw->pass == WD_PASS_CAMERA)
+        return box_distance(min, max);
+    float depth = 0.0f; /* reversed: greatest nearest the sun */
+    for (int k = 0; k < 3; k++) {
+        float rise = t->draw->view->clip_from_rel[k][2];
+        depth += rise * (rise > 0.0f ? max[k] : min[k]);
+    }
+    return -depth;
+}
+
+/* Nearest first, by insertion: there are at most eight. */
 static void visit_children(const struct traversal *t, const struct wd_octant *octant)
 {
-    uint32_t child = octant->first_child;
+    const struct wd_octant *octants = t->draw->forest->world->octree.octants;
+    uint32_t order[MAX_CHILDREN], child = octant->first_child;
+    float keys[MAX_CHILDREN];
     for (uint32_t i = 0; i < octant->child_count; i++) {
-        visit(t, child);
-        child = t->draw->forest->world->octree.octants[child].next_sibling;
+        float min[3], max[3];
+        relative_box(t, &octants[child], min, max);
+        float own = sort_key(t, min, max);
+        uint32_t at = i;
+        for (; at > 0 && keys[at - 1] > own; at--) {
+            order[at] = order[at - 1];
+            keys[at] = keys[at - 1];
+        }
+        order[at] = child;
+        keys[at] = own;
+        child = octants[child].next_sibling;
     }
+    for (uint32_t i = 0; i < octant->child_count; i++)
+        visit(t, order[i]);
 }
 
 static void visit(const struct traversal *t, uint32_t index)
@@ -45,17 +86,16 @@ static void visit(const struct traversal *t, uint32_t index)
     const struct wd_octant *octant = &t->draw->forest->world->octree.octants[index];
     const struct wd_view *view = t->draw->view;
     float min[3], max[3];
-    for (int k = 0; k < 3; k++) {
-        min[k] = (float)((double)octant->min_m[k] - view->eye_m[k]);
-        max[k] = (float)((double)octant->max_m[k] - view->eye_m[k]);
-    }
+    relative_box(t, octant, min, max);
     enum wd_side side = wd_frustum_box(&view->frustum, min, max);
     if (side == WD_OUTSIDE)
         return;
     if (box_distance(min, max) < t->card_distance_m) {
         add_single(t, octant->begin, octant->own_end);
         visit_children(t, octant);
-    } else if (side == WD_PARTLY && octant->depth < t->max_cull_depth && octant->child_count) {
+    } else if (octant->child_count &&
+               ((side == WD_PARTLY && octant->depth < t->max_cull_depth) ||
+                octant->end - octant->begin > SORTED_TREES)) {
         wd_selection_add_range(t->selection, octant->begin, octant->own_end);
         visit_children(t, octant);
     } else {

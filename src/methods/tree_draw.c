@@ -113,7 +113,8 @@ static struct wd_tree_push tree_push(const struct wd_tree_draw *draw, uint32_t l
     return (struct wd_tree_push){.variants = draw->forest->variants,
                                  .cascade = draw->view->cascade,
                                  .level = level,
-                                 .show = 1.0f};
+                                 .show = 1.0f,
+                                 .pixels_per_radian = draw->view->pixels_per_radian};
 }
 
 /* Instances in the frame's upload memory; false marks the frame failed already. */
