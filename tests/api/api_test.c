@@ -1,0 +1,533 @@
+/* The public interface, through a small scene on software Vulkan.
+ *   test-api ROOT   (the folder of the sources) */
+#include "suite.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output/exr.h"
+
+enum { PIXELS = PICTURE_WIDTH * PICTURE_HEIGHT, MIDDLE = PIXELS / 2 + PICTURE_WIDTH / 2 };
+
+static struct wd_picture render(struct suite *suite, const struct wd_render_params *params)
+{
+    struct wd_picture picture;
+    enum wd_result result = wd_renderer_render(suite->renderer, params, &picture);
+    if (result != WD_OK)
+        fail_msg("%s: %s", wd_result_name(result), suite->messages);
+    return picture;
+}
+
+static struct wd_picture render_layers(struct suite *suite, const char *camera, uint32_t layers)
+{
+    struct wd_render_params params = suite_params(suite->forest, camera);
+    params.layers = layers;
+    return render(suite, &params);
+}
+
+/* --- the forest -------------------------------------------------------------------------- */
+
+static void the_forest_counts_its_trees(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_forest_info info;
+    wd_forest_get_info(suite->forest, &info);
+    assert_string_equal(info.name, "small");
+    assert_true(info.tree_count > 1200 && info.tree_count < 1800);
+    assert_true(info.species_count == 2 && info.layer_count == 2 && info.inventory_count == 0);
+    assert_int_equal(info.seed, 11);
+    uint64_t counted[2] = {0}, sum = 0;
+    for (uint32_t id = 1; id <= info.tree_count; id++) {
+        struct wd_tree_info tree;
+        assert_true(wd_forest_get_tree(suite->forest, id, &tree));
+        assert_true(tree.id == id && tree.species < 2);
+        counted[tree.species]++;
+        double ground = wd_forest_ground_m(suite->forest, tree.position_m[0], tree.position_m[1]);
+        assert_true(fabs(ground - tree.position_m[2]) < 0.5);
+        assert_true(tree.height_m >= 8.9 && tree.height_m <= 20.1);
+    }
+    for (uint32_t i = 0; i < 2; i++) {
+        struct wd_species_info species;
+        assert_true(wd_forest_get_species(suite->forest, i, &species));
+        assert_int_equal(species.tree_count, counted[i]);
+        sum += species.tree_count;
+    }
+    assert_int_equal(sum, info.tree_count);
+}
+
+static void there_is_nothing_beyond_the_last(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_forest_info info;
+    struct wd_tree_info tree;
+    struct wd_species_info species;
+    struct wd_inventory_info inventory;
+    wd_forest_get_info(suite->forest, &info);
+    assert_false(wd_forest_get_tree(suite->forest, 0, &tree));
+    assert_false(wd_forest_get_tree(suite->forest, (uint32_t)info.tree_count + 1, &tree));
+    assert_false(wd_forest_get_species(suite->forest, 2, &species));
+    assert_false(wd_forest_get_inventory(suite->forest, 0, &inventory));
+    assert_null(wd_forest_camera_name(suite->forest, 2));
+    assert_null(wd_forest_path_name(suite->forest, 1));
+}
+
+static void cameras_and_paths_go_by_name(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_camera camera, first;
+    double duration_s;
+    assert_string_equal(wd_forest_camera_name(suite->forest, 1), "walk");
+    assert_int_equal(wd_forest_get_camera(suite->forest, NULL, &first), WD_OK);
+    assert_int_equal(wd_forest_get_camera(suite->forest, "over", &camera), WD_OK);
+    assert_memory_equal(&camera, &first, sizeof camera);
+    assert_true(fabs(camera.yaw_rad) < 1e-9 && camera.pitch_rad < -0.1);
+    assert_int_equal(wd_forest_get_path_camera(suite->forest, "fly", 99, &camera, &duration_s),
+                     WD_OK);
+    assert_true(duration_s == 4.0 && fabs(camera.position_m[1]) < 1e-9);
+    assert_true(fabs(camera.yaw_rad - 20.0 / 57.29577951308232) < 1e-9);
+}
+
+static void unknown_cameras_are_named(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_camera camera;
+    suite_clear(suite);
+    assert_int_equal(wd_forest_get_camera(suite->forest, "wlak", &camera), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "wlak") && suite_logged(suite, "walk"));
+    suite_clear(suite);
+    assert_int_equal(wd_forest_get_path_camera(suite->forest, "swim", 0, &camera, NULL),
+                     WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "swim") && suite_logged(suite, "fly"));
+}
+
+static void seeds_are_whole_numbers(void **state)
+{
+    struct suite *suite = *state;
+    const char *const wrong[] = {"", "-1", " 1", "1x", "0x10", "1.5", "4294967296",
+                                 "99999999999999999999999"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        const struct wd_forest_params params = {
+            .scene_path = suite->small_path, .seed = wrong[i], .log = suite->log};
+        struct wd_forest *forest = suite->forest;
+        char quoted[64];
+        snprintf(quoted, sizeof quoted, "seed \"%s\"", wrong[i]);
+        suite_clear(suite);
+        assert_int_equal(wd_forest_create(&forest, &params), WD_ERROR_INPUT);
+        assert_null(forest);
+        assert_true(suite_logged(suite, quoted));
+    }
+}
+
+static uint64_t hash_of(struct suite *suite, const char *seed, unsigned threads)
+{
+    const struct wd_forest_params params = {.scene_path = suite->small_path, .seed = seed,
+                                            .threads = threads, .log = suite->log};
+    struct wd_forest *forest;
+    struct wd_forest_info info;
+    assert_int_equal(wd_forest_create(&forest, &params), WD_OK);
+    wd_forest_get_info(forest, &info);
+    wd_forest_destroy(&forest);
+    assert_null(forest);
+    return info.hash;
+}
+
+static void a_seed_is_a_world(void **state)
+{
+    struct suite *suite = *state;
+    uint64_t own = hash_of(suite, NULL, 1);
+    assert_true(own == hash_of(suite, "11", 3));
+    assert_true(own != hash_of(suite, "4294967295", 1));
+}
+
+static void too_many_trees_are_refused(void **state)
+{
+    struct suite *suite = *state;
+    const struct wd_forest_params params = {
+        .scene_path = suite->small_path, .max_trees = 100, .log = suite->log};
+    struct wd_forest *forest;
+    suite_clear(suite);
+    assert_int_equal(wd_forest_create(&forest, &params), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "100"));
+}
+
+/* --- what is refused --------------------------------------------------------------------- */
+
+static void assert_refused(struct suite *suite, const struct wd_render_params *params,
+                           const char *part)
+{
+    struct wd_picture picture;
+    suite_clear(suite);
+    assert_int_equal(wd_renderer_render(suite->renderer, params, &picture), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, part));
+    assert_true(picture.width == 0 && !picture.display);
+}
+
+static void impossible_pictures_are_refused(void **state)
+{
+    struct suite *suite = *state;
+    const struct wd_render_params good = suite_params(suite->forest, "over");
+    struct wd_render_params params = good;
+    params.method = "octtree";
+    assert_refused(suite, &params, "octtree");
+    params = good;
+    params.width = 0;
+    assert_refused(suite, &params, "0 x 120");
+    params.width = 100000;
+    assert_refused(suite, &params, "100000 x 120");
+    params = good;
+    params.height = 0;
+    assert_refused(suite, &params, "160 x 0");
+    params.height = 100000;
+    assert_refused(suite, &params, "160 x 100000");
+    params = good;
+    params.samples = 1u << 30;
+    assert_refused(suite, &params, "1073741824 samples");
+    params = good;
+    params.camera.fov_rad = NAN;
+    assert_refused(suite, &params, "field of view");
+    params = good;
+    params.camera.position_m[2] = INFINITY;
+    assert_refused(suite, &params, "camera");
+}
+
+static void without_a_forest_nothing_is_drawn(void **state)
+{
+    struct suite *suite = *state;
+    const struct wd_render_params params = suite_params(suite->forest, "over");
+    assert_int_equal(wd_renderer_set_forest(suite->renderer, NULL), WD_OK);
+    assert_refused(suite, &params, "forest");
+    assert_int_equal(wd_renderer_set_forest(suite->renderer, suite->forest), WD_OK);
+}
+
+static void a_wish_to_stop_stops(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_render_params params = suite_params(suite->forest, "over");
+    struct wd_picture picture;
+    params.samples = 4;
+    suite->stop_stage = "samples";
+    suite->stop_at = 2;
+    enum wd_result result = wd_renderer_render(suite->renderer, &params, &picture);
+    suite->stop_stage = NULL;
+    assert_int_equal(result, WD_ERROR_INTERRUPTED);
+    assert_null(picture.display);
+    picture = render(suite, &params); /* and the renderer goes on */
+    assert_non_null(picture.display);
+    wd_picture_finish(&picture);
+}
+
+/* --- layers ------------------------------------------------------------------------------ */
+
+static double length3(const float *v)
+{
+    return sqrt((double)v[0] * v[0] + (double)v[1] * v[1] + (double)v[2] * v[2]);
+}
+
+static void assert_pixel(const struct suite *suite, const struct wd_picture *p, size_t i)
+{
+    bool sky = isinf(p->depth_m[i]);
+    struct wd_tree_info tree;
+    assert_true(sky || p->depth_m[i] > 0.0f);
+    assert_true(fabs(length3(p->normal + 3 * i) - (sky ? 0.0 : 1.0)) < 1e-3);
+    assert_int_equal(p->display[4 * i + 3], 255);
+    for (size_t k = 3 * i; k < 3 * i + 3; k++) {
+        assert_true(p->albedo[k] >= 0.0f && p->albedo[k] <= 1.0f);
+        assert_true(p->color[k] >= 0.0f && isfinite(p->color[k]));
+    }
+    if (p->tree_id[i] == 0) {
+        assert_int_equal(p->species[i], 0);
+        return;
+    }
+    assert_false(sky);
+    assert_true(wd_forest_get_tree(suite->forest, p->tree_id[i], &tree));
+    assert_int_equal(p->species[i], tree.species + 1);
+}
+
+static void every_layer_holds_what_it_says(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_picture p = render_layers(suite, "over", WD_LAYER_ALL);
+    size_t sky = 0, trees = 0;
+    assert_true(p.width == PICTURE_WIDTH && p.height == PICTURE_HEIGHT);
+    assert_non_null(p.velocity_px);
+    for (size_t i = 0; i < PIXELS; i++) {
+        assert_pixel(suite, &p, i);
+        sky += isinf(p.depth_m[i]);
+        trees += p.tree_id[i] != 0;
+    }
+    assert_true(sky > PIXELS / 50 && trees > PIXELS / 10); /* so that all of it was tested */
+    assert_true(sky + trees < PIXELS);
+    wd_picture_finish(&p);
+    assert_null(p.display);
+}
+
+/* The crown that a pixel shows is where the pixel looks. */
+static void depths_lead_to_the_trees(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_render_params params = suite_params(suite->forest, "over");
+    params.layers = WD_LAYER_DEPTH | WD_LAYER_TREE_ID;
+    struct wd_picture p = render(suite, &params);
+    const struct wd_camera *c = &params.camera;
+    double per_px = 2.0 * tan(0.5 * c->fov_rad) / PICTURE_HEIGHT;
+    size_t near = 0, trees = 0;
+    assert_null(p.display);
+    assert_null(p.color);
+    for (size_t i = 0; i < PIXELS; i++) {
+        struct wd_tree_info tree;
+        if (!wd_forest_get_tree(suite->forest, p.tree_id[i], &tree))
+            continue;
+        double z = p.depth_m[i];
+        double right = ((double)(i % PICTURE_WIDTH) + 0.5 - PICTURE_WIDTH / 2) * per_px * z;
+        double up = (PICTURE_HEIGHT / 2 - (double)(i / PICTURE_WIDTH) - 0.5) * per_px * z;
+        /* the camera looks north */
+        double x = c->position_m[0] + right;
+        double y = c->position_m[1] + z * cos(c->pitch_rad) - up * sin(c->pitch_rad);
+        double height = c->position_m[2] + z * sin(c->pitch_rad) + up * cos(c->pitch_rad);
+        double side = hypot(x - tree.position_m[0], y - tree.position_m[1]);
+        height -= tree.position_m[2];
+        trees++;
+        near += side < 0.6 * tree.crown_diameter_m + 1.0 && height > -1.0 &&
+                height < 1.1 * tree.height_m + 1.0;
+    }
+    assert_true(near >= 0.98 * (double)trees);
+    wd_picture_finish(&p);
+}
+
+static void the_same_picture_twice(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_picture a = render_layers(suite, "walk", WD_LAYER_ALL);
+    struct wd_picture other = render_layers(suite, "over", 0); /* leaves no trace */
+    struct wd_picture b = render_layers(suite, "walk", WD_LAYER_ALL);
+    assert_memory_equal(a.display, b.display, PIXELS * 4);
+    assert_memory_equal(a.color, b.color, PIXELS * 12);
+    assert_memory_equal(a.depth_m, b.depth_m, PIXELS * 4);
+    assert_memory_equal(a.normal, b.normal, PIXELS * 12);
+    assert_memory_equal(a.albedo, b.albedo, PIXELS * 12);
+    assert_memory_equal(a.tree_id, b.tree_id, PIXELS * 4);
+    assert_memory_equal(a.velocity_px, b.velocity_px, PIXELS * 8);
+    assert_true(memcmp(a.display, other.display, PIXELS * 4) != 0);
+    wd_picture_finish(&a);
+    wd_picture_finish(&b);
+    wd_picture_finish(&other);
+}
+
+static void methods_agree(void **state)
+{
+    struct suite *suite = *state;
+    const char *const cameras[] = {"over", "walk"};
+    for (int c = 0; c < 2; c++) {
+        struct wd_render_params params = suite_params(suite->forest, cameras[c]);
+        params.layers = WD_LAYER_TREE_ID;
+        params.method = "octree";
+        struct wd_picture octree = render(suite, &params);
+        params.method = "separate";
+        struct wd_picture separate = render(suite, &params);
+        size_t same = 0;
+        for (size_t i = 0; i < PIXELS; i++)
+            same += octree.tree_id[i] == separate.tree_id[i];
+        assert_true(same >= PIXELS * 99 / 100);
+        wd_picture_finish(&octree);
+        wd_picture_finish(&separate);
+    }
+}
+
+static void wd_method_names_are_known(void **state)
+{
+    (void)state;
+    const char *const *names = wd_method_names();
+    assert_string_equal(names[0], "octree");
+    assert_string_equal(names[1], "separate");
+    assert_null(names[2]);
+}
+
+/* --- velocity ---------------------------------------------------------------------------- */
+
+static void nothing_moves_in_a_still_world(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_picture p = render_layers(suite, "walk", WD_LAYER_VELOCITY);
+    for (size_t i = 0; i < PIXELS * 2; i++)
+        assert_true(fabsf(p.velocity_px[i]) < 1e-3f);
+    wd_picture_finish(&p);
+}
+
+/* A camera that turned right by `turn` sees the middle of its picture move left by turn * f. */
+static void surfaces_move_against_the_camera(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_render_params params = suite_params(suite->forest, "walk");
+    struct wd_camera previous = params.camera;
+    const double turn = 0.02;
+    double focal_px = 0.5 * PICTURE_HEIGHT / tan(0.5 * params.camera.fov_rad);
+    params.previous_camera = &previous;
+    params.layers = WD_LAYER_VELOCITY;
+    previous.yaw_rad -= turn;
+    struct wd_picture p = render(suite, &params);
+    assert_true(fabs(p.velocity_px[2 * MIDDLE] + turn * focal_px) < 0.1);
+    assert_true(fabs(p.velocity_px[2 * MIDDLE + 1]) < 0.1);
+    wd_picture_finish(&p);
+    previous = params.camera;
+    previous.pitch_rad -= turn; /* looked up since: all goes down */
+    p = render(suite, &params);
+    assert_true(fabs(p.velocity_px[2 * MIDDLE + 1] - turn * focal_px) < 0.1);
+    wd_picture_finish(&p);
+}
+
+static void wind_moves_trees_and_nothing_else(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_render_params params = suite_params(suite->forest, "walk");
+    params.layers = WD_LAYER_VELOCITY | WD_LAYER_TREE_ID;
+    params.time_s = 1.5;
+    params.previous_time_s = 1.0;
+    struct wd_picture p = render(suite, &params);
+    size_t moved = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        float speed = hypotf(p.velocity_px[2 * i], p.velocity_px[2 * i + 1]);
+        assert_true(p.tree_id[i] || speed < 1e-3f);
+        moved += p.tree_id[i] && speed > 0.01f;
+    }
+    assert_true(moved > PIXELS / 100);
+    wd_picture_finish(&p);
+}
+
+/* --- files ------------------------------------------------------------------------------- */
+
+static void exr_files_keep_ids_and_depths(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_picture p = render_layers(suite, "over", WD_LAYER_ALL);
+    const char *path = suite_path(suite, "layers.exr");
+    struct wd_exr_image image;
+    p.tree_id[0] = 0xfedcba98u; /* a float would lose the last digits */
+    assert_int_equal(wd_picture_write(&p, path, &suite->log), WD_OK);
+    assert_true(wd_exr_read(&image, path, &suite->log));
+    assert_true(image.width == PICTURE_WIDTH && image.height == PICTURE_HEIGHT);
+    assert_int_equal(image.plane_count, 14);
+    const struct wd_exr_plane *id = wd_exr_find(&image, "tree_id");
+    const struct wd_exr_plane *depth = wd_exr_find(&image, "Z");
+    const struct wd_exr_plane *species = wd_exr_find(&image, "species");
+    assert_true(id && depth && species && id->type == WD_EXR_UINT);
+    assert_memory_equal(id->data, p.tree_id, PIXELS * 4);
+    assert_memory_equal(depth->data, p.depth_m, PIXELS * 4);
+    assert_memory_equal(species->data, p.species, PIXELS * 4);
+    wd_exr_image_finish(&image);
+    wd_picture_finish(&p);
+}
+
+static void pictures_need_a_known_ending(void **state)
+{
+    struct suite *suite = *state;
+    uint8_t pixel[4] = {1, 2, 3, 255};
+    const struct wd_picture shown = {.width = 1, .height = 1, .display = pixel};
+    suite_clear(suite);
+    assert_int_equal(wd_picture_write(&shown, suite_path(suite, "a.jpg"), &suite->log),
+                     WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "a.jpg"));
+    suite_clear(suite);
+    assert_int_equal(wd_picture_write(&shown, suite_path(suite, "no/a.png"), &suite->log),
+                     WD_ERROR_OUTPUT);
+    assert_true(suite_logged(suite, "no/a.png"));
+    assert_int_equal(wd_picture_write(&shown, suite_path(suite, "a.exr"), &suite->log),
+                     WD_ERROR_INPUT);
+}
+
+/* --- precision --------------------------------------------------------------------------- */
+
+/* One tree at x, y, seen from 14 m. */
+static struct wd_picture render_lone_tree(struct suite *suite, const char *frame, double x, double y)
+{
+    char text[2048];
+    snprintf(text, sizeof text, "x,y,species,height\n%.2f,%.2f,beech,12\n", x, y);
+    assert_true(suite_write(suite, "one.csv", text));
+    snprintf(text, sizeof text,
+             "{\"name\": \"one\", \"terrain\": {\"kind\": \"flat\", \"size_m\": [0, 0]},"
+             "\"species\": {\"beech\": \"%s/species/beech.json\"}, \"variants\": 1,"
+             "\"inventories\": [{\"file\": \"one.csv\", \"frame\": \"%s\","
+             "\"species\": {\"beech\": \"beech\"}}],"
+             "\"quality\": {\"shadow_size\": 512}}",
+             suite->root, frame);
+    assert_true(suite_write(suite, "one.json", text));
+    struct wd_forest *forest = suite_forest(suite, suite_path(suite, "one.json"));
+    assert_non_null(forest);
+    struct wd_forest_info info;
+    struct wd_tree_info tree;
+    wd_forest_get_info(forest, &info);
+    assert_int_equal(info.tree_count, 1);
+    assert_true(wd_forest_get_tree(forest, 1, &tree));
+    assert_true(fabs(tree.position_m[0] + info.origin_m[0] - x) < 1e-3);
+    assert_true(fabs(tree.position_m[1] + info.origin_m[1] - y) < 1e-3);
+    struct wd_render_params params = {
+        .camera = {{tree.position_m[0] - 4.0, tree.position_m[1] - 13.0, 3.0}, 0.3, 0.15, 1.0},
+        .width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .layers = WD_LAYER_ALL};
+    assert_int_equal(wd_renderer_set_forest(suite->renderer, forest), WD_OK);
+    struct wd_picture picture = render(suite, &params);
+    assert_int_equal(wd_renderer_set_forest(suite->renderer, suite->forest), WD_OK);
+    wd_forest_destroy(&forest);
+    return picture;
+}
+
+/* The ground starts at whole tens of metres, so whole tens between the two change nothing. */
+static void far_coordinates_lose_nothing(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_picture here = render_lone_tree(suite, "local", 50.25, 51.5);
+    struct wd_picture far = render_lone_tree(suite, "projected", 3512340.25, 6345671.5);
+    size_t trees = 0, same_id = 0, same_display = 0;
+    double depth_off_m = 0.0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        trees += here.tree_id[i] != 0;
+        same_id += here.tree_id[i] == far.tree_id[i];
+        if (here.tree_id[i] && far.tree_id[i])
+            depth_off_m = fmax(depth_off_m, fabs((double)here.depth_m[i] - far.depth_m[i]));
+        int most = 0;
+        for (size_t k = 4 * i; k < 4 * i + 3; k++)
+            most = abs(here.display[k] - far.display[k]) > most
+                       ? abs(here.display[k] - far.display[k]) : most;
+        same_display += most <= 1;
+    }
+    assert_true(trees > PIXELS / 20);
+    assert_true(same_id == PIXELS && depth_off_m < 1e-4);
+    assert_true(same_display == PIXELS);
+    wd_picture_finish(&here);
+    wd_picture_finish(&far);
+}
+
+int main(int argc, char **argv)
+{
+    static struct suite suite;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_prestate(the_forest_counts_its_trees, &suite),
+        cmocka_unit_test_prestate(there_is_nothing_beyond_the_last, &suite),
+        cmocka_unit_test_prestate(cameras_and_paths_go_by_name, &suite),
+        cmocka_unit_test_prestate(unknown_cameras_are_named, &suite),
+        cmocka_unit_test_prestate(seeds_are_whole_numbers, &suite),
+        cmocka_unit_test_prestate(a_seed_is_a_world, &suite),
+        cmocka_unit_test_prestate(too_many_trees_are_refused, &suite),
+        cmocka_unit_test_prestate(without_a_forest_nothing_is_drawn, &suite),
+        cmocka_unit_test_prestate(impossible_pictures_are_refused, &suite),
+        cmocka_unit_test_prestate(a_wish_to_stop_stops, &suite),
+        cmocka_unit_test_prestate(every_layer_holds_what_it_says, &suite),
+        cmocka_unit_test_prestate(depths_lead_to_the_trees, &suite),
+        cmocka_unit_test_prestate(the_same_picture_twice, &suite),
+        cmocka_unit_test_prestate(methods_agree, &suite),
+        cmocka_unit_test_prestate(wd_method_names_are_known, &suite),
+        cmocka_unit_test_prestate(nothing_moves_in_a_still_world, &suite),
+        cmocka_unit_test_prestate(surfaces_move_against_the_camera, &suite),
+        cmocka_unit_test_prestate(wind_moves_trees_and_nothing_else, &suite),
+        cmocka_unit_test_prestate(exr_files_keep_ids_and_depths, &suite),
+        cmocka_unit_test_prestate(pictures_need_a_known_ending, &suite),
+        cmocka_unit_test_prestate(far_coordinates_lose_nothing, &suite),
+    };
+    if (argc != 2) {
+        fprintf(stderr, "usage: %s ROOT\n", argv[0]);
+        return 2;
+    }
+    int failed = suite_init(&suite, argv[1]) ? cmocka_run_group_tests(tests, NULL, NULL) : 1;
+    suite_finish(&suite);
+    return failed;
+}
