@@ -490,7 +490,7 @@ static void far_coordinates_lose_nothing(void **state)
                        ? abs(here.display[k] - far.display[k]) : most;
         same_display += most <= 1;
     }
-    assert_true(trees > PIXELS / 20);
+    assert_true(trees > PIXELS / 40);
     assert_true(same_id == PIXELS && depth_off_m < 1e-4);
     assert_true(same_display == PIXELS);
     wd_picture_finish(&here);
