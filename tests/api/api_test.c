@@ -439,7 +439,8 @@ static void pictures_need_a_known_ending(void **state)
 /* --- precision --------------------------------------------------------------------------- */
 
 /* One tree at x, y, seen from 14 m. */
-static struct wd_picture render_lone_tree(struct suite *suite, const char *frame, double x, double y)
+static struct wd_picture render_lone_tree(struct suite *suite, const char *frame, double x,
+                                           double y)
 {
     char text[2048];
     snprintf(text, sizeof text, "x,y,species,height\n%.2f,%.2f,beech,12\n", x, y);
