@@ -7,7 +7,7 @@ float card_noise(vec3 uv, float lod, uint random, uint sample_index)
 {
     vec2 cells = vec2(WD_CARD_WIDTH_TEXELS, WD_CARD_HEIGHT_TEXELS) * exp2(-max(floor(lod), 0.0));
     uvec2 cell = uvec2(uv.xy * cells);
-    return wd_hash_unit(wd_hash3(cell.x | (cell.y << 16), random, sample_index));
+    return wd_hash_unit(wd_hash_mix((cell.x | (cell.y << 16)) ^ random ^ sample_index * 0x9e3779b9u));
 }
 
 float card_opacity(float alpha, float lod)

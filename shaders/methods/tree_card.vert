@@ -1,5 +1,5 @@
 #version 460
-/* A tree as crossed billboards. LISTED 0: vertex index / 12 is the tree, so that any range in octree
+/* A tree as crossed billboards. LISTED 0: vertex index / 12 (or 8) is the tree, so that any range in octree
  * order is one draw; LISTED 1: it is an index into the instances. SHADOW: one card that faces
  * the sun. */
 #include "shared/frame.h"
@@ -23,8 +23,6 @@ layout(location = 2) flat out vec4 out_tint; /* a: show */
 layout(location = 3) flat out uvec2 out_flat; /* surface, random */
 layout(location = 4) flat out vec3 out_flip; /* unit normal of a card seen from behind, else 0 */
 layout(location = 5) flat out float out_lod;
-
-const uint PER_TREE = SHADOW != 0u ? WD_SHADOW_CARD_VERTICES : WD_CARD_VERTICES;
 
 /* Which upright card comes first (slot 0) and second among those that face the viewer most. */
 uint facing_card(uint slot, vec2 toward)
@@ -80,7 +78,7 @@ card_corner level_corner(wd_model model, tree_pose pose, vec2 side, vec3 toward)
                                            model.height_m * WD_CARD_TOP));
     corner.layer = corner.card = WD_CARD_SIDES;
     corner.normal = vec3(0.0, 0.0, 1.0);
-    corner.share = smoothstep(0.25, 0.6, abs(toward.z));
+    corner.share = smoothstep(WD_LEVEL_CARD_SINE, 0.6, abs(toward.z));
     return corner;
 }
 
@@ -102,7 +100,8 @@ card_corner upright_corner(wd_model model, tree_pose pose, uint slot, vec2 side,
 
 void main()
 {
-    uint slot = uint(gl_VertexIndex) / PER_TREE, vertex = uint(gl_VertexIndex) % PER_TREE;
+    uint per_tree = SHADOW != 0u ? WD_SHADOW_CARD_VERTICES : push.card_vertices;
+    uint slot = uint(gl_VertexIndex) / per_tree, vertex = uint(gl_VertexIndex) - slot * per_tree;
     uint index = slot;
     float show = push.show;
     if (LISTED != 0u) {
@@ -120,7 +119,7 @@ void main()
     card_corner corner;
     if (SHADOW != 0u)
         corner = sun_corner(model, pose, side);
-    else if (vertex >= 8u)
+    else if (vertex >= WD_UPRIGHT_VERTICES)
         corner = level_corner(model, pose, side, toward);
     else
         corner = upright_corner(model, pose, vertex / 4u, side, toward);

@@ -20,11 +20,11 @@
 /* Drawn are the two upright ones that face the viewer most (the third is edge on, its share is 0
  * before it could be seen to go) and the level one. */
 #define WD_CARD_VERTICES 12  /* a tree */
-#define WD_CARD_INDICES 18
+#define WD_UPRIGHT_VERTICES 8
+#define WD_LEVEL_CARD_SINE 0.25 /* of the angle above or below, at which the level card begins */
 #define WD_CARD_TOP 0.62
 /* For the sun: one card that faces it. */
 #define WD_SHADOW_CARD_VERTICES 4
-#define WD_SHADOW_CARD_INDICES 6
 /* Trees that one draw of cards may hold: the length of the index pattern. */
 #define WD_CARD_BATCH 65536
 
@@ -82,6 +82,8 @@ struct wd_tree_push {
     uint32_t level;     /* WD_LEVEL_* of what is drawn, for LOD colouring */
     float show;         /* for draws of ranges */
     float pixels_per_radian; /* of the camera */
+    uint32_t card_vertices;  /* a tree: WD_CARD_VERTICES, or WD_UPRIGHT_VERTICES where all are seen
+                                so level that the third card shows nothing */
 };
 
 #endif

@@ -10,7 +10,7 @@
 #include "base/memory.h"
 
 /* Raised whenever the same input would bake to something else. */
-static const uint32_t BAKE_VERSION = 1;
+static const uint32_t BAKE_VERSION = 2;
 
 /* A cache file: a header of little-endian words, then albedo and normal as one zstd frame. */
 enum { HEADER_BYTES = 48 };

@@ -90,10 +90,10 @@ static bool make_table(struct wd_buffer *buffer, struct wd_gpu *gpu, const char 
 }
 
 /* Two triangles a card: corners 0 1 2, 2 1 3. */
-static bool make_card_pattern(struct wd_buffer *buffer, struct wd_gpu *gpu, uint32_t vertices)
+static bool make_card_pattern(struct wd_buffer *buffer, struct wd_gpu *gpu)
 {
     static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
-    size_t cards = (size_t)WD_CARD_BATCH * vertices / 4;
+    size_t cards = (size_t)WD_CARD_BATCH * WD_CARD_VERTICES / 4;
     uint32_t *indices = wd_alloc_array(cards * 6, sizeof *indices);
     for (size_t i = 0; i < cards * 6; i++)
         indices[i] = (uint32_t)(i / 6 * 4) + corners[i % 6];
@@ -302,10 +302,10 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
     };
     bool ok = wd_ground_init(&forest->ground, gpu, params->world, params->log) &&
               upload_trees(forest, gpu) && upload_fades(forest, gpu) &&
-              make_card_pattern(&forest->card_indices, gpu, WD_CARD_VERTICES) &&
-              make_card_pattern(&forest->shadow_card_indices, gpu, WD_SHADOW_CARD_VERTICES) &&
+              make_card_pattern(&forest->card_indices, gpu) &&
               wd_sampler_init(&forest->look_sampler, gpu, WD_SAMPLER_TRILINEAR_REPEAT) &&
               wd_sampler_init(&forest->card_sampler, gpu, WD_SAMPLER_LINEAR_CLAMP) &&
+              wd_sampler_init(&forest->point_sampler, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
               (forest->model_count == 0 || prepare(&work, gpu));
     for (uint32_t i = 0; i < forest->model_count; i++)
         wd_tree_model_finish(&work.grown[i]);
@@ -318,9 +318,8 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
 
 void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
-    struct wd_buffer *buffers[] = {
-        &forest->trees,   &forest->models,       &forest->vertices,           &forest->fades,
-        &forest->indices, &forest->card_indices, &forest->shadow_card_indices};
+    struct wd_buffer *buffers[] = {&forest->trees, &forest->models,  &forest->vertices,
+                                   &forest->fades, &forest->indices, &forest->card_indices};
     struct wd_image *images[] = {&forest->looks, &forest->card_albedo, &forest->card_normal};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
@@ -329,6 +328,8 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
     wd_ground_finish(&forest->ground, gpu);
     if (forest->look_sampler)
         vkDestroySampler(gpu->device, forest->look_sampler, NULL);
+    if (forest->point_sampler)
+        vkDestroySampler(gpu->device, forest->point_sampler, NULL);
     if (forest->card_sampler)
         vkDestroySampler(gpu->device, forest->card_sampler, NULL);
     free(forest->ranges);
@@ -341,8 +342,7 @@ void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
 {
     struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->vertices,
                                   &forest->fades};
-    struct wd_buffer *indices[] = {&forest->indices, &forest->card_indices,
-                                   &forest->shadow_card_indices};
+    struct wd_buffer *indices[] = {&forest->indices, &forest->card_indices};
     struct wd_image *images[] = {&forest->looks, &forest->card_albedo, &forest->card_normal};
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
         if (tables[i]->buffer)

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-enum { SORTED_TREES = 256, MAX_CHILDREN = 8 };
+enum { SORTED_TREES = 512, MAX_CHILDREN = 8 };
 
 struct traversal {
     const struct wd_tree_draw *draw;
@@ -81,6 +81,18 @@ static void visit_children(const struct traversal *t, const struct wd_octant *oc
         visit(t, order[i]);
 }
 
+/* Whether every tree in the box is seen so level that its level card shows nothing. */
+static uint32_t card_vertices(const float min[3], const float max[3])
+{
+    float squared = 0.0f, height = fmaxf(fabsf(min[2]), fabsf(max[2]));
+    for (int k = 0; k < 2; k++) {
+        float outside = fmaxf(fmaxf(min[k], -max[k]), 0.0f);
+        squared += outside * outside;
+    }
+    return height < (float)WD_LEVEL_CARD_SINE * sqrtf(squared) ? WD_UPRIGHT_VERTICES
+                                                               : WD_CARD_VERTICES;
+}
+
 static void visit(const struct traversal *t, uint32_t index)
 {
     const struct wd_octant *octant = &t->draw->forest->world->octree.octants[index];
@@ -93,13 +105,14 @@ static void visit(const struct traversal *t, uint32_t index)
     if (box_distance(min, max) < t->card_distance_m) {
         add_single(t, octant->begin, octant->own_end);
         visit_children(t, octant);
-    } else if (octant->child_count &&
-               ((side == WD_PARTLY && octant->depth < t->max_cull_depth) ||
-                octant->end - octant->begin > SORTED_TREES)) {
-        wd_selection_add_range(t->selection, octant->begin, octant->own_end);
+    } else if (octant->child_count && ((side == WD_PARTLY && octant->depth < t->max_cull_depth) ||
+                                       octant->end - octant->begin > SORTED_TREES)) {
+        wd_selection_add_range(t->selection, &(struct wd_range){octant->begin, octant->own_end,
+                                                                card_vertices(min, max)});
         visit_children(t, octant);
     } else {
-        wd_selection_add_range(t->selection, octant->begin, octant->end);
+        wd_selection_add_range(
+            t->selection, &(struct wd_range){octant->begin, octant->end, card_vertices(min, max)});
     }
 }
 

@@ -77,16 +77,16 @@ void wd_selection_finish(struct wd_selection *selection)
     *selection = (struct wd_selection){0};
 }
 
-void wd_selection_add_range(struct wd_selection *selection, uint32_t begin, uint32_t end)
+void wd_selection_add_range(struct wd_selection *selection, const struct wd_range *range)
 {
-    if (begin == end)
+    if (range->begin == range->end)
         return;
-    if (selection->range_count && selection->ranges[selection->range_count - 1].end == begin) {
-        selection->ranges[selection->range_count - 1].end = end;
-        return;
-    }
-    *wd_push(selection->ranges, selection->range_count, selection->range_capacity) =
-        (struct wd_range){begin, end};
+    struct wd_range *last =
+        selection->range_count ? &selection->ranges[selection->range_count - 1] : NULL;
+    if (last && last->end == range->begin && last->card_vertices == range->card_vertices)
+        last->end = range->end;
+    else
+        *wd_push(selection->ranges, selection->range_count, selection->range_capacity) = *range;
 }
 
 static void add_mesh(struct wd_selection *selection, uint32_t model, uint32_t level, uint32_t tree,

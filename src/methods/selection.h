@@ -26,7 +26,8 @@ struct wd_levels wd_levels_at(const struct wd_level_rule *rule, float height_m, 
 float wd_level_card_distance(const struct wd_level_rule *rule, float height_m);
 
 struct wd_range {
-    uint32_t begin, end; /* trees, octree order */
+    uint32_t begin, end;    /* trees, octree order */
+    uint32_t card_vertices; /* a tree: WD_CARD_VERTICES or WD_UPRIGHT_VERTICES */
 };
 
 /* Trees of one model and level. */
@@ -50,8 +51,8 @@ struct wd_selection {
 void wd_selection_clear(struct wd_selection *selection); /* keeps the memory */
 void wd_selection_finish(struct wd_selection *selection);
 
-/* Adds a range; one that begins where the last ended makes it longer. */
-void wd_selection_add_range(struct wd_selection *selection, uint32_t begin, uint32_t end);
+/* Adds a range; one that begins where the last ended, with as many vertices, makes it longer. */
+void wd_selection_add_range(struct wd_selection *selection, const struct wd_range *range);
 
 /* Adds one tree by itself at the levels that its distance asks for, if the view can see it. */
 void wd_selection_add_tree(struct wd_selection *selection, const struct wd_forest_device *forest,

@@ -181,55 +181,58 @@ static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selecti
     }
 }
 
-/* Binds what cards need and returns indices a tree. */
-static uint32_t bind_cards(const struct wd_tree_draw *draw, const struct wd_pipeline *pipeline,
-                           struct wd_binding instances)
+static void bind_cards(const struct wd_tree_draw *draw, const struct wd_pipeline *pipeline,
+                       struct wd_binding instances)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const struct wd_binding bindings[] = {draw->uniforms,
-                                          WD_BIND_BUFFER(&forest->trees),
-                                          WD_BIND_BUFFER(&forest->models),
-                                          instances,
-                                          WD_BIND_IMAGE(&forest->card_albedo, forest->card_sampler),
-                                          WD_BIND_IMAGE(&forest->card_normal, forest->card_sampler),
-                                          WD_BIND_BUFFER(&forest->fades)};
     bool shadow = draw->pass == WD_PASS_SHADOW;
-    const struct wd_tree_push push = tree_push(draw, WD_LEVEL_CARD);
+    VkSampler albedo = shadow ? forest->point_sampler : forest->card_sampler;
+    const struct wd_binding bindings[] = {
+        draw->uniforms,
+        WD_BIND_BUFFER(&forest->trees),
+        WD_BIND_BUFFER(&forest->models),
+        instances,
+        WD_BIND_IMAGE(&forest->card_albedo, albedo),
+        WD_BIND_IMAGE(&forest->card_normal, forest->point_sampler),
+        WD_BIND_BUFFER(&forest->fades)};
     wd_cmd_bind(draw->cmd, pipeline, bindings);
-    wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
-    wd_cmd_bind_indices(draw->cmd, shadow ? &forest->shadow_card_indices : &forest->card_indices);
-    return shadow ? WD_SHADOW_CARD_INDICES : WD_CARD_INDICES;
+    wd_cmd_bind_indices(draw->cmd, &forest->card_indices);
 }
 
-/* Trees (or list slots) [begin, end) as cards, in draws of at most `batch`. */
-static void draw_card_range(const struct wd_tree_draw *draw, uint32_t begin, uint32_t end,
-                            uint32_t indices, uint32_t batch)
+/* Trees (or list slots) of a range as cards, in draws of at most `batch`. */
+static void draw_card_range(const struct wd_tree_draw *draw, const struct wd_pipeline *pipeline,
+                            const struct wd_range *range, uint32_t batch)
 {
-    uint32_t vertices = indices / 6 * 4;
-    for (uint32_t at = begin; at < end; at += batch) {
-        uint32_t count = end - at < batch ? end - at : batch;
-        draw_indexed(draw, count * indices, 1, 0, (int32_t)(at * vertices), 0);
+    struct wd_tree_push push = tree_push(draw, WD_LEVEL_CARD);
+    push.card_vertices =
+        draw->pass == WD_PASS_SHADOW ? WD_SHADOW_CARD_VERTICES : range->card_vertices;
+    wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
+    for (uint32_t at = range->begin; at < range->end; at += batch) {
+        uint32_t count = range->end - at < batch ? range->end - at : batch;
+        draw_indexed(draw, count * push.card_vertices / 4 * 6, 1, 0,
+                     (int32_t)(at * push.card_vertices), 0);
     }
-    draw->stats->trees[WD_LEVEL_CARD] += end - begin;
+    draw->stats->trees[WD_LEVEL_CARD] += range->end - range->begin;
 }
 
 static void draw_cards(const struct wd_tree_draw *draw, const struct wd_selection *selection,
                        enum wd_draw_grouping grouping)
 {
+    const struct wd_tree_pipelines *pipelines = draw->pipelines;
     if (selection->range_count) {
         /* ranges read no instances; the slot is filled all the same */
-        uint32_t indices = bind_cards(draw, &draw->pipelines->card_range[draw->pass],
-                                      WD_BIND_BUFFER(&draw->forest->trees));
+        const struct wd_pipeline *pipeline = &pipelines->card_range[draw->pass];
+        bind_cards(draw, pipeline, WD_BIND_BUFFER(&draw->forest->trees));
         for (size_t i = 0; i < selection->range_count; i++)
-            draw_card_range(draw, selection->ranges[i].begin, selection->ranges[i].end, indices,
-                            WD_CARD_BATCH);
+            draw_card_range(draw, pipeline, &selection->ranges[i], WD_CARD_BATCH);
     }
     struct wd_binding instances;
     if (selection->card_count &&
         upload_instances(draw, selection->cards, selection->card_count, &instances)) {
-        uint32_t indices = bind_cards(draw, &draw->pipelines->card_listed[draw->pass], instances);
-        draw_card_range(draw, 0, (uint32_t)selection->card_count, indices,
-                        grouping == WD_DRAW_GROUPED ? WD_CARD_BATCH : 1);
+        const struct wd_pipeline *pipeline = &pipelines->card_listed[draw->pass];
+        const struct wd_range list = {0, (uint32_t)selection->card_count, WD_CARD_VERTICES};
+        bind_cards(draw, pipeline, instances);
+        draw_card_range(draw, pipeline, &list, grouping == WD_DRAW_GROUPED ? WD_CARD_BATCH : 1);
     }
 }
 

@@ -36,6 +36,7 @@ static const struct member members[] = {
     M(wd_instance, tree), M(wd_instance, show),
     M(wd_tree_push, variants), M(wd_tree_push, cascade), M(wd_tree_push, level),
     M(wd_tree_push, show), M(wd_tree_push, pixels_per_radian),
+    M(wd_tree_push, card_vertices),
 #define F(name) M(wd_frame_uniforms, name)
     F(clip_from_rel), F(rel_from_clip), F(previous_clip_from_rel), F(steady_clip_from_rel),
     F(shadow_from_rel), F(cascade_far_m), F(cascade_texel_m), F(cascade_depth_m), F(camera_mm),

@@ -69,11 +69,12 @@ static void ranges_that_touch_become_one(void **state)
 {
     (void)state;
     struct wd_selection selection = {0};
-    wd_selection_add_range(&selection, 0, 10);
-    wd_selection_add_range(&selection, 10, 25);
-    wd_selection_add_range(&selection, 25, 25);
-    wd_selection_add_range(&selection, 30, 31);
-    assert_int_equal(selection.range_count, 2);
+    wd_selection_add_range(&selection, &(struct wd_range){0, 10, 12});
+    wd_selection_add_range(&selection, &(struct wd_range){10, 25, 12});
+    wd_selection_add_range(&selection, &(struct wd_range){25, 25, 12});
+    wd_selection_add_range(&selection, &(struct wd_range){30, 31, 12});
+    wd_selection_add_range(&selection, &(struct wd_range){31, 40, 8});
+    assert_int_equal(selection.range_count, 3);
     assert_int_equal(selection.ranges[0].end, 25);
     assert_int_equal(selection.ranges[1].begin, 30);
     wd_selection_finish(&selection);
