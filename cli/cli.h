@@ -84,6 +84,8 @@ struct cli_command {
 const struct cli_command *cli_commands(void);
 
 bool cli_session_start(struct cli_session *session, const struct cli_options *options);
+/* Only after a successful start. */
+void cli_session_finish(struct cli_session *session);
 bool cli_session_interrupted(const struct cli_session *session);
 /* What the program exits with after `result`. */
 enum cli_status cli_session_status(const struct cli_session *session, enum wd_result result);

@@ -89,7 +89,7 @@ static enum cli_status run_command(const struct cli_command *command, int word_c
             status = CLI_FAILED;
         } else {
             status = command->run(&session);
-            cli_meter_clear(&session.meter);
+            cli_session_finish(&session);
         }
     }
     free(operands);

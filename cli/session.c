@@ -118,10 +118,7 @@ static bool start_interrupt(struct cli_interrupt *interrupt)
     signal(SIGINT, SIG_DFL);  /* a shell's background job comes with it ignored */
     signal(SIGPIPE, SIG_IGN); /* a dead encoder and a full quota are errors of the write, with a */
     signal(SIGXFSZ, SIG_IGN); /* message, not the end of the process */
-    if (pthread_create(&interrupt->thread, NULL, wait_for_signals, interrupt))
-        return false;
-    pthread_detach(interrupt->thread);
-    return true;
+    return !pthread_create(&interrupt->thread, NULL, wait_for_signals, interrupt);
 }
 
 bool cli_session_start(struct cli_session *session, const struct cli_options *options)
@@ -134,6 +131,13 @@ bool cli_session_start(struct cli_session *session, const struct cli_options *op
     session->progress = (struct wd_progress){report_progress, session};
     return start_interrupt(&session->interrupt) ||
            cli_fail(session, "no thread could be started to wait for Ctrl-C");
+}
+
+void cli_session_finish(struct cli_session *session)
+{
+    cli_meter_clear(&session->meter);
+    pthread_cancel(session->interrupt.thread);
+    pthread_join(session->interrupt.thread, NULL);
 }
 
 bool cli_session_interrupted(const struct cli_session *session)
