@@ -10,6 +10,9 @@
 #include "base/memory.h"
 #include "forest/looks.h"
 
+/* Layers that seven bits can tell apart, inventories included. */
+enum { MAX_FADES = 128 };
+
 /* Everything made on the CPU before it is uploaded. */
 struct preparation {
     struct wd_forest_device *forest;
@@ -236,16 +239,21 @@ static bool prepare_cards(struct preparation *work, struct wd_gpu *gpu)
 
 /* --- the whole --------------------------------------------------------------------------- */
 
+/* The device's copy carries each tree's layer. */
 static bool upload_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
-    static const struct wd_tree none = {0};
     const struct wd_world *world = forest->world;
-    for (size_t i = 0; i < world->tree_count; i++)
-        forest->max_tree_height_m =
-            fmaxf(forest->max_tree_height_m, 0.01f * (float)(world->trees[i].size & 0xffffu));
     size_t count = world->tree_count ? world->tree_count : 1;
-    return make_table(&forest->trees, gpu, "trees", world->tree_count ? world->trees : &none,
-                      count * sizeof none);
+    struct wd_tree *trees = wd_alloc_array(count, sizeof *trees);
+    for (size_t i = 0; i < world->tree_count; i++) {
+        trees[i] = world->trees[i];
+        trees[i].look = (trees[i].look & 0x1ffffffu) | wd_forest_fade_of(forest, i) << 25;
+        forest->max_tree_height_m =
+            fmaxf(forest->max_tree_height_m, 0.01f * (float)(trees[i].size & 0xffffu));
+    }
+    bool ok = make_table(&forest->trees, gpu, "trees", trees, count * sizeof *trees);
+    free(trees);
+    return ok;
 }
 
 static bool upload_fades(struct wd_forest_device *forest, struct wd_gpu *gpu)
@@ -357,6 +365,12 @@ void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
             wd_cmd_use_image(cmd, images[i], WD_USE_SHADER_READ);
     }
     wd_ground_use(&forest->ground, cmd);
+}
+
+uint32_t wd_forest_fade_of(const struct wd_forest_device *forest, size_t tree)
+{
+    uint32_t layer = forest->world->layer_of_tree[tree];
+    return layer < MAX_FADES - 1 && layer < forest->scene->layer_count ? layer + 1 : 0;
 }
 
 uint32_t wd_forest_model_of(const struct wd_forest_device *forest, const struct wd_tree *tree)

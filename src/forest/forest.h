@@ -57,6 +57,10 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
 /* Declares that the frame's passes read all of it. Once a frame, before any of them. */
 void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd);
 
+/* Index into the fades of a tree (an index in octree order): its layer + 1; 0 for inventories and
+ * for layers beyond the 127th. */
+uint32_t wd_forest_fade_of(const struct wd_forest_device *forest, size_t tree);
+
 /* Index into models of a tree's model. */
 uint32_t wd_forest_model_of(const struct wd_forest_device *forest, const struct wd_tree *tree);
 

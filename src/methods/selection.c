@@ -21,8 +21,12 @@ struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
         .blend = (float)scene->quality.blend,
         .finest = WD_LEVEL_MESH,
     };
-    if (pass == WD_PASS_CAMERA || view->cascade < REDUCED_CASCADE)
+    if (pass == WD_PASS_CAMERA || view->cascade < REDUCED_CASCADE) {
+        for (size_t i = 0; i < scene->layer_count; i++)
+            rule.farthest_m =
+                fmaxf(rule.farthest_m, (float)scene->layers[i].mesh_distance_m * view->lod_scale);
         return rule;
+    }
     rule.finest = view->cascade == REDUCED_CASCADE ? WD_LEVEL_REDUCED : WD_LEVEL_CARD;
     rule.reduced_m = rule.finest == WD_LEVEL_CARD ? 0.0f : rule.mesh_m;
     rule.mesh_m = 0.0f;
@@ -57,8 +61,8 @@ float wd_level_card_distance(const struct wd_level_rule *rule, float height_m)
 {
     if (rule->finest == WD_LEVEL_CARD)
         return 0.0f;
-    return fmaxf(rule->reduced_m, rule->mesh_m) * (1.0f + rule->blend) * height_m /
-           REFERENCE_HEIGHT_M;
+    float meshes_m = fmaxf(rule->reduced_m, rule->mesh_m) * height_m / REFERENCE_HEIGHT_M;
+    return fmaxf(meshes_m, rule->farthest_m) * (1.0f + rule->blend);
 }
 
 void wd_selection_clear(struct wd_selection *selection)
@@ -124,8 +128,14 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
     if (tree_side(view, tree, foot) == WD_OUTSIDE)
         return;
     float distance_m = sqrtf(distance_squared), height_m = 0.01f * (float)(tree->size & 0xffffu);
-    float fade = wd_layer_show(forest->host_fades[tree->look >> 25], distance_m);
-    struct wd_levels levels = wd_levels_at(rule, height_m, distance_m);
+    uint32_t layer = wd_forest_fade_of(forest, index);
+    float fade = wd_layer_show(forest->host_fades[layer], distance_m);
+    struct wd_level_rule own = *rule;
+    if (layer && forest->scene->layers[layer - 1].mesh_distance_m > 0.0 &&
+        rule->finest == WD_LEVEL_MESH)
+        own.mesh_m = (float)forest->scene->layers[layer - 1].mesh_distance_m * view->lod_scale *
+                     REFERENCE_HEIGHT_M / fmaxf(height_m, 0.01f);
+    struct wd_levels levels = wd_levels_at(&own, height_m, distance_m);
     uint32_t model = wd_forest_model_of(forest, tree);
     for (uint32_t level = WD_LEVEL_MESH; level <= WD_LEVEL_REDUCED; level++) {
         if (levels.show[level] * fade > 0.0f)

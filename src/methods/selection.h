@@ -18,6 +18,7 @@ struct wd_level_rule {
     float mesh_m, reduced_m; /* for a tree of 20 m; both grow with height */
     float blend;             /* share of the distance over which levels blend */
     uint32_t finest;         /* WD_LEVEL_*: shadows of far cascades start lower */
+    float farthest_m;        /* greatest mesh distance that a layer asks for itself */
 };
 struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
                                       const struct wd_view *view, enum wd_tree_pass pass);
