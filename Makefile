@@ -20,7 +20,7 @@ build: ## build release
 	@scripts/build.sh $(BUILD)
 
 lint: ## static checks
-	@scripts/deps.sh test
+	@scripts/deps.sh lint
 	@scripts/lint.sh $(BUILD)
 
 bench: deps ## measure everything, or one figure with ONLY=NAME

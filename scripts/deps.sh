@@ -3,11 +3,11 @@
 # neither network nor root, when all of it is there.
 #   deps.sh         what building and running need
 #   deps.sh test    and what the tests need
+#   deps.sh lint    and what the static checks need
 set -eu
 cd "$(dirname "$0")/.."
 
-kinds=build
-[ "${1:-}" = test ] && kinds='build|test'
+kinds=build${1:+|$1}
 wanted=$(awk -v kinds="^($kinds)\$" '!/^#/ && $2 ~ kinds { print $1 }' scripts/packages.txt)
 
 if ! command -v dpkg-query >/dev/null 2>&1; then
