@@ -64,7 +64,7 @@ static void print_text(const struct wd_forest *forest, const struct wd_forest_in
     if (info->crs)
         printf("crs         %.*s\n", (int)strcspn(info->crs, "\n"), info->crs);
     printf("octree      %u octants, %u levels\n", info->octant_count, info->octree_depth);
-    printf("memory      %.1f MB for terrain, trees and octree\n", (double)info->host_bytes / 1e6);
+    printf("memory      %.2f MB for terrain, trees and octree\n", (double)info->host_bytes / 1e6);
     printf("picture     %ux%u, %u samples, method %s\n", defaults.width, defaults.height,
            defaults.samples, defaults.method);
     print_trees(forest, info);
