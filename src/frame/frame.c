@@ -26,7 +26,7 @@ void wd_frame_finish(struct wd_frame *frame)
     wd_post_pass_finish(&frame->post, frame->gpu);
     wd_targets_finish(&frame->targets, frame->gpu);
     wd_buffer_finish(&frame->velocity_px, frame->gpu);
-    wd_selection_finish(&frame->selection);
+    wd_methods_finish(&frame->methods, frame->gpu);
     *frame = (struct wd_frame){0};
 }
 
@@ -57,11 +57,14 @@ bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *para
         if (!wd_targets_init(targets, frame->gpu, params->width, params->height, shadow_size))
             return false;
     }
-    return prepare_velocity(frame);
+    frame->method_state = wd_methods_open(&frame->methods, frame->gpu, params->method,
+                                          params->forest);
+    return frame->method_state && prepare_velocity(frame);
 }
 
 void wd_frame_drop_forest(struct wd_frame *frame)
 {
+    wd_methods_drop_forest(&frame->methods, frame->gpu);
     wd_light_pass_drop_forest(&frame->light, frame->gpu);
 }
 
@@ -76,10 +79,12 @@ struct recording {
     struct wd_binding uniforms;
 };
 
+/* The trees of one view, into `targets`. */
 static void record_trees(const struct recording *r, const struct wd_view *view,
-                         enum wd_tree_pass pass)
+                         enum wd_tree_pass pass, const struct wd_rendering *targets)
 {
     struct wd_frame *frame = r->frame;
+    const struct wd_method *method = frame->params.method;
     struct wd_draw_stats stats = {0};
     const struct wd_tree_draw draw = {
         .cmd = r->cmd,
@@ -87,11 +92,18 @@ static void record_trees(const struct recording *r, const struct wd_view *view,
         .forest = frame->params.forest,
         .view = view,
         .pass = pass,
+        .targets = &frame->targets,
         .uniforms = r->uniforms,
         .stats = &stats,
     };
-    if (frame->params.forest->world->tree_count)
-        frame->params.method->record(&draw, &frame->selection);
+    bool trees = frame->params.forest->world->tree_count &&
+                 (pass == WD_PASS_CAMERA || r->values.shadow_taps);
+    if (trees && method->select)
+        method->select(frame->method_state, &draw);
+    wd_cmd_begin_rendering(r->cmd, targets);
+    if (trees)
+        method->draw(frame->method_state, &draw);
+    wd_cmd_end_rendering(r->cmd);
     frame->stats.draw_calls += stats.draw_calls;
     frame->stats.triangles += stats.triangles;
     if (pass == WD_PASS_CAMERA)
@@ -111,10 +123,7 @@ static void record_shadows(const struct recording *r)
             .depth_view = targets->shadow_layers[i],
             .depth_load = WD_LOAD_CLEAR,
         };
-        wd_cmd_begin_rendering(r->cmd, &rendering);
-        if (r->values.shadow_taps)
-            record_trees(r, &r->cascades[i], WD_PASS_SHADOW);
-        wd_cmd_end_rendering(r->cmd);
+        record_trees(r, &r->cascades[i], WD_PASS_SHADOW, &rendering);
     }
     wd_cmd_scope_end(r->cmd);
 }
@@ -129,7 +138,8 @@ static void record_terrain(const struct recording *r)
         .error_px = (float)frame->params.forest->scene->quality.terrain_error_px,
     };
     wd_cmd_scope_begin(r->cmd, "terrain");
-    wd_targets_begin_gbuffer(&frame->targets, r->cmd, WD_LOAD_CLEAR);
+    const struct wd_rendering targets = wd_targets_gbuffer(&frame->targets, WD_LOAD_CLEAR);
+    wd_cmd_begin_rendering(r->cmd, &targets);
     wd_terrain_pass_record(&frame->terrain, r->cmd, &terrain);
     wd_cmd_end_rendering(r->cmd);
     wd_cmd_scope_end(r->cmd);
@@ -141,9 +151,8 @@ static void record_gbuffer(const struct recording *r)
 {
     record_terrain(r);
     wd_cmd_scope_begin(r->cmd, "trees");
-    wd_targets_begin_gbuffer(&r->frame->targets, r->cmd, WD_LOAD_KEEP);
-    record_trees(r, &r->view, WD_PASS_CAMERA);
-    wd_cmd_end_rendering(r->cmd);
+    const struct wd_rendering targets = wd_targets_gbuffer(&r->frame->targets, WD_LOAD_KEEP);
+    record_trees(r, &r->view, WD_PASS_CAMERA, &targets);
     wd_cmd_scope_end(r->cmd);
 }
 

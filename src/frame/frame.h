@@ -30,7 +30,8 @@ struct wd_frame {
     struct wd_terrain_pass terrain;
     struct wd_light_pass light;
     struct wd_post_pass post;
-    struct wd_selection selection;   /* scratch of the methods */
+    struct wd_methods methods;       /* states of those used so far */
+    void *method_state;              /* of params.method */
     struct wd_draw_stats camera_stats; /* of the last sample: what the camera sees */
     struct wd_draw_stats stats;      /* of the last sample, shadows too */
     struct wd_frame_params params;

@@ -52,9 +52,9 @@ void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu)
     *targets = (struct wd_targets){0};
 }
 
-void wd_targets_begin_gbuffer(struct wd_targets *targets, struct wd_cmd *cmd, enum wd_load load)
+struct wd_rendering wd_targets_gbuffer(struct wd_targets *targets, enum wd_load load)
 {
-    const struct wd_rendering rendering = {
+    return (struct wd_rendering){
         .width = targets->width,
         .height = targets->height,
         .color_count = 3,
@@ -64,5 +64,4 @@ void wd_targets_begin_gbuffer(struct wd_targets *targets, struct wd_cmd *cmd, en
         .depth = &targets->depth,
         .depth_load = load,
     };
-    wd_cmd_begin_rendering(cmd, &rendering);
 }

@@ -26,8 +26,8 @@ bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t wi
                      uint32_t height, uint32_t shadow_size);
 void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu);
 
-/* Begins rendering into the G-buffer: albedo, normal, surface, depth in this order. `load` says
+/* The G-buffer as targets of a rendering: albedo, normal, surface, depth in this order. `load` says
  * whether it is cleared or kept. */
-void wd_targets_begin_gbuffer(struct wd_targets *targets, struct wd_cmd *cmd, enum wd_load load);
+struct wd_rendering wd_targets_gbuffer(struct wd_targets *targets, enum wd_load load);
 
 #endif

@@ -1,7 +1,9 @@
 #include "methods/method.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "weald/renderer.h"
 
 static const struct wd_method *const methods[] = {&wd_method_octree, &wd_method_separate};
@@ -19,4 +21,70 @@ const struct wd_method *wd_method_find(const char *name)
             return methods[i];
     }
     return NULL;
+}
+
+/* --- states ------------------------------------------------------------------------------ */
+
+static void drop_forest(struct wd_method_slot *slot, struct wd_gpu *gpu)
+{
+    if (slot->forest && slot->method->drop_forest)
+        slot->method->drop_forest(slot->state, gpu);
+    slot->forest = NULL;
+}
+
+static void close_slot(struct wd_method_slot *slot, struct wd_gpu *gpu)
+{
+    drop_forest(slot, gpu);
+    if (slot->method->finish)
+        slot->method->finish(slot->state, gpu);
+    free(slot->state);
+    *slot = (struct wd_method_slot){0};
+}
+
+static struct wd_method_slot *open_slot(struct wd_methods *open, struct wd_gpu *gpu,
+                                        const struct wd_method *method)
+{
+    for (uint32_t i = 0; i < open->count; i++) {
+        if (open->slots[i].method == method)
+            return &open->slots[i];
+    }
+    struct wd_method_slot *slot = &open->slots[open->count];
+    *slot = (struct wd_method_slot){method, wd_alloc(method->state_size), NULL};
+    if (method->init && !method->init(slot->state, gpu)) {
+        close_slot(slot, gpu);
+        return NULL;
+    }
+    open->count++;
+    return slot;
+}
+
+void *wd_methods_open(struct wd_methods *open, struct wd_gpu *gpu, const struct wd_method *method,
+                      struct wd_forest_device *forest)
+{
+    _Static_assert(sizeof methods / sizeof *methods <= WD_METHODS_MAX, "a slot for each method");
+    struct wd_method_slot *slot = open_slot(open, gpu, method);
+    if (!slot)
+        return NULL;
+    if (slot->forest == forest)
+        return slot->state;
+    drop_forest(slot, gpu);
+    slot->forest = forest;
+    if (method->use_forest && !method->use_forest(slot->state, gpu, forest)) {
+        drop_forest(slot, gpu);
+        return NULL;
+    }
+    return slot->state;
+}
+
+void wd_methods_drop_forest(struct wd_methods *open, struct wd_gpu *gpu)
+{
+    for (uint32_t i = 0; i < open->count; i++)
+        drop_forest(&open->slots[i], gpu);
+}
+
+void wd_methods_finish(struct wd_methods *open, struct wd_gpu *gpu)
+{
+    for (uint32_t i = 0; i < open->count; i++)
+        close_slot(&open->slots[i], gpu);
+    *open = (struct wd_methods){0};
 }

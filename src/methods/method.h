@@ -4,10 +4,23 @@
 
 #include "methods/tree_draw.h"
 
+/* One way of drawing trees. Functions but `draw` may be NULL. For every view (the cascades of the
+ * sun, then the camera) a frame calls `select`, then `draw`. */
 struct wd_method {
     const char *name;
-    /* Chooses what `draw->view` shows of the forest and records it, for the camera or a cascade. */
-    void (*record)(const struct wd_tree_draw *draw, struct wd_selection *scratch);
+    size_t state_size; /* bytes of what one renderer keeps for it; zeroed before `init` */
+    /* Pipelines and the like. On failure `finish` is called all the same. */
+    bool (*init)(void *state, struct wd_gpu *gpu);
+    void (*finish)(void *state, struct wd_gpu *gpu);
+    /* Makes (or bakes) what it needs of a forest, before the first frame that shows it; no frame is
+     * being recorded. On failure `drop_forest` is called all the same. */
+    bool (*use_forest)(void *state, struct wd_gpu *gpu, struct wd_forest_device *forest);
+    void (*drop_forest)(void *state, struct wd_gpu *gpu);
+    /* Outside of any rendering: chooses what `draw->view` shows, records compute and transfers. */
+    void (*select)(void *state, const struct wd_tree_draw *draw);
+    /* Inside the open rendering of the view's targets: the G-buffer over the terrain that is there
+     * already, or one cascade's depth. */
+    void (*draw)(void *state, const struct wd_tree_draw *draw);
 };
 
 extern const struct wd_method wd_method_separate; /* every tree by itself (row G9) */
@@ -15,5 +28,23 @@ extern const struct wd_method wd_method_octree;   /* static geometry in octree o
 
 /* The method of that name, or NULL. Names are in wd_method_names(), weald/renderer.h. */
 const struct wd_method *wd_method_find(const char *name);
+
+/* What one renderer keeps of the methods it has used. {0} is valid and holds none. */
+enum { WD_METHODS_MAX = 16 };
+struct wd_methods {
+    struct wd_method_slot {
+        const struct wd_method *method;
+        void *state;
+        struct wd_forest_device *forest; /* that the state is made for, or NULL */
+    } slots[WD_METHODS_MAX];
+    uint32_t count;
+};
+
+/* The state of `method`, made for `forest`; NULL when it could not be made (logged). No frame that
+ * uses the method may be in flight when the forest is another one. */
+void *wd_methods_open(struct wd_methods *methods, struct wd_gpu *gpu,
+                      const struct wd_method *method, struct wd_forest_device *forest);
+void wd_methods_drop_forest(struct wd_methods *methods, struct wd_gpu *gpu);
+void wd_methods_finish(struct wd_methods *methods, struct wd_gpu *gpu);
 
 #endif

@@ -116,20 +116,36 @@ static void visit(const struct traversal *t, uint32_t index)
     }
 }
 
-static void octree_record(const struct wd_tree_draw *draw, struct wd_selection *selection)
+static void octree_finish(void *state, struct wd_gpu *gpu)
+{
+    (void)gpu;
+    wd_selection_finish(state);
+}
+
+static void octree_select(void *state, const struct wd_tree_draw *draw)
 {
     const struct wd_forest_device *forest = draw->forest;
     struct traversal traversal = {
         .draw = draw,
-        .selection = selection,
+        .selection = state,
         .rule = wd_level_rule_of(forest, draw->view, draw->pass),
         .max_cull_depth = (uint32_t)forest->scene->quality.max_cull_depth,
     };
     traversal.card_distance_m = wd_level_card_distance(&traversal.rule, forest->max_tree_height_m);
-    wd_selection_clear(selection);
+    wd_selection_clear(state);
     if (forest->world->octree.count)
         visit(&traversal, 0);
-    wd_tree_draw_selection(draw, selection, WD_DRAW_GROUPED);
 }
 
-const struct wd_method wd_method_octree = {"octree", octree_record};
+static void octree_draw(void *state, const struct wd_tree_draw *draw)
+{
+    wd_tree_draw_selection(draw, state, WD_DRAW_GROUPED);
+}
+
+const struct wd_method wd_method_octree = {
+    .name = "octree",
+    .state_size = sizeof(struct wd_selection),
+    .finish = octree_finish,
+    .select = octree_select,
+    .draw = octree_draw,
+};

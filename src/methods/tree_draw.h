@@ -2,6 +2,7 @@
 #ifndef WD_METHODS_TREE_DRAW_H
 #define WD_METHODS_TREE_DRAW_H
 
+#include "frame/targets.h"
 #include "methods/selection.h"
 
 struct wd_draw_stats {
@@ -24,6 +25,7 @@ struct wd_tree_draw {
     const struct wd_forest_device *forest;
     const struct wd_view *view;
     enum wd_tree_pass pass;
+    struct wd_targets *targets;     /* of the frame: the terrain's depth is there already */
     struct wd_binding uniforms;     /* struct wd_frame_uniforms */
     struct wd_draw_stats *stats;    /* added to */
 };

@@ -121,7 +121,8 @@ static void record(struct picture_test *test, struct wd_cmd *cmd, struct wd_bind
 {
     const struct wd_terrain_params terrain = {&test->forest.ground, &test->view, uniforms, 1};
     wd_cmd_scope_begin(cmd, "terrain");
-    wd_targets_begin_gbuffer(&test->targets, cmd, WD_LOAD_CLEAR);
+    const struct wd_rendering targets = wd_targets_gbuffer(&test->targets, WD_LOAD_CLEAR);
+    wd_cmd_begin_rendering(cmd, &targets);
     wd_terrain_pass_record(&test->terrain, cmd, &terrain);
     wd_cmd_end_rendering(cmd);
     wd_cmd_scope_end(cmd);

@@ -23,7 +23,7 @@ struct wd_terrain_params {
     struct wd_binding uniforms;     /* struct wd_frame_uniforms */
     float error_px;                 /* wanted bound of the mesh's error on screen */
 };
-/* Records one indexed draw into an open rendering of the G-buffer (wd_targets_begin_gbuffer).
+/* Records one indexed draw into an open rendering of the G-buffer (wd_targets_gbuffer).
  *
  * The ground needs no pass into the shadow maps: its own shadows, at any distance, are in the light
  * pass (frame/sun_field.h), and the maps hold what stands on it. */
