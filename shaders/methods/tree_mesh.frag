@@ -25,7 +25,10 @@ void main()
     float noise = wd_hash_unit(in_flat.z);
     if (noise >= in_show)
         discard;
-    vec3 albedo = texture(looks, in_uv).rgb * in_tint.rgb;
+    vec4 look = texture(looks, in_uv);
+    if (look.a < WD_LOOK_CUT)
+        discard;
+    vec3 albedo = look.rgb * in_tint.rgb;
     if (frame.view_mode == WD_MODE_LOD)
         albedo = level_color(push.level) * (0.3 + 0.7 * in_tint.a);
     out_albedo = vec4(albedo, in_tint.a);

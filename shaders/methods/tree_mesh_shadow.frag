@@ -1,12 +1,16 @@
 #version 460
-#include "shared/types.h"
+#include "shared/forest.h"
 #include "shared/hash.h"
 
+layout(set = 0, binding = 5) uniform sampler2DArray looks;
+
+layout(location = 1) in vec3 in_uv;
 layout(location = 3) flat in uvec3 in_flat;
 layout(location = 4) flat in float in_show;
 
 void main()
 {
-    if (wd_hash_unit(in_flat.z) >= in_show)
+    float alpha = texture(looks, in_uv).a;
+    if (wd_hash_unit(in_flat.z) >= in_show || alpha < WD_LOOK_CUT)
         discard;
 }

@@ -1,5 +1,5 @@
 #version 460
-#include "shared/types.h"
+#include "shared/forest.h"
 
 layout(set = 0, binding = 1) uniform sampler2DArray looks;
 
@@ -13,9 +13,11 @@ layout(location = 1) out vec4 out_normal;
 
 void main()
 {
-    vec3 look = texture(looks, vec3(in_uv, float(in_leaf))).rgb;
+    vec4 look = texture(looks, vec3(in_uv, float(in_leaf)));
+    if (look.a < WD_LOOK_CUT)
+        discard;
     /* Cards are lit as the crown's outside; wood within, seen through gaps, has little of that. */
     float inside = in_leaf != 0u ? 1.0 : clamp(1.6 * in_tint.a, 0.15, 1.0);
-    out_albedo = vec4(look * in_tint.rgb * inside, 1.0);
+    out_albedo = vec4(look.rgb * in_tint.rgb * inside, 1.0);
     out_normal = vec4(normalize(in_normal) * 0.5 + 0.5, in_tint.a);
 }

@@ -32,6 +32,9 @@
 #define WD_LEVEL_REDUCED 1
 #define WD_LEVEL_CARD 2
 
+/* Look texels with less alpha than this are holes; mips keep the share of texels that pass. */
+#define WD_LOOK_CUT 0.5
+
 /* One grown individual of a species, as every method draws it. Lengths are the model's own. */
 struct wd_model {
     float height_m;         /* a tree's height over this is its vertical scale */

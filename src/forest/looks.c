@@ -12,6 +12,36 @@ void wd_look_generate(const struct wd_species *species, uint8_t *rgba)
     wd_species_leaf_texture(species, WD_LOOK_SIZE, rgba + WD_LOOK_BYTES / 2);
 }
 
+/* Share of texels that pass the cut. */
+static float coverage(const uint8_t *rgba, uint32_t size)
+{
+    size_t count = (size_t)size * size, passed = 0;
+    for (size_t i = 0; i < count; i++)
+        passed += rgba[4 * i + 3] >= 255 * WD_LOOK_CUT;
+    return (float)passed / (float)count;
+}
+
+/* Scales alpha so that the share `wanted` of the texels passes the cut again: averaged alpha alone
+ * would thin out small leaves, and fatten dense ones, with distance. */
+static void keep_coverage(uint8_t *rgba, uint32_t size, float wanted)
+{
+    size_t count = (size_t)size * size, histogram[256] = {0}, passed = 0;
+    for (size_t i = 0; i < count; i++)
+        histogram[rgba[4 * i + 3]]++;
+    if (wanted >= 1 || histogram[255] == count)
+        return;
+    int cut = 255;
+    for (; cut > 1; cut--) {
+        passed += histogram[cut];
+        if ((float)passed >= wanted * (float)count)
+            break;
+    }
+    for (size_t i = 0; i < count; i++) {
+        float scaled = rgba[4 * i + 3] * (float)(256 * WD_LOOK_CUT) / (float)cut;
+        rgba[4 * i + 3] = scaled < 255 ? (uint8_t)scaled : 255;
+    }
+}
+
 /* Halves a square sRGB image, averaging linear light. */
 static void halve(uint8_t *coarse, const uint8_t *fine, uint32_t size, const float linear[256])
 {
@@ -23,7 +53,7 @@ static void halve(uint8_t *coarse, const uint8_t *fine, uint32_t size, const flo
                 to[k] = wd_srgb_encode(0.25f * (linear[from[k]] + linear[from[k + 4]] +
                                                 linear[from[k + 8 * size]] +
                                                 linear[from[k + 8 * size + 4]]));
-            to[3] = 255;
+            to[3] = (uint8_t)((from[3] + from[7] + from[8 * size + 3] + from[8 * size + 7] + 2) / 4);
         }
     }
 }
@@ -50,10 +80,13 @@ bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *
     bool ok = true;
     for (uint32_t layer = 0; layer < image->layers && ok; layer++) {
         memcpy(levels[0], rgba + layer * (WD_LOOK_BYTES / 2), WD_LOOK_BYTES / 2);
+        float covered = coverage(levels[0], WD_LOOK_SIZE);
         for (uint32_t mip = 0; mip < image->mips && ok; mip++) {
             uint32_t size = WD_LOOK_SIZE >> mip;
-            if (mip > 0)
+            if (mip > 0) {
                 halve(levels[mip & 1], levels[(mip - 1) & 1], size, linear);
+                keep_coverage(levels[mip & 1], size, covered);
+            }
             ok = wd_image_upload(gpu, image, layer, mip, levels[mip & 1], (size_t)4 * size * size);
         }
     }
