@@ -25,8 +25,14 @@ static const struct cli_option option_table[] = {
      "frames of a film, spread evenly over the path (default: the path at its own speed)"},
     {"fps", 0, "N", CLI_KIND_REAL, AT(frames_per_second), 0.01, 1000, CLI_RENDER,
      "frames a second of a film (default: 24)"},
-    {"method", 0, "NAME", CLI_KIND_TEXT, AT(method), 0, 0, PICTURE_COMMANDS,
+    {"method", 0, "NAME", CLI_KIND_TEXT, AT(method), 0, 0, SCENE_COMMANDS,
      "how trees are drawn (default: the scene's)"},
+    {"option", 0, "NAME=VALUE", CLI_KIND_WORDS, AT(method_options), 0, 0, SCENE_COMMANDS,
+     "an option of the method, see `weald methods`; may be given again"},
+    {"faithful", 0, NULL, CLI_KIND_FLAG, AT(faithful), 0, 0, SCENE_COMMANDS,
+     "short for --option faithful=true: the method with its paper's faults"},
+    {"set", 0, "KEY=VALUE", CLI_KIND_WORDS, AT(settings), 0, 0, SCENE_COMMANDS,
+     "a value in place of the scene file's, as in wind.speed_mps=0; may be given again"},
     {"view", 0, "WHAT", CLI_KIND_VIEW, AT(view), 0, 0, PICTURE_COMMANDS,
      "what pixels show: lit, lod, albedo, normal, tree-id or shadow (default: lit)"},
     {"time", 0, "SECONDS", CLI_KIND_REAL, AT(time_s), 0, 1e6, CLI_RENDER,
@@ -197,6 +203,15 @@ static bool parse_view(const char *text, enum wd_view_mode *view)
     return false;
 }
 
+static bool add_word(const char *text, struct cli_words *words)
+{
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text || words->count == CLI_MAX_WORDS)
+        return false;
+    words->words[words->count++] = text;
+    return true;
+}
+
 static bool store(const struct cli_option *option, const char *text, struct cli_options *options)
 {
     void *field = (char *)options + option->offset;
@@ -215,6 +230,8 @@ static bool store(const struct cli_option *option, const char *text, struct cli_
         return parse_real(text, option, field);
     case CLI_KIND_VIEW:
         return parse_view(text, field);
+    case CLI_KIND_WORDS:
+        return add_word(text, field);
     }
     return false;
 }
@@ -244,6 +261,10 @@ static bool complain_value(const struct cli_command *command, const struct cli_o
                  suggestion ? "?" : "");
         break;
     }
+    case CLI_KIND_WORDS:
+        snprintf(more, sizeof more, ": must be %s, and given %d times at most", option->value,
+                 CLI_MAX_WORDS);
+        break;
     case CLI_KIND_TEXT:
         snprintf(more, sizeof more, "must not be empty");
         break;

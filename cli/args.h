@@ -11,6 +11,7 @@ enum cli_kind {
     CLI_KIND_WHOLE, /* uint32_t within min..max */
     CLI_KIND_REAL,  /* double within min..max */
     CLI_KIND_VIEW,  /* enum wd_view_mode */
+    CLI_KIND_WORDS, /* struct cli_words: KEY=VALUE, may be given again */
 };
 
 struct cli_option {

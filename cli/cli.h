@@ -25,10 +25,17 @@ enum cli_command_bit {
     CLI_SCHEMA = 1 << 4,
     CLI_DEVICES = 1 << 5,
     CLI_MANUAL = 1 << 6,
-    CLI_EVERY = (1 << 7) - 1,
+    CLI_METHODS = 1 << 7,
+    CLI_EVERY = (1 << 8) - 1,
 };
 
-enum { CLI_MAX_SIZE_PX = 16384 };
+enum { CLI_MAX_SIZE_PX = 16384, CLI_MAX_WORDS = 32 };
+
+/* What an option that may be given more than once was given. */
+struct cli_words {
+    const char *words[CLI_MAX_WORDS];
+    uint32_t count;
+};
 
 /* Values of all options; those not given are 0, NULL or false. */
 struct cli_options {
@@ -39,8 +46,9 @@ struct cli_options {
     uint32_t size_px[2];
     uint32_t samples, frames, threads;
     double frames_per_second, time_s;
+    struct cli_words settings, method_options;
     enum wd_view_mode view;
-    bool help, json, quiet, times, gpu_validate, walk;
+    bool help, json, quiet, times, gpu_validate, walk, faithful;
 };
 
 /* The bar on standard error, or plain lines at every quarter where that is no terminal. Silent in
@@ -102,6 +110,8 @@ __attribute__((format(printf, 2, 3))) bool cli_fail(struct cli_session *session,
 
 /* Opens the forest that the scene operand and the options ask for. */
 enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **forest);
+/* Whether there is a method of that name; complains if not. */
+bool cli_method_known(struct cli_session *session, const char *name);
 /* Tells a wrong --method from a right one before any long work. */
 bool cli_method_check(struct cli_session *session);
 /* The same for --camera and --path. */
@@ -114,5 +124,6 @@ enum cli_status cli_check(struct cli_session *session);
 enum cli_status cli_schema(struct cli_session *session);
 enum cli_status cli_devices(struct cli_session *session);
 enum cli_status cli_manual(struct cli_session *session);
+enum cli_status cli_methods(struct cli_session *session);
 
 #endif

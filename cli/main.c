@@ -14,7 +14,8 @@ static const struct cli_command commands[] = {
      "  weald render scenes/valley.json -o valley.exr --camera overview --size 1920x1080\n"
      "  weald render scenes/valley.json -o flight.mp4 --path flight --samples 4\n"
      "  weald render scenes/valley.json -o frame-%05d.png --path flight --frames 48\n"
-     "  weald render scenes/valley.json -o lod.png --view lod --method octree --times\n",
+     "  weald render scenes/valley.json -o lod.png --view lod --method octree --times\n"
+     "  weald render scenes/osg.json -o calm.png --set wind.speed_mps=0\n",
      cli_render},
     {"view", CLI_VIEW, "SCENE", 1, 1, "walk or fly through a scene in a window",
      "Opens a window to walk and fly through a scene. Cameras saved with Shift+C go to\n"
@@ -42,6 +43,13 @@ static const struct cli_command commands[] = {
      "  weald schema scene > scene.schema.json\n", cli_schema},
     {"devices", CLI_DEVICES, "", 0, 0, "list the Vulkan devices",
      "Lists the Vulkan devices that --gpu can name.", "  weald devices\n", cli_devices},
+    {"methods", CLI_METHODS, "[NAME]", 0, 1, "list the methods that draw trees and their options",
+     "Lists every method with its options: what they take, their defaults, the row of\n"
+     "docs/methods.md that each stands for. With NAME that method alone.",
+     "  weald methods\n"
+     "  weald methods octree\n"
+     "  weald render scenes/valley.json -o a.png --method octree --option max_cull_depth=5\n",
+     cli_methods},
     {"manual", CLI_MANUAL, "", 0, 0, "print the manual page", "Prints the manual page, for man(1).",
      "  weald manual | man -l -\n", cli_manual},
     {0},

@@ -2,6 +2,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -177,18 +178,54 @@ bool cli_fail(struct cli_session *session, const char *format, ...)
     return false;
 }
 
+/* The options that say what the scene file should have said, as settings of the scene. */
+struct settings {
+    const char *list[2 * CLI_MAX_WORDS + 3]; /* ended by NULL */
+    uint32_t count;
+    char *made[CLI_MAX_WORDS + 2];
+    uint32_t made_count;
+};
+
+static void make_setting(struct settings *settings, const char *before, const char *text)
+{
+    char *made = NULL;
+    if (asprintf(&made, "%s%s", before, text) < 0)
+        abort();
+    settings->made[settings->made_count++] = made;
+    settings->list[settings->count++] = made;
+}
+
+static void settings_init(struct settings *settings, const struct cli_options *options)
+{
+    *settings = (struct settings){0};
+    for (uint32_t i = 0; i < options->settings.count; i++)
+        settings->list[settings->count++] = options->settings.words[i];
+    if (options->method)
+        make_setting(settings, "method=", options->method);
+    for (uint32_t i = 0; i < options->method_options.count; i++)
+        make_setting(settings, "methods.@method.", options->method_options.words[i]);
+    if (options->faithful)
+        make_setting(settings, "methods.@method.", "faithful=true");
+}
+
 enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **forest)
 {
     const struct cli_options *options = session->options;
+    struct settings settings;
+    settings_init(&settings, options);
     struct wd_forest_params params = {
         .scene_path = options->operands[0],
         .data_dir = options->data,
+        .settings = settings.list,
         .seed = options->seed,
         .threads = options->threads,
         .progress = session->progress,
         .log = session->log,
     };
-    return wd_forest_create(forest, &params);
+    enum wd_result result = wd_forest_create(forest, &params);
+    for (uint32_t i = 0; i < settings.made_count; i++)
+        free(settings.made[i]);
+    return result;
 }
 
 /* One of `names`, or a complaint that lists them. `what` is what they name. */
@@ -210,10 +247,15 @@ static bool check_name(struct cli_session *session, const char *what, const char
                     *known ? "are" : "is", *known ? known : "none");
 }
 
+bool cli_method_known(struct cli_session *session, const char *name)
+{
+    return check_name(session, "method", name, wd_method_names());
+}
+
 bool cli_method_check(struct cli_session *session)
 {
     const char *method = session->options->method;
-    return !method || check_name(session, "method", method, wd_method_names());
+    return !method || cli_method_known(session, method);
 }
 
 enum { MAX_NAMES = 256 };

@@ -17,6 +17,10 @@ struct wd_forest;
 struct wd_forest_params {
     const char *scene_path; /* a scene file; required */
     const char *data_dir;   /* what ${data} stands for in the scene's file names; NULL: none given */
+    /* "key.key=value" each, in place of what the scene file says, such as "wind.speed_mps=0",
+     * "layers.0.spacing_m=5" or, of the scene's own method, "methods.@method.faithful=true"; ended
+     * by NULL. NULL: none. Values are JSON or plain text. */
+    const char *const *settings;
     const char *seed;       /* decimal, replaces the scene's seed; NULL: the scene's own */
     unsigned threads;       /* 0: one a processor. The forest is the same for any number */
     uint64_t max_trees;     /* 0: 64 million; a scene with more is refused */

@@ -38,6 +38,24 @@ enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct
 /* Names of the methods, ended by NULL; the pointer stays valid for ever. */
 const char *const *wd_method_names(void);
 
+struct wd_method_info {
+    const char *name, *summary;
+    const char *rows; /* of docs/methods.md: what of the papers it is */
+};
+/* The methods in the order of their names; false beyond the last. Strings stay valid for ever. */
+bool wd_method_get_info(uint32_t index, struct wd_method_info *info);
+
+struct wd_method_option {
+    const char *name, *summary;
+    const char *row;      /* of docs/methods.md */
+    const char *fallback; /* its default, as JSON */
+    char allowed[128];    /* such as "a whole number from 1 to 16" */
+};
+/* An option of a method, as scenes ("methods": {"octree": {"max_cull_depth": 7}}) and
+ * wd_forest_params.settings give it; false beyond the method's last. */
+bool wd_method_get_option(uint32_t method_index, uint32_t option_index,
+                          struct wd_method_option *option);
+
 /* What pixels show. */
 enum wd_view_mode {
     WD_VIEW_LIT,

@@ -35,7 +35,8 @@ enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_fores
     *result = NULL;
     struct wd_forest *forest = wd_alloc(sizeof *forest);
     forest->log = params->log;
-    const struct wd_scene_params scene = {.data_dir = params->data_dir};
+    const struct wd_scene_params scene = {.data_dir = params->data_dir,
+                                          .settings = params->settings};
     struct watch watch = {&params->progress, false};
     const struct wd_progress progress = {watch_report, &watch};
     struct wd_world_params world = {

@@ -159,7 +159,7 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
     const char *name = params->method ? params->method : renderer->forest->scene.method;
     const struct wd_method *method = wd_method_find(name);
     if (!method) {
-        wd_error(&renderer->log, "no method \"%s\": there are octree and separate", name);
+        wd_error(&renderer->log, "no method \"%s\": see wd_method_names", name);
         return WD_ERROR_INPUT;
     }
     uint32_t samples = params->samples ? params->samples : 1;

@@ -6,10 +6,9 @@
 #include "shared/frame.h"
 #include "weald/forest.h"
 
-enum { WD_FRUSTUM_PLANES = 12, WD_FRUSTUM_SIDES = 4 };
+enum { WD_FRUSTUM_PLANES = 8 };
 
-/* Half-spaces in rel: a point is inside where dot(plane.xyz, p) + plane.w >= 0. A camera's begin with
- * its four sides. */
+/* Half-spaces in rel: a point is inside where dot(plane.xyz, p) + plane.w >= 0. */
 struct wd_frustum {
     float planes[WD_FRUSTUM_PLANES][4];
     uint32_t count;

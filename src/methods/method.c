@@ -6,18 +6,18 @@
 #include "base/memory.h"
 #include "weald/renderer.h"
 
-static const struct wd_method *const methods[] = {&wd_method_octree, &wd_method_separate};
-static const char *const names[] = {"octree", "separate", NULL};
+static const struct wd_method *const methods[] = {&wd_method_octree, &wd_method_separate,
+                                                  &wd_method_grid};
 
 const char *const *wd_method_names(void)
 {
-    return names;
+    return wd_scene_method_names;
 }
 
 const struct wd_method *wd_method_find(const char *name)
 {
-    for (size_t i = 0; names[i]; i++) {
-        if (strcmp(names[i], name) == 0)
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        if (strcmp(methods[i]->name, name) == 0)
             return methods[i];
     }
     return NULL;

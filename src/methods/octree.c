@@ -2,20 +2,20 @@
  * one soup ordered depth-first, so that any octant is one range and neighbours merge. The soup is
  * not stored: the vertex shader makes vertex i of tree i / 12.
  *
- * Octants are visited from near to far, and none with more than SORTED_TREES is drawn as one range:
+ * Octants are visited from near to far, and none with more than `sorted_trees` is drawn as one range:
  * what is hidden then fails the depth test before it is shaded. */
 #include "methods/method.h"
 
 #include <math.h>
 
-enum { SORTED_TREES = 512, MAX_CHILDREN = 8 };
+enum { MAX_CHILDREN = 8 };
 
 struct traversal {
     const struct wd_tree_draw *draw;
     struct wd_selection *selection;
     struct wd_level_rule rule;
     float card_distance_m;
-    uint32_t max_cull_depth;
+    uint32_t max_cull_depth, sorted_trees;
 };
 
 static float box_distance(const float min[3], const float max[3])
@@ -106,7 +106,7 @@ static void visit(const struct traversal *t, uint32_t index)
         add_single(t, octant->begin, octant->own_end);
         visit_children(t, octant);
     } else if (octant->child_count && ((side == WD_PARTLY && octant->depth < t->max_cull_depth) ||
-                                       octant->end - octant->begin > SORTED_TREES)) {
+                                       octant->end - octant->begin > t->sorted_trees)) {
         wd_selection_add_range(t->selection, &(struct wd_range){octant->begin, octant->own_end,
                                                                 card_vertices(min, max)});
         visit_children(t, octant);
@@ -125,12 +125,15 @@ static void octree_finish(void *state, struct wd_gpu *gpu)
 static void octree_select(void *state, const struct wd_tree_draw *draw)
 {
     const struct wd_forest_device *forest = draw->forest;
+    const struct wd_octree_options *options = &forest->scene->methods.octree;
     struct traversal traversal = {
         .draw = draw,
         .selection = state,
         .rule = wd_level_rule_of(forest, draw->view, draw->pass),
-        .max_cull_depth = (uint32_t)forest->scene->quality.max_cull_depth,
+        .max_cull_depth = (uint32_t)options->max_cull_depth,
+        .sorted_trees = options->sorted_trees ? (uint32_t)options->sorted_trees : UINT32_MAX,
     };
+    traversal.rule.parallel = options->faithful;
     traversal.card_distance_m = wd_level_card_distance(&traversal.rule, forest->max_tree_height_m);
     wd_selection_clear(state);
     if (forest->world->octree.count)

@@ -34,9 +34,15 @@ struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
 }
 
 /* Shares of a nearer and a farther level about the distance where they change. */
-static void blend_levels(float from_m, float blend, float distance_m, float *nearer, float *farther)
+static void blend_levels(const struct wd_level_rule *rule, float from_m, float distance_m,
+                         float *nearer, float *farther)
 {
-    float t = wd_ramp(from_m, from_m * (1.0f + blend), distance_m);
+    float t = wd_ramp(from_m, from_m * (1.0f + rule->blend), distance_m);
+    if (rule->parallel) {
+        *farther = t;
+        *nearer = 1.0f - t;
+        return;
+    }
     *farther = fminf(2.0f * t, 1.0f);
     *nearer = fminf(2.0f - 2.0f * t, 1.0f);
 }
@@ -45,9 +51,8 @@ struct wd_levels wd_levels_at(const struct wd_level_rule *rule, float height_m, 
 {
     struct wd_levels levels;
     float scale = height_m / REFERENCE_HEIGHT_M, not_mesh, meshes;
-    blend_levels(rule->mesh_m * scale, rule->blend, distance_m, &levels.show[WD_LEVEL_MESH],
-                 &not_mesh);
-    blend_levels(fmaxf(rule->reduced_m, rule->mesh_m) * scale, rule->blend, distance_m, &meshes,
+    blend_levels(rule, rule->mesh_m * scale, distance_m, &levels.show[WD_LEVEL_MESH], &not_mesh);
+    blend_levels(rule, fmaxf(rule->reduced_m, rule->mesh_m) * scale, distance_m, &meshes,
                  &levels.show[WD_LEVEL_CARD]);
     levels.show[WD_LEVEL_REDUCED] = fminf(not_mesh, meshes);
     if (rule->finest > WD_LEVEL_MESH)

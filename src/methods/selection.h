@@ -19,6 +19,7 @@ struct wd_level_rule {
     float blend;             /* share of the distance over which levels blend */
     uint32_t finest;         /* WD_LEVEL_*: shadows of far cascades start lower */
     float farthest_m;        /* greatest mesh distance that a layer asks for itself */
+    bool parallel;           /* levels blend at the same time: the ghosts that G7 avoids */
 };
 struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
                                       const struct wd_view *view, enum wd_tree_pass pass);

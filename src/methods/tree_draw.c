@@ -215,21 +215,27 @@ static void draw_card_range(const struct wd_tree_draw *draw, const struct wd_pip
     draw->stats->trees[WD_LEVEL_CARD] += range->end - range->begin;
 }
 
+void wd_tree_draw_card_ranges(const struct wd_tree_draw *draw, const struct wd_range *ranges,
+                              size_t count, const struct wd_buffer *list)
+{
+    const struct wd_pipeline *pipeline = list ? &draw->pipelines->card_listed[draw->pass]
+                                              : &draw->pipelines->card_range[draw->pass];
+    if (!count)
+        return;
+    /* octree order reads no instances; the slot is filled all the same */
+    bind_cards(draw, pipeline, WD_BIND_BUFFER(list ? list : &draw->forest->trees));
+    for (size_t i = 0; i < count; i++)
+        draw_card_range(draw, pipeline, &ranges[i], WD_CARD_BATCH);
+}
+
 static void draw_cards(const struct wd_tree_draw *draw, const struct wd_selection *selection,
                        enum wd_draw_grouping grouping)
 {
-    const struct wd_tree_pipelines *pipelines = draw->pipelines;
-    if (selection->range_count) {
-        /* ranges read no instances; the slot is filled all the same */
-        const struct wd_pipeline *pipeline = &pipelines->card_range[draw->pass];
-        bind_cards(draw, pipeline, WD_BIND_BUFFER(&draw->forest->trees));
-        for (size_t i = 0; i < selection->range_count; i++)
-            draw_card_range(draw, pipeline, &selection->ranges[i], WD_CARD_BATCH);
-    }
+    wd_tree_draw_card_ranges(draw, selection->ranges, selection->range_count, NULL);
     struct wd_binding instances;
     if (selection->card_count &&
         upload_instances(draw, selection->cards, selection->card_count, &instances)) {
-        const struct wd_pipeline *pipeline = &pipelines->card_listed[draw->pass];
+        const struct wd_pipeline *pipeline = &draw->pipelines->card_listed[draw->pass];
         const struct wd_range list = {0, (uint32_t)selection->card_count, WD_CARD_VERTICES};
         bind_cards(draw, pipeline, instances);
         draw_card_range(draw, pipeline, &list, grouping == WD_DRAW_GROUPED ? WD_CARD_BATCH : 1);

@@ -36,6 +36,10 @@ enum wd_draw_grouping {
     WD_DRAW_SINGLE,  /* one draw a tree */
 };
 
+/* Draws ranges of trees as cards: of octree order, or of a list of struct wd_instance. */
+void wd_tree_draw_card_ranges(const struct wd_tree_draw *draw, const struct wd_range *ranges,
+                              size_t count, const struct wd_buffer *list);
+
 /* Records all of a selection, inside an open rendering. Buffers of the forest are in use for
  * reading by graphics. Sorts the selection. */
 void wd_tree_draw_selection(const struct wd_tree_draw *draw, struct wd_selection *selection,

@@ -70,6 +70,9 @@ static bool report(const struct wd_keys_place *place, const char *key, bool at_k
     char path[256], message[1024];
     write_path(steps, count, path, sizeof path);
     vsnprintf(message, sizeof message, format, arguments);
+    const char *setting = wd_keys_setting_of(reader, path);
+    if (setting)
+        return wd_error(reader->log, "%s: setting %s: %s", reader->path, setting, message);
     struct wd_json_spot spot = wd_json_spot_at(
         reader->text, wd_json_find(reader->clean, reader->size, steps, count, at_key));
     return wd_error(reader->log, "%s:%u:%u: %s%s%s", reader->path, spot.line, spot.column, path,
@@ -111,7 +114,8 @@ static bool unknown_key(const struct wd_keys *table, const char *name,
     const char *near = wd_nearest_name(name, names, count);
     if (near)
         return wd_keys_error_at_key(place, name, "unknown key; did you mean \"%s\"?", near);
-    return wd_keys_error_at_key(place, name, "unknown key; %s takes: %s", table->title, all);
+    return wd_keys_error_at_key(place, name, "unknown key; %s takes: %s", table->title,
+                                count ? all : "none");
 }
 
 static bool check_names(const struct wd_keys *table, json_t *json,
@@ -189,7 +193,9 @@ static bool read_text(struct wd_keys_reader *reader, const struct wd_keys *table
     struct wd_keys_place root = {.reader = reader};
     bool ok = json_is_object(json) || wd_keys_error(&root, NULL, "found a list; a %s is an object: "
                                                                  "{ ... }", table->title);
-    ok = ok && wd_keys_read_object(table, json, &root, object);
+    ok = ok && wd_keys_apply_settings(reader, table, json) &&
+         wd_keys_read_object(table, json, &root, object);
+    wd_keys_settings_finish(reader);
     json_decref(json);
     if (reader->errors > WD_KEYS_ERROR_LIMIT)
         wd_error(reader->log, "%s: %u more errors", reader->path,
@@ -197,16 +203,16 @@ static bool read_text(struct wd_keys_reader *reader, const struct wd_keys *table
     return ok;
 }
 
-bool wd_keys_read_with(const struct wd_keys *table, const char *path, const char *text, size_t size,
-                       const void *user, struct wd_arena *arena, const struct wd_log *log,
-                       void *object)
+bool wd_keys_read_input(const struct wd_keys *table, const struct wd_keys_input *input,
+                        struct wd_arena *arena, const struct wd_log *log, void *object)
 {
     memset(object, 0, table->size);
-    char *clean = wd_json_blank_comments(path, text, size, log);
+    char *clean = wd_json_blank_comments(input->path, input->text, input->size, log);
     if (!clean)
         return false;
-    struct wd_keys_reader reader = {.path = path, .text = text, .clean = clean, .size = size,
-                                    .arena = arena, .log = log, .user = user};
+    struct wd_keys_reader reader = {.path = input->path, .text = input->text, .clean = clean,
+                                    .size = input->size, .arena = arena, .log = log,
+                                    .user = input->user, .settings = input->settings};
     bool ok = read_text(&reader, table, object);
     free(clean);
     if (!ok)
@@ -217,5 +223,6 @@ bool wd_keys_read_with(const struct wd_keys *table, const char *path, const char
 bool wd_keys_read(const struct wd_keys *table, const char *path, const char *text, size_t size,
                   struct wd_arena *arena, const struct wd_log *log, void *object)
 {
-    return wd_keys_read_with(table, path, text, size, NULL, arena, log, object);
+    const struct wd_keys_input input = {.path = path, .text = text, .size = size};
+    return wd_keys_read_input(table, &input, arena, log, object);
 }

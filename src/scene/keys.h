@@ -77,6 +77,7 @@ struct wd_key {
     size_t count_offset;
     size_t length;       /* VECTOR, FLOATS: number of parts */
     unsigned flags;
+    const char *row;     /* of docs/methods.md: what of a paper it stands for; or NULL */
 };
 struct wd_keys {
     const char *title;
@@ -105,10 +106,19 @@ const void *wd_keys_user(const struct wd_keys_place *place);
 bool wd_keys_read(const struct wd_keys *table, const char *path, const char *text, size_t size,
                   struct wd_arena *arena, const struct wd_log *log, void *object);
 
-/* The same; the checks get `user` from wd_keys_user. */
-bool wd_keys_read_with(const struct wd_keys *table, const char *path, const char *text, size_t size,
-                       const void *user, struct wd_arena *arena, const struct wd_log *log,
-                       void *object);
+/* A file's text and what goes with it. */
+struct wd_keys_input {
+    const char *path, *text;
+    size_t size;
+    const void *user; /* for the checks: wd_keys_user */
+    /* "key.key=value" each, in place of what the text says, ended by NULL; or NULL. The value is
+     * JSON, or else a text. A number stands for an item of a list; "@key" for what the root's key
+     * says, so that "methods.@method.depth=7" sets an option of the chosen method. Errors of a
+     * value that was set name the setting instead of a line. */
+    const char *const *settings;
+};
+bool wd_keys_read_input(const struct wd_keys *table, const struct wd_keys_input *input,
+                        struct wd_arena *arena, const struct wd_log *log, void *object);
 
 /* The JSON Schema (draft 2020-12) of a table, as text; free() it. */
 char *wd_keys_schema(const struct wd_keys *table, const char *id);

@@ -15,6 +15,8 @@ struct wd_keys_reader {
     struct wd_arena *arena;
     const struct wd_log *log;
     const void *user;
+    const char *const *settings;   /* as given; NULL: none */
+    char **setting_paths;          /* of each its path, without "@"; NULL: it could not be set */
     unsigned errors;
 };
 
@@ -32,6 +34,13 @@ bool wd_keys_read_value(const struct wd_key *key, json_t *json, const struct wd_
 /* As wd_keys_error, but points at the key, not at its value. */
 bool wd_keys_error_at_key(const struct wd_keys_place *place, const char *key, const char *format,
                           ...) __attribute__((format(printf, 3, 4)));
+
+/* Puts the reader's settings into the text's JSON and notes their paths. */
+bool wd_keys_apply_settings(struct wd_keys_reader *reader, const struct wd_keys *table,
+                            json_t *root);
+void wd_keys_settings_finish(struct wd_keys_reader *reader);
+/* The setting that a value at that path ("layers[0].name") came with, or NULL. */
+const char *wd_keys_setting_of(const struct wd_keys_reader *reader, const char *path);
 
 /* What a key takes, for messages: "a number from 0 to 1". */
 const char *wd_keys_allowed(const struct wd_key *key, char *buffer, size_t size);

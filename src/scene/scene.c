@@ -16,7 +16,8 @@ bool wd_scene_load_with(struct wd_scene *scene, const char *path,
     if (!wd_file_read(path, MAX_SCENE_BYTES, log, &text, &size))
         return false;
     struct wd_arena arena = {0};
-    bool ok = wd_keys_read_with(&wd_scene_keys, path, text, size, params, &arena, log, scene);
+    const struct wd_keys_input input = {path, text, size, params, params ? params->settings : NULL};
+    bool ok = wd_keys_read_input(&wd_scene_keys, &input, &arena, log, scene);
     free(text);
     if (ok)
         scene->arena = arena;

@@ -2,6 +2,7 @@
 #ifndef WD_SCENE_SCENE_H
 #define WD_SCENE_SCENE_H
 
+#include "scene/methods.h"
 #include "scene/nearest.h"
 #include "scene/species.h"
 
@@ -163,14 +164,14 @@ struct wd_scene {
     size_t camera_count;
     struct wd_scene_path *paths;
     size_t path_count;
-    const char *method;      /* "octree", "separate" */
+    const char *method;      /* one of wd_scene_method_names */
+    struct wd_method_options methods;
     struct {
         int64_t width, height;
         int64_t samples;
         double mesh_distance_m;    /* full meshes nearer than this, for a tree of 20 m */
         double reduced_distance_m; /* reduced meshes nearer than this */
         double blend;              /* share of a distance over which levels blend */
-        int64_t max_cull_depth;    /* octree method; 7 in Guerrero 2006 */
         int64_t shadow_size;       /* texels a side of a cascade */
         double shadow_distance_m;
         int64_t shadow_taps;
@@ -185,6 +186,7 @@ extern const struct wd_keys wd_scene_keys;
 /* What a scene is loaded with. */
 struct wd_scene_params {
     const char *data_dir;    /* what ${data} in file names stands for; NULL: none */
+    const char *const *settings; /* "key=value" in place of the file's: struct wd_keys_input */
 };
 
 /* Reads a scene file and every species file it names. On failure `*scene` is `{0}`; all errors

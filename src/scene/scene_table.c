@@ -7,7 +7,6 @@
 static const char *const terrain_kinds[] = {"flat", "diamond-square", "raster", NULL};
 static const char *const nodata_rules[] = {"fill", "cut", NULL};
 static const char *const raster_units[] = {"metres", NULL};
-static const char *const methods[] = {"octree", "separate", NULL};
 
 #define TERRAIN(member) offsetof(struct wd_scene_terrain, member)
 static const struct wd_key terrain_keys[] = {
@@ -130,14 +129,12 @@ static const struct wd_key quality_keys[] = {
      "Reduced meshes are drawn nearer than this, for a tree of 20 m, in metres."},
     {"blend", WD_KEY_DOUBLE, IN(quality, blend), 0, 0.9, "0.25",
      "Share of a distance over which levels blend."},
-    {"max_cull_depth", WD_KEY_INTEGER, IN(quality, max_cull_depth), 1, 16, "7",
-     "octree: depth down to which octants are culled."},
     {"shadow_size", WD_KEY_INTEGER, IN(quality, shadow_size), 16, 16384, "2048",
      "Texels a side of a shadow cascade."},
     {"shadow_distance_m", WD_KEY_DOUBLE, IN(quality, shadow_distance_m), 1, 1e6, "2500",
      "Shadows reach this far from the camera, in metres."},
-    {"shadow_taps", WD_KEY_INTEGER, IN(quality, shadow_taps), 1, 64, "5",
-     "Shadow look-ups a pixel."},
+    {"shadow_taps", WD_KEY_INTEGER, IN(quality, shadow_taps), 0, 64, "5",
+     "Shadow look-ups a pixel; 0: no shadows of trees."},
     {"exposure_ev", WD_KEY_DOUBLE, IN(quality, exposure_ev), -20, 20, "0",
      "Stops added to the automatic exposure."},
     {"terrain_error_px", WD_KEY_DOUBLE, IN(quality, terrain_error_px), 0, 100, "1.5",
@@ -170,8 +167,11 @@ static const struct wd_key scene_keys[] = {
      .doc = "Points of view; without any, one is made that overlooks the scene."},
     {"paths", WD_KEY_LIST, SCENE(paths), .table = &wd_scene_path_keys,
      .count_offset = SCENE(path_count), .doc = "Camera paths for films."},
-    {"method", WD_KEY_STRING, SCENE(method), .fallback = "\"octree\"", .choices = methods,
+    {"method", WD_KEY_STRING, SCENE(method), .fallback = "\"octree\"",
+     .choices = wd_scene_method_names,
      .doc = "How trees are drawn."},
+    {"methods", WD_KEY_OBJECT, SCENE(methods), .table = &wd_scene_method_keys,
+     .doc = "Options of the methods, each by its name; see docs/methods.md."},
     {"quality", WD_KEY_OBJECT, SCENE(quality), .table = &quality_table,
      .doc = "Size of the picture and effort spent on it."},
     {0},

@@ -56,7 +56,10 @@ static void index_trees(struct wd_world *world, struct wd_tree_list *list,
     world->tree_count = list->count;
     *list = (struct wd_tree_list){0};
     wd_octree_init(&world->octree, world->trees, world->tree_count,
-                   &(struct wd_octree_params){.threads = threads});
+                   &(struct wd_octree_params){
+                       .max_depth = (uint32_t)scene->methods.octree.max_depth,
+                       .leaf_trees = (uint32_t)scene->methods.octree.leaf_trees,
+                       .threads = threads});
     world->tree_of_id = wd_alloc_array(world->tree_count + 1, sizeof *world->tree_of_id);
     world->layer_of_tree = wd_alloc(world->tree_count);
     world->species_counts = wd_alloc_array(scene->species_file_count,

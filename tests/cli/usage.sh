@@ -8,7 +8,7 @@ status=0
 check 'no arguments: usage, exit 2' test "$status" -eq 2
 expect 0 '^weald [0-9]+\.[0-9]+' --version
 expect 0 'weald render scenes/valley.json' --help
-for command in render view info check schema devices manual; do
+for command in render view info check schema devices methods manual; do
     expect 0 '^Examples:' "$command" --help
     expect 0 '^  weald ' "$command" -h
 done
@@ -53,12 +53,25 @@ expect 2 'holds one frame' render "$tiny" -o a.png --frames 5
 expect 2 'exclude each other' render "$tiny" -o a.png --camera a --path b
 expect 2 'there are: scene, species' schema tree
 
+expect 2 'there is no option --optoin, did you mean --option\?' render "$tiny" --optoin a=b
+expect 2 'must be NAME=VALUE' render "$tiny" -o a.png --option max_cull_depth
+expect 1 'setting methods.@method.max_cul_depth=3: .*did you mean "max_cull_depth"\?' \
+    info "$tiny" --method octree --option max_cul_depth=3
+expect 1 'whole number from 1 to 16' info "$tiny" --method octree --option max_cull_depth=17
+expect 1 'setting methods.@method.faithful=true: unknown key; separate takes: none' info "$tiny" --method separate --faithful
+expect 1 'did you mean "speed_mps"\?' info "$tiny" --set wind.sped_mps=0
+expect 1 'no such item' info "$tiny" --set cameras.99=1
+expect 1 'leads through' info "$tiny" --set seed.x=1
+expect 0 'max_cull_depth +a whole number from 1 to 16 \(default 7; G5\)' methods
+expect 0 '^octree' methods octree
+expect 2 'did you mean "octree"' methods octre
+
 for kind in scene species; do
     check "schema $kind is JSON" sh -c "'$weald' schema $kind | jq -e '.properties | length > 3'"
 done
 expect 0 'llvmpipe|lavapipe' devices
 check 'a full standard output is a failure' sh -c "! '$weald' schema scene >/dev/full"
-check 'manual page names every command' sh -c "'$weald' manual | grep -c '^.SS weald' | grep -qx 7"
+check 'manual page names every command' sh -c "'$weald' manual | grep -c '^.SS weald' | grep -qx 8"
 if command -v groff >/dev/null 2>&1; then
     check 'manual page is clean roff' sh -c \
         "'$weald' manual | groff -man -ww -z -Tutf8 2>&1 | ( ! grep . )"

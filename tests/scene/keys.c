@@ -261,6 +261,57 @@ static void columns_count_characters_beyond_comments(void **state)
     wd_arena_finish(&f.arena);
 }
 
+static bool read_set(struct fixture *f, const char *text, const char *const *settings)
+{
+    wd_arena_finish(&f->arena);
+    f->log = (struct collected){0};
+    struct wd_log log = {collect, &f->log};
+    const struct wd_keys_input input = {"f.json", text, strlen(text), NULL, settings};
+    return wd_keys_read_input(&sample_table, &input, &f->arena, &log, &f->sample);
+}
+
+static void settings_take_the_place_of_the_text(void **state)
+{
+    (void)state;
+    struct fixture f = {0};
+    const char *const good[] = {"whole=9",           "leaf.size_m=3", "text=plain words",
+                                "list.0.size_m=4.5", "flag=false",    "vector=[1, 2, 3]", NULL};
+    assert_true(read_set(&f, "{\"whole\": 1, \"list\": [{}, {}]}", good));
+    assert_true(f.sample.whole == 9 && f.sample.leaf.size == 3 && !f.sample.flag);
+    assert_true(f.sample.list[0].size == 4.5 && f.sample.list[1].size == 2);
+    assert_true(f.sample.vector[2] == 3);
+    assert_string_equal(f.sample.text, "plain words");
+    const char *const chosen[] = {"text=leaf", "@text.size_m=7", NULL};
+    assert_true(read_set(&f, "{}", chosen) && f.sample.leaf.size == 7);
+    wd_arena_finish(&f.arena);
+}
+
+static void settings_that_are_wrong_are_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *setting, *message;
+    } wrong[] = {
+        {"whole=0.5", "f.json: setting whole=0.5: found 0.5; allowed is a whole number"},
+        {"whoel=1", "setting whoel=1: unknown key; did you mean \"whole\"?"},
+        {"list.0.size_m=11", "setting list.0.size_m=11: found 11"},
+        {"list.5=1", "there is no such item"},
+        {"whole.a.b=1", "leads through something that has no keys"},
+        {"whole", "must read KEY=VALUE"},
+        {"=1", "must read KEY=VALUE"},
+        {"leaf..size_m=1", "empty or too long"},
+        {"@flag.x=1", "nothing that @ could stand for"},
+        {"@none.x=1", "nothing that @ could stand for"},
+    };
+    struct fixture f = {0};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        const char *const settings[] = {wrong[i].setting, NULL};
+        assert_false(read_set(&f, "{\"whole\": 1, \"list\": [{}]}", settings));
+        assert_true(logged(&f.log, wrong[i].message));
+    }
+    wd_arena_finish(&f.arena);
+}
+
 static void nearest_name_is_found_or_none(void **state)
 {
     (void)state;
@@ -285,6 +336,8 @@ int main(void)
         cmocka_unit_test(deep_nesting_is_refused),
         cmocka_unit_test(many_errors_come_in_one_pass_but_bounded),
         cmocka_unit_test(columns_count_characters_beyond_comments),
+        cmocka_unit_test(settings_take_the_place_of_the_text),
+        cmocka_unit_test(settings_that_are_wrong_are_named),
         cmocka_unit_test(nearest_name_is_found_or_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-#include "world/sun.h"
+#include "frame/sun.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,0 +1,150 @@
+/* keys_settings.c: values from outside a file, put into its JSON before it is read. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/keys_reader.h"
+
+enum { MAX_PATH = 256 };
+
+static bool refuse(const struct wd_keys_reader *reader, const char *setting, const char *why)
+{
+    return wd_error(reader->log, "%s: setting %s: %s", reader->path, setting, why);
+}
+
+/* What the root says at `key`, or its default. */
+static const char *text_of_root(const struct wd_keys *table, const json_t *root, const char *key,
+                                char *buffer, size_t size)
+{
+    const char *found = json_string_value(json_object_get(root, key));
+    for (const struct wd_key *at = table->keys; !found && at->name; at++) {
+        if (strcmp(at->name, key) != 0 || !at->fallback || at->fallback[0] != '"')
+            continue;
+        size_t length = strlen(at->fallback) - 2;
+        if (length >= size)
+            return NULL;
+        memcpy(buffer, at->fallback + 1, length);
+        buffer[length] = '\0';
+        found = buffer;
+    }
+    return found;
+}
+
+/* The path before "=", with every "@key" replaced. */
+static bool expand_path(char path[MAX_PATH], const struct wd_keys_reader *reader,
+                        const struct wd_keys *table, const json_t *root, const char *setting)
+{
+    const char *end = strchr(setting, '=');
+    size_t used = 0;
+    if (!end || end == setting)
+        return refuse(reader, setting, "it must read KEY=VALUE");
+    for (const char *at = setting; at < end;) {
+        size_t length = strcspn(at, ".=");
+        char key[MAX_PATH], buffer[MAX_PATH];
+        if (length == 0 || length >= sizeof key - used - 1)
+            return refuse(reader, setting, "a part of its path is empty or too long");
+        memcpy(key, at, length);
+        key[length] = '\0';
+        const char *step = key[0] == '@' ? text_of_root(table, root, key + 1, buffer, sizeof buffer)
+                                         : key;
+        if (!step || used + strlen(step) + 2 > MAX_PATH)
+            return refuse(reader, setting, "there is nothing that @ could stand for");
+        used += strlen(strcpy(path + used, step));
+        at += length;
+        if (*at == '.')
+            path[used++] = *at++;
+    }
+    path[used] = '\0';
+    return true;
+}
+
+/* The object or list below `parent` at `step`; an object that is not there yet is made. */
+static json_t *step_into(json_t *parent, const char *step)
+{
+    if (json_is_array(parent))
+        return json_array_get(parent, strtoul(step, NULL, 10));
+    json_t *child = json_object_get(parent, step);
+    if (!child && json_is_object(parent)) {
+        child = json_object();
+        json_object_set_new(parent, step, child);
+    }
+    return child;
+}
+
+static bool put(json_t *parent, const char *step, const char *text)
+{
+    json_t *value = json_loads(text, JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, NULL);
+    if (!value)
+        value = json_string(text);
+    if (!value)
+        return false;
+    if (json_is_array(parent))
+        return json_array_set_new(parent, strtoul(step, NULL, 10), value) == 0;
+    return json_object_set_new(parent, step, value) == 0;
+}
+
+static bool apply(const struct wd_keys_reader *reader, json_t *root, const char *path,
+                  const char *setting)
+{
+    char steps[MAX_PATH];
+    strcpy(steps, path);
+    json_t *parent = root;
+    char *step = steps;
+    for (char *dot; (dot = strchr(step, '.')) != NULL; step = dot + 1) {
+        *dot = '\0';
+        parent = step_into(parent, step);
+        if (!json_is_object(parent) && !json_is_array(parent))
+            return refuse(reader, setting, "its path leads through something that has no keys");
+    }
+    if (!put(parent, step, strchr(setting, '=') + 1))
+        return refuse(reader, setting, "there is no such item in the list, or the value is no text");
+    return true;
+}
+
+bool wd_keys_apply_settings(struct wd_keys_reader *reader, const struct wd_keys *table,
+                            json_t *root)
+{
+    size_t count = 0;
+    while (reader->settings && reader->settings[count])
+        count++;
+    if (!count)
+        return true;
+    reader->setting_paths = wd_alloc_array(count, sizeof *reader->setting_paths);
+    for (size_t i = 0; i < count; i++) {
+        char path[MAX_PATH];
+        if (!expand_path(path, reader, table, root, reader->settings[i]) ||
+            !apply(reader, root, path, reader->settings[i]))
+            return false;
+        reader->setting_paths[i] = wd_strdup(path);
+    }
+    return true;
+}
+
+void wd_keys_settings_finish(struct wd_keys_reader *reader)
+{
+    for (size_t i = 0; reader->setting_paths && reader->settings[i]; i++)
+        free(reader->setting_paths[i]);
+    free(reader->setting_paths);
+    reader->setting_paths = NULL;
+}
+
+/* "a[0].b" and "a.0.b" are the same. */
+static bool same_path(const char *path, const char *setting)
+{
+    for (; *path; path++) {
+        if (*path == ']')
+            continue;
+        char step = *path == '[' ? '.' : *path;
+        if (*setting++ != step)
+            return false;
+    }
+    return *setting == '\0';
+}
+
+const char *wd_keys_setting_of(const struct wd_keys_reader *reader, const char *path)
+{
+    for (size_t i = 0; reader->setting_paths && reader->settings[i]; i++) {
+        if (reader->setting_paths[i] && same_path(path, reader->setting_paths[i]))
+            return reader->settings[i];
+    }
+    return NULL;
+}

@@ -1,0 +1,29 @@
+/* methods.h: the methods that can draw trees and the options of each, as scenes give them. */
+#ifndef WD_SCENE_METHODS_H
+#define WD_SCENE_METHODS_H
+
+#include "scene/keys.h"
+
+struct wd_octree_options {
+    int64_t max_depth, leaf_trees; /* of the octree over the world's trees */
+    int64_t max_cull_depth;
+    int64_t sorted_trees; /* 0: any octant may be one draw */
+    bool faithful;
+};
+
+struct wd_grid_options {
+    int64_t trees_per_cell;
+};
+
+
+/* By method; methods without options have no member. */
+struct wd_method_options {
+    struct wd_octree_options octree;
+    struct wd_grid_options grid;
+};
+
+/* One key a method, in the order of wd_scene_method_names; `table` holds its options. */
+extern const struct wd_keys wd_scene_method_keys;
+extern const char *const wd_scene_method_names[]; /* ended by NULL */
+
+#endif
