@@ -1,34 +1,17 @@
-/* The sky toward a direction. Expects `frame` (wd_frame_uniforms). */
-#include "shared/sky.h"
+/* The sky for shaders: shared/air.h by shorter names. Expects `frame` (wd_frame_uniforms). */
+#include "shared/air.h"
 
-/* Without the sun's disc; below the horizon as at the horizon. */
 vec3 sky_radiance(vec3 direction)
 {
-    float cosine = dot(direction, frame.sun_direction);
-    float v = wd_air_mass(direction.z), s = wd_air_mass(frame.sun_direction.z);
-    float air_phase = wd_air_phase(cosine), haze_phase = wd_haze_phase(cosine);
-    vec3 radiance;
-    for (int i = 0; i < 3; i++)
-        radiance[i] = wd_sky_radiance(wd_sky_band_of(i, frame.sky_turbidity), v, s, air_phase,
-                                      haze_phase, frame.sun_direction.z);
-    return radiance * frame.sky_strength;
+    return wd_sky_toward(direction);
 }
 
-/* The sky at the horizon below or above a direction: what haze fades into. `glow` is a factor on
- * the light that haze scatters forward. */
-vec3 horizon_radiance(vec3 direction, float glow)
-{
-    float cosine = dot(direction, frame.sun_direction);
-    return frame.sky_horizon + frame.sky_glow * (wd_haze_phase(cosine) * glow);
-}
-
-/* The disc, with the darkening of its limb (Hestroffer and Magnan 1998: exponent 0.5). */
 vec3 sun_disc(vec3 direction)
 {
-    float cosine = dot(direction, frame.sun_direction);
-    float inside = (cosine - frame.sun_cos_radius) / (1.0 - frame.sun_cos_radius);
-    if (inside <= 0.0 || direction.z < 0.0)
-        return vec3(0.0);
-    float area = 6.2831853 * (1.0 - frame.sun_cos_radius);
-    return frame.sun_irradiance / area * 1.2 * sqrt(inside);
+    return wd_sun_disc_toward(direction);
+}
+
+vec3 apply_fog(vec3 radiance, vec3 direction, float length_m, float sunlit)
+{
+    return wd_fog_apply(radiance, direction, length_m, sunlit);
 }

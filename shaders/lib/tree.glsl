@@ -1,7 +1,6 @@
 /* Standing trees: from a model's frame to the camera-relative one, with wind.
  * Expects `frame` (wd_frame_uniforms). */
-#include "shared/forest.h"
-#include "shared/wind.h"
+#include "shared/tree_pose.h"
 
 vec3 tree_foot_rel(wd_tree tree)
 {
@@ -19,13 +18,9 @@ struct tree_pose {
 
 tree_pose tree_pose_of(wd_tree tree, wd_model model)
 {
-    tree_pose pose;
-    float yaw = float(tree.look & 0xffffu) * (6.28318530718 / 65536.0);
-    pose.turn = vec2(cos(yaw), sin(yaw));
-    pose.mirror = vec2((tree.look & 0x1000000u) != 0u ? -1.0 : 1.0, 1.0);
-    pose.across = WD_TREE_CROWN_M(tree) / model.crown_m;
-    pose.up = WD_TREE_HEIGHT_M(tree) / model.height_m;
-    return pose;
+    wd_tree_pose pose = wd_tree_pose_of(tree, model);
+    return tree_pose(vec2(pose.turn_cos, pose.turn_sin), vec2(pose.mirror, 1.0), pose.across,
+                     pose.up);
 }
 
 vec2 tree_turn(tree_pose pose, vec2 v)
@@ -55,19 +50,14 @@ vec3 tree_sway(wd_tree tree, float flexibility, float height_m, float time_s)
 {
     if (frame.wind_speed_mps <= 0.0)
         return vec3(0.0);
-    wd_wind_tree swaying = wd_wind_tree(float(tree.x_mm) * 0.001, float(tree.y_mm) * 0.001,
-                                        WD_TREE_HEIGHT_M(tree), flexibility, tree.random);
+    wd_wind_tree swaying = wd_wind_tree_of(tree, flexibility);
     wd_wind_shift shift = wd_wind_offset(tree_wind(), swaying, height_m, time_s);
     return vec3(shift.x_m, shift.y_m, shift.z_m);
 }
 
-/* Each tree's own brightness and hue about the species' colour. */
 vec3 tree_tint(wd_tree tree)
 {
-    float spread = float((tree.look >> 16) & 0xffu) * (1.0 / 128.0) - 1.0;
-    float other = float(tree.random >> 24) * (1.0 / 128.0) - 1.0;
-    return vec3(1.0 + 0.30 * spread + 0.10 * other * abs(spread), 1.0 + 0.22 * spread,
-                1.0 + 0.16 * spread - 0.08 * other * abs(spread));
+    return wd_tree_tint(tree);
 }
 
 vec3 level_color(uint level)

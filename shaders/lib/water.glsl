@@ -1,6 +1,5 @@
 /* A level water: reflection of sky and shores, glint of the sun, and what shows through.
- * Expects `frame`, `push`, the G-buffer, lib/noise.glsl, lib/sky.glsl, lib/fog.glsl and
- * lib/view.glsl. */
+ * Expects `frame`, `push`, the G-buffer, lib/noise.glsl, lib/sky.glsl and lib/view.glsl. */
 
 /* Slopes of the waves that a pixel resolves; `hidden` is the variance of those it does not (Cox and
  * Munk 1954: 0.003 + 0.00512 wind speed in all). Waves travel with the wind. */

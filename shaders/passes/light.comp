@@ -27,7 +27,6 @@ layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #include "lib/noise.glsl"
 #include "lib/sky.glsl"
-#include "lib/fog.glsl"
 #include "lib/shadow.glsl"
 #include "lib/gbuffer.glsl"
 #include "lib/tree.glsl"

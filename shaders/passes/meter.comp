@@ -1,7 +1,7 @@
 #version 460
 /* A histogram of log2 luminance of the picture, every second pixel of every second row. */
 #include "shared/frame.h"
-#include "shared/light.h"
+#include "shared/tone.h"
 
 layout(local_size_x = 256) in;
 
@@ -22,9 +22,8 @@ void main()
         uint index = (group * 16u + i) * 256u + lane;
         if (index < columns * rows) {
             vec4 sum = imageLoad(radiance_image, 2 * ivec2(index % columns, index / columns));
-            float luminance = dot(sum.rgb, vec3(0.2126, 0.7152, 0.0722)) / max(sum.a, 1.0);
-            float at = (log2(max(luminance, 1e-30)) - WD_METER_LOW) * WD_METER_PER_EV;
-            atomicAdd(bins[uint(clamp(at, 0.0, WD_METER_BINS - 1.0))], 1u);
+            float luminance = wd_luminance(sum.rgb) / max(sum.a, 1.0);
+            atomicAdd(bins[wd_meter_bin(luminance)], 1u);
         }
     }
     barrier();

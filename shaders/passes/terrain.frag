@@ -10,8 +10,7 @@ layout(set = 0, binding = 4) uniform sampler2D slopes;
 layout(set = 0, binding = 5) uniform sampler2D cover_map;
 layout(scalar, set = 0, binding = 6) readonly buffer Holes { uint holes[]; };
 
-#include "lib/noise.glsl"
-#include "lib/ground_cover.glsl"
+#include "shared/ground_cover.h"
 
 layout(location = 0) in vec3 in_rel;
 layout(location = 1) in float in_curtain;
@@ -65,7 +64,8 @@ void main()
                             level - log2(view.slopes_texel_m)).xy;
     float cover = textureLod(cover_map, local_m * view.cover_scale,
                              level - log2(view.cover_texel_m)).x;
-    ground_look look = ground_cover(in_rel, slope, cover, footprint_of(distance_m, slope));
+    wd_ground_look look = wd_ground_cover(in_rel, slope.x, slope.y, cover,
+                                          footprint_of(distance_m, slope));
     if (in_curtain > 0.0) {
         look.albedo = frame.soil * (0.75 + 0.25 * cos(in_rel.z * 1.3));
         look.normal = curtain_normal();

@@ -73,4 +73,18 @@ struct wd_frame_uniforms {
     uint32_t shadow_taps;            /* 0: no shadows */
 };
 
+/* Shared mathematics asks for these values through WD_FRAME(member), or WD_FRAME_V3(member) for
+ * three floats; shaders declare a block called `frame`, C functions take a pointer first. */
+#ifdef __STDC_VERSION__
+#define WD_FRAME_IN const struct wd_frame_uniforms *frame,
+#define WD_FRAME_PASS frame,
+#define WD_FRAME(member) (frame->member)
+#define WD_FRAME_V3(member) wd_v3_of(frame->member)
+#else
+#define WD_FRAME_IN
+#define WD_FRAME_PASS
+#define WD_FRAME(member) (frame.member)
+#define WD_FRAME_V3(member) (frame.member)
+#endif
+
 #endif

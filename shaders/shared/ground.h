@@ -11,19 +11,11 @@
 #define WD_SHARED_GROUND_H
 
 #include "shared/place_layer.h"
+#include "shared/vec.h"
 
 #ifdef __STDC_VERSION__
-#include <math.h>
-#define WD_INT(x) ((int32_t)(x))
-#define WD_UINT(x) ((uint32_t)(x))
-#define WD_FLOAT(x) ((float)(x))
-#define WD_FLOOR(x) floorf(x)
 #define WD_MULTIPLY_HIGH(a, b) ((uint32_t)(((uint64_t)(a) * (b)) >> 32))
 #else
-#define WD_INT(x) int(x)
-#define WD_UINT(x) uint(x)
-#define WD_FLOAT(x) float(x)
-#define WD_FLOOR(x) floor(x)
 uint WD_MULTIPLY_HIGH(uint a, uint b)
 {
     uint high, low;

@@ -19,20 +19,7 @@
 #ifndef WD_SHARED_SKY_H
 #define WD_SHARED_SKY_H
 
-#include "shared/types.h"
-
-#ifdef __STDC_VERSION__
-#include <math.h>
-#define WD_STRUCT struct
-#define WD_EXP(x) expf(x)
-#define WD_ABS(x) fabsf(x)
-#define WD_SQRT(x) sqrtf(x)
-#else
-#define WD_STRUCT
-#define WD_EXP(x) exp(x)
-#define WD_ABS(x) abs(x)
-#define WD_SQRT(x) sqrt(x)
-#endif
+#include "shared/vec.h"
 
 #define WD_SUN_OUTSIDE 3.14159265f /* irradiance: pi, so that a white surface returns 1 */
 #define WD_HAZE_G 0.76f

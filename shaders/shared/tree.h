@@ -2,7 +2,7 @@
 #ifndef WD_SHARED_TREE_H
 #define WD_SHARED_TREE_H
 
-#include "shared/types.h"
+#include "shared/vec.h"
 
 /* One standing tree. Positions are whole millimetres east, north and up of the world's origin, so
  * that a shader can subtract the camera's millimetres exactly: nothing jitters, however far the
@@ -21,8 +21,8 @@ WD_STATIC_ASSERT_SIZE(wd_tree, 32);
 #define WD_TREE_SPECIES(tree) ((tree).kind & 0xffffu)
 #define WD_TREE_VARIANT(tree) (((tree).kind >> 16) & 0xffu)
 #define WD_TREE_LAYER(tree) ((tree).look >> 25) /* 0: inventory */
-#define WD_TREE_HEIGHT_M(tree) (float((tree).size & 0xffffu) * 0.01)
-#define WD_TREE_CROWN_M(tree) (float((tree).size >> 16) * 0.01)
+#define WD_TREE_HEIGHT_M(tree) (WD_FLOAT((tree).size & 0xffffu) * 0.01f)
+#define WD_TREE_CROWN_M(tree) (WD_FLOAT((tree).size >> 16) * 0.01f)
 
 /* A vertex of a tree model: metres, z up, the trunk's foot at (0, 0, 0), in the model's own size.
  * 28 bytes. */

@@ -9,18 +9,7 @@
 #ifndef WD_SHARED_WIND_H
 #define WD_SHARED_WIND_H
 
-#include "shared/types.h"
-
-#ifdef __STDC_VERSION__
-#include <math.h>
-#define WD_STRUCT struct
-#define WD_FLOOR(x) floorf(x)
-#define WD_ABS(x) fabsf(x)
-#else
-#define WD_STRUCT
-#define WD_FLOOR(x) floor(x)
-#define WD_ABS(x) abs(x)
-#endif
+#include "shared/vec.h"
 
 /* The wind of a scene, as in struct wd_frame_uniforms. */
 struct wd_wind {

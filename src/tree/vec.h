@@ -1,46 +1,16 @@
-/* vec.h: three floats. Only + - * / and sqrt, so results are the same on every compiler. */
+/* vec.h: more of three floats (shared/vec.h). Only + - * / and sqrt, so results are the same on every compiler. */
 #ifndef WD_TREE_VEC_H
 #define WD_TREE_VEC_H
 
 #include <math.h>
 
 #include "base/dmath.h"
-
-struct wd_vec3 {
-    float x, y, z;
-};
-
-#define WD_V3(x, y, z) ((struct wd_vec3){(float)(x), (float)(y), (float)(z)})
-
-static inline struct wd_vec3 wd_v3_add(struct wd_vec3 a, struct wd_vec3 b)
-{
-    return WD_V3(a.x + b.x, a.y + b.y, a.z + b.z);
-}
-
-static inline struct wd_vec3 wd_v3_sub(struct wd_vec3 a, struct wd_vec3 b)
-{
-    return WD_V3(a.x - b.x, a.y - b.y, a.z - b.z);
-}
-
-static inline struct wd_vec3 wd_v3_scale(struct wd_vec3 a, float s)
-{
-    return WD_V3(a.x * s, a.y * s, a.z * s);
-}
+#include "shared/vec.h"
 
 /* a + b s */
 static inline struct wd_vec3 wd_v3_mad(struct wd_vec3 a, struct wd_vec3 b, float s)
 {
     return WD_V3(a.x + b.x * s, a.y + b.y * s, a.z + b.z * s);
-}
-
-static inline struct wd_vec3 wd_v3_mix(struct wd_vec3 a, struct wd_vec3 b, float t)
-{
-    return wd_v3_add(wd_v3_scale(a, 1 - t), wd_v3_scale(b, t));
-}
-
-static inline float wd_v3_dot(struct wd_vec3 a, struct wd_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 static inline struct wd_vec3 wd_v3_cross(struct wd_vec3 a, struct wd_vec3 b)
@@ -82,22 +52,6 @@ static inline struct wd_vec3 wd_v3_turn(struct wd_vec3 a, struct wd_vec3 b, floa
 {
     float c = (float)wd_dcos(angle_rad), s = (float)wd_dsin(angle_rad);
     return wd_v3_add(wd_v3_scale(a, c), wd_v3_scale(b, s));
-}
-
-static inline float wd_mixf(float a, float b, float t)
-{
-    return a + (b - a) * t;
-}
-
-static inline float wd_clampf(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
-
-static inline float wd_smoothf(float edge0, float edge1, float x)
-{
-    float t = wd_clampf((x - edge0) / (edge1 - edge0), 0, 1);
-    return t * t * (3 - 2 * t);
 }
 
 #endif

@@ -1,0 +1,152 @@
+/* ground_cover.h: what grows or lies on the ground at a place, by slope, height, canopy and chance.
+ * Shaders declare `frame` before they include this. */
+#ifndef WD_SHARED_GROUND_COVER_H
+#define WD_SHARED_GROUND_COVER_H
+
+#include "shared/noise.h"
+
+struct wd_ground_look {
+    WD_VECTOR albedo;
+    WD_VECTOR normal;
+    float openness; /* share of the sky that the canopy leaves */
+};
+
+/* Noise of the place at the sizes that the rules below ask for; each ends before it shimmers. */
+struct wd_ground_noise {
+    float broad;  /* 131 m */
+    float middle; /* 16 m */
+    float small_; /* 2 m */
+    float fine;   /* of the size of a few pixels, at most half a metre */
+    float bump_east, bump_north; /* slope that the smaller ones add */
+};
+
+/* Detail at whatever size pixels show best: three octaves that follow the footprint, each coming
+ * in and going out smoothly. */
+WD_FUNC WD_VECTOR wd_fine_noise(WD_FRAME_IN float east_m, float north_m, float footprint_m)
+{
+    float octave = WD_CLAMP(WD_LOG2(footprint_m * 1500.0f), 3.0f, 8.0f);
+    int32_t bits = WD_INT(octave);
+    float rest = octave - WD_FLOAT(bits);
+    WD_VECTOR fine = WD_V3(0.0f, 0.0f, 0.0f);
+    for (int32_t i = 0; i < 3; i++) {
+        float share = i == 0 ? 1.0f - rest : i == 1 ? 1.0f : rest;
+        WD_STRUCT wd_lattice at = wd_lattice_at(WD_FRAME_PASS east_m, north_m, bits + i);
+        fine = wd_v3_add(fine, wd_v3_scale(wd_gradient_noise(at, 4u), share));
+    }
+    return wd_v3_scale(fine, wd_noise_share(footprint_m, 9));
+}
+
+WD_FUNC WD_STRUCT wd_ground_noise wd_ground_noise_at(WD_FRAME_IN float east_m, float north_m,
+                                                     float footprint_m)
+{
+    WD_STRUCT wd_ground_noise n;
+    WD_VECTOR fine = wd_fine_noise(WD_FRAME_PASS east_m, north_m, footprint_m);
+    WD_VECTOR wave = wd_gradient_noise(wd_lattice_at(WD_FRAME_PASS east_m, north_m, 11), 3u);
+    wave = wd_v3_scale(wave, wd_noise_share(footprint_m, 11));
+    n.broad = wd_gradient_noise(wd_lattice_at(WD_FRAME_PASS east_m, north_m, 17), 1u).x;
+    n.middle = wd_gradient_noise(wd_lattice_at(WD_FRAME_PASS east_m, north_m, 14), 2u).x
+               * wd_noise_share(footprint_m, 14);
+    n.small_ = wave.x;
+    n.fine = fine.x;
+    n.bump_east = wave.y * 0.05f + fine.y * 0.22f;
+    n.bump_north = wave.z * 0.05f + fine.z * 0.22f;
+    return n;
+}
+
+/* Layers of rock: bands by height, tilted a little, broken by noise. */
+WD_FUNC WD_VECTOR wd_rock_albedo(WD_FRAME_IN float height_m, WD_STRUCT wd_ground_noise n,
+                                 float footprint_m)
+{
+    float bed = height_m * 0.11f + n.broad * 3.0f + n.middle * 0.7f;
+    float band = WD_ABS(wd_fract(bed) - 0.5f) * 4.0f - 1.0f;
+    band *= 1.0f - WD_SMOOTH(2.0f, 8.0f, footprint_m);
+    float stain = 1.0f + 0.16f * band + 0.35f * n.small_ + 0.30f * n.fine + 0.2f * n.middle;
+    WD_VECTOR hue = wd_v3_mix(WD_V3(1.0f, 1.0f, 1.0f), WD_V3(1.07f, 1.0f, 0.90f), 0.5f + n.broad);
+    return wd_v3_mul(wd_v3_scale(WD_FRAME_V3(rock), WD_MAX(stain, 0.3f)), hue);
+}
+
+/* Meadow: dry on shoulders and knolls, lush in hollows; tufts near the eye. */
+WD_FUNC WD_VECTOR wd_grass_albedo(WD_FRAME_IN float height_m, float steep,
+                                  WD_STRUCT wd_ground_noise n)
+{
+    float high = WD_SMOOTH(-400.0f, 200.0f, height_m - WD_FRAME(tree_line_m));
+    float dry = 0.42f + 0.8f * n.broad + 0.6f * n.middle + 0.35f * n.small_ + 0.5f * steep
+                + 0.5f * high;
+    WD_VECTOR straw = wd_v3_mul(WD_FRAME_V3(grass), WD_V3(1.60f, 1.14f, 1.10f));
+    WD_VECTOR lush = wd_v3_mul(WD_FRAME_V3(grass), WD_V3(0.74f, 0.88f, 0.84f));
+    return wd_v3_scale(wd_v3_mix(lush, straw, WD_CLAMP(dry, 0.0f, 1.0f)),
+                       WD_MAX(1.0f + 0.75f * n.fine + 0.22f * n.small_, 0.2f));
+}
+
+/* Under trees: needles and leaves, moss in the broad lows, bare earth between. */
+WD_FUNC WD_VECTOR wd_floor_albedo(WD_FRAME_IN WD_STRUCT wd_ground_noise n)
+{
+    float moss = WD_SMOOTH(0.05f, 0.4f, n.middle + 0.6f * n.small_ + 0.3f * n.broad);
+    WD_VECTOR green = wd_v3_mul(wd_v3_mix(WD_FRAME_V3(litter), WD_FRAME_V3(grass), 0.75f),
+                                WD_V3(0.72f, 0.95f, 0.6f));
+    float earth = WD_SMOOTH(0.1f, 0.5f, n.small_ - 0.5f * n.middle);
+    WD_VECTOR bare = wd_v3_mix(WD_FRAME_V3(litter), WD_FRAME_V3(soil), 0.6f * earth);
+    return wd_v3_scale(wd_v3_mix(bare, green, 0.7f * moss), WD_MAX(1.0f + 0.8f * n.fine, 0.2f));
+}
+
+/* 0 below the snow line, 1 above; lower where it is level, none on walls. */
+WD_FUNC float wd_snow_share(WD_FRAME_IN float height_m, float steep, WD_STRUCT wd_ground_noise n)
+{
+    float line = WD_FRAME(snow_line_m) + 120.0f * n.broad + 40.0f * n.middle;
+    float lies = WD_SMOOTH(-40.0f, 60.0f, height_m - line - 160.0f * (steep - 0.4f));
+    return lies * (1.0f - WD_SMOOTH(0.9f, 1.4f, steep + 0.3f * n.small_ + 0.2f * n.middle));
+}
+
+/* Grass, forest floor and worn earth, before rock, water's edge and snow. */
+WD_FUNC WD_VECTOR wd_soil_albedo(WD_FRAME_IN float height_m, float steep, float cover,
+                                 WD_STRUCT wd_ground_noise n)
+{
+    WD_VECTOR albedo = wd_grass_albedo(WD_FRAME_PASS height_m, steep, n);
+    float shade = WD_SMOOTH(0.25f, 0.75f, cover + 0.35f * n.small_ + 0.2f * n.middle);
+    albedo = wd_v3_mix(albedo, wd_floor_albedo(WD_FRAME_PASS n), shade);
+    float worn = WD_SMOOTH(0.55f, 1.0f, steep / WD_FRAME(rock_slope) + 0.5f * n.middle
+                                        + 0.25f * n.small_);
+    worn = WD_MAX(worn, 0.55f * WD_SMOOTH(0.30f, 0.55f, n.middle + n.small_ * 0.8f - cover));
+    WD_VECTOR earth = wd_v3_scale(WD_FRAME_V3(soil),
+                                  WD_MAX(1.0f + 0.6f * n.fine + 0.3f * n.small_, 0.3f));
+    return wd_v3_mix(albedo, earth, 0.75f * worn);
+}
+
+WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float steep, float cover,
+                                   WD_STRUCT wd_ground_noise n, float footprint_m)
+{
+    WD_VECTOR albedo = wd_soil_albedo(WD_FRAME_PASS height_m, steep, cover, n);
+    float over = (height_m - WD_FRAME(tree_line_m)) / 500.0f;
+    float bare = WD_SMOOTH(0.85f, 1.15f, steep / WD_FRAME(rock_slope) + 0.30f * n.middle
+                                         + 0.15f * n.small_ + WD_CLAMP(over, 0.0f, 0.9f));
+    albedo = wd_v3_mix(albedo, wd_rock_albedo(WD_FRAME_PASS height_m, n, footprint_m), bare);
+    float above_water_m = height_m - WD_FRAME(water_level_m);
+    float beach = 1.0f - WD_SMOOTH(0.4f, 1.6f, WD_ABS(above_water_m - 0.3f) + n.small_);
+    albedo = wd_v3_mix(albedo, wd_v3_scale(WD_FRAME_V3(soil), 1.25f), 0.8f * beach);
+    float wet = 1.0f - WD_SMOOTH(0.0f, 0.35f, above_water_m);
+    albedo = wd_v3_scale(albedo, 1.0f - 0.45f * wet);
+    return wd_v3_mix(albedo, WD_V3(0.83f, 0.86f, 0.90f),
+                     wd_snow_share(WD_FRAME_PASS height_m, steep, n));
+}
+
+/* `rel`: the place; `slope`: rise over run east and north; `cover`: of the canopy, 0..1. */
+WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, float slope_east,
+                                                 float slope_north, float cover,
+                                                 float footprint_m)
+{
+    float height_m = rel.z + WD_FLOAT(WD_FRAME(camera_mm[2])) * 0.001f;
+    WD_STRUCT wd_ground_noise n = wd_ground_noise_at(WD_FRAME_PASS rel.x, rel.y, footprint_m);
+    float steep = WD_SQRT(slope_east * slope_east + slope_north * slope_north);
+    WD_STRUCT wd_ground_look look;
+    look.albedo = wd_v3_clamp(
+        wd_ground_albedo(WD_FRAME_PASS height_m, steep, cover, n, footprint_m), 0.0f, 1.0f);
+    float rough = 1.0f + WD_SMOOTH(0.7f, 1.2f, steep / WD_FRAME(rock_slope)) * 1.5f;
+    look.normal = wd_v3_normalize(WD_V3(-slope_east - n.bump_east * rough,
+                                        -slope_north - n.bump_north * rough, 1.0f));
+    float canopy = WD_SMOOTH(0.15f, 0.9f, cover);
+    look.openness = WD_MIX(1.0f, 0.14f, canopy)
+                    * (0.85f + 0.15f * WD_CLAMP(1.0f + 2.0f * n.fine, 0.0f, 1.0f));
+    return look;
+}
+
+#endif
