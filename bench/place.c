@@ -12,9 +12,9 @@ enum { RUNS = 7 };
 static struct wd_string_pair files[] = {{"oak", ""}, {"spruce", ""}};
 static struct wd_species species[] = {
     {.name = "oak", .typical_height_m = 22.0f,
-     .allometry = {30.0, 0.03, 1.1, 1.0, 0.2, 0.9, "bench"}},
+     .allometry = {30.0, 0.03, 1.1, 1.0, 0.2, 0.9, "bench", 1.3}},
     {.name = "spruce", .typical_height_m = 26.0f,
-     .allometry = {38.0, 0.04, 1.3, 0.8, 0.11, 0.9, "bench"}},
+     .allometry = {38.0, 0.04, 1.3, 0.8, 0.11, 0.9, "bench", 1.3}},
 };
 static struct wd_scene_share shares[] = {{"oak", 1.0}, {"spruce", 2.0}};
 /* Rules refuse about half of the cells, as in a real valley. */

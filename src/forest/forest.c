@@ -9,6 +9,7 @@
 #include "base/jobs.h"
 #include "base/memory.h"
 #include "forest/looks.h"
+#include "tree/variant.h"
 
 /* Layers that seven bits can tell apart, inventories included. */
 enum { MAX_FADES = 128 };
@@ -24,27 +25,11 @@ struct preparation {
 
 /* --- growing ----------------------------------------------------------------------------- */
 
-/* Variants spread over the heights that the species reaches, so that young trees are not scaled
- * down old ones: variant v stands for the middle of its part of the range. */
-static float variant_height(const struct wd_species *species, uint32_t variant, uint32_t variants)
-{
-    float share = ((float)variant + 0.5f) / (float)variants;
-    float low = fmaxf(species->height_range_m[0], 0.45f * species->typical_height_m);
-    float high = fminf(species->height_range_m[1], 1.1f * species->typical_height_m);
-    return low + (high - low) * share;
-}
-
 static void grow_model(void *user, size_t index)
 {
     struct preparation *work = user;
-    uint32_t variants = work->forest->variants;
-    const struct wd_species *species = &work->params->scene->species[index / variants];
-    const struct wd_grow_params params = {
-        .seed = (uint32_t)(index % variants) + 1,
-        .height_m = variant_height(species, (uint32_t)(index % variants), variants),
-        .openness = 0.35f,
-    };
-    if (!wd_tree_grow(&work->grown[index], species, &params, work->params->log))
+    if (!wd_variant_grow(&work->grown[index], work->params->scene, (uint32_t)index,
+                         work->params->log))
         atomic_store(&work->failed, true);
 }
 
@@ -52,24 +37,6 @@ static void make_look(void *user, size_t index)
 {
     struct preparation *work = user;
     wd_look_generate(&work->params->scene->species[index], work->looks + index * WD_LOOK_BYTES);
-}
-
-static void describe_model(struct wd_model *model, const struct preparation *work, uint32_t index)
-{
-    const struct wd_tree_model *grown = &work->grown[index];
-    uint32_t species_index = index / work->forest->variants;
-    const struct wd_species *species = &work->params->scene->species[species_index];
-    *model = (struct wd_model){
-        .height_m = grown->height_m,
-        .crown_m = fmaxf(2.0f * grown->crown_radius_m, 0.1f),
-        .flexibility = species->flexibility,
-        .look_layer = 2 * species_index,
-        .card_layer = WD_CARDS * index,
-        .crown_base_m = grown->crown_base_m,
-    };
-    for (int k = 0; k < 3; k++)
-        model->transmittance[k] =
-            species->leaf.transmittance[k] / fmaxf(species->leaf.color[k], 1e-3f);
 }
 
 /* --- uploading --------------------------------------------------------------------------- */
@@ -279,8 +246,10 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     wd_jobs_run(params->threads, forest->model_count, grow_model, work);
     if (atomic_load(&work->failed))
         return false;
-    for (uint32_t i = 0; i < forest->model_count; i++)
-        describe_model(&forest->host_models[i], work, i);
+    for (uint32_t i = 0; i < forest->model_count; i++) {
+        wd_variant_describe(&forest->host_models[i], params->scene, i, &work->grown[i]);
+        forest->host_models[i].card_layer = WD_CARDS * i;
+    }
     double grown = wd_clock_s();
     forest->grown_us = (uint64_t)((grown - start) * 1e6);
     bool ok = prepare_cards(work, gpu) && upload_meshes(work, gpu) &&

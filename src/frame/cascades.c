@@ -5,6 +5,8 @@
 
 /* A cascade ends at this share of the next one's distance. */
 static const double CASCADE_RATIO = 0.28;
+/* Penumbras and the offsets of shadow look-ups reach this far. */
+static const float CASTER_MARGIN_M = 3.0f;
 
 struct sun_axes {
     double right[3], up[3], toward[3]; /* of the shadow map, in the local frame */
@@ -117,26 +119,35 @@ static double cascade_end(const struct wd_cascades_params *params, int i)
     return near * pow(params->distance_m / near, (i + 1.0) / WD_CASCADES);
 }
 
-/* Trees whose shadows fall short of the slice [near, far], or come from beyond it, are left to the
- * other cascades. A shadow is taken to be no longer than on ground that falls away from the sun
- * half as steeply as the sun stands. */
+/* What stands before the plane, or throws its shadow of length `shadow_m` across it. */
+static void add_caster_plane(struct wd_frustum *frustum, const float plane[4],
+                             const float toward_sun[3], float shadow_m)
+{
+    float *own = frustum->planes[frustum->count++];
+    float away = 0.0f;
+    memcpy(own, plane, 4 * sizeof *own);
+    for (int k = 0; k < 3; k++)
+        away -= plane[k] * toward_sun[k];
+    own[3] += fmaxf(away, 0.0f) * shadow_m + CASTER_MARGIN_M;
+}
+
+/* Trees whose shadows miss what the camera sees of the slice [near, far] are left out. A shadow is
+ * taken to be no longer than on ground that falls away from the sun half as steeply as the sun
+ * stands. */
 static void keep_to_slice(struct wd_view *cascade, const struct wd_cascades_params *params,
                           double near, double far)
 {
+    const struct wd_frustum *seen = &params->view->frustum;
     double sp = sin(params->view->camera.pitch_rad), cp = cos(params->view->camera.pitch_rad);
     double yaw = params->view->camera.yaw_rad;
-    const double forward[3] = {sin(yaw) * cp, cos(yaw) * cp, sp};
-    double across = hypot(params->sun_direction[0], params->sun_direction[1]);
-    double rise = fmax(params->sun_direction[2], 0.05);
-    double reach = params->max_height_m * (1.0 + 2.0 * across / rise);
-    float *beyond = cascade->frustum.planes[cascade->frustum.count++];
-    float *before = cascade->frustum.planes[cascade->frustum.count++];
-    for (int k = 0; k < 3; k++) {
-        beyond[k] = (float)forward[k];
-        before[k] = (float)-forward[k];
-    }
-    beyond[3] = (float)(reach - near);
-    before[3] = (float)(reach + far);
+    const float forward[3] = {(float)(sin(yaw) * cp), (float)(cos(yaw) * cp), (float)sp};
+    const float beyond[4] = {forward[0], forward[1], forward[2], (float)-near};
+    const float before[4] = {-forward[0], -forward[1], -forward[2], (float)far};
+    float shadow_m = (float)(2.0 * params->max_height_m / fmax(params->sun_direction[2], 0.05));
+    add_caster_plane(&cascade->frustum, beyond, params->sun_direction, shadow_m);
+    add_caster_plane(&cascade->frustum, before, params->sun_direction, shadow_m);
+    for (uint32_t i = 0; i < WD_FRUSTUM_SIDES; i++)
+        add_caster_plane(&cascade->frustum, seen->planes[i], params->sun_direction, shadow_m);
 }
 
 void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,

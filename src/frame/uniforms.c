@@ -4,10 +4,9 @@
 #include <string.h>
 
 #include "frame/nearest.h"
-#include "frame/sun.h"
+#include "world/surroundings.h"
 
 static const float NEAR_M = 0.1f;
-static const double PI = 3.14159265358979323846;
 
 /* Where sample i lies in its pixel: the R2 sequence (Roberts 2018), which fills the square evenly
  * for any count; a single sample takes the middle. */
@@ -34,11 +33,7 @@ static void fill_camera(struct wd_frame_uniforms *uniforms, struct wd_view *view
     wd_view_init(view, &camera);
     memcpy(uniforms->clip_from_rel, view->clip_from_rel, sizeof view->clip_from_rel);
     wd_matrix_invert(uniforms->rel_from_clip, view->clip_from_rel);
-    for (int k = 0; k < 3; k++) {
-        double mm = view->eye_m[k] * 1000.0;
-        uniforms->camera_mm[k] = (int32_t)floor(mm);
-        uniforms->camera_frac_m[k] = (float)((mm - floor(mm)) * 0.001);
-    }
+    wd_surroundings_set_camera(uniforms, view->eye_m);
     uniforms->near_m = NEAR_M;
     uniforms->width = params->width;
     uniforms->height = params->height;
@@ -60,40 +55,6 @@ static void fill_previous(struct wd_frame_uniforms *uniforms,
     uniforms->previous_time_s = (float)params->previous_time_s;
 }
 
-static void fill_weather(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene)
-{
-    /* Koschmieder: contrast falls to 2% at the visual range, ln 50 = 3.912. */
-    uniforms->fog_per_m = (float)(3.912 / scene->fog.visibility_m);
-    uniforms->fog_height_m = (float)scene->fog.height_m;
-    uniforms->fog_base_m = (float)scene->fog.base_m;
-    uniforms->wind_speed_mps = (float)scene->wind.speed_mps;
-    uniforms->wind_gust = (float)scene->wind.gust;
-    double from = scene->wind.direction_deg * (PI / 180.0);
-    uniforms->wind_toward[0] = (float)-sin(from);
-    uniforms->wind_toward[1] = (float)-cos(from);
-    uniforms->water_level_m = scene->water.enabled ? (float)scene->water.level_m : -1e9f;
-    uniforms->water_clarity_m = (float)scene->water.clarity_m;
-    memcpy(uniforms->water_color, scene->water.color, sizeof uniforms->water_color);
-}
-
-static void fill_ground(struct wd_frame_uniforms *uniforms, const struct wd_forest_device *forest)
-{
-    const struct wd_scene *scene = forest->scene;
-    const struct wd_terrain *terrain = &forest->world->terrain;
-    memcpy(uniforms->grass, scene->ground.grass, sizeof uniforms->grass);
-    memcpy(uniforms->soil, scene->ground.soil, sizeof uniforms->soil);
-    memcpy(uniforms->rock, scene->ground.rock, sizeof uniforms->rock);
-    memcpy(uniforms->litter, scene->ground.litter, sizeof uniforms->litter);
-    uniforms->rock_slope = (float)tan(scene->ground.rock_slope_deg * (PI / 180.0));
-    uniforms->snow_line_m =
-        scene->ground.snow_line_m > 0.0 ? (float)scene->ground.snow_line_m : 1e9f;
-    uniforms->tree_line_m =
-        scene->ground.tree_line_m > 0.0 ? (float)scene->ground.tree_line_m : 1e9f;
-    uniforms->terrain_cell_m = (float)terrain->cell_m;
-    uniforms->terrain_width = terrain->width;
-    uniforms->terrain_height = terrain->height;
-}
-
 void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
                       struct wd_view cascades[WD_CASCADES], const struct wd_uniforms_params *params)
 {
@@ -107,9 +68,7 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
     };
     fill_camera(uniforms, view, params);
     fill_previous(uniforms, params);
-    fill_weather(uniforms, scene);
-    fill_ground(uniforms, forest);
-    wd_sun_fill(uniforms, scene);
+    wd_surroundings_fill(uniforms, scene, &forest->world->terrain);
     struct wd_cascades_params sun = {
         .view = view,
         .distance_m = (float)scene->quality.shadow_distance_m,

@@ -6,6 +6,8 @@
 
 #include <cglm/mat4.h>
 
+#include "world/surroundings.h"
+
 enum wd_side wd_frustum_box(const struct wd_frustum *frustum, const float min[3], const float max[3])
 {
     enum wd_side side = WD_INSIDE;
@@ -49,17 +51,6 @@ static void set_row(float matrix[4][4], int row, const double axis[3], double fa
     matrix[3][row] = (float)last;
 }
 
-static void camera_axes(const struct wd_camera *camera, double right[3], double forward[3],
-                        double up[3])
-{
-    double sy = sin(camera->yaw_rad), cy = cos(camera->yaw_rad);
-    double sp = sin(camera->pitch_rad), cp = cos(camera->pitch_rad);
-    const double axes[3][3] = {{cy, -sy, 0.0}, {sy * cp, cy * cp, sp}, {-sy * sp, -cy * sp, cp}};
-    memcpy(right, axes[0], sizeof axes[0]);
-    memcpy(forward, axes[1], sizeof axes[1]);
-    memcpy(up, axes[2], sizeof axes[2]);
-}
-
 /* The plane that holds the eye and the frustum's side in direction `side`. */
 static void add_side_plane(struct wd_frustum *frustum, const double forward[3], const double side[3],
                            double half_extent)
@@ -74,7 +65,7 @@ static void add_side_plane(struct wd_frustum *frustum, const double forward[3], 
 void wd_view_init(struct wd_view *view, const struct wd_view_params *params)
 {
     double right[3], forward[3], up[3];
-    camera_axes(&params->camera, right, forward, up);
+    wd_camera_axes(&params->camera, right, forward, up);
     *view = (struct wd_view){.camera = params->camera,
                              .width = params->width,
                              .height = params->height,

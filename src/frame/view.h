@@ -6,9 +6,10 @@
 #include "shared/frame.h"
 #include "weald/forest.h"
 
-enum { WD_FRUSTUM_PLANES = 8 };
+enum { WD_FRUSTUM_PLANES = 12, WD_FRUSTUM_SIDES = 4 };
 
-/* Half-spaces in rel: a point is inside where dot(plane.xyz, p) + plane.w >= 0. */
+/* Half-spaces in rel: a point is inside where dot(plane.xyz, p) + plane.w >= 0. A camera's begin with
+ * its four sides. */
 struct wd_frustum {
     float planes[WD_FRUSTUM_PLANES][4];
     uint32_t count;

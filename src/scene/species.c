@@ -1,5 +1,6 @@
 #include "scene/species.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/dmath.h"
@@ -24,8 +25,9 @@ double wd_species_height_m(const struct wd_species *species, double dbh_cm)
 {
     const struct wd_allometry *a = &species->allometry;
     if (!(dbh_cm > 0))
-        return 1.3;
-    return 1.3 + a->height_a * wd_dpow(1 - wd_dexp(-a->height_b * dbh_cm), a->height_c);
+        return a->diameter_at_m;
+    return a->diameter_at_m +
+           a->height_a * wd_dpow(1 - wd_dexp(-a->height_b * dbh_cm), a->height_c);
 }
 
 double wd_species_crown_m(const struct wd_species *species, double dbh_cm)
@@ -34,15 +36,60 @@ double wd_species_crown_m(const struct wd_species *species, double dbh_cm)
     return a->crown_a + a->crown_b * wd_dpow(dbh_cm > 0 ? dbh_cm : 0, a->crown_c);
 }
 
-double wd_species_dbh_cm(const struct wd_species *species, double height_m)
+double wd_species_height_at_age_m(const struct wd_species *species, double age_years)
 {
-    double low = 0.5, high = 400;
+    const struct wd_site_curve *g = &species->growth;
+    if (!(age_years > 0))
+        return 0;
+    return g->height_a * wd_dpow(1 - wd_dexp(-g->height_b * age_years), g->height_c);
+}
+
+/* Where a rising function of one variable reaches `value`. */
+static double invert(double (*rising)(const struct wd_species *, double),
+                     const struct wd_species *species, double value, double low, double high)
+{
     for (int i = 0; i < 60; i++) {
         double middle = 0.5 * (low + high);
-        if (wd_species_height_m(species, middle) < height_m)
+        if (rising(species, middle) < value)
             low = middle;
         else
             high = middle;
     }
     return 0.5 * (low + high);
+}
+
+double wd_species_dbh_cm(const struct wd_species *species, double height_m)
+{
+    double least = species->allometry.diameter_at_m > 0 ? 0.5 : 0.01;
+    return invert(wd_species_height_m, species, height_m, least, 400);
+}
+
+double wd_species_age_years(const struct wd_species *species, double height_m)
+{
+    return invert(wd_species_height_at_age_m, species, height_m, 0.01,
+                  species->growth.span_years);
+}
+
+/* The nearest height that has a diameter of its own. */
+static double sure_height_m(const struct wd_species *species, double height_m)
+{
+    const struct wd_allometry *a = &species->allometry;
+    double least_m = a->diameter_at_m > 0 ? a->diameter_at_m + 0.7 : 0.01 * a->height_a;
+    double most_m = a->diameter_at_m + 0.95 * a->height_a;
+    return fmin(fmax(height_m, least_m), fmax(most_m, least_m));
+}
+
+double wd_species_stem_of_height_cm(const struct wd_species *species, double height_m)
+{
+    double sure_m = sure_height_m(species, height_m);
+    double stem_cm = wd_species_dbh_cm(species, sure_m) * height_m / sure_m;
+    if (species->allometry.diameter_at_m > 0) /* saplings: height at most 150 stem diameters */
+        stem_cm = fmax(stem_cm, 100.0 / 150.0 * fmin(height_m, 2.0));
+    return stem_cm;
+}
+
+double wd_species_crown_of_height_m(const struct wd_species *species, double height_m)
+{
+    double sure_m = sure_height_m(species, height_m);
+    return wd_species_crown_m(species, wd_species_dbh_cm(species, sure_m)) * height_m / sure_m;
 }

@@ -4,16 +4,51 @@
 
 #include "scene/keys.h"
 
-enum wd_species_form { WD_FORM_BROADLEAF, WD_FORM_CONIFER };
+enum wd_species_form {
+    WD_FORM_BROADLEAF, WD_FORM_CONIFER,
+    WD_FORM_PALM,    /* one unbranched stem, fronds at its top: no orders */
+    WD_FORM_SHRUB,   /* several stems from one stool */
+    WD_FORM_FERN,    /* a rosette of fronds from the ground: no orders */
+    WD_FORM_GRASS,   /* a tuft of blades: no orders */
+    WD_FORM_BRAMBLE, /* arching canes from one stool */
+    WD_FORM_SNAG,    /* dead: no leaves, stem and limbs broken */
+};
 enum wd_phyllotaxis { WD_PHYLLOTAXIS_ALTERNATE, WD_PHYLLOTAXIS_OPPOSITE, WD_PHYLLOTAXIS_WHORLED };
-enum wd_leaf_shape { WD_LEAF_OVATE, WD_LEAF_LOBED, WD_LEAF_TRIANGULAR, WD_LEAF_NEEDLES };
-enum wd_bark_pattern { WD_BARK_FISSURED, WD_BARK_SCALY, WD_BARK_SMOOTH, WD_BARK_BIRCH };
+enum wd_leaf_shape {
+    WD_LEAF_OVATE, WD_LEAF_LOBED, WD_LEAF_TRIANGULAR, WD_LEAF_PALMATE, WD_LEAF_LANCEOLATE,
+    WD_LEAF_HEART, WD_LEAF_ELLIPTIC, WD_LEAF_BLADE, WD_LEAF_NEEDLES,
+};
+enum wd_leaf_compound {
+    WD_COMPOUND_SIMPLE,
+    WD_COMPOUND_PINNATE,   /* leaflets in two rows along a midrib */
+    WD_COMPOUND_PALMATE,   /* leaflets from one point: 3 bramble, 7 kapok */
+    WD_COMPOUND_BIPINNATE, /* a fern's frond: the pinnae are pinnate themselves */
+};
+enum wd_needle_set {
+    WD_NEEDLES_AROUND,    /* singly all round the shoot: spruce */
+    WD_NEEDLES_FASCICLES, /* in bundles round the end of a shoot: pine */
+    WD_NEEDLES_TUFTS,     /* in rosettes on short shoots along a bare twig: larch */
+};
+enum wd_bark_pattern {
+    WD_BARK_FISSURED, WD_BARK_SCALY, WD_BARK_SMOOTH, WD_BARK_BIRCH,
+    WD_BARK_RINGED, /* scars of fallen fronds around a palm's stem */
+    WD_BARK_BARE,   /* weathered wood with drying cracks along the stem */
+};
 
-/* Height from stem diameter: h = 1.3 + a (1 - exp(-b d))^c, d in cm, h in m (Chapman-Richards);
- * crown diameter w = crown_a + crown_b d^crown_c, d in cm, w in m. `source` cites the figures. */
+/* Height from stem diameter: h = diameter_at + a (1 - exp(-b d))^c, d in cm, h in m
+ * (Chapman-Richards); crown diameter w = crown_a + crown_b d^crown_c, d in cm, w in m. `source`
+ * cites the figures. */
 struct wd_allometry {
     double height_a, height_b, height_c;
     double crown_a, crown_b, crown_c;
+    const char *source;
+    double diameter_at_m; /* height where d is taken: 1.3, or 0 for plants below breast height */
+};
+
+/* Height from age: h = a (1 - exp(-b t))^c, t in years, h in m (Chapman-Richards). */
+struct wd_site_curve {
+    double height_a, height_b, height_c;
+    double span_years; /* the oldest that it holds for */
     const char *source;
 };
 
@@ -47,19 +82,56 @@ struct wd_species {
     float apical_dominance;   /* 1: one leader to the top; 0: the trunk dissolves into limbs */
     float root_flare;         /* stem radius at the ground over that at 1.3 m */
     int64_t whorl;            /* branches at one height: 1 single, 4..6 conifers */
-    struct wd_branch_order *orders;
-    size_t order_count;       /* 1..3 */
     struct {
-        int shape;            /* enum wd_leaf_shape */
+        int64_t count;        /* 1 a tree; more: a shrub's stems, a bramble's canes */
+        float lean_deg[2];    /* from the vertical at the foot: of the innermost and outermost */
+        float upturn[2];      /* bending up (+) or over (-) along the stem, radians in all:
+                                 at its foot and tip */
+        float spread_m;       /* radius of the stool they stand on */
+    } stems;
+    struct {
+        int64_t count;        /* 0: none */
+        float height;         /* share of the tree's height that they climb */
+        float reach;          /* how far they run from the stem's middle, in stem diameters */
+    } buttress;
+    struct {
+        float broken_at;      /* share of the stem that stands: 1 whole */
+        float limbs;          /* share of the limbs still there .. 1 */
+        float bark;           /* share of the wood that bark still covers: 1 alive */
+    } decay;
+    struct wd_branch_order *orders;
+    size_t order_count;       /* 1..3; 0 for palms, ferns, grasses */
+    struct {
+        int shape;            /* enum wd_leaf_shape, of a compound leaf's leaflets */
+        int compound;         /* enum wd_leaf_compound */
+        int64_t leaflets;     /* of a compound leaf; of a bipinnate frond: its pinnae */
+        float leaflet_length_cm, leaflet_width_cm; /* the longest; of a bipinnate frond: pinnae */
+        float stalk_cm;       /* bare foot of the leaf, part of its length */
+        float arch;           /* bend of a leaf from its foot to its tip, radians, downward */
         int phyllotaxis;
-        float length_cm, width_cm;
+        int needles;          /* enum wd_needle_set */
+        int64_t bundle;       /* needles of one bundle or rosette: pine 2, larch 30 */
+        float shoot_cm;       /* length of the needle-bearing shoot that is drawn as one leaf */
+        float length_cm, width_cm; /* of the whole leaf, or of one needle */
         float droop;          /* 0 flat to the light .. 1 hanging */
         int64_t count;        /* drawn leaves, or needle shoots, of a tree of typical height */
         float area_index;     /* leaf area, one side, over the crown's projection */
-        float color[3], back_color[3]; /* linear albedo */
+        float color[3], back_color[3]; /* linear albedo in summer */
+        float spring_color[3], autumn_color[3];
         float transmittance[3];        /* linear */
         float color_spread;   /* of brightness and hue between trees, 0..1 */
+        float gloss;          /* of the upper side: 0 dull .. 1 waxed */
+        bool evergreen;
+        float months[2];      /* when leaves unfold and when the last fall: 4.5 is mid-April */
+        float flexibility;    /* turn of a leaf in a wind of 10 m/s, radians */
     } leaf;
+    struct {
+        int64_t count;        /* 0: none to be seen; on a tree of typical height */
+        float size_cm;        /* diameter of a flower, length of a panicle or plume */
+        int64_t petals;       /* 0: a panicle, catkin or plume */
+        float color[3], center_color[3]; /* linear albedo */
+        float months[2];      /* first and last; may run over the new year: [11, 4] */
+    } flower;
     struct {
         int pattern;          /* enum wd_bark_pattern */
         float color[3], crack_color[3]; /* linear albedo */
@@ -67,8 +139,16 @@ struct wd_species {
         float twig_color[3];
         float upper_from;     /* share of the height where the upper colour begins to show */
         float scale_cm;       /* size of one plate or fissure */
+        float moss;           /* share of the foot that moss covers */
     } bark;
     struct wd_allometry allometry;
+    struct wd_site_curve growth;
+    struct {
+        const char *region;   /* where it is at home */
+        float altitude_m[2];
+        float moisture[2];    /* of the soil it stands: 0 dry .. 1 wet */
+        float light;          /* it needs: 0 endures deep shade .. 1 only in full light */
+    } habitat;
     float flexibility;        /* wind: top displacement over height at 10 m/s, share */
 };
 
@@ -80,7 +160,24 @@ bool wd_species_load(struct wd_species *species, const char *path, struct wd_are
 
 double wd_species_height_m(const struct wd_species *species, double dbh_cm);
 double wd_species_crown_m(const struct wd_species *species, double dbh_cm); /* diameter */
-/* The inverse of wd_species_height_m by bisection; clamped to 0.5..400 cm. */
+/* The inverse of wd_species_height_m by bisection; clamped to 0.01..400 cm. */
 double wd_species_dbh_cm(const struct wd_species *species, double height_m);
+/* The same for any height: where the curve gives no diameter (just over the height where diameters
+ * are taken, and near the greatest height) stems thicken with height. */
+double wd_species_stem_of_height_cm(const struct wd_species *species, double height_m);
+/* Crown diameter of a tree in a forest. Just over the height where diameters are taken and near
+ * the greatest height (where any diameter fits) crowns scale with height. */
+double wd_species_crown_of_height_m(const struct wd_species *species, double height_m);
+
+double wd_species_height_at_age_m(const struct wd_species *species, double age_years);
+/* The inverse, by bisection; clamped to 0.01 .. span_years. */
+double wd_species_age_years(const struct wd_species *species, double height_m);
+
+/* `*seasonal` is the species as it looks in that month (1 the first of January .. 13 the last of
+ * December, north of the tropics): the colours of its leaves, how many are there, flowers. Growth
+ * and looks take it like any species; it shares the strings and lists of `species`. False (logged)
+ * for a month outside 1..13. */
+bool wd_species_in_month(struct wd_species *seasonal, const struct wd_species *species,
+                         double month, const struct wd_log *log);
 
 #endif

@@ -29,7 +29,8 @@ void wd_foliage_finish(struct wd_foliage *foliage)
 static float leafy_from(const struct wd_tree_form *form, const struct wd_branch *branch)
 {
     int last = (int)form->species->order_count - 1;
-    bool tuft = form->species->leaf.phyllotaxis == WD_PHYLLOTAXIS_WHORLED;
+    bool tuft = form->species->leaf.shape == WD_LEAF_NEEDLES &&
+                form->species->leaf.needles == WD_NEEDLES_FASCICLES;
     if (branch->order == last)
         return tuft ? 0.45f : 0.12f;
     if (branch->order == last - 1 && branch->order >= 0 && tuft)
@@ -123,7 +124,8 @@ static void turn_shoot(struct wd_leaf *leaf, const struct wd_tree_form *form, st
                        struct wd_vec3 side, struct wd_random *random)
 {
     float droop = form->species->leaf.droop;
-    bool tuft = form->species->leaf.phyllotaxis == WD_PHYLLOTAXIS_WHORLED;
+    bool tuft = form->species->leaf.shape == WD_LEAF_NEEDLES &&
+                form->species->leaf.needles == WD_NEEDLES_FASCICLES;
     struct wd_vec3 axis = wd_v3_mad(twig, side, (tuft ? 0.7f : 0.55f) *
                                                     wd_random_range(random, 0.5f, 1.2f));
     axis = wd_v3_add(axis, WD_V3(0, 0, (tuft ? 0.5f : -1.3f * droop) *
@@ -206,9 +208,7 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
     double spread = wd_dpow((double)form->spread, 1.1);
     double count = (double)species->leaf.count * (double)form->detail;
     count *= fmin(spread, needles ? 1 : 1.2);
-    double real_m = 0.01 * (double)species->leaf.length_cm;
-    if (needles)
-        real_m = 0.10; /* a shoot of one year */
+    double real_m = 0.01 * (double)(needles ? species->leaf.shoot_cm : species->leaf.length_cm);
     double most = (double)(area_m2 / wd_leaf_unit_area(species)) / (real_m * real_m);
     if (count > most)
         count = most;

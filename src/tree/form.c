@@ -3,10 +3,8 @@
 struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
                                     const struct wd_grow_params *params)
 {
-    float height = params->height_m > 0 ? params->height_m : species->typical_height_m;
-    float open = params->openness;
-    double dbh_cm = wd_species_dbh_cm(species, height) *
-                    (double)wd_mixf(1, species->stem_open, open);
+    float height = params->height_m, open = params->openness;
+    double dbh_cm = 100 * (double)params->dbh_m;
     struct wd_random random = wd_random_of(params->seed, 0x7ee5);
     float crown = (float)wd_species_crown_m(species, dbh_cm);
     crown *= wd_mixf(1, species->crown_open, open) * wd_random_range(&random, 0.92f, 1.08f);
@@ -21,8 +19,8 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
         .height_m = height,
         .scale = height / species->typical_height_m,
         .openness = open,
-        .detail = params->detail > 0 ? params->detail : 1,
-        .dbh_m = (float)dbh_cm * 0.01f,
+        .detail = params->detail,
+        .dbh_m = params->dbh_m,
         .crown_base_m = height * clear * wd_random_range(&random, 0.94f, 1.04f),
         .crown_radius_m = 0.5f * crown,
         .spread = 0.5f * (crown / typical_crown + length),

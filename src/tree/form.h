@@ -20,6 +20,7 @@ struct wd_tree_form {
     float lobe_m;         /* size of the envelope's bulges */
 };
 
+/* `params` as wd_grow_params_resolve left them. */
 struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
                                     const struct wd_grow_params *params);
 

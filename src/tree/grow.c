@@ -9,23 +9,6 @@ enum {
     REDUCED_LEAVES = 2600, /* two triangles each */
 };
 
-static bool check_params(const struct wd_species *species, const struct wd_grow_params *params,
-                         const struct wd_log *log)
-{
-    double height = (double)params->height_m, low = (double)species->height_range_m[0];
-    double high = (double)species->height_range_m[1];
-    if (params->height_m != 0 && !(height >= low && height <= high))
-        return wd_error(log, "cannot grow %s %g m high; its species file allows %g to %g m",
-                        species->name, height, low, high);
-    if (!(params->openness >= 0 && params->openness <= 1))
-        return wd_error(log, "cannot grow %s with openness %g; allowed is 0 to 1", species->name,
-                        (double)params->openness);
-    if (!(params->detail >= 0 && params->detail <= 8))
-        return wd_error(log, "cannot grow %s with detail %g; allowed is 0 (meaning 1) to 8",
-                        species->name, (double)params->detail);
-    return true;
-}
-
 /* Leaves out the thinnest branches until the rest fits the budget. */
 static void fit_wood(struct wd_wood_style *style, const struct wd_skeleton *skeleton,
                      size_t triangles)
@@ -100,9 +83,10 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
                   const struct wd_grow_params *params, const struct wd_log *log)
 {
     *model = (struct wd_tree_model){0};
-    if (!check_params(species, params, log))
+    struct wd_grow_params resolved = *params;
+    if (!wd_grow_params_resolve(&resolved, species, log))
         return false;
-    struct wd_tree_form form = wd_tree_form_of(species, params);
+    struct wd_tree_form form = wd_tree_form_of(species, &resolved);
     struct wd_skeleton skeleton;
     struct wd_foliage foliage;
     if (!wd_skeleton_grow(&skeleton, &form, log))
@@ -111,6 +95,7 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     build_full(&model->full, &skeleton, &foliage, &form);
     build_reduced(&model->reduced, &skeleton, &foliage, &form);
     finish_model(model, &foliage, &form);
+    model->age_years = resolved.age_years;
     wd_foliage_finish(&foliage);
     wd_skeleton_finish(&skeleton);
     return true;

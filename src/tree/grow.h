@@ -6,13 +6,23 @@
 #include "scene/species.h"
 #include "tree/mesh.h"
 
+/* Zeroes are a typical tree. The size is given by height, by stem diameter, by both (an inventory's
+ * tree), or by age; the rest follows from the species' allometry and site curve. An age together
+ * with a diameter gives the height; together with a height it is refused. */
 struct wd_grow_params {
     uint32_t seed;     /* the variant: another seed, another individual */
-    float height_m;    /* 0: the species' typical height */
+    float height_m;    /* 0: from dbh_m, from age_years, or the species' typical height */
+    float dbh_m;       /* stem diameter at the species' diameter_at_m; 0: from the height */
+    float age_years;   /* 0: from the height */
     float openness;    /* 0 forest-grown (narrow, high crown) .. 1 open-grown (wide, low crown) */
     float detail;      /* leaves and twigs of the full mesh relative to the species' own number;
                           0 means 1 */
 };
+
+/* Checks the parameters (errors are logged) and fills in the zeroes among height_m, dbh_m,
+ * age_years and detail. */
+bool wd_grow_params_resolve(struct wd_grow_params *params, const struct wd_species *species,
+                            const struct wd_log *log);
 
 /* A grown tree: the full mesh and its reduced mesh (about a tenth of the triangles; leaves are a
  * fair sample of the full set, enlarged so that leaf area is kept). */
@@ -22,12 +32,14 @@ struct wd_tree_model {
     float height_m;       /* of the highest point */
     float crown_radius_m; /* mean horizontal reach of the crown */
     float crown_base_m;   /* height of the lowest living branch */
-    float dbh_m;          /* stem diameter at 1.3 m */
+    float dbh_m;          /* stem diameter at 1.3 m; of low plants at the ground */
+    float age_years;      /* by the species' site curve */
     float leaf_area_m2;   /* one side, of the full mesh */
 };
 
-/* Grows `*model`; the same parameters give the same bytes on any machine. False, with {0}, for
- * parameters outside the species' range (logged). */
+/* Grows `*model`; the same parameters give the same bytes on any machine. For another season than
+ * summer pass what wd_species_in_month made. False, with {0}, for parameters outside the species'
+ * range (logged). */
 bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
                   const struct wd_grow_params *params, const struct wd_log *log);
 void wd_tree_model_finish(struct wd_tree_model *model);

@@ -16,7 +16,7 @@ enum { COMB_NEEDLES = 7, TUFT_NEEDLES = 15 };
 static bool is_tuft(const struct wd_species *species)
 {
     return species->leaf.shape == WD_LEAF_NEEDLES &&
-           species->leaf.phyllotaxis == WD_PHYLLOTAXIS_WHORLED;
+           species->leaf.needles == WD_NEEDLES_FASCICLES;
 }
 
 static struct outline outline_of(const struct wd_species *species)

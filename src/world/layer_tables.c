@@ -47,15 +47,10 @@ static bool push_counts(struct wd_placement *placement, const struct wd_log *log
     return true;
 }
 
-/* Allometry relates height to the stem's diameter, and that to the crown. Below 2 m (there is no
- * breast height) and near the greatest height (where any diameter fits) crowns scale with height. */
 double wd_crown_cm(const struct wd_species *species, double height_cm)
 {
-    double height_m = height_cm * 0.01;
-    double most_m = 1.3 + 0.95 * species->allometry.height_a;
-    double sure_m = fmin(fmax(height_m, 2.0), fmax(most_m, 2.0));
-    double crown_m = wd_species_crown_m(species, wd_species_dbh_cm(species, sure_m));
-    return fmin(fmax(crown_m * 100.0 * height_m / sure_m, 1.0), 65535.0);
+    double crown_m = wd_species_crown_of_height_m(species, height_cm * 0.01);
+    return fmin(fmax(crown_m * 100.0, 1.0), 65535.0);
 }
 
 static void push_crowns(struct wd_placement *placement, const struct wd_species *species,

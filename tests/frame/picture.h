@@ -5,7 +5,7 @@
 #include "frame/passes/light.h"
 #include "frame/passes/post.h"
 #include "frame/passes/terrain.h"
-#include "frame/sun.h"
+#include "world/sun.h"
 
 struct picture_test {
     struct wd_log log;

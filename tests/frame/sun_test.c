@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "frame/sun.h"
+#include "world/sun.h"
 #include "frame/sun_field.h"
 #include "shared/hash.h"
 #include "shared/wind.h"

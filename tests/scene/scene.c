@@ -236,6 +236,23 @@ static void allometry_inverts(void **state)
     }
 }
 
+static void months_change_leaves(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"layers\": [{\"species\": {\"spruce\": 1, \"oak\": 1}}]}"));
+    const struct wd_species *spruce = &f->scene.species[0], *oak = &f->scene.species[1];
+    struct wd_species in;
+    assert_true(wd_species_in_month(&in, oak, 7.5, NULL));
+    assert_true(in.leaf.count == oak->leaf.count && in.leaf.color[0] == oak->leaf.color[0]);
+    assert_true(wd_species_in_month(&in, oak, 2, NULL) && in.leaf.count == 0);
+    assert_true(wd_species_in_month(&in, spruce, 2, NULL));
+    assert_true(in.leaf.count == spruce->leaf.count);
+    assert_true(wd_species_in_month(&in, oak, 10.8, NULL));
+    assert_true(in.leaf.color[0] > 2 * oak->leaf.color[0] && in.leaf.count > 0);
+    assert_false(wd_species_in_month(&in, oak, 0.5, NULL));
+    assert_false(wd_species_in_month(&in, oak, (double)NAN, NULL));
+}
+
 /* The project's own scenes; the folder of species stands in for the data, which is not opened. */
 static void own_scenes_load(void **state)
 {
@@ -281,6 +298,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(cameras_are_found_by_name, setup, teardown),
         cmocka_unit_test(own_scenes_load),
         cmocka_unit_test_setup_teardown(allometry_inverts, setup, teardown),
+        cmocka_unit_test_setup_teardown(months_change_leaves, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

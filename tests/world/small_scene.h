@@ -22,9 +22,9 @@ static inline void small_scene_init(struct small_scene *small)
     static const char *const latin[SMALL_SPECIES] = {"Quercus robur", "Picea abies",
                                                      "Betula pendula"};
     static const struct wd_allometry allometry[SMALL_SPECIES] = {
-        {30.0, 0.03, 1.1, 1.0, 0.2, 0.9, "test"},
-        {38.0, 0.04, 1.3, 0.8, 0.11, 0.9, "test"},
-        {26.0, 0.06, 1.1, 0.7, 0.15, 0.9, "test"},
+        {30.0, 0.03, 1.1, 1.0, 0.2, 0.9, "test", 1.3},
+        {38.0, 0.04, 1.3, 0.8, 0.11, 0.9, "test", 1.3},
+        {26.0, 0.06, 1.1, 0.7, 0.15, 0.9, "test", 1.3},
     };
     *small = (struct small_scene){0};
     for (int i = 0; i < SMALL_SPECIES; i++) {

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "world/surroundings.h"
+
 static const uint32_t light_comp[] =
 #include "light.comp.inc"
     ;
@@ -111,23 +113,6 @@ static void use_gbuffer(struct wd_cmd *cmd, struct wd_targets *targets)
     wd_cmd_use_image(cmd, &targets->depth, WD_USE_COMPUTE_READ);
 }
 
-/* Water goes on beyond the terrain, as a sea, where the larger part of the edge lies under it. */
-static uint32_t is_sea(const struct wd_light_params *params)
-{
-    const struct wd_terrain *terrain = params->forest->ground.terrain;
-    size_t last_row = (size_t)(terrain->height - 1) * terrain->width, under = 0;
-    float level_m = params->frame->water_level_m;
-    if (level_m <= terrain->min_m)
-        return 0;
-    for (size_t i = 0; i < terrain->width; i++)
-        under += (size_t)(terrain->height_m[i] < level_m) +
-                 (size_t)(terrain->height_m[last_row + i] < level_m);
-    for (size_t row = 0; row < terrain->height; row++)
-        under += (size_t)(terrain->height_m[row * terrain->width] < level_m) +
-                 (size_t)(terrain->height_m[(row + 1) * terrain->width - 1] < level_m);
-    return under > (size_t)terrain->width + terrain->height;
-}
-
 static struct wd_light_push push_of(const struct wd_light_pass *pass,
                                     const struct wd_light_params *params)
 {
@@ -138,7 +123,7 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
         .sun_width = pass->sun_field.width,
         .sun_height = pass->sun_field.height,
         .variants = params->forest->variants ? params->forest->variants : 1,
-        .is_sea = is_sea(params),
+        .is_sea = wd_water_is_sea(params->forest->ground.terrain, params->frame->water_level_m),
         .extent_m = {(float)wd_terrain_extent_x_m(params->forest->ground.terrain),
                      (float)wd_terrain_extent_y_m(params->forest->ground.terrain)},
         .tile_columns = (params->targets->width + WD_TILE - 1) / WD_TILE,

@@ -1,4 +1,4 @@
-#include "frame/sun.h"
+#include "world/sun.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* sun.h: the sun's place, its light and the sky's, from time of day and air. */
-#ifndef WD_FRAME_SUN_H
-#define WD_FRAME_SUN_H
+#ifndef WD_WORLD_SUN_H
+#define WD_WORLD_SUN_H
 
 #include "scene/scene.h"
 #include "shared/frame.h"

@@ -1,0 +1,49 @@
+/* baker.h: orthographic pictures of tree meshes, rasterised in compute: tree triangles are about a
+ * sample large, where one thread a triangle beats the graphics pipeline, and all of a batch of
+ * pictures is one dispatch. Depth, the farthest surface and the sheets on a ray come out of the
+ * same pass. Pictures of one device are the same each time. */
+#ifndef WD_BAKE_BAKER_H
+#define WD_BAKE_BAKER_H
+
+#include "gpu/command.h"
+#include "shared/bake.h"
+
+/* Which of a mesh shows (W6: branches and leaves apart). */
+enum wd_bake_parts { WD_BAKE_ALL, WD_BAKE_WOOD, WD_BAKE_LEAVES };
+
+/* A mesh on the device, and the look textures that its leaves and bark show. */
+struct wd_bake_mesh {
+    struct wd_binding vertices; /* struct wd_tree_vertex[] */
+    struct wd_buffer *indices;  /* uint32_t[], made with VK_BUFFER_USAGE_STORAGE_BUFFER_BIT */
+    uint32_t first_index, index_count;
+    uint32_t wood_index_count;  /* of index_count, these come first */
+    struct wd_image *looks;
+    uint32_t look_layer;        /* bark; the leaf's is the next */
+};
+
+struct wd_baker {
+    struct wd_gpu *gpu;
+    struct wd_frames frames;
+    struct wd_pipeline depth, identity, resolve;
+    VkSampler sampler;
+    struct wd_buffer samples, texels, readback; /* of one batch; grow on demand */
+    const struct wd_log *log;
+};
+bool wd_baker_init(struct wd_baker *baker, struct wd_gpu *gpu, const struct wd_log *log);
+void wd_baker_finish(struct wd_baker *baker); /* accepts {0} */
+
+struct wd_bake_job {
+    struct wd_bake_mesh mesh;
+    enum wd_bake_parts parts;
+    const struct wd_bake_shot *shots; /* all of one size */
+    uint32_t shot_count;
+    uint32_t width, height; /* texels */
+    uint32_t samples;       /* a texel, along each side */
+};
+
+/* Calls `take` once for each shot, in order, with its finest mip: WD_VIEW_PLANES images of
+ * width x height texels of 4 bytes (see shared/view_set.h), one after the other. */
+bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
+                  void (*take)(void *user, uint32_t shot, const uint8_t *planes), void *user);
+
+#endif

@@ -1,0 +1,37 @@
+/* cache.h: one cache on disk for all that costs time to make.
+ *
+ * A file is named by its kind and by a key made from everything its content depends on. It carries
+ * the version of what made it, its length and a checksum, and appears whole by renaming: a cut,
+ * damaged, outdated or foreign file is a miss, never an error. The folder is kept below a size by
+ * dropping what has gone unused longest. */
+#ifndef WD_BAKE_CACHE_H
+#define WD_BAKE_CACHE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+
+#define WD_CACHE_BYTES ((uint64_t)2 << 30)
+
+/* {0} is a cache that holds nothing and takes nothing. */
+struct wd_bake_cache {
+    const char *directory; /* NULL or "": none */
+    uint64_t max_bytes;    /* 0: WD_CACHE_BYTES */
+    const struct wd_log *log;
+};
+
+/* A key: a running hash of byte strings. Begin with any value that names the purpose. */
+uint64_t wd_cache_key(uint64_t key, const void *data, size_t size);
+
+/* The block stored under `kind` (letters) and `key`, or NULL. At most `max_size` bytes are taken.
+ * free() it. Safe to call from several threads and processes. */
+void *wd_cache_load(const struct wd_bake_cache *cache, const char *kind, uint64_t key,
+                    size_t max_size, size_t *size);
+
+/* Failure to write is a warning: the next start makes the thing again. */
+void wd_cache_store(const struct wd_bake_cache *cache, const char *kind, uint64_t key,
+                    const void *data, size_t size);
+
+#endif

@@ -1,0 +1,75 @@
+#include "tree/grow.h"
+
+#include <math.h>
+
+static bool refuse(const struct wd_species *species, const struct wd_log *log, const char *what,
+                   double found, double low, double high)
+{
+    return wd_error(log, "cannot grow %s with %s %g; allowed is %g to %g", species->name, what,
+                    found, low, high);
+}
+
+static double open_stem(const struct wd_species *species, const struct wd_grow_params *params)
+{
+    return 1 + ((double)species->stem_open - 1) * (double)params->openness;
+}
+
+static bool resolve_height(struct wd_grow_params *params, const struct wd_species *species,
+                           const struct wd_log *log)
+{
+    double height = (double)params->height_m, age = (double)params->age_years;
+    double dbh_cm = 100 * (double)params->dbh_m, span = species->growth.span_years;
+    if (age != 0 && height != 0)
+        return wd_error(log, "cannot grow %s %g years old and %g m high; allowed is one of the two",
+                        species->name, age, height);
+    if (age != 0 && !(age > 0 && age <= span))
+        return wd_error(log, "cannot grow %s %g years old; its species file allows 0 to %g",
+                        species->name, age, span);
+    if (dbh_cm != 0 && !(dbh_cm > 0 && dbh_cm <= 2000))
+        return refuse(species, log, "dbh_m", (double)params->dbh_m, 0, 20);
+    if (age != 0)
+        height = wd_species_height_at_age_m(species, age);
+    else if (height == 0 && dbh_cm != 0)
+        height = wd_species_height_m(species, dbh_cm / open_stem(species, params));
+    else if (height == 0)
+        height = (double)species->typical_height_m;
+    double low = (double)species->height_range_m[0], high = (double)species->height_range_m[1];
+    if (age != 0 || (params->height_m == 0 && dbh_cm != 0)) /* what follows is kept in range */
+        height = fmin(fmax(height, low), high);
+    if (!(height >= low && height <= high))
+        return wd_error(log, "cannot grow %s %g m high; its species file allows %g to %g m",
+                        species->name, height, low, high);
+    params->height_m = (float)height;
+    return true;
+}
+
+/* Stems three times as thick or thin as the allometry says are no longer the species' form. */
+static bool resolve_dbh(struct wd_grow_params *params, const struct wd_species *species,
+                        const struct wd_log *log)
+{
+    double height = (double)params->height_m, found = (double)params->dbh_m;
+    double usual = 0.01 * wd_species_stem_of_height_cm(species, height) * open_stem(species, params);
+    if (found == 0)
+        params->dbh_m = (float)usual;
+    else if (!(found >= usual / 3 && found <= usual * 3))
+        return wd_error(log, "cannot grow %s %g m high with dbh_m %g; allowed is %.3g to %.3g",
+                        species->name, height, found, usual / 3, usual * 3);
+    return true;
+}
+
+bool wd_grow_params_resolve(struct wd_grow_params *params, const struct wd_species *species,
+                            const struct wd_log *log)
+{
+    if (!(params->openness >= 0 && params->openness <= 1))
+        return refuse(species, log, "openness", (double)params->openness, 0, 1);
+    if (!(params->detail >= 0 && params->detail <= 8))
+        return wd_error(log, "cannot grow %s with detail %g; allowed is 0 (meaning 1) to 8",
+                        species->name, (double)params->detail);
+    if (!resolve_height(params, species, log) || !resolve_dbh(params, species, log))
+        return false;
+    if (params->age_years == 0)
+        params->age_years = (float)wd_species_age_years(species, (double)params->height_m);
+    if (params->detail == 0)
+        params->detail = 1;
+    return true;
+}

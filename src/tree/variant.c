@@ -1,0 +1,43 @@
+#include "tree/variant.h"
+
+#include <math.h>
+
+/* Variants spread over the heights that the species reaches, so that young trees are not scaled
+ * down old ones: variant v stands for the middle of its part of the range. */
+static float variant_height(const struct wd_species *species, uint32_t variant, uint32_t variants)
+{
+    float share = ((float)variant + 0.5f) / (float)variants;
+    float low = fmaxf(species->height_range_m[0], 0.45f * species->typical_height_m);
+    float high = fminf(species->height_range_m[1], 1.1f * species->typical_height_m);
+    return low + (high - low) * share;
+}
+
+bool wd_variant_grow(struct wd_tree_model *model, const struct wd_scene *scene, uint32_t index,
+                     const struct wd_log *log)
+{
+    uint32_t variants = (uint32_t)scene->variants, variant = index % variants;
+    const struct wd_species *species = &scene->species[index / variants];
+    const struct wd_grow_params params = {
+        .seed = variant + 1,
+        .height_m = variant_height(species, variant, variants),
+        .openness = 0.35f,
+    };
+    return wd_tree_grow(model, species, &params, log);
+}
+
+void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, uint32_t index,
+                         const struct wd_tree_model *grown)
+{
+    uint32_t species_index = index / (uint32_t)scene->variants;
+    const struct wd_species *species = &scene->species[species_index];
+    *model = (struct wd_model){
+        .height_m = grown->height_m,
+        .crown_m = fmaxf(2.0f * grown->crown_radius_m, 0.1f),
+        .flexibility = species->flexibility,
+        .look_layer = 2 * species_index,
+        .crown_base_m = grown->crown_base_m,
+    };
+    for (int k = 0; k < 3; k++)
+        model->transmittance[k] =
+            species->leaf.transmittance[k] / fmaxf(species->leaf.color[k], 1e-3f);
+}

@@ -1,0 +1,18 @@
+/* variant.h: the grown individuals that stand for a species, `variants` of each; individual i of a
+ * scene is variant i % variants of species i / variants. */
+#ifndef WD_TREE_VARIANT_H
+#define WD_TREE_VARIANT_H
+
+#include "scene/scene.h"
+#include "shared/forest.h"
+#include "tree/grow.h"
+
+/* Grows individual `index` of the scene; false, logged, where its species file does not allow it. */
+bool wd_variant_grow(struct wd_tree_model *model, const struct wd_scene *scene, uint32_t index,
+                     const struct wd_log *log);
+
+/* What whoever draws it needs to know of it, but for its cards. */
+void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, uint32_t index,
+                         const struct wd_tree_model *grown);
+
+#endif
