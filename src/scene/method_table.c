@@ -32,6 +32,15 @@ static const struct wd_key grid_keys[] = {
 };
 static const struct wd_keys grid_table = TABLE(grid);
 
+static const struct wd_key continuum_keys[] = {
+    {"density", WD_KEY_DOUBLE, OPTION(continuum, density), 0.01, 64, "1",
+     "Splats for each pixel that a crown covers.", .row = "continuum"},
+    {"min_splats", WD_KEY_INTEGER, OPTION(continuum, min_splats), 8, 1024, "32",
+     "Splats of a tree, however small it is on screen.", .row = "continuum"},
+    {0},
+};
+static const struct wd_keys continuum_table = TABLE(continuum);
+
 #define METHOD(method, rows, summary)                                                              \
     {#method, WD_KEY_OBJECT, offsetof(struct wd_method_options, method), .table = &method##_table, \
      .doc = summary, .row = rows}
@@ -40,8 +49,9 @@ static const struct wd_key method_keys[] = {
     {"separate", WD_KEY_OBJECT, .table = &separate_table, .row = "G9",
      .doc = "Every tree by a draw call of its own: the baseline."},
     METHOD(grid, "G9", "Billboards by cells of a fixed grid, meshes near: the other baseline."),
+    METHOD(continuum, "continuum", "Splats whose number follows the pixels they cover, in compute."),
     {0},
 };
 const struct wd_keys wd_scene_method_keys = {"methods", method_keys,
                                              sizeof(struct wd_method_options), NULL};
-const char *const wd_scene_method_names[] = {"octree", "separate", "grid", NULL};
+const char *const wd_scene_method_names[] = {"octree", "separate", "grid", "continuum", NULL};

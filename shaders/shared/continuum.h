@@ -1,0 +1,89 @@
+/* continuum.h: what the passes of the method `continuum` hand to each other.
+ *
+ *   clusters --cull--> visible clusters --select--> visible trees and splat items
+ *            --splat--> visibility buffer --resolve--> G-buffer or cascade
+ *
+ * A tree is drawn as splats: discs of equal area sampled from its surface. Its count follows the
+ * pixels it covers; any window of a stratum's splats is a fair sample of that part of the crown. */
+#ifndef WD_SHARED_CONTINUUM_H
+#define WD_SHARED_CONTINUUM_H
+
+#include "shared/types.h"
+
+/* Splats a model, in strata of equal count from the crown's top to the foot. */
+#define WD_SPLATS 16384u
+#define WD_SPLAT_STRATA 8u
+#define WD_STRATUM_SPLATS (WD_SPLATS / WD_SPLAT_STRATA)
+/* Splats of one item, a workgroup's work. An id in the visibility buffer is
+ * item * WD_ITEM_SPLATS + splat of the item + 1. */
+#define WD_ITEM_SPLATS 512u
+
+/* A splat: its place in the model's box (unorm 16) and its normal (octahedral, snorm 8). */
+struct wd_splat {
+    uint32_t xy;       /* x in the low half */
+    uint32_t z_normal; /* z in the low half, normal above */
+};
+WD_STATIC_ASSERT_SIZE(wd_splat, 8);
+
+/* What a splat looks like: RGB albedo (square roots of it) and, in A, 7 bits of sky openness under one bit
+ * that says wood. */
+#define WD_SPLAT_WOOD 0x80000000u
+
+struct wd_splat_model {
+    WD_VEC3(min_m);
+    WD_VEC3(extent_m);
+    float area_m2;                        /* of the surface that the splats stand for */
+    float strata_top_m[WD_SPLAT_STRATA];  /* height below which a stratum's splats lie */
+};
+
+/* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
+#define WD_CLUSTER_TREES 64u
+struct wd_cluster {
+    int32_t min_mm[3], max_mm[3]; /* bounds of its trees */
+    uint32_t first, count;
+};
+WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
+
+/* One view of a frame. */
+struct wd_splat_view {
+    WD_MAT4(clip_from_rel);
+    WD_VEC4(planes[8]);      /* see struct wd_frustum */
+    uint32_t plane_count;
+    uint32_t orthographic;   /* 1: a cascade; depth is z, not z / w */
+    float pixels;            /* of a metre at w = 1 */
+    float near_m;
+    uint32_t width, height;
+    float density;           /* splats a pixel that a tree covers */
+    uint32_t min_splats;     /* of a tree, a multiple of WD_SPLAT_STRATA */
+    uint32_t window;         /* counts samples and frames: which splats are taken */
+    uint32_t cluster_count, variants;
+    uint32_t tree_capacity, item_capacity;
+};
+
+struct wd_splat_counts {
+    uint32_t clusters, trees, items;
+};
+/* Indirect dispatches that follow from them. */
+struct wd_splat_groups {
+    uint32_t select[3], splat[3];
+};
+
+/* A visible tree, ready to be splatted. Rows give clip coordinates of a place in the model's box,
+ * (x, y, z in 0..1, 1); `sway` is added times z squared. */
+struct wd_splat_tree {
+    WD_VEC4(clip_x); WD_VEC4(clip_y); WD_VEC4(clip_w); /* clip_w: w, or z of a cascade */
+    WD_VEC3(sway);
+    WD_VEC3(toward);       /* unit, to the eye, in the model's axes */
+    float radius;          /* of a disc in pixels at w = 1 */
+    uint32_t tree;         /* in octree order */
+    uint32_t first_splat;  /* of the model */
+    uint32_t offset;       /* of the window in each stratum */
+    uint32_t per_stratum;  /* splats of the window */
+};
+
+struct wd_splat_item {
+    uint32_t tree; /* index of a wd_splat_tree */
+    uint32_t first, count;
+};
+
+#endif

@@ -1,0 +1,340 @@
+/* continuum: cost that follows the pixels (shaders/shared/continuum.h tells how passes connect).
+ *
+ * All that depends on single trees happens on the device: clusters are culled, trees chosen and
+ * splatted into one visibility buffer, which is resolved into the same G-buffer that every method
+ * fills. */
+#include "methods/continuum_forest.h"
+#include "methods/method.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+static const uint32_t cull_comp[] =
+#include "continuum_cull.comp.inc"
+    ;
+static const uint32_t args_comp[] =
+#include "continuum_args.comp.inc"
+    ;
+static const uint32_t select_comp[] =
+#include "continuum_select.comp.inc"
+    ;
+static const uint32_t splat_comp[] =
+#include "continuum_splat.comp.inc"
+    ;
+static const uint32_t splat_twice_comp[] =
+#include "continuum_splat_twice.comp.inc"
+    ;
+static const uint32_t resolve_vert[] =
+#include "continuum_resolve.vert.inc"
+    ;
+static const uint32_t resolve_frag[] =
+#include "continuum_resolve.frag.inc"
+    ;
+static const uint32_t resolve_shadow_frag[] =
+#include "continuum_resolve_shadow.frag.inc"
+    ;
+
+#define SPIRV(words)                                                                               \
+    {                                                                                              \
+        words, sizeof words, #words                                                                \
+    }
+
+/* Visible trees and items of one view: hard caps, whatever the world holds. */
+enum { MAX_TREES = 1 << 19, MAX_ITEMS = 1 << 20 };
+
+struct continuum {
+    struct wd_gpu *gpu;
+    struct wd_pipeline cull, args, choose;
+    struct wd_pipeline splat[2][2]; /* [WD_PASS_*][1: ids of the second pass] */
+    struct wd_pipeline resolve[2];  /* [WD_PASS_*] */
+    struct wd_continuum_forest forest;
+    struct wd_buffer visible, counts, groups, trees, items, pixels;
+    uint32_t tree_capacity, item_capacity;
+    uint32_t window;
+    struct wd_binding view; /* struct wd_splat_view of the view being drawn */
+};
+
+/* --- pipelines --------------------------------------------------------------------------- */
+
+#define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+
+static bool init_splat(struct continuum *c, struct wd_gpu *gpu)
+{
+    bool once = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS;
+    for (uint32_t pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
+        for (uint32_t ids = 0; ids < (once ? 1 : 2); ids++) {
+            /* llvmpipe's subgroups are 8 wide; a wider group only idles on small trees */
+            const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW, ids};
+            struct wd_compute_params params = {
+                .shader = SPIRV(splat_comp),
+                .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
+                .constants = {once ? 2 : 3, constants},
+            };
+            if (!once)
+                params.shader = (struct wd_spirv)SPIRV(splat_twice_comp);
+            if (!wd_pipeline_init_compute(&c->splat[pass][ids], gpu, &params))
+                return false;
+        }
+    }
+    return true;
+}
+
+static bool init_resolve(struct continuum *c, struct wd_gpu *gpu)
+{
+    struct wd_graphics_params params = {
+        .vertex = SPIRV(resolve_vert),
+        .fragment = SPIRV(resolve_frag),
+        .bindings = {8, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
+        .push_size = sizeof(struct wd_tree_push),
+        .color_count = 3,
+        .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
+        .depth_format = WD_DEPTH_FORMAT,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+    };
+    if (!wd_pipeline_init_graphics(&c->resolve[WD_PASS_CAMERA], gpu, &params))
+        return false;
+    params.fragment = (struct wd_spirv)SPIRV(resolve_shadow_frag);
+    params.bindings.count = 2;
+    params.push_size = 0;
+    params.color_count = 0;
+    return wd_pipeline_init_graphics(&c->resolve[WD_PASS_SHADOW], gpu, &params);
+}
+
+static bool continuum_init(void *state, struct wd_gpu *gpu)
+{
+    struct continuum *c = state;
+    c->gpu = gpu;
+    const struct wd_compute_params cull = {
+        .shader = SPIRV(cull_comp), .bindings = {5, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
+    const struct wd_compute_params args = {.shader = SPIRV(args_comp),
+                                           .bindings = {3, {BUFFER, BUFFER, BUFFER}}};
+    const struct wd_compute_params choose = {
+        .shader = SPIRV(select_comp),
+        .bindings = {10, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+                          BUFFER}}};
+    return wd_pipeline_init_compute(&c->cull, gpu, &cull) &&
+           wd_pipeline_init_compute(&c->args, gpu, &args) &&
+           wd_pipeline_init_compute(&c->choose, gpu, &choose) && init_splat(c, gpu) &&
+           init_resolve(c, gpu);
+}
+
+static void continuum_finish(void *state, struct wd_gpu *gpu)
+{
+    struct continuum *c = state;
+    struct wd_pipeline *pipelines[] = {
+        &c->cull,        &c->args,        &c->choose,      &c->splat[0][0], &c->splat[0][1],
+        &c->splat[1][0], &c->splat[1][1], &c->resolve[0], &c->resolve[1]};
+    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
+        wd_pipeline_finish(pipelines[i], gpu);
+    wd_buffer_finish(&c->pixels, gpu);
+}
+
+/* --- forest ------------------------------------------------------------------------------ */
+
+static bool make_work(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
+                      VkDeviceSize size)
+{
+    const struct wd_buffer_params params = {
+        name, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+        WD_MEMORY_DEVICE};
+    return wd_buffer_init(buffer, gpu, &params);
+}
+
+static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_forest_device *forest)
+{
+    struct continuum *c = state;
+    size_t trees = forest->world->tree_count;
+    if (!trees)
+        return true;
+    c->tree_capacity = trees < MAX_TREES ? (uint32_t)trees : MAX_TREES;
+    c->item_capacity = MAX_ITEMS;
+    return wd_continuum_forest_init(&c->forest, gpu, forest) &&
+           make_work(&c->visible, gpu, "visible clusters",
+                     c->forest.cluster_count * sizeof(uint32_t)) &&
+           make_work(&c->counts, gpu, "splat counts", sizeof(struct wd_splat_counts)) &&
+           make_work(&c->groups, gpu, "splat groups", sizeof(struct wd_splat_groups)) &&
+           make_work(&c->trees, gpu, "splat trees",
+                     c->tree_capacity * sizeof(struct wd_splat_tree)) &&
+           make_work(&c->items, gpu, "splat items",
+                     c->item_capacity * sizeof(struct wd_splat_item));
+}
+
+static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
+{
+    struct continuum *c = state;
+    struct wd_buffer *buffers[] = {&c->visible, &c->counts, &c->groups, &c->trees, &c->items};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        wd_buffer_finish(buffers[i], gpu);
+    wd_continuum_forest_finish(&c->forest, gpu);
+}
+
+/* --- one view ---------------------------------------------------------------------------- */
+
+static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
+{
+    VkDeviceSize size = (VkDeviceSize)view->width * view->height * sizeof(uint64_t);
+    if (c->pixels.size >= size)
+        return true;
+    wd_cmd_defer_buffer(cmd, &c->pixels);
+    return make_work(&c->pixels, cmd->gpu, "visibility", size);
+}
+
+static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    const struct wd_view *view = draw->view;
+    struct wd_splat_view *values = wd_cmd_upload(draw->cmd, sizeof *values, &c->view);
+    if (!values)
+        return;
+    const struct wd_continuum_options *options = &draw->forest->scene->methods.continuum;
+    bool shadow = draw->pass == WD_PASS_SHADOW;
+    *values = (struct wd_splat_view){
+        .plane_count = view->frustum.count,
+        .orthographic = shadow,
+        .pixels = view->pixels_per_radian,
+        .near_m = 0.1f,
+        .width = view->width,
+        .height = view->height,
+        .density = (float)options->density,
+        .min_splats = (uint32_t)options->min_splats,
+        .window = c->window,
+        .cluster_count = c->forest.cluster_count,
+        .variants = draw->forest->variants,
+        .tree_capacity = c->tree_capacity,
+        .item_capacity = c->item_capacity,
+    };
+    memcpy(values->clip_from_rel, view->clip_from_rel, sizeof values->clip_from_rel);
+    memcpy(values->planes, view->frustum.planes, sizeof values->planes);
+    if (shadow) {
+        float squared = 0.0f;
+        for (int k = 0; k < 3; k++)
+            squared += view->clip_from_rel[k][0] * view->clip_from_rel[k][0];
+        values->pixels = 0.5f * sqrtf(squared) * (float)view->width;
+    }
+}
+
+static void record_args(struct continuum *c, struct wd_cmd *cmd)
+{
+    wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_buffer(cmd, &c->groups, WD_USE_COMPUTE_WRITE);
+    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->counts),
+                                          WD_BIND_BUFFER(&c->groups)};
+    wd_cmd_bind(cmd, &c->args, bindings);
+    wd_cmd_dispatch(cmd, 1, 1, 1);
+    wd_cmd_use_buffer(cmd, &c->groups, WD_USE_INDIRECT);
+}
+
+static void record_cull(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    struct wd_cmd *cmd = draw->cmd;
+    wd_cmd_fill_buffer(cmd, &c->counts, 0);
+    wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_buffer(cmd, &c->visible, WD_USE_COMPUTE_WRITE);
+    const struct wd_binding bindings[] = {draw->uniforms, c->view,
+                                          WD_BIND_BUFFER(&c->forest.clusters),
+                                          WD_BIND_BUFFER(&c->counts), WD_BIND_BUFFER(&c->visible)};
+    wd_cmd_bind(cmd, &c->cull, bindings);
+    wd_cmd_dispatch_1d(cmd, (c->forest.cluster_count + 63) / 64);
+    record_args(c, cmd);
+}
+
+static void record_select(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    struct wd_cmd *cmd = draw->cmd;
+    wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_buffer(cmd, &c->visible, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->trees, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_buffer(cmd, &c->items, WD_USE_COMPUTE_WRITE);
+    const struct wd_binding bindings[] = {draw->uniforms,
+                                          c->view,
+                                          WD_BIND_BUFFER(&c->forest.clusters),
+                                          WD_BIND_BUFFER(&c->counts),
+                                          WD_BIND_BUFFER(&c->visible),
+                                          WD_BIND_BUFFER(&draw->forest->trees),
+                                          WD_BIND_BUFFER(&draw->forest->models),
+                                          WD_BIND_BUFFER(&c->forest.models),
+                                          WD_BIND_BUFFER(&c->trees),
+                                          WD_BIND_BUFFER(&c->items)};
+    wd_cmd_bind(cmd, &c->choose, bindings);
+    wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
+    record_args(c, cmd);
+}
+
+static void record_splats(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    struct wd_cmd *cmd = draw->cmd;
+    wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->trees, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->items, WD_USE_COMPUTE_READ);
+    const struct wd_binding bindings[] = {c->view,
+                                          WD_BIND_BUFFER(&c->counts),
+                                          WD_BIND_BUFFER(&c->trees),
+                                          WD_BIND_BUFFER(&c->items),
+                                          WD_BIND_BUFFER(&c->forest.splats),
+                                          WD_BIND_BUFFER(&c->pixels)};
+    wd_cmd_fill_buffer(cmd, &c->pixels, 0);
+    for (uint32_t ids = 0; ids < 2 && c->splat[draw->pass][ids].pipeline; ids++) {
+        wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
+        wd_cmd_bind(cmd, &c->splat[draw->pass][ids], bindings);
+        wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, splat));
+    }
+}
+
+static void continuum_select(void *state, const struct wd_tree_draw *draw)
+{
+    struct continuum *c = state;
+    struct wd_cmd *cmd = draw->cmd;
+    upload_view(c, draw);
+    if (!fit_pixels(c, cmd, draw->view))
+        cmd->failed = true;
+    if (cmd->failed)
+        return;
+    wd_cmd_scope_begin(cmd, "select");
+    record_cull(c, draw);
+    record_select(c, draw);
+    wd_cmd_scope_end(cmd);
+    wd_cmd_scope_begin(cmd, "splat");
+    record_splats(c, draw);
+    wd_cmd_scope_end(cmd);
+    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_GRAPHICS_READ);
+    wd_cmd_use_buffer(cmd, &c->trees, WD_USE_GRAPHICS_READ);
+    wd_cmd_use_buffer(cmd, &c->items, WD_USE_GRAPHICS_READ);
+    if (draw->pass == WD_PASS_CAMERA)
+        c->window++;
+}
+
+static void continuum_draw(void *state, const struct wd_tree_draw *draw)
+{
+    struct continuum *c = state;
+    struct wd_cmd *cmd = draw->cmd;
+    if (cmd->failed)
+        return;
+    const struct wd_pipeline *pipeline = &c->resolve[draw->pass];
+    const struct wd_binding camera[] = {draw->uniforms,
+                                        WD_BIND_BUFFER(&c->pixels),
+                                        WD_BIND_BUFFER(&c->trees),
+                                        WD_BIND_BUFFER(&c->items),
+                                        WD_BIND_BUFFER(&c->forest.splats),
+                                        WD_BIND_BUFFER(&c->forest.looks),
+                                        WD_BIND_BUFFER(&draw->forest->trees),
+                                        WD_BIND_BUFFER(&draw->forest->models)};
+    const struct wd_binding shadow[] = {c->view, WD_BIND_BUFFER(&c->pixels)};
+    wd_cmd_bind(cmd, pipeline, draw->pass == WD_PASS_CAMERA ? camera : shadow);
+    if (draw->pass == WD_PASS_CAMERA) {
+        const struct wd_tree_push push = {.variants = draw->forest->variants};
+        wd_cmd_push(cmd, pipeline, &push, sizeof push);
+    }
+    wd_cmd_draw(cmd, 3, 1);
+    draw->stats->draw_calls++;
+}
+
+const struct wd_method wd_method_continuum = {
+    .name = "continuum",
+    .state_size = sizeof(struct continuum),
+    .init = continuum_init,
+    .finish = continuum_finish,
+    .use_forest = continuum_use_forest,
+    .drop_forest = continuum_drop_forest,
+    .select = continuum_select,
+    .draw = continuum_draw,
+};

@@ -1,0 +1,179 @@
+#include "methods/continuum_forest.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/splats.h"
+#include "base/jobs.h"
+#include "base/memory.h"
+#include "forest/looks.h"
+#include "tree/variant.h"
+
+/* --- clusters ---------------------------------------------------------------------------- */
+
+struct gathering {
+    const struct wd_octree *octree;
+    const struct wd_tree *trees;
+    struct wd_cluster *clusters;
+    size_t count, capacity;
+};
+
+/* With the reach of crowns that lean and sway. */
+static void add_bounds(struct wd_cluster *cluster, const struct wd_tree *tree)
+{
+    int32_t height_mm = (int32_t)(tree->size & 0xffffu) * 10;
+    int32_t reach_mm = (int32_t)(tree->size >> 16) * 15 / 2 + height_mm / 10 + 500;
+    const int32_t low[3] = {tree->x_mm - reach_mm, tree->y_mm - reach_mm, tree->z_mm - 1000};
+    const int32_t high[3] = {tree->x_mm + reach_mm, tree->y_mm + reach_mm,
+                             tree->z_mm + height_mm + height_mm / 10};
+    for (int k = 0; k < 3; k++) {
+        cluster->min_mm[k] = low[k] < cluster->min_mm[k] ? low[k] : cluster->min_mm[k];
+        cluster->max_mm[k] = high[k] > cluster->max_mm[k] ? high[k] : cluster->max_mm[k];
+    }
+}
+
+static void add_run(struct gathering *g, uint32_t begin, uint32_t end)
+{
+    for (uint32_t first = begin; first < end; first += WD_CLUSTER_TREES) {
+        struct wd_cluster *cluster = wd_push(g->clusters, g->count, g->capacity);
+        uint32_t left = end - first;
+        cluster->first = first;
+        cluster->count = left < WD_CLUSTER_TREES ? left : WD_CLUSTER_TREES;
+        for (int k = 0; k < 3; k++) {
+            cluster->min_mm[k] = INT32_MAX;
+            cluster->max_mm[k] = INT32_MIN;
+        }
+        for (uint32_t i = 0; i < cluster->count; i++)
+            add_bounds(cluster, &g->trees[first + i]);
+    }
+}
+
+static void gather(struct gathering *g, uint32_t index)
+{
+    const struct wd_octant *octant = &g->octree->octants[index];
+    if (octant->end - octant->begin <= WD_CLUSTER_TREES || octant->child_count == 0) {
+        add_run(g, octant->begin, octant->end);
+        return;
+    }
+    add_run(g, octant->begin, octant->own_end);
+    for (uint32_t i = 0, child = octant->first_child; i < octant->child_count; i++) {
+        gather(g, child);
+        child = g->octree->octants[child].next_sibling;
+    }
+}
+
+uint32_t wd_clusters_make(struct wd_cluster **clusters, const struct wd_octree *octree,
+                          const struct wd_tree *trees)
+{
+    struct gathering g = {.octree = octree, .trees = trees};
+    if (octree->count)
+        gather(&g, 0);
+    *clusters = g.clusters;
+    return (uint32_t)g.count;
+}
+
+/* --- splats ------------------------------------------------------------------------------ */
+
+struct sampling {
+    const struct wd_forest_device *forest;
+    const struct wd_log *log;
+    struct wd_splats *splats; /* [model] */
+    uint8_t *looks;           /* WD_LOOK_BYTES a species */
+    atomic_bool failed;
+};
+
+static void make_look(void *user, size_t index)
+{
+    struct sampling *work = user;
+    wd_look_generate(&work->forest->scene->species[index], work->looks + index * WD_LOOK_BYTES);
+}
+
+static void sample_model(void *user, size_t index)
+{
+    struct sampling *work = user;
+    struct wd_tree_model model;
+    if (!wd_variant_grow(&model, work->forest->scene, (uint32_t)index, work->log)) {
+        atomic_store(&work->failed, true);
+        return;
+    }
+    wd_splats_init(&work->splats[index], &model,
+                   work->looks + index / work->forest->variants * WD_LOOK_BYTES, WD_LOOK_SIZE);
+    wd_tree_model_finish(&model);
+}
+
+static bool make_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
+                        const void *data, size_t size)
+{
+    const struct wd_buffer_params params = {name, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                            WD_MEMORY_DEVICE};
+    return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
+}
+
+static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
+                          const struct wd_splats *splats, uint32_t models)
+{
+    size_t count = (size_t)models * WD_SPLATS;
+    struct wd_splat *all = wd_alloc_array(count, sizeof *all);
+    uint32_t *looks = wd_alloc_array(count, sizeof *looks);
+    struct wd_splat_model *headers = wd_alloc_array(models, sizeof *headers);
+    for (size_t i = 0; i < models; i++) {
+        memcpy(all + i * WD_SPLATS, splats[i].splats, WD_SPLATS * sizeof *all);
+        memcpy(looks + i * WD_SPLATS, splats[i].looks, WD_SPLATS * sizeof *looks);
+        headers[i] = splats[i].model;
+    }
+    bool ok = make_buffer(&own->splats, gpu, "splats", all, count * sizeof *all) &&
+              make_buffer(&own->looks, gpu, "splat looks", looks, count * sizeof *looks) &&
+              make_buffer(&own->models, gpu, "splat models", headers, models * sizeof *headers);
+    free(all);
+    free(looks);
+    free(headers);
+    return ok;
+}
+
+static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
+                        const struct wd_forest_device *forest)
+{
+    size_t species = forest->scene->species_file_count;
+    struct sampling work = {
+        .forest = forest,
+        .log = gpu->log,
+        .splats = wd_alloc_array(forest->model_count, sizeof *work.splats),
+        .looks = wd_alloc_array(species, WD_LOOK_BYTES),
+    };
+    wd_jobs_run(0, species, make_look, &work);
+    wd_jobs_run(0, forest->model_count, sample_model, &work);
+    bool ok = !atomic_load(&work.failed) &&
+              upload_splats(own, gpu, work.splats, forest->model_count);
+    for (uint32_t i = 0; i < forest->model_count; i++)
+        wd_splats_finish(&work.splats[i]);
+    free(work.splats);
+    free(work.looks);
+    return ok;
+}
+
+bool wd_continuum_forest_init(struct wd_continuum_forest *own, struct wd_gpu *gpu,
+                              const struct wd_forest_device *forest)
+{
+    *own = (struct wd_continuum_forest){0};
+    if (!forest->world->octree.count)
+        return true;
+    struct wd_cluster *clusters;
+    own->cluster_count = wd_clusters_make(&clusters, &forest->world->octree, forest->world->trees);
+    bool ok = make_buffer(&own->clusters, gpu, "clusters", clusters,
+                          own->cluster_count * sizeof *clusters) &&
+              make_splats(own, gpu, forest);
+    free(clusters);
+    if (!ok)
+        wd_continuum_forest_finish(own, gpu);
+    return ok;
+}
+
+void wd_continuum_forest_finish(struct wd_continuum_forest *own, struct wd_gpu *gpu)
+{
+    struct wd_buffer *buffers[] = {&own->clusters, &own->splats, &own->looks, &own->models};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        wd_buffer_finish(buffers[i], gpu);
+    *own = (struct wd_continuum_forest){0};
+}

@@ -1,0 +1,26 @@
+/* continuum_forest.h: what the method `continuum` makes of a forest. */
+#ifndef WD_METHODS_CONTINUUM_FOREST_H
+#define WD_METHODS_CONTINUUM_FOREST_H
+
+#include "forest/forest.h"
+#include "shared/continuum.h"
+
+struct wd_continuum_forest {
+    struct wd_buffer clusters; /* struct wd_cluster[cluster_count] */
+    struct wd_buffer splats;   /* struct wd_splat[WD_SPLATS] a model */
+    struct wd_buffer looks;    /* uint32_t, parallel */
+    struct wd_buffer models;   /* struct wd_splat_model a model */
+    uint32_t cluster_count;
+};
+
+/* Samples the splats of every model and gathers the trees in clusters. */
+bool wd_continuum_forest_init(struct wd_continuum_forest *own, struct wd_gpu *gpu,
+                              const struct wd_forest_device *forest);
+void wd_continuum_forest_finish(struct wd_continuum_forest *own, struct wd_gpu *gpu);
+
+/* Clusters of trees[count] in octree order: runs of at most WD_CLUSTER_TREES that no octant's own
+ * trees and descendants straddle without need. Returns their number; `*clusters` is to be freed. */
+uint32_t wd_clusters_make(struct wd_cluster **clusters, const struct wd_octree *octree,
+                          const struct wd_tree *trees);
+
+#endif

@@ -1,0 +1,135 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "base/memory.h"
+#include "bake/splats.h"
+#include "frame_test.h"
+#include "methods/continuum_forest.h"
+
+enum { OVER, WALK, CAMERAS };
+
+static const char *root;
+
+static size_t pixels_of(const struct frame_picture *picture)
+{
+    return (size_t)picture->width * picture->height;
+}
+
+/* --- clusters ---------------------------------------------------------------------------- */
+
+static void every_tree_is_in_one_cluster_and_its_bounds(void **state)
+{
+    (void)state;
+    enum { COUNT = 3000 };
+    struct wd_tree *trees = wd_alloc_array(COUNT, sizeof *trees);
+    struct wd_octree octree;
+    for (uint32_t i = 0; i < COUNT; i++)
+        trees[i] = (struct wd_tree){.x_mm = (int32_t)(i * 7919u % 400000u),
+                                    .y_mm = (int32_t)(i * 104729u % 300000u),
+                                    .z_mm = (int32_t)(i % 977u) * 10,
+                                    .id = i + 1,
+                                    .size = 1200u | 500u << 16};
+    wd_octree_init(&octree, trees, COUNT, &(struct wd_octree_params){0});
+    struct wd_cluster *clusters;
+    uint32_t count = wd_clusters_make(&clusters, &octree, trees), next = 0;
+    assert_in_range(count, COUNT / WD_CLUSTER_TREES, COUNT / 8);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(clusters[i].first, next);
+        assert_in_range(clusters[i].count, 1, WD_CLUSTER_TREES);
+        next += clusters[i].count;
+        for (uint32_t k = clusters[i].first; k < next; k++) {
+            assert_true(clusters[i].min_mm[0] <= trees[k].x_mm - 2500 &&
+                        clusters[i].max_mm[0] >= trees[k].x_mm + 2500);
+            assert_true(clusters[i].min_mm[2] <= trees[k].z_mm &&
+                        clusters[i].max_mm[2] >= trees[k].z_mm + 12000);
+        }
+    }
+    assert_int_equal(next, COUNT);
+    free(clusters);
+    wd_octree_finish(&octree);
+    free(trees);
+}
+
+/* --- pictures ---------------------------------------------------------------------------- */
+
+/* Equal depths of different splats may be told apart in another order of items. */
+static void two_passes_give_the_picture_of_one(void **state)
+{
+    (void)state;
+    struct frame_test once, twice;
+    frame_test_init(&once, root, 0);
+    frame_test_init(&twice, root, WD_GPU_FEATURE_INT64_ATOMICS);
+    assert_true(once.gpu.features & WD_GPU_FEATURE_INT64_ATOMICS);
+    for (uint32_t camera = OVER; camera < CAMERAS; camera++) {
+        struct frame_picture a, b;
+        frame_test_draw(&once, "continuum", camera, &a);
+        frame_test_draw(&twice, "continuum", camera, &b);
+        size_t trees = 0, other = 0;
+        for (size_t i = 0; i < pixels_of(&a); i++) {
+            trees += a.surface[i] != 0;
+            assert_true(a.depth[i] == b.depth[i]);
+            other += a.surface[i] != b.surface[i] || a.albedo[i] != b.albedo[i];
+        }
+        assert_true(trees > pixels_of(&a) / 10);
+        assert_in_range(other, 0, pixels_of(&a) / 1000);
+        frame_picture_finish(&a);
+        frame_picture_finish(&b);
+    }
+    frame_test_finish(&once);
+    frame_test_finish(&twice);
+}
+
+static size_t count_trees(const struct frame_picture *picture, uint32_t *pixels_of_tree)
+{
+    size_t covered = 0;
+    for (size_t i = 0; i < pixels_of(picture); i++) {
+        covered += picture->surface[i] != 0;
+        pixels_of_tree[picture->surface[i]]++;
+    }
+    return covered;
+}
+
+/* Trees that octree shows large stand in the same place under the same id. */
+static void large_trees_have_the_ids_of_octree(void **state)
+{
+    (void)state;
+    struct frame_test test;
+    frame_test_init(&test, root, 0);
+    size_t slots = test.world.tree_count + 1;
+    for (uint32_t camera = OVER; camera < CAMERAS; camera++) {
+        struct frame_picture octree, continuum;
+        frame_test_draw(&test, "octree", camera, &octree);
+        frame_test_draw(&test, "continuum", camera, &continuum);
+        uint32_t *large = wd_alloc_array(slots, sizeof *large);
+        uint32_t *own = wd_alloc_array(slots, sizeof *own);
+        double covered = (double)count_trees(&octree, large);
+        double own_covered = (double)count_trees(&continuum, own);
+        assert_true(fabs(own_covered / covered - 1.0) < 0.2);
+        for (size_t i = 1; i < slots; i++) {
+            if (large[i] > 200)
+                assert_in_range(own[i], large[i] / 3, large[i] * 3);
+        }
+        free(large);
+        free(own);
+        frame_picture_finish(&octree);
+        frame_picture_finish(&continuum);
+    }
+    frame_test_finish(&test);
+}
+
+int main(int argc, char **argv)
+{
+    root = argc > 1 ? argv[1] : ".";
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_tree_is_in_one_cluster_and_its_bounds),
+        cmocka_unit_test(two_passes_give_the_picture_of_one),
+        cmocka_unit_test(large_trees_have_the_ids_of_octree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

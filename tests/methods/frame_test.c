@@ -1,0 +1,96 @@
+#include "frame_test.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/memory.h"
+
+void frame_test_init(struct frame_test *test, const char *root, uint32_t disabled)
+{
+    char *path = wd_format("%s/tests/api/small.json", root);
+    const struct wd_gpu_params gpu = {.name = "software",
+                                      .validation = WD_GPU_VALIDATION_ON,
+                                      .disabled_features = disabled};
+    *test = (struct frame_test){0};
+    assert_true(wd_scene_load(&test->scene, path, &test->log));
+    assert_true(wd_world_init(&test->world, &test->scene,
+                              &(struct wd_world_params){.log = &test->log}));
+    assert_true(wd_gpu_init(&test->gpu, &gpu, &test->log));
+    const struct wd_forest_device_params forest = {
+        .scene = &test->scene, .world = &test->world, .log = &test->log};
+    assert_true(wd_forest_device_init(&test->forest, &test->gpu, &forest));
+    assert_true(wd_frame_init(&test->frame, &test->gpu));
+    free(path);
+}
+
+void frame_test_finish(struct frame_test *test)
+{
+    wd_frame_drop_forest(&test->frame);
+    wd_frame_finish(&test->frame);
+    wd_forest_device_finish(&test->forest, &test->gpu);
+    wd_gpu_finish(&test->gpu);
+    wd_world_finish(&test->world);
+    wd_scene_finish(&test->scene);
+}
+
+static void *read_image(struct frame_test *test, struct wd_image *image)
+{
+    size_t size = (size_t)4 * image->width * image->height;
+    void *data = wd_alloc(size);
+    assert_true(wd_image_read(&test->gpu, image, 0, 0, data, size));
+    return data;
+}
+
+/* As the scene's file gives it: these tests use cameras with absolute heights of their own. */
+static struct wd_camera camera_of(const struct wd_scene_camera *from)
+{
+    struct wd_camera camera = {.yaw_rad = from->yaw_deg * 0.017453292519943295,
+                               .pitch_rad = from->pitch_deg * 0.017453292519943295,
+                               .fov_rad = from->fov_deg * 0.017453292519943295};
+    memcpy(camera.position_m, from->position_m, sizeof camera.position_m);
+    return camera;
+}
+
+void frame_test_draw(struct frame_test *test, const char *method, uint32_t camera,
+                     struct frame_picture *picture)
+{
+    struct wd_cmd cmd;
+    struct wd_frame_params params = {
+        .forest = &test->forest,
+        .method = wd_method_find(method),
+        .camera = camera_of(&test->scene.cameras[camera]),
+        .width = 320,
+        .height = 240,
+        .samples = 1,
+    };
+    params.camera.position_m[2] += (double)wd_terrain_height(
+        &test->world.terrain, params.camera.position_m[0], params.camera.position_m[1]);
+    params.previous_camera = params.camera;
+    assert_true(wd_frame_prepare(&test->frame, &params));
+    assert_true(wd_frame_begin(&test->frame.ring, &cmd));
+    wd_frame_record(&test->frame, &cmd, 0);
+    assert_true(wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE));
+    assert_true(wd_frames_wait(&test->frame.ring));
+    struct wd_targets *targets = &test->frame.targets;
+    *picture = (struct frame_picture){
+        .width = params.width,
+        .height = params.height,
+        .surface = read_image(test, &targets->surface),
+        .albedo = read_image(test, &targets->albedo),
+        .depth = read_image(test, &targets->depth),
+    };
+}
+
+void frame_picture_finish(struct frame_picture *picture)
+{
+    free(picture->surface);
+    free(picture->albedo);
+    free(picture->depth);
+    *picture = (struct frame_picture){0};
+}

@@ -1,0 +1,32 @@
+/* frame_test.h: whole frames of a small scene on software Vulkan, with chosen features missing. */
+#ifndef WD_TEST_FRAME_H
+#define WD_TEST_FRAME_H
+
+#include "frame/frame.h"
+
+struct frame_test {
+    struct wd_log log;
+    struct wd_gpu gpu;
+    struct wd_scene scene;
+    struct wd_world world;
+    struct wd_forest_device forest;
+    struct wd_frame frame;
+};
+
+/* Opens the scene of the API's tests; `root` is the source folder. `disabled`: wd_gpu_feature bits
+ * that the device is to lack. Validation is on. */
+void frame_test_init(struct frame_test *test, const char *root, uint32_t disabled);
+void frame_test_finish(struct frame_test *test);
+
+/* What one frame left in the G-buffer. */
+struct frame_picture {
+    uint32_t width, height;
+    uint32_t *surface, *albedo;
+    float *depth;
+};
+/* Draws the scene's camera of that index; arrays are to be freed with frame_picture_finish. */
+void frame_test_draw(struct frame_test *test, const char *method, uint32_t camera,
+                     struct frame_picture *picture);
+void frame_picture_finish(struct frame_picture *picture);
+
+#endif
