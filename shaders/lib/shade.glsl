@@ -37,6 +37,18 @@ vec2 leaf_blade(vec3 normal, vec3 eye)
     return vec2(max(facing, 0.0), max(-facing, 0.0));
 }
 
+/* What a leaf's wax mirrors of the sun, relative to a lit wall: Blinn and Phong's lobe with the
+ * normal reflection of wax (0.04), as wide as GGX of this roughness. Far off, leaves of every
+ * direction share a pixel and the lobe widens. */
+float leaf_gloss(wd_pixel pixel, float roughness, float near)
+{
+    float wide = max(mix(0.8, roughness, near), 0.2);
+    wide *= wide;
+    float power = max(2.0 / (wide * wide) - 2.0, 1.0);
+    float shine = abs(dot(pixel.normal, normalize(frame.sun_direction - pixel.direction)));
+    return near * 0.04 * 0.125 * (power + 2.0) * exp2(power * log2(max(shine, 1e-3)));
+}
+
 /* What light meets at a pixel. */
 struct wd_place {
     vec3 rel;           /* where it is taken to be */
@@ -85,11 +97,7 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     float hotspot = 1.0 + 0.3 * smoothstep(0.9, 1.0, cosine);
     place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.normal, eye), near) * hotspot;
     place.transmittance = model.transmittance;
-    float shine = abs(dot(pixel.normal, normalize(frame.sun_direction + eye)));
-    shine *= shine;
-    shine *= shine;
-    shine *= shine;
-    place.gloss = 0.05 * near * shine * shine * shine + 0.010;
+    place.gloss = leaf_gloss(pixel, model.roughness, near) + 0.010;
     place.wax = 0.012;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     return place;

@@ -1,23 +1,64 @@
 #version 460
+/* DETAIL: full meshes near the camera, with the relief of their looks, backs of leaves, moss. */
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/hash.h"
 
+layout(constant_id = 1) const uint DETAIL = 0u;
+
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 5) uniform sampler2DArray looks;
+layout(set = 0, binding = 6) uniform sampler2DArray look_details;
 layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
 #include "lib/tree.glsl"
+#include "lib/look.glsl"
 
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_uv;
 layout(location = 2) in vec4 in_tint;
 layout(location = 3) flat in uvec3 in_flat;
 layout(location = 4) flat in float in_show;
+layout(location = 5) in vec4 in_place;
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_surface;
+
+const vec3 MOSS = vec3(0.040, 0.062, 0.016);
+
+struct wd_surface {
+    vec3 albedo, normal;
+    float openness;
+};
+
+/* A leaf as the sheet that it is: its lower side, its veins, and where the sun shines through, what
+ * comes through. */
+void detail_leaf(inout wd_surface leaf, vec4 look, float near)
+{
+    vec3 uv = in_uv, face = look_face(in_place.xyz);
+    bool flower = (uint(in_uv.z + 0.5) & (WD_LOOK_LAYERS - 1u)) == WD_LOOK_FLOWER;
+    if (!flower && !look_upper(in_uv.xy, (in_flat.y & 4u) != 0u))
+        uv.z += float(WD_LOOK_LEAF_BACK - WD_LOOK_LEAF);
+    wd_relief relief = look_relief(look_details, look_frame(face, in_place.xyz, in_uv.xy), uv);
+    float lit = dot(face, frame.sun_direction);
+    leaf.albedo = mix(leaf.albedo, texture(looks, uv).rgb * in_tint.rgb, near);
+    float through = mix(1.0, 2.0 * relief.rest, near * smoothstep(0.05, -0.05, lit));
+    leaf.albedo *= through;
+    vec3 own = dot(relief.normal, in_normal) < 0.0 ? -relief.normal : relief.normal;
+    leaf.normal = normalize(mix(leaf.normal, own, 0.8 * near));
+}
+
+void detail_wood(inout wd_surface wood, float near)
+{
+    wd_relief relief =
+        look_relief(look_details, look_frame(wood.normal, in_place.xyz, in_uv.xy), in_uv);
+    float low = 1.0 - relief.rest;
+    float moss = smoothstep(0.0, 0.3, in_place.w - 0.55 * relief.rest * (1.0 - 0.5 * in_place.w));
+    wood.albedo = mix(wood.albedo, MOSS * (0.6 + 0.8 * relief.rest), moss);
+    wood.openness *= mix(1.0, 1.0 - 0.55 * low * low, near * (1.0 - moss));
+    wood.normal = normalize(mix(wood.normal, relief.normal, near * (1.0 - 0.6 * moss)));
+}
 
 void main()
 {
@@ -28,10 +69,18 @@ void main()
     vec4 look = texture(looks, in_uv);
     if (look.a < WD_LOOK_CUT)
         discard;
-    vec3 albedo = look.rgb * in_tint.rgb;
+    uint material = in_flat.y & 3u;
+    wd_surface surface = wd_surface(look.rgb * in_tint.rgb, normalize(in_normal), in_tint.a);
+    if (DETAIL != 0u) {
+        float near = 1.0 - smoothstep(RELIEF_WHOLE_M, RELIEF_NONE_M, length(in_place.xyz));
+        if (material == WD_MATERIAL_LEAF)
+            detail_leaf(surface, look, near);
+        else
+            detail_wood(surface, near);
+    }
     if (frame.view_mode == WD_MODE_LOD)
-        albedo = level_color(push.level) * (0.3 + 0.7 * in_tint.a);
-    out_albedo = vec4(albedo, in_tint.a);
-    out_normal = vec4(normalize(in_normal) * 0.5 + 0.5, float(in_flat.y) / 3.0);
+        surface.albedo = level_color(push.level) * (0.3 + 0.7 * in_tint.a);
+    out_albedo = vec4(surface.albedo, surface.openness);
+    out_normal = vec4(surface.normal * 0.5 + 0.5, float(material) / 3.0);
     out_surface = in_flat.x;
 }

@@ -19,8 +19,17 @@ layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_uv; /* z: layer of the look */
 layout(location = 2) out vec4 out_tint;
-layout(location = 3) flat out uvec3 out_flat; /* surface, material, random of the triangle */
+layout(location = 3) flat out uvec3 out_flat; /* surface, material (+ 4: mirrored), random of the
+                                                 triangle */
 layout(location = 4) flat out float out_show;
+layout(location = 5) out vec4 out_place; /* camera-relative; a: share that moss covers */
+
+/* Moss keeps to the foot of the stem, to the side away from the midday sun and to what faces up. */
+float moss_share(vec3 normal, float height_m)
+{
+    float shade = 0.35 + 0.65 * smoothstep(-0.4, 0.9, normal.y + 0.8 * max(normal.z, 0.0));
+    return shade * (exp(-height_m * 0.9) + 0.12 * smoothstep(0.3, 0.9, normal.z));
+}
 
 void main()
 {
@@ -42,13 +51,15 @@ void main()
     }
     vec3 rel = tree_foot_rel(tree) + offset;
     out_normal = normal;
-    out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + (leaf ? 1u : 0u)));
+    out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + wd_vertex_layer(v.kind)));
     out_tint = unpackUnorm4x8(v.tint);
     if (leaf)
         out_tint.rgb *= tree_tint(tree);
-    out_flat = uvec3(instance.tree + 1u, leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD,
+    out_flat = uvec3(instance.tree + 1u, (leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
+                         | (pose.mirror.x < 0.0 ? 4u : 0u),
                      wd_hash2(uint(gl_VertexIndex), tree.random));
     out_show = instance.show;
+    out_place = vec4(rel, leaf ? 0.0 : model.moss * moss_share(normal, offset.z));
     gl_Position = SHADOW != 0u ? shadow_clip(push.cascade, rel)
                                : frame.clip_from_rel * vec4(rel, 1.0);
 }

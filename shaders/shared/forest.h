@@ -43,10 +43,12 @@ struct wd_model {
     float half_depth_m;     /* of the level card, both ways */
     float bottom_m, top_m;  /* of an upright card */
     float flexibility;      /* see shared/wind.h */
-    uint32_t look_layer;    /* bark; the leaf's is the next */
+    uint32_t look_layer;    /* the first of WD_LOOK_LAYERS */
     uint32_t card_layer;    /* of the first upright card; the level one is layer + 3 */
     WD_VEC3(transmittance); /* of a leaf over its albedo, linear */
     float crown_base_m;     /* height of the lowest living branch */
+    float roughness;        /* of leaves, the root of GGX's alpha */
+    float moss;             /* share of the stem's foot that moss covers */
 };
 
 /* 0 up to begin, 1 from end on, linear between. */

@@ -32,9 +32,25 @@ struct wd_tree_vertex {
     uint32_t uv;     /* two half floats: bark: turns around, metres along; leaf: 0..1 across, along */
     uint32_t tint;   /* R, G, B: multiplier of the look texture, 255 is 1; A: sky openness of the
                         place in the crown, 0 dark .. 255 free */
-    uint32_t kind;   /* bits 0..7: flexibility (0 trunk foot .. 255 leaf tip); bit 8: leaf */
+    uint32_t kind;   /* bits 0..7: flexibility (0 trunk foot .. 255 leaf tip); bit 8: leaf;
+                        bit 9: flower */
 };
 WD_STATIC_ASSERT_SIZE(wd_tree_vertex, 28);
 #define WD_VERTEX_LEAF 0x100u
+#define WD_VERTEX_FLOWER 0x200u /* together with WD_VERTEX_LEAF: a petal */
+
+/* Layers of a species' looks. */
+#define WD_LOOK_BARK 0
+#define WD_LOOK_LEAF 1
+#define WD_LOOK_LEAF_BACK 2 /* the lower side, seen as if through the leaf: same place, same texel */
+#define WD_LOOK_FLOWER 3
+#define WD_LOOK_LAYERS 4
+
+WD_FUNC uint32_t wd_vertex_layer(uint32_t kind)
+{
+    return (kind & WD_VERTEX_FLOWER) != 0u ? WD_LOOK_FLOWER
+           : (kind & WD_VERTEX_LEAF) != 0u ? WD_LOOK_LEAF
+                                           : WD_LOOK_BARK;
+}
 
 #endif

@@ -162,7 +162,7 @@ static bool bake_model(struct preparation *work, struct wd_gpu *gpu, struct wd_c
     const struct wd_forest_device_params *params = work->params;
     const char *cache = params->cache_dir && params->cache_dir[0] ? params->cache_dir : NULL;
     const uint8_t *look = work->looks + index / work->forest->variants * WD_LOOK_BYTES;
-    uint64_t key = wd_cards_key(&work->grown[index], look, WD_LOOK_BYTES);
+    uint64_t key = wd_cards_key(&work->grown[index], look, WD_LOOK_HALF_BYTES);
     if (cache && wd_cards_load(cards, cache, key)) {
         work->forest->baked_from_cache++;
         return true;
@@ -256,7 +256,9 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
               make_table(&forest->models, gpu, "tree models", forest->host_models,
                          forest->model_count * sizeof *forest->host_models) &&
               wd_looks_upload(&forest->looks, gpu, work->looks,
-                              (uint32_t)params->scene->species_file_count);
+                              (uint32_t)params->scene->species_file_count) &&
+              wd_look_details_upload(&forest->look_details, gpu, work->looks,
+                                     (uint32_t)params->scene->species_file_count);
     forest->baked_us = (uint64_t)((wd_clock_s() - grown) * 1e6);
     return ok;
 }
@@ -297,7 +299,8 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
 {
     struct wd_buffer *buffers[] = {&forest->trees, &forest->models,  &forest->vertices,
                                    &forest->fades, &forest->indices, &forest->card_indices};
-    struct wd_image *images[] = {&forest->looks, &forest->card_albedo, &forest->card_normal};
+    struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
+                                 &forest->card_normal};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
@@ -320,7 +323,8 @@ void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
     struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->vertices,
                                   &forest->fades};
     struct wd_buffer *indices[] = {&forest->indices, &forest->card_indices};
-    struct wd_image *images[] = {&forest->looks, &forest->card_albedo, &forest->card_normal};
+    struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
+                                 &forest->card_normal};
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
         if (tables[i]->buffer)
             wd_cmd_use_buffer(cmd, tables[i], WD_USE_SHADER_READ);

@@ -27,7 +27,8 @@ struct wd_forest_device {
     struct wd_buffer indices;  /* uint32_t[] */
     struct wd_buffer card_indices; /* two triangles a quad, for WD_CARD_BATCH trees */
     struct wd_buffer fades;    /* struct wd_layer_fade[1 + layers]; [0] is that of inventories */
-    struct wd_image looks;     /* bark and leaf of each species, sRGB, layered */
+    struct wd_image looks;     /* WD_LOOK_LAYERS of each species, sRGB */
+    struct wd_image look_details; /* the same layers: normal, roughness, height (tree/look_map.h) */
     struct wd_image card_albedo, card_normal; /* WD_CARDS layers a model */
     VkSampler look_sampler, card_sampler, point_sampler; /* point: normals and shadows of cards */
     struct wd_mesh_range (*ranges)[2]; /* [model][WD_LEVEL_MESH, WD_LEVEL_REDUCED] */

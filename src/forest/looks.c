@@ -5,11 +5,17 @@
 
 #include "base/color.h"
 #include "base/memory.h"
+#include "tree/look_map.h"
 
 void wd_look_generate(const struct wd_species *species, uint8_t *rgba)
 {
-    wd_species_bark_texture(species, WD_LOOK_SIZE, rgba);
-    wd_species_leaf_texture(species, WD_LOOK_SIZE, rgba + WD_LOOK_BYTES / 2);
+    for (uint32_t layer = 0; layer < WD_LOOK_LAYERS; layer++) {
+        uint8_t *albedo = rgba + layer * WD_LOOK_MAP_BYTES;
+        const struct wd_look_map map = {WD_LOOK_SIZE, albedo, albedo + WD_LOOK_HALF_BYTES};
+        wd_look_map_fill(&map, species, layer);
+        for (size_t i = 3; i < WD_LOOK_MAP_BYTES; i += 4)
+            albedo[i] = 255; /* grown leaves are cut out as polygons */
+    }
 }
 
 /* Share of texels that pass the cut. */
@@ -58,28 +64,53 @@ static void halve(uint8_t *coarse, const uint8_t *fine, uint32_t size, const flo
     }
 }
 
-bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *rgba,
-                     uint32_t species_count)
+/* Halves linear bytes. Normals shorten where they differ, which shaders take for roughness. */
+static void halve_linear(uint8_t *coarse, const uint8_t *fine, uint32_t size)
+{
+    for (uint32_t y = 0; y < size; y++)
+        for (uint32_t x = 0; x < size; x++) {
+            const uint8_t *from = fine + 4 * ((size_t)2 * y * 2 * size + 2 * x);
+            uint8_t *to = coarse + 4 * ((size_t)y * size + x);
+            for (int k = 0; k < 4; k++)
+                to[k] = (uint8_t)((from[k] + from[k + 4] + from[k + 8 * size] +
+                                   from[k + 8 * size + 4] + 2) / 4);
+        }
+}
+
+static bool make_image(struct wd_image *image, struct wd_gpu *gpu, const char *name,
+                       VkFormat format, uint32_t species_count)
 {
     const struct wd_image_params params = {
-        .name = "looks",
-        .format = VK_FORMAT_R8G8B8A8_SRGB,
+        .name = name,
+        .format = format,
         .width = WD_LOOK_SIZE,
         .height = WD_LOOK_SIZE,
-        .layers = 2 * species_count,
+        .layers = WD_LOOK_LAYERS * species_count,
         .mips = WD_ALL_MIPS,
         .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
         .view = WD_IMAGE_ARRAY,
     };
-    if (!wd_image_init(image, gpu, &params))
+    return wd_image_init(image, gpu, &params);
+}
+
+static const uint8_t *layer_of(const uint8_t *rgba, uint32_t layer)
+{
+    return rgba + layer / WD_LOOK_LAYERS * WD_LOOK_BYTES +
+           layer % WD_LOOK_LAYERS * WD_LOOK_MAP_BYTES;
+}
+
+bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *rgba,
+                     uint32_t species_count)
+{
+    if (!make_image(image, gpu, "looks", VK_FORMAT_R8G8B8A8_SRGB, species_count))
         return false;
     float linear[256];
     for (int i = 0; i < 256; i++)
         linear[i] = wd_srgb_decode((uint8_t)i);
-    uint8_t *levels[2] = {wd_alloc(WD_LOOK_BYTES / 2), wd_alloc(WD_LOOK_BYTES / 2)};
+    uint8_t *levels[2] = {wd_alloc(WD_LOOK_MAP_BYTES), wd_alloc(WD_LOOK_MAP_BYTES)};
     bool ok = true;
     for (uint32_t layer = 0; layer < image->layers && ok; layer++) {
-        memcpy(levels[0], rgba + layer * (WD_LOOK_BYTES / 2), WD_LOOK_BYTES / 2);
+        memcpy(levels[0], layer_of(rgba, layer), WD_LOOK_MAP_BYTES);
         float covered = coverage(levels[0], WD_LOOK_SIZE);
         for (uint32_t mip = 0; mip < image->mips && ok; mip++) {
             uint32_t size = WD_LOOK_SIZE >> mip;
@@ -87,6 +118,29 @@ bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *
                 halve(levels[mip & 1], levels[(mip - 1) & 1], size, linear);
                 keep_coverage(levels[mip & 1], size, covered);
             }
+            ok = wd_image_upload(gpu, image, layer, mip, levels[mip & 1], (size_t)4 * size * size);
+        }
+    }
+    free(levels[0]);
+    free(levels[1]);
+    if (!ok)
+        wd_image_finish(image, gpu);
+    return ok;
+}
+
+bool wd_look_details_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *rgba,
+                            uint32_t species_count)
+{
+    if (!make_image(image, gpu, "look details", VK_FORMAT_R8G8B8A8_UNORM, species_count))
+        return false;
+    uint8_t *levels[2] = {wd_alloc(WD_LOOK_MAP_BYTES), wd_alloc(WD_LOOK_MAP_BYTES)};
+    bool ok = true;
+    for (uint32_t layer = 0; layer < image->layers && ok; layer++) {
+        memcpy(levels[0], layer_of(rgba, layer) + WD_LOOK_HALF_BYTES, WD_LOOK_MAP_BYTES);
+        for (uint32_t mip = 0; mip < image->mips && ok; mip++) {
+            uint32_t size = WD_LOOK_SIZE >> mip;
+            if (mip > 0)
+                halve_linear(levels[mip & 1], levels[(mip - 1) & 1], size);
             ok = wd_image_upload(gpu, image, layer, mip, levels[mip & 1], (size_t)4 * size * size);
         }
     }

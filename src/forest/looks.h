@@ -4,14 +4,20 @@
 
 #include "bake/cards.h"
 
-/* Bytes of one species' textures: bark, then leaf, each WD_LOOK_SIZE square, RGBA8 sRGB. */
-#define WD_LOOK_BYTES ((size_t)2 * 4 * WD_LOOK_SIZE * WD_LOOK_SIZE)
+/* Bytes of one map, WD_LOOK_SIZE square; of one species' albedo, or detail, in all layers; and of
+ * both, albedo first. */
+#define WD_LOOK_MAP_BYTES ((size_t)4 * WD_LOOK_SIZE * WD_LOOK_SIZE)
+#define WD_LOOK_HALF_BYTES (WD_LOOK_LAYERS * WD_LOOK_MAP_BYTES)
+#define WD_LOOK_BYTES (2 * WD_LOOK_HALF_BYTES)
 
 /* Generates one species' textures; `rgba` holds WD_LOOK_BYTES. */
 void wd_look_generate(const struct wd_species *species, uint8_t *rgba);
 
-/* An image of 2 * species_count layers with all mips; `rgba` holds species_count * WD_LOOK_BYTES. */
+/* Images of WD_LOOK_LAYERS * species_count layers with all mips; `rgba` holds species_count *
+ * WD_LOOK_BYTES. */
 bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *rgba,
                      uint32_t species_count);
+bool wd_look_details_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *rgba,
+                            uint32_t species_count);
 
 #endif

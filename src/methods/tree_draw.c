@@ -45,17 +45,19 @@ static void set_targets(struct wd_graphics_params *params, enum wd_tree_pass pas
     }
 }
 
-static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tree_pass pass)
+static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tree_pass pass,
+                      uint32_t detail)
 {
-    const uint32_t constants[] = {pass == WD_PASS_SHADOW};
+    const uint32_t constants[] = {pass == WD_PASS_SHADOW, detail};
     struct wd_graphics_params params = {
         .vertex = SPIRV(tree_mesh_vert),
-        .bindings = {6,
+        .bindings = {7,
                      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
-        .constants = {1, constants},
+        .constants = {2, constants},
     };
     const struct wd_spirv fragments[] = {SPIRV(tree_mesh_frag), SPIRV(tree_mesh_shadow_frag)};
     params.fragment = fragments[pass];
@@ -86,8 +88,10 @@ static bool init_card(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
     *pipelines = (struct wd_tree_pipelines){0};
+    if (!init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, 1))
+        return false;
     for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
-        if (!init_mesh(&pipelines->mesh[pass], gpu, pass) ||
+        if (!init_mesh(&pipelines->mesh[pass], gpu, pass, 0) ||
             !init_card(&pipelines->card_range[pass], gpu, pass, 0) ||
             !init_card(&pipelines->card_listed[pass], gpu, pass, 1)) {
             wd_tree_pipelines_finish(pipelines, gpu);
@@ -99,6 +103,7 @@ bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *
 
 void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
+    wd_pipeline_finish(&pipelines->mesh_detail, gpu);
     for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
         wd_pipeline_finish(&pipelines->mesh[pass], gpu);
         wd_pipeline_finish(&pipelines->card_range[pass], gpu);
@@ -140,7 +145,9 @@ static void bind_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_rang
                       uint32_t level, struct wd_binding instances)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const struct wd_pipeline *pipeline = &draw->pipelines->mesh[draw->pass];
+    const struct wd_pipeline *pipeline = draw->pass == WD_PASS_CAMERA && level == WD_LEVEL_MESH
+                                             ? &draw->pipelines->mesh_detail
+                                             : &draw->pipelines->mesh[draw->pass];
     const struct wd_binding vertices = {
         .buffer = &forest->vertices,
         .offset = (VkDeviceSize)range->first_vertex * sizeof(struct wd_tree_vertex),
@@ -151,7 +158,9 @@ static void bind_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_rang
                                           WD_BIND_BUFFER(&forest->models),
                                           vertices,
                                           instances,
-                                          WD_BIND_IMAGE(&forest->looks, forest->look_sampler)};
+                                          WD_BIND_IMAGE(&forest->looks, forest->look_sampler),
+                                          WD_BIND_IMAGE(&forest->look_details,
+                                                        forest->look_sampler)};
     const struct wd_tree_push push = tree_push(draw, level);
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);

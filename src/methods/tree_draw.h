@@ -13,6 +13,7 @@ struct wd_draw_stats {
 struct wd_tree_pipelines {
     /* [WD_PASS_CAMERA, WD_PASS_SHADOW] */
     struct wd_pipeline mesh[2];
+    struct wd_pipeline mesh_detail; /* full meshes for the camera */
     struct wd_pipeline card_range[2], card_listed[2];
 };
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu);

@@ -11,6 +11,11 @@ uint32_t wd_pack_tint(const float rgb[3], float sky)
     return packed | (uint32_t)wd_unorm_encode(sky) << 24;
 }
 
+float wd_leaf_roughness(const struct wd_species *species)
+{
+    return wd_mixf(0.62f, 0.24f, species->leaf.gloss);
+}
+
 void wd_bark_texture_color(const struct wd_species *species, float color[3])
 {
     for (int i = 0; i < 3; i++)

@@ -25,6 +25,9 @@ struct wd_bark_tint wd_bark_tint_of(const struct wd_species *species);
 uint32_t wd_bark_tint_at(const struct wd_bark_tint *bark, float height, float radius_m,
                          float sky);
 
+/* Mean roughness (the root of GGX's alpha) of the upper side: 0.62 dull .. 0.24 waxed. */
+float wd_leaf_roughness(const struct wd_species *species);
+
 uint32_t wd_pack_tint(const float rgb[3], float sky);
 
 #endif

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "tree/look.h"
+
 /* Variants spread over the heights that the species reaches, so that young trees are not scaled
  * down old ones: variant v stands for the middle of its part of the range. */
 static float variant_height(const struct wd_species *species, uint32_t variant, uint32_t variants)
@@ -34,8 +36,10 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         .height_m = grown->height_m,
         .crown_m = fmaxf(2.0f * grown->crown_radius_m, 0.1f),
         .flexibility = species->flexibility,
-        .look_layer = 2 * species_index,
+        .look_layer = WD_LOOK_LAYERS * species_index,
         .crown_base_m = grown->crown_base_m,
+        .roughness = wd_leaf_roughness(species),
+        .moss = species->bark.moss,
     };
     for (int k = 0; k < 3; k++)
         model->transmittance[k] =
