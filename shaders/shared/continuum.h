@@ -45,9 +45,10 @@ struct wd_cluster {
 WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
 
 /* One view of a frame. */
+#define WD_SPLAT_PLANES 12
 struct wd_splat_view {
     WD_MAT4(clip_from_rel);
-    WD_VEC4(planes[8]);      /* see struct wd_frustum */
+    WD_VEC4(planes[WD_SPLAT_PLANES]); /* see struct wd_frustum */
     uint32_t plane_count;
     uint32_t orthographic;   /* 1: a cascade; depth is z, not z / w */
     float pixels;            /* of a metre at w = 1 */

@@ -180,6 +180,8 @@ static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_
     return make_work(&c->pixels, cmd->gpu, "visibility", size);
 }
 
+_Static_assert((int)WD_SPLAT_PLANES == (int)WD_FRUSTUM_PLANES, "planes are copied whole");
+
 static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
 {
     const struct wd_view *view = draw->view;
