@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "tree/import.h"
 
 static bool parse_seed(const char *text, uint32_t *seed, const struct wd_log *log)
 {
@@ -48,6 +49,8 @@ enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_fores
     };
     if ((params->seed && !parse_seed(params->seed, &world.seed, &forest->log)) ||
         !wd_scene_load_with(&forest->scene, params->scene_path, &scene, &forest->log) ||
+        !wd_species_import_models(forest->scene.species, forest->scene.species_file_count,
+                                  &progress, &forest->log) ||
         !wd_world_init(&forest->world, &forest->scene, &world)) {
         wd_forest_destroy(&forest);
         return watch.stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_INPUT;
@@ -61,6 +64,7 @@ void wd_forest_destroy(struct wd_forest **forest)
     if (!forest || !*forest)
         return;
     wd_world_finish(&(*forest)->world);
+    wd_species_drop_models((*forest)->scene.species, (*forest)->scene.species_file_count);
     wd_scene_finish(&(*forest)->scene);
     free(*forest);
     *forest = NULL;

@@ -13,7 +13,7 @@ void wd_look_generate(const struct wd_species *species, uint8_t *rgba)
         uint8_t *albedo = rgba + layer * WD_LOOK_MAP_BYTES;
         const struct wd_look_map map = {WD_LOOK_SIZE, albedo, albedo + WD_LOOK_HALF_BYTES};
         wd_look_map_fill(&map, species, layer);
-        for (size_t i = 3; i < WD_LOOK_MAP_BYTES; i += 4)
+        for (size_t i = 3; i < WD_LOOK_MAP_BYTES && !species->imported; i += 4)
             albedo[i] = 255; /* grown leaves are cut out as polygons */
     }
 }

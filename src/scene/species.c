@@ -5,6 +5,7 @@
 
 #include "base/dmath.h"
 #include "base/file.h"
+#include "scene/species_parts.h"
 
 enum { MAX_SPECIES_BYTES = 1 << 20 };
 
@@ -14,9 +15,13 @@ bool wd_species_load(struct wd_species *species, const char *path, struct wd_are
     *species = (struct wd_species){0};
     char *text;
     size_t size;
+    if (wd_species_is_model_file(path))
+        return wd_species_of_model_file(species, path, arena, log);
     if (!wd_file_read(path, MAX_SPECIES_BYTES, log, &text, &size))
         return false;
-    bool ok = wd_keys_read(&wd_species_keys, path, text, size, arena, log, species);
+    bool model = wd_species_text_has_model(path, text, size);
+    const struct wd_keys *keys = model ? &wd_species_model_keys : &wd_species_keys;
+    bool ok = wd_keys_read(keys, path, text, size, arena, log, species);
     free(text);
     return ok;
 }
@@ -33,6 +38,8 @@ double wd_species_height_m(const struct wd_species *species, double dbh_cm)
 double wd_species_crown_m(const struct wd_species *species, double dbh_cm)
 {
     const struct wd_allometry *a = &species->allometry;
+    if (species->model.crown_share > 0)
+        return (double)species->model.crown_share * wd_species_height_m(species, dbh_cm);
     return a->crown_a + a->crown_b * wd_dpow(dbh_cm > 0 ? dbh_cm : 0, a->crown_c);
 }
 

@@ -35,6 +35,10 @@ enum wd_bark_pattern {
     WD_BARK_BARE,   /* weathered wood with drying cracks along the stem */
 };
 
+enum wd_model_axis { WD_AXIS_AUTO, WD_AXIS_X, WD_AXIS_Y, WD_AXIS_Z };
+enum wd_model_unit { WD_UNIT_AUTO, WD_UNIT_M, WD_UNIT_CM, WD_UNIT_MM, WD_UNIT_FT, WD_UNIT_IN };
+struct wd_tree_import; /* tree/import.h */
+
 /* Height from stem diameter: h = diameter_at + a (1 - exp(-b d))^c, d in cm, h in m
  * (Chapman-Richards); crown diameter w = crown_a + crown_b d^crown_c, d in cm, w in m. `source`
  * cites the figures. */
@@ -149,12 +153,27 @@ struct wd_species {
         float moisture[2];    /* of the soil it stands: 0 dry .. 1 wet */
         float light;          /* it needs: 0 endures deep shade .. 1 only in full light */
     } habitat;
+    struct {
+        const char *file;     /* an artist's model, ready to open; NULL: the species is grown, and
+                                 what follows means nothing */
+        float height_m;       /* 0: as high as the file has it */
+        int up, unit;         /* enum wd_model_axis, wd_model_unit: of the file */
+        const char **leaves, **wood; /* names of materials */
+        size_t leaf_count, wood_count;
+        float crown_share;    /* crown diameter over height where allometry.crown_b is 0 */
+    } model;
+    struct wd_tree_import *imported; /* the model once read: wd_species_import_models */
     float flexibility;        /* wind: top displacement over height at 10 m/s, share */
 };
 
-extern const struct wd_keys wd_species_keys;
+/* Files of grown species and of species that are an artist's model. */
+extern const struct wd_keys wd_species_keys, wd_species_model_keys;
 
-/* Reads one species file. Strings and lists live in `arena`. */
+/* Whether the name ends like a model: .obj, .gltf, .glb, .fbx or .dae. */
+bool wd_species_is_model_file(const char *path);
+
+/* Reads one species file of either kind, or takes a model file as a species with the defaults of
+ * its kind. Strings and lists live in `arena`. */
 bool wd_species_load(struct wd_species *species, const char *path, struct wd_arena *arena,
                      const struct wd_log *log);
 

@@ -1,6 +1,7 @@
 #include "tree/grow.h"
 
 #include "tree/foliage.h"
+#include "tree/import.h"
 #include "tree/wood.h"
 
 enum {
@@ -83,6 +84,11 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
                   const struct wd_grow_params *params, const struct wd_log *log)
 {
     *model = (struct wd_tree_model){0};
+    if (species->imported) {
+        *model = species->imported->model;
+        model->borrowed = true;
+        return true;
+    }
     struct wd_grow_params resolved = *params;
     if (!wd_grow_params_resolve(&resolved, species, log))
         return false;
@@ -103,7 +109,9 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
 
 void wd_tree_model_finish(struct wd_tree_model *model)
 {
-    wd_tree_mesh_finish(&model->full);
-    wd_tree_mesh_finish(&model->reduced);
+    if (!model->borrowed) {
+        wd_tree_mesh_finish(&model->full);
+        wd_tree_mesh_finish(&model->reduced);
+    }
     *model = (struct wd_tree_model){0};
 }

@@ -35,9 +35,10 @@ struct wd_tree_model {
     float dbh_m;          /* stem diameter at 1.3 m; of low plants at the ground */
     float age_years;      /* by the species' site curve */
     float leaf_area_m2;   /* one side, of the full mesh */
+    bool borrowed;        /* the meshes are those of species->imported, which keeps them */
 };
 
-/* Grows `*model`; the same parameters give the same bytes on any machine. For another season than
+/* Grows `*model`, or borrows a species' imported one as it is; the same parameters give the same bytes on any machine. For another season than
  * summer pass what wd_species_in_month made. False, with {0}, for parameters outside the species'
  * range (logged). */
 bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,

@@ -4,6 +4,7 @@
 
 #include "base/color.h"
 #include "base/memory.h"
+#include "tree/import.h"
 #include "tree/leaf_outline.h"
 #include "tree/look.h"
 #include "tree/look_point.h"
@@ -175,6 +176,10 @@ void wd_look_map_fill(const struct wd_look_map *map, const struct wd_species *sp
                       uint32_t layer)
 {
     struct canvas canvas = {species, layer, map->size, NULL};
+    if (species->imported) {
+        wd_tree_import_look(species->imported, map, layer);
+        return;
+    }
     canvas.points = wd_alloc_array((size_t)map->size * map->size, sizeof *canvas.points);
     for (uint32_t i = 0; i < map->size * map->size; i++)
         canvas.points[i] = layer_point(&canvas, ((float)(i % map->size) + 0.5f) / (float)map->size,

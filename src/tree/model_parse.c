@@ -1,0 +1,277 @@
+/* Reading with assimp. Runs in a process of its own (model_file.c): a crash here is a message there,
+ * and nothing needs to be freed. */
+#include "tree/model_parts.h"
+
+#include <assimp/cimport.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+/* One mesh of the scene where a node puts it. */
+struct placed {
+    const struct aiMesh *mesh;
+    struct aiMatrix4x4 transform;
+};
+
+struct parse {
+    const struct aiScene *scene;
+    struct placed *placed;
+    size_t placed_count, placed_capacity;
+    struct wd_model_header header;
+    int file;
+    uint8_t *base;
+    uint64_t offsets[7];
+};
+
+static _Noreturn void give_up(struct parse *parse, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(parse->header.message, sizeof parse->header.message, format, args);
+    va_end(args);
+    parse->header.ready = 0;
+    if (ftruncate(parse->file, 0) == 0 &&
+        pwrite(parse->file, &parse->header, sizeof parse->header, 0) ==
+            (ssize_t)sizeof parse->header)
+        _exit(0);
+    _exit(1);
+}
+
+static bool is_fbx(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, ".fbx") == 0;
+}
+
+static void open_scene(struct parse *parse, const char *path)
+{
+    unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
+                     aiProcess_JoinIdenticalVertices | aiProcess_FlipUVs |
+                     aiProcess_ValidateDataStructure;
+    if (is_fbx(path))
+        steps |= aiProcess_GlobalScale;
+    struct aiPropertyStore *store = aiCreatePropertyStore();
+    aiSetImportPropertyFloat(store, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 70);
+    parse->scene = aiImportFileExWithProperties(path, steps, NULL, store);
+    if (!parse->scene)
+        give_up(parse, "is not a model that can be read: %s", aiGetErrorString());
+    if (!parse->scene->mRootNode || parse->scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE)
+        give_up(parse, "holds no whole model");
+}
+
+/* --- nodes ------------------------------------------------------------------------------- */
+
+static void place(struct parse *parse, const struct aiMesh *mesh,
+                  const struct aiMatrix4x4 *transform)
+{
+    struct wd_model_header *header = &parse->header;
+    if (mesh->mPrimitiveTypes & aiPrimitiveType_POINT)
+        header->stray_points += mesh->mNumFaces;
+    else if (mesh->mPrimitiveTypes & aiPrimitiveType_LINE)
+        header->stray_lines += mesh->mNumFaces;
+    if (!(mesh->mPrimitiveTypes & aiPrimitiveType_TRIANGLE))
+        return;
+    uint64_t triangles = header->index_count / 3 + (uint64_t)mesh->mNumFaces;
+    if (triangles > WD_MODEL_MAX_TRIANGLES)
+        give_up(parse, "has more than %d triangles; reduce it first", WD_MODEL_MAX_TRIANGLES);
+    if ((uint64_t)header->vertex_count + mesh->mNumVertices > 3 * (uint64_t)WD_MODEL_MAX_TRIANGLES)
+        give_up(parse, "has more than %d vertices; reduce it first", 3 * WD_MODEL_MAX_TRIANGLES);
+    if (parse->placed_count >= WD_MODEL_MAX_MESHES)
+        give_up(parse, "has more than %d meshes", WD_MODEL_MAX_MESHES);
+    if (parse->placed_count == parse->placed_capacity) {
+        parse->placed_capacity = parse->placed_capacity ? 2 * parse->placed_capacity : 64;
+        parse->placed = realloc(parse->placed, parse->placed_capacity * sizeof *parse->placed);
+        if (!parse->placed)
+            give_up(parse, "has more meshes than fit into memory");
+    }
+    parse->placed[parse->placed_count++] = (struct placed){mesh, *transform};
+    header->vertex_count += mesh->mNumVertices;
+    header->index_count += 3 * mesh->mNumFaces;
+    header->mesh_count++;
+}
+
+static void walk(struct parse *parse, const struct aiNode *node, struct aiMatrix4x4 transform,
+                 unsigned depth)
+{
+    enum { MAX_DEPTH = 1000 };
+    if (depth > MAX_DEPTH)
+        give_up(parse, "nests nodes deeper than %d", MAX_DEPTH);
+    struct aiMatrix4x4 own = node->mTransformation;
+    aiMultiplyMatrix4(&transform, &own);
+    for (unsigned i = 0; i < node->mNumMeshes; i++)
+        place(parse, parse->scene->mMeshes[node->mMeshes[i]], &transform);
+    for (unsigned i = 0; i < node->mNumChildren; i++)
+        walk(parse, node->mChildren[i], transform, depth + 1);
+}
+
+/* --- vertices ---------------------------------------------------------------------------- */
+
+static void apply(const struct aiMatrix4x4 *m, const struct aiVector3D *v, float w, float out[3])
+{
+    out[0] = m->a1 * v->x + m->a2 * v->y + m->a3 * v->z + m->a4 * w;
+    out[1] = m->b1 * v->x + m->b2 * v->y + m->b3 * v->z + m->b4 * w;
+    out[2] = m->c1 * v->x + m->c2 * v->y + m->c3 * v->z + m->c4 * w;
+}
+
+static uint8_t unorm8(float value)
+{
+    return value >= 1 ? 255 : value > 0 ? (uint8_t)(value * 255 + 0.5f) : 0;
+}
+
+static void put_vertex(struct wd_file_vertex *to, const struct placed *from, unsigned i)
+{
+    const struct aiMesh *mesh = from->mesh;
+    apply(&from->transform, &mesh->mVertices[i], 1, to->position);
+    struct aiVector3D up = {0, 1, 0};
+    apply(&from->transform, mesh->mNormals ? &mesh->mNormals[i] : &up, 0, to->normal);
+    if (mesh->mTextureCoords[0]) {
+        to->uv[0] = mesh->mTextureCoords[0][i].x;
+        to->uv[1] = mesh->mTextureCoords[0][i].y;
+    }
+    const struct aiColor4D *c = mesh->mColors[0] ? &mesh->mColors[0][i] : NULL;
+    for (int k = 0; k < 4; k++)
+        to->rgba[k] = 255;
+    if (c) {
+        to->rgba[0] = unorm8(c->r);
+        to->rgba[1] = unorm8(c->g);
+        to->rgba[2] = unorm8(c->b);
+    }
+}
+
+static void put_geometry(struct parse *parse)
+{
+    struct wd_file_vertex *vertices = (void *)(parse->base + parse->offsets[0]);
+    uint32_t *indices = (void *)(parse->base + parse->offsets[1]);
+    struct wd_file_mesh *meshes = (void *)(parse->base + parse->offsets[2]);
+    uint32_t vertex = 0, index = 0;
+    for (size_t i = 0; i < parse->placed_count; i++) {
+        const struct placed *placed = &parse->placed[i];
+        const struct aiMesh *mesh = placed->mesh;
+        bool mirrored = aiMatrix4Determinant(&placed->transform) < 0;
+        meshes[i].material = mesh->mMaterialIndex;
+        meshes[i].first_index = index;
+        snprintf(meshes[i].name, sizeof meshes[i].name, "%s",
+                 mesh->mName.length ? mesh->mName.data : "unnamed");
+        for (unsigned v = 0; v < mesh->mNumVertices; v++)
+            put_vertex(&vertices[vertex + v], placed, v);
+        for (unsigned f = 0; f < mesh->mNumFaces; f++) {
+            const struct aiFace *face = &mesh->mFaces[f];
+            if (face->mNumIndices != 3)
+                continue;
+            for (int k = 0; k < 3; k++) { /* a mirroring node turns triangles over */
+                if (face->mIndices[k] >= mesh->mNumVertices)
+                    give_up(parse, "mesh %s: index %u is out of range: it has %u vertices",
+                            meshes[i].name, face->mIndices[k], mesh->mNumVertices);
+                indices[index++] = vertex + face->mIndices[mirrored ? 2 - k : k];
+            }
+        }
+        meshes[i].index_count = index - meshes[i].first_index;
+        vertex += mesh->mNumVertices;
+    }
+}
+
+/* --- materials --------------------------------------------------------------------------- */
+
+static bool get_texture(const struct aiMaterial *material, enum aiTextureType type, char *to,
+                        size_t size)
+{
+    struct aiString path;
+    if (aiGetMaterialTexture(material, type, 0, &path, NULL, NULL, NULL, NULL, NULL, NULL) !=
+        aiReturn_SUCCESS)
+        return false;
+    snprintf(to, size, "%s", path.data);
+    return to[0] != '\0';
+}
+
+static bool get_name(const struct aiMaterial *material, const char *key, struct aiString *text)
+{
+    return aiGetMaterialString(material, key, 0, 0, text) == aiReturn_SUCCESS;
+}
+
+/* Colours of MTL files multiply textures by the letter, but common exporters leave any number
+ * there: with a texture they are not used. */
+static void put_material(struct wd_file_material *to, const struct aiMaterial *material, bool gltf)
+{
+    struct aiString text;
+    struct aiColor4D color = {0.5f, 0.5f, 0.5f, 1};
+    int two_sided = 0;
+    snprintf(to->name, sizeof to->name, "%s",
+             get_name(material, "?mat.name", &text) ? text.data : "unnamed");
+    if (!get_texture(material, aiTextureType_BASE_COLOR, to->texture, sizeof to->texture))
+        get_texture(material, aiTextureType_DIFFUSE, to->texture, sizeof to->texture);
+    get_texture(material, aiTextureType_OPACITY, to->cutout, sizeof to->cutout);
+    if (aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &color) != aiReturn_SUCCESS)
+        aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &color);
+    if (to->texture[0] && !gltf)
+        color = (struct aiColor4D){1, 1, 1, 1};
+    memcpy(to->color, (float[4]){color.r, color.g, color.b, color.a}, sizeof to->color);
+    aiGetMaterialIntegerArray(material, AI_MATKEY_TWOSIDED, &two_sided, NULL);
+    to->two_sided = two_sided != 0;
+    if (get_name(material, "$mat.gltf.alphaMode", &text))
+        to->blended = strcmp(text.data, "OPAQUE") != 0;
+    else
+        to->blended = to->cutout[0] != '\0';
+}
+
+static uint64_t image_bytes(const struct aiTexture *texture)
+{
+    return texture->mHeight == 0 ? texture->mWidth : 0; /* uncompressed texels are not read */
+}
+
+static void put_materials(struct parse *parse)
+{
+    struct wd_file_material *materials = (void *)(parse->base + parse->offsets[3]);
+    struct wd_file_image *images = (void *)(parse->base + parse->offsets[4]);
+    const struct aiScene *scene = parse->scene;
+    struct aiString text;
+    uint64_t at = 0;
+    for (unsigned i = 0; i < scene->mNumMaterials; i++) {
+        bool gltf = get_name(scene->mMaterials[i], "$mat.gltf.alphaMode", &text);
+        put_material(&materials[i], scene->mMaterials[i], gltf);
+    }
+    for (unsigned i = 0; i < scene->mNumTextures; i++) {
+        const struct aiTexture *texture = scene->mTextures[i];
+        images[i] = (struct wd_file_image){at, image_bytes(texture)};
+        memcpy(parse->base + parse->offsets[5] + at, texture->pcData, images[i].size);
+        at += images[i].size;
+    }
+}
+
+/* --- the whole --------------------------------------------------------------------------- */
+
+void wd_model_parse(const char *path, int file)
+{
+    struct parse parse = {.file = file};
+    struct aiMatrix4x4 identity;
+    aiIdentityMatrix4(&identity);
+    open_scene(&parse, path);
+    walk(&parse, parse.scene->mRootNode, identity, 0);
+    const struct aiScene *scene = parse.scene;
+    if (parse.header.index_count == 0)
+        give_up(&parse, "has no triangles");
+    if (scene->mNumMaterials > WD_MODEL_MAX_MATERIALS || scene->mNumTextures > WD_MODEL_MAX_IMAGES)
+        give_up(&parse, "has %u materials and %u images; at most %d and %d are read",
+                scene->mNumMaterials, scene->mNumTextures, WD_MODEL_MAX_MATERIALS,
+                WD_MODEL_MAX_IMAGES);
+    parse.header.material_count = scene->mNumMaterials;
+    parse.header.image_count = scene->mNumTextures;
+    for (unsigned i = 0; i < scene->mNumTextures; i++)
+        parse.header.byte_count += image_bytes(scene->mTextures[i]);
+    wd_model_layout(&parse.header, parse.offsets);
+    if (ftruncate(file, (off_t)parse.offsets[6]))
+        give_up(&parse, "does not fit into memory");
+    parse.base = mmap(NULL, parse.offsets[6], PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    if (parse.base == MAP_FAILED)
+        give_up(&parse, "does not fit into memory");
+    put_geometry(&parse);
+    put_materials(&parse);
+    parse.header.ready = 1;
+    memcpy(parse.base, &parse.header, sizeof parse.header);
+}
