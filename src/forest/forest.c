@@ -78,11 +78,22 @@ static const struct wd_tree_mesh *level_mesh(const struct wd_tree_model *model, 
     return level == WD_LEVEL_MESH ? &model->full : &model->reduced;
 }
 
+/* Whether a model has the very meshes of the one before: variants of an imported tree. */
+static bool repeats(const struct preparation *work, uint32_t index)
+{
+    return index > 0 && work->grown[index].borrowed &&
+           work->grown[index].full.vertices == work->grown[index - 1].full.vertices;
+}
+
 static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
     size_t vertex_count = 0, index_count = 0;
     for (uint32_t i = 0; i < forest->model_count; i++) {
+        if (repeats(work, i)) {
+            memcpy(forest->ranges[i], forest->ranges[i - 1], sizeof forest->ranges[i]);
+            continue;
+        }
         for (int level = 0; level < 2; level++) {
             const struct wd_tree_mesh *mesh = level_mesh(&work->grown[i], level);
             forest->ranges[i][level] =
@@ -96,7 +107,7 @@ static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
     struct wd_tree_vertex *vertices = wd_alloc_array(vertex_count, sizeof *vertices);
     uint32_t *indices = wd_alloc_array(index_count, sizeof *indices);
     for (uint32_t i = 0; i < forest->model_count; i++) {
-        for (int level = 0; level < 2; level++) {
+        for (int level = 0; level < 2 && !repeats(work, i); level++) {
             const struct wd_tree_mesh *mesh = level_mesh(&work->grown[i], level);
             const struct wd_mesh_range *range = &forest->ranges[i][level];
             memcpy(vertices + range->first_vertex, mesh->vertices,

@@ -1,12 +1,14 @@
 #include "tree/import.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "tree/import_parts.h"
 #include "tree/model_reduce.h"
+#include "tree/vec.h"
 
 enum {
     MOST_TRIANGLES = 600000, /* of the full mesh */

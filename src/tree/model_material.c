@@ -1,5 +1,6 @@
 #include "tree/model_material.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>

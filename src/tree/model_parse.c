@@ -8,6 +8,7 @@
 #include <assimp/scene.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -42,6 +43,14 @@ static _Noreturn void give_up(struct parse *parse, const char *format, ...)
             (ssize_t)sizeof parse->header)
         _exit(0);
     _exit(1);
+}
+
+/* Copies as much of `text` as fits. */
+static void put_text(char *to, size_t size, const char *text)
+{
+    size_t length = strnlen(text, size - 1);
+    memcpy(to, text, length);
+    to[length] = '\0';
 }
 
 static bool is_fbx(const char *path)
@@ -157,7 +166,7 @@ static void put_geometry(struct parse *parse)
         bool mirrored = aiMatrix4Determinant(&placed->transform) < 0;
         meshes[i].material = mesh->mMaterialIndex;
         meshes[i].first_index = index;
-        snprintf(meshes[i].name, sizeof meshes[i].name, "%s",
+        put_text(meshes[i].name, sizeof meshes[i].name,
                  mesh->mName.length ? mesh->mName.data : "unnamed");
         for (unsigned v = 0; v < mesh->mNumVertices; v++)
             put_vertex(&vertices[vertex + v], placed, v);
@@ -186,7 +195,7 @@ static bool get_texture(const struct aiMaterial *material, enum aiTextureType ty
     if (aiGetMaterialTexture(material, type, 0, &path, NULL, NULL, NULL, NULL, NULL, NULL) !=
         aiReturn_SUCCESS)
         return false;
-    snprintf(to, size, "%s", path.data);
+    put_text(to, size, path.data);
     return to[0] != '\0';
 }
 
@@ -202,7 +211,7 @@ static void put_material(struct wd_file_material *to, const struct aiMaterial *m
     struct aiString text;
     struct aiColor4D color = {0.5f, 0.5f, 0.5f, 1};
     int two_sided = 0;
-    snprintf(to->name, sizeof to->name, "%s",
+    put_text(to->name, sizeof to->name,
              get_name(material, "?mat.name", &text) ? text.data : "unnamed");
     if (!get_texture(material, aiTextureType_BASE_COLOR, to->texture, sizeof to->texture))
         get_texture(material, aiTextureType_DIFFUSE, to->texture, sizeof to->texture);

@@ -18,6 +18,10 @@ static size_t simplify(uint32_t *to, const uint32_t *from, size_t count,
     const float *positions = mesh->vertices[0].position_m;
     const size_t stride = sizeof *mesh->vertices;
     const float most_error = 0.02f, any_error = 1;
+    if (count <= target) {
+        memcpy(to, from, count * sizeof *to);
+        return count;
+    }
     size_t reached = meshopt_simplify(to, from, count, positions, mesh->vertex_count, stride,
                                       target, most_error, 0, NULL);
     if (reached > 2 * target)
