@@ -38,7 +38,7 @@ static const struct cli_command commands[] = {
      "  weald check scenes/*.json species/*.json\n"
      "  weald check my-plot.csv --data ~/plots\n",
      cli_check},
-    {"schema", CLI_SCHEMA, "scene|species", 1, 1, "print the JSON Schema of a kind of file",
+    {"schema", CLI_SCHEMA, "scene|species|model", 1, 1, "print the JSON Schema of a kind of file",
      "Prints the JSON Schema of scene or species files.",
      "  weald schema scene > scene.schema.json\n", cli_schema},
     {"devices", CLI_DEVICES, "", 0, 0, "list the Vulkan devices",

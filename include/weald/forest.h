@@ -118,7 +118,8 @@ void wd_forest_get_render_defaults(const struct wd_forest *forest,
  * raster. Every fault found is logged with file, line and key. */
 enum wd_result wd_file_check(const char *path, const char *data_dir, const struct wd_log *log);
 
-/* JSON Schema of scene ("scene") or species ("species") files; free() the text. NULL otherwise. */
+/* JSON Schema of scene ("scene") files, or of species that are grown ("species") or an artist's
+ * model ("model"); free() the text. NULL otherwise. */
 char *wd_schema_text(const char *kind);
 
 #ifdef __cplusplus

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/log.h"
+#include "tree/import.h"
 #include "world/inventory.h"
 #include "world/terrain.h"
 
@@ -18,7 +19,7 @@ static bool has_ending(const char *path, const char *ending)
 
 /* --- scenes and species ------------------------------------------------------------------ */
 
-/* Both end in .json; only species have allometry. */
+/* All end in .json; only species have allometry or a model. */
 static bool is_species(const char *path, bool *species, const struct wd_log *log)
 {
     enum { MAX_BYTES = 64 << 20 };
@@ -26,9 +27,23 @@ static bool is_species(const char *path, bool *species, const struct wd_log *log
     size_t size;
     if (!wd_file_read(path, MAX_BYTES, log, &text, &size))
         return false;
-    *species = strstr(text, "\"allometry\"") && !strstr(text, "\"terrain\"");
+    bool told = strstr(text, "\"allometry\"") || strstr(text, "\"model\"");
+    *species = told && !strstr(text, "\"terrain\"");
     free(text);
     return true;
+}
+
+/* Model files too. */
+static bool check_species(const char *path, const struct wd_log *log)
+{
+    struct wd_arena arena = {0};
+    struct wd_species species;
+    bool ok = wd_species_load(&species, path, &arena, log);
+    ok = ok && wd_species_import_models(&species, 1, NULL, log);
+    if (ok)
+        wd_species_drop_models(&species, 1);
+    wd_arena_finish(&arena);
+    return ok;
 }
 
 static bool check_json(const char *path, const char *data_dir, const struct wd_log *log)
@@ -36,13 +51,8 @@ static bool check_json(const char *path, const char *data_dir, const struct wd_l
     bool species_file;
     if (!is_species(path, &species_file, log))
         return false;
-    if (species_file) {
-        struct wd_arena arena = {0};
-        struct wd_species species;
-        bool ok = wd_species_load(&species, path, &arena, log);
-        wd_arena_finish(&arena);
-        return ok;
-    }
+    if (species_file)
+        return check_species(path, log);
     const struct wd_scene_params params = {.data_dir = data_dir};
     struct wd_scene scene;
     if (!wd_scene_load_with(&scene, path, &params, log))
@@ -129,9 +139,10 @@ enum wd_result wd_file_check(const char *path, const char *data_dir, const struc
         wd_error(log, "%s: there is no such file", path);
         return WD_ERROR_INPUT;
     }
-    bool ok = has_ending(path, ".json")  ? check_json(path, data_dir, log)
-              : has_ending(path, ".csv") ? check_csv(path, log)
-                                         : check_raster(path, log);
+    bool ok = has_ending(path, ".json")        ? check_json(path, data_dir, log)
+              : has_ending(path, ".csv")       ? check_csv(path, log)
+              : wd_species_is_model_file(path) ? check_species(path, log)
+                                               : check_raster(path, log);
     return ok ? WD_OK : WD_ERROR_INPUT;
 }
 
@@ -141,5 +152,7 @@ char *wd_schema_text(const char *kind)
         return wd_keys_schema(&wd_scene_keys, "scene.schema.json");
     if (strcmp(kind, "species") == 0)
         return wd_keys_schema(&wd_species_keys, "species.schema.json");
+    if (strcmp(kind, "model") == 0)
+        return wd_keys_schema(&wd_species_model_keys, "model.schema.json");
     return NULL;
 }

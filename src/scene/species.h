@@ -158,6 +158,7 @@ struct wd_species {
                                  what follows means nothing */
         float height_m;       /* 0: as high as the file has it */
         int up, unit;         /* enum wd_model_axis, wd_model_unit: of the file */
+        float leaf_reflectance; /* leaves are darkened to this mean luminance at most */
         const char **leaves, **wood; /* names of materials */
         size_t leaf_count, wood_count;
         float crown_share;    /* crown diameter over height where allometry.crown_b is 0 */

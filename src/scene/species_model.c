@@ -24,6 +24,9 @@ static const struct wd_key model_keys[] = {
     {"unit", WD_KEY_ENUM, IN(model, unit), .fallback = "\"auto\"", .choices = units,
      .doc = "Unit of the file where height_m is 0; auto: metres, and centimetres where that would "
             "make a tree of over 130 m."},
+    {"leaf_reflectance", WD_KEY_FLOAT, IN(model, leaf_reflectance), 0, 1, "0.09",
+     "Leaf textures brighter than this on the average are brought down to it: pictures of leaves are "
+     "mostly exposed, not measured. 1: as the file has them."},
     {"leaves", WD_KEY_STRINGS, IN(model, leaves), .count_offset = IN(model, leaf_count),
      .doc = "Materials that are leaves; others are told by name, holes and colour."},
     {"wood", WD_KEY_STRINGS, IN(model, wood), .count_offset = IN(model, wood_count),

@@ -181,6 +181,16 @@ static void mean_color(const struct wd_model_materials *materials,
                    (material->picture >= 0 ? materials->pictures[material->picture].mean[k] : 1);
 }
 
+static void darken_leaf(struct wd_model_materials *materials, struct wd_model_material *material,
+                        float most)
+{
+    float color[3];
+    mean_color(materials, material, color);
+    float luminance = 0.2126f * color[0] + 0.7152f * color[1] + 0.0722f * color[2];
+    for (int k = 0; k < 3 && luminance > most; k++)
+        material->color[k] *= most / luminance;
+}
+
 static bool looks_like_leaf(const struct wd_model_materials *materials,
                             const struct wd_model_material *material)
 {
@@ -242,6 +252,9 @@ bool wd_model_materials_init(struct wd_model_materials *materials, const struct 
                          species->model.leaf_count, true, log) &&
               apply_list(materials, path, "wood", species->model.wood, species->model.wood_count,
                          false, log);
+    for (size_t i = 0; i < materials->count && ok; i++)
+        if (materials->items[i].leaf)
+            darken_leaf(materials, &materials->items[i], species->model.leaf_reflectance);
     if (!ok)
         wd_model_materials_finish(materials);
     return ok;

@@ -15,6 +15,6 @@ int main(int argc, char **argv)
         free(text);
         return 0;
     }
-    fputs("usage: scene-print-schema scene|species\n", stderr);
+    fputs("usage: scene-print-schema scene|species|model\n", stderr);
     return 1;
 }

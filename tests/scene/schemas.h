@@ -11,6 +11,8 @@ static const struct {
     {"scene", "scene.schema.json", "https://weald.invalid/scene.schema.json", &wd_scene_keys},
     {"species", "species.schema.json", "https://weald.invalid/species.schema.json",
      &wd_species_keys},
+    {"model", "model.schema.json", "https://weald.invalid/model.schema.json",
+     &wd_species_model_keys},
 };
 enum { SCHEMA_COUNT = sizeof schemas / sizeof *schemas };
 
