@@ -53,4 +53,24 @@ WD_FUNC uint32_t wd_vertex_layer(uint32_t kind)
                                            : WD_LOOK_BARK;
 }
 
+/* A point of a tree model's surface, in progressive order: any prefix of a model's points is a fair
+ * sample of its surface (src/tree/points.h). 24 bytes. */
+struct wd_tree_point {
+    WD_VEC3(position_m);
+    uint32_t normal; /* as in wd_tree_vertex */
+    uint32_t albedo; /* R, G, B: sRGB albedo, look texture and tint included; A: sky openness */
+    uint32_t kind;   /* bits 0..7: flexibility; bit 8: leaf; bit 9: one-sided (wood): unseen from
+                        behind; bits 16..31: half float: m^2 of surface that the point stands for
+                        among all of its model's points, one side */
+};
+WD_STATIC_ASSERT_SIZE(wd_tree_point, 24);
+#define WD_POINT_LEAF 0x100u
+#define WD_POINT_ONE_SIDED 0x200u
+
+/* Radii of points drawn as discs: pi r^2 = gain * (area of all points) / count, where the gain is
+ * calibrated for counts WD_POINT_LEAST << k, k = 0 .. WD_POINT_GAINS - 1; linear in log2(count)
+ * between them. */
+#define WD_POINT_LEAST 32
+#define WD_POINT_GAINS 10
+
 #endif

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "tree/look.h"
+#include "tree/progressive.h"
 
 /* A piece of a twig that bears leaves. */
 struct carrier {
@@ -182,15 +183,22 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
     tint_leaf(leaf, skeleton->branches[parent].key, &random);
 }
 
-static void shuffle(struct wd_leaf *leaves, size_t count, uint32_t key)
+/* So that the first n leaves are spread over the crown as evenly as all of them. */
+static void order_leaves(struct wd_foliage *foliage, uint32_t key)
 {
-    struct wd_random random = wd_random_of(key, 0x5f);
-    for (size_t i = count; i > 1; i--) {
-        size_t other = (size_t)(((uint64_t)wd_random_bits(&random) * i) >> 32);
-        struct wd_leaf kept = leaves[i - 1];
-        leaves[i - 1] = leaves[other];
-        leaves[other] = kept;
-    }
+    size_t count = foliage->count;
+    struct wd_vec3 *places = wd_alloc_array(count + 1, sizeof *places);
+    uint32_t *order = wd_alloc_array(count + 1, sizeof *order);
+    struct wd_leaf *ordered = wd_alloc_array(count + 1, sizeof *ordered);
+    for (size_t i = 0; i < count; i++)
+        places[i] = foliage->leaves[i].position_m;
+    wd_progressive_order(order, places, count, key);
+    for (size_t i = 0; i < count; i++)
+        ordered[i] = foliage->leaves[order[i]];
+    free(foliage->leaves);
+    foliage->leaves = ordered;
+    free(places);
+    free(order);
 }
 
 /* Leaf area of the whole tree from the leaf area index over the crown's projection. */
@@ -264,5 +272,5 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
     }
     free(carriers.items);
     scale_leaves(foliage, form->species, area);
-    shuffle(foliage->leaves, foliage->count, form->key);
+    order_leaves(foliage, form->key);
 }

@@ -17,7 +17,7 @@ struct wd_leaf {
     uint32_t key;
 };
 
-/* Leaves in random order: any prefix is a fair sample. */
+/* Leaves in progressive order: any prefix is a fair sample, spread over the crown as the whole. */
 struct wd_foliage {
     struct wd_leaf *leaves;
     size_t count;

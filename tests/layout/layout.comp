@@ -10,9 +10,10 @@ layout(scalar, binding = 3) buffer Fades { wd_layer_fade fade; };
 layout(scalar, binding = 4) buffer Instances { wd_instance instance; };
 layout(scalar, binding = 5) buffer Pushes { wd_tree_push push; };
 layout(scalar, binding = 6) buffer Frames { wd_frame_uniforms frame; };
+layout(scalar, binding = 7) buffer Points { wd_tree_point point; };
 
 void main()
 {
-    tree.id = vertex.uv + model.card_layer + uint(fade.near_begin_m) + instance.tree + push.level
+    tree.id = vertex.uv + point.kind + model.card_layer + uint(fade.near_begin_m) + instance.tree + push.level
               + frame.width;
 }

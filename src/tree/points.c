@@ -1,0 +1,222 @@
+#include "tree/points.h"
+
+#include <stdlib.h>
+
+#include "base/color.h"
+#include "base/memory.h"
+#include "tree/grow.h"
+#include "tree/progressive.h"
+#include "tree/random.h"
+
+enum { LOOK_SIZE = 64 };
+
+static void mean_color(const uint8_t *rgba, uint32_t size, float mean[3])
+{
+    double sum[3] = {0}, linear[256];
+    size_t texels = (size_t)size * size;
+    for (int i = 0; i < 256; i++)
+        linear[i] = (double)wd_srgb_decode((uint8_t)i);
+    for (size_t i = 0; i < texels; i++)
+        for (int k = 0; k < 3; k++)
+            sum[k] += linear[rgba[4 * i + (size_t)k]];
+    for (int k = 0; k < 3; k++)
+        mean[k] = (float)(sum[k] / (double)texels);
+}
+
+struct wd_point_look wd_point_look_of(const uint8_t *bark, const uint8_t *leaf, uint32_t size)
+{
+    struct wd_point_look look;
+    mean_color(bark, size, look.bark);
+    mean_color(leaf, size, look.leaf);
+    return look;
+}
+
+struct wd_point_look wd_point_look_of_species(const struct wd_species *species)
+{
+    uint8_t *bark = wd_alloc(4 * LOOK_SIZE * LOOK_SIZE), *leaf = wd_alloc(4 * LOOK_SIZE * LOOK_SIZE);
+    wd_species_bark_texture(species, LOOK_SIZE, bark);
+    wd_species_leaf_texture(species, LOOK_SIZE, leaf);
+    struct wd_point_look look = wd_point_look_of(bark, leaf, LOOK_SIZE);
+    free(bark);
+    free(leaf);
+    return look;
+}
+
+/* --- sampling ---------------------------------------------------------------------------- */
+
+/* Triangles of wood, then of leaves, each along its own curve, with the area up to each. */
+struct surface {
+    const struct wd_tree_mesh *mesh;
+    uint32_t *order; /* triangle */
+    double *below;   /* [count + 1] m^2 */
+    size_t count, wood_count;
+};
+
+static struct wd_vec3 corner(const struct wd_tree_mesh *mesh, size_t index)
+{
+    const float *p = mesh->vertices[mesh->indices[index]].position_m;
+    return WD_V3(p[0], p[1], p[2]);
+}
+
+/* Broken triangles have none. */
+static double triangle_area(const struct wd_tree_mesh *mesh, size_t triangle)
+{
+    struct wd_vec3 a = corner(mesh, 3 * triangle);
+    struct wd_vec3 b = wd_v3_sub(corner(mesh, 3 * triangle + 1), a);
+    struct wd_vec3 c = wd_v3_sub(corner(mesh, 3 * triangle + 2), a);
+    double area = 0.5 * (double)wd_v3_length(wd_v3_cross(b, c));
+    return area > 0 && area < 1e12 ? area : 0;
+}
+
+static void order_part(struct surface *surface, size_t first, size_t count)
+{
+    struct wd_vec3 *centers = wd_alloc_array(count ? count : 1, sizeof *centers);
+    for (size_t i = 0; i < count; i++) {
+        struct wd_vec3 sum = {0};
+        for (size_t k = 0; k < 3; k++)
+            sum = wd_v3_add(sum, corner(surface->mesh, 3 * (first + i) + k));
+        centers[i] = wd_v3_scale(sum, 1 / 3.0f);
+    }
+    wd_curve_order(surface->order + first, centers, count);
+    for (size_t i = first; i < first + count; i++) {
+        surface->order[i] += (uint32_t)first;
+        surface->below[i + 1] = surface->below[i] + triangle_area(surface->mesh, surface->order[i]);
+    }
+    free(centers);
+}
+
+static void surface_init(struct surface *surface, const struct wd_tree_mesh *mesh)
+{
+    size_t count = mesh->index_count / 3, wood = mesh->wood_index_count / 3;
+    *surface = (struct surface){
+        .mesh = mesh,
+        .order = wd_alloc_array(count + 1, sizeof *surface->order),
+        .below = wd_alloc_array(count + 1, sizeof *surface->below),
+        .count = count,
+        .wood_count = wood < count ? wood : count,
+    };
+    order_part(surface, 0, surface->wood_count);
+    order_part(surface, surface->wood_count, count - surface->wood_count);
+}
+
+static void surface_finish(struct surface *surface)
+{
+    free(surface->order);
+    free(surface->below);
+}
+
+/* Place in the order of the triangle that holds `area`. */
+static size_t find_triangle(const struct surface *surface, double area)
+{
+    size_t low = 0, high = surface->count;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (surface->below[middle] <= area)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static uint32_t pack_albedo(const float rgb[3], float sky)
+{
+    uint32_t packed = (uint32_t)wd_unorm_encode(sky) << 24;
+    for (int k = 0; k < 3; k++)
+        packed |= (uint32_t)wd_srgb_encode(rgb[k]) << (8 * k);
+    return packed;
+}
+
+/* Sums of a triangle's vertices by weight. */
+struct blend {
+    float position_m[3], normal[3], tint[4], flexibility;
+};
+
+static struct blend blend_corners(const struct wd_tree_mesh *mesh, size_t triangle,
+                                  const float weight[3])
+{
+    struct blend blend = {0};
+    for (size_t k = 0; k < 3; k++) {
+        const struct wd_tree_vertex *vertex = &mesh->vertices[mesh->indices[3 * triangle + k]];
+        float normal[3];
+        wd_unpack_normal(vertex->normal, normal);
+        for (int i = 0; i < 3; i++) {
+            blend.position_m[i] += weight[k] * vertex->position_m[i];
+            blend.normal[i] += weight[k] * normal[i];
+        }
+        for (int i = 0; i < 4; i++)
+            blend.tint[i] += weight[k] * (float)(vertex->tint >> (8 * i) & 255) / 255;
+        blend.flexibility += weight[k] * (float)(vertex->kind & 255);
+    }
+    return blend;
+}
+
+static void sample_point(struct wd_tree_point *point, const struct surface *surface,
+                         const struct wd_point_look *look, uint32_t index, float area_m2)
+{
+    enum { KEY = 0x70e5 };
+    double share = (double)wd_scrambled_radical(index, KEY) / 4294967296.0;
+    double area = share * surface->below[surface->count];
+    size_t place = find_triangle(surface, area);
+    double within = surface->below[place + 1] - surface->below[place];
+    float u = within > 0 ? (float)((area - surface->below[place]) / within) : 0;
+    float v = wd_hash_unit(wd_hash2(index, KEY)), side = sqrtf(u);
+    const float weight[3] = {1 - side, side * (1 - v), side * v};
+    struct blend blend = blend_corners(surface->mesh, surface->order[place], weight);
+    struct wd_vec3 n = wd_v3_unit(WD_V3(blend.normal[0], blend.normal[1], blend.normal[2]));
+    const float normal[3] = {n.x, n.y, n.z};
+    bool wood = place < surface->wood_count;
+    float albedo[3];
+    for (int k = 0; k < 3; k++) {
+        point->position_m[k] = blend.position_m[k];
+        albedo[k] = blend.tint[k] * (wood ? look->bark[k] : look->leaf[k]);
+    }
+    point->normal = wd_pack_normal(normal);
+    point->albedo = pack_albedo(albedo, blend.tint[3]);
+    point->kind = (uint32_t)wd_clampf(blend.flexibility + 0.5f, 0, 255) |
+                  (wood ? WD_POINT_ONE_SIDED : WD_POINT_LEAF) |
+                  (wd_pack_uv(0, area_m2) & 0xffff0000u);
+}
+
+bool wd_tree_points_build(struct wd_tree_points *points, const struct wd_tree_mesh *mesh,
+                          const struct wd_point_look *look, size_t count)
+{
+    *points = (struct wd_tree_points){0};
+    struct surface surface;
+    surface_init(&surface, mesh);
+    double area = surface.below[surface.count];
+    if (area > 0 && count > 0) {
+        points->points = wd_alloc_array(count, sizeof *points->points);
+        points->count = count;
+        points->wood_area_m2 = (float)surface.below[surface.wood_count];
+        points->leaf_area_m2 = (float)(area - surface.below[surface.wood_count]);
+        for (size_t i = 0; i < count; i++)
+            sample_point(&points->points[i], &surface, look, (uint32_t)i,
+                         (float)(area / (double)count));
+        wd_tree_points_calibrate(points, mesh);
+    }
+    surface_finish(&surface);
+    return points->count > 0;
+}
+
+void wd_tree_points_finish(struct wd_tree_points *points)
+{
+    free(points->points);
+    *points = (struct wd_tree_points){0};
+}
+
+float wd_tree_points_radius_m(const struct wd_tree_points *points, enum wd_point_use use,
+                              size_t count, float sine)
+{
+    int k = 0;
+    float at = (float)(count > WD_POINT_LEAST ? count : WD_POINT_LEAST) / WD_POINT_LEAST;
+    for (; at > 2 && k < WD_POINT_GAINS - 2; k++)
+        at *= 0.5f;
+    float part = fminf((float)wd_dlog((double)at) * 1.44269504f, 1);
+    const float(*gain)[WD_POINT_GAINS] = points->gain[use];
+    float level = wd_mixf(gain[WD_POINTS_LEVEL][k], gain[WD_POINTS_LEVEL][k + 1], part);
+    float above = wd_mixf(gain[WD_POINTS_ABOVE][k], gain[WD_POINTS_ABOVE][k + 1], part);
+    float area = points->leaf_area_m2 + points->wood_area_m2;
+    float each = wd_mixf(level, above, sine * sine) * area / (float)(count ? count : 1);
+    return sqrtf(each / (float)WD_PI);
+}

@@ -1,0 +1,132 @@
+#include "tree/progressive.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "shared/hash.h"
+
+enum { CURVE_BITS = 10, DIGIT_BITS = 10, DIGITS = 1 << DIGIT_BITS };
+
+static uint32_t reverse_bits(uint32_t x)
+{
+    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
+    return x >> 16 | x << 16;
+}
+
+/* Nested scrambling: whether a digit flips depends on all digits before it and on nothing else
+ * (Owen 1995). In reversed order the digits before are the lower bits, and a multiplication by an
+ * even number, added or xored in, only carries upward (Laine and Karras 2011; constants of Vegdahl
+ * 2021). */
+uint32_t wd_scrambled_radical(uint32_t index, uint32_t key)
+{
+    uint32_t x = index;
+    x ^= x * 0x3d20adeau;
+    x += wd_hash1(key);
+    x *= (wd_hash1(key) >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return reverse_bits(x);
+}
+
+/* Place along Hilbert's curve in three dimensions (Skilling, AIP Conf. Proc. 707, 2004). */
+static uint32_t curve_place(uint32_t x[3])
+{
+    for (uint32_t q = 1u << (CURVE_BITS - 1); q > 1; q >>= 1) {
+        uint32_t p = q - 1;
+        for (int i = 0; i < 3; i++) {
+            uint32_t swapped = x[i] & q ? 0 : (x[0] ^ x[i]) & p;
+            x[0] ^= (x[i] & q ? p : 0) ^ swapped;
+            x[i] ^= swapped;
+        }
+    }
+    x[1] ^= x[0];
+    x[2] ^= x[1];
+    uint32_t turned = 0, place = 0;
+    for (uint32_t q = 1u << (CURVE_BITS - 1); q > 1; q >>= 1)
+        turned ^= x[2] & q ? q - 1 : 0;
+    for (int bit = CURVE_BITS - 1; bit >= 0; bit--)
+        for (int i = 0; i < 3; i++)
+            place = place << 1 | ((x[i] ^ turned) >> bit & 1);
+    return place;
+}
+
+/* Broken coordinates end in the first cell. */
+static uint32_t curve_cell(float x)
+{
+    return x > 0 && x < (float)(1 << CURVE_BITS) ? (uint32_t)x : 0;
+}
+
+static void curve_places(uint32_t *places, const struct wd_vec3 *points, size_t count)
+{
+    struct wd_vec3 low = points[0], high = points[0];
+    for (size_t i = 1; i < count; i++) {
+        low = WD_V3(fminf(low.x, points[i].x), fminf(low.y, points[i].y),
+                    fminf(low.z, points[i].z));
+        high = WD_V3(fmaxf(high.x, points[i].x), fmaxf(high.y, points[i].y),
+                     fmaxf(high.z, points[i].z));
+    }
+    struct wd_vec3 size = wd_v3_sub(high, low);
+    float side = fmaxf(fmaxf(size.x, size.y), fmaxf(size.z, 1e-6f));
+    float scale = (float)((1 << CURVE_BITS) - 1) / side;
+    for (size_t i = 0; i < count; i++) {
+        struct wd_vec3 p = wd_v3_scale(wd_v3_sub(points[i], low), scale);
+        uint32_t cell[3] = {curve_cell(p.x), curve_cell(p.y), curve_cell(p.z)};
+        places[i] = curve_place(cell);
+    }
+}
+
+/* One pass of a stable radix sort. */
+static void sort_digit(uint32_t *to, const uint32_t *from, const uint32_t *keys, size_t count,
+                       int shift)
+{
+    size_t first[DIGITS + 1] = {0};
+    for (size_t i = 0; i < count; i++)
+        first[(keys[i] >> shift & (DIGITS - 1)) + 1]++;
+    for (size_t digit = 0; digit < DIGITS; digit++)
+        first[digit + 1] += first[digit];
+    for (size_t i = 0; i < count; i++)
+        to[first[keys[from[i]] >> shift & (DIGITS - 1)]++] = from[i];
+}
+
+void wd_curve_order(uint32_t *order, const struct wd_vec3 *points, size_t count)
+{
+    if (count == 0)
+        return;
+    uint32_t *places = wd_alloc_array(count, sizeof *places);
+    uint32_t *other = wd_alloc_array(count, sizeof *other);
+    curve_places(places, points, count);
+    for (size_t i = 0; i < count; i++)
+        other[i] = (uint32_t)i;
+    sort_digit(order, other, places, count, 0);
+    sort_digit(other, order, places, count, DIGIT_BITS);
+    sort_digit(order, other, places, count, 2 * DIGIT_BITS);
+    free(places);
+    free(other);
+}
+
+/* The curve is cut into 2^k >= count equal parts, each with at most one point, and the parts are
+ * visited in the order of the scrambled sequence. */
+void wd_progressive_order(uint32_t *order, const struct wd_vec3 *points, size_t count,
+                          uint32_t key)
+{
+    int bits = 0;
+    while (((size_t)1 << bits) < count)
+        bits++;
+    size_t parts = (size_t)1 << bits, filled = 0;
+    uint32_t *along = wd_alloc_array(count ? count : 1, sizeof *along);
+    uint32_t *held = wd_alloc_array(parts, sizeof *held); /* 1 + index, 0 none */
+    wd_curve_order(along, points, count);
+    for (size_t i = 0; i < count; i++)
+        held[i * parts / count] = along[i] + 1;
+    for (size_t i = 0; i < parts; i++) {
+        uint32_t part = (uint32_t)((uint64_t)wd_scrambled_radical((uint32_t)i, key) >> (32 - bits));
+        if (held[part])
+            order[filled++] = held[part] - 1;
+    }
+    free(along);
+    free(held);
+}

@@ -1,0 +1,291 @@
+#include "tree_test.h"
+
+#include "tree/points.h"
+#include "tree/progressive.h"
+#include "tree/random.h"
+
+enum { POINTS = 8192 };
+
+struct sampled {
+    struct wd_arena arena;
+    struct wd_species species;
+    struct wd_tree_model model;
+    struct wd_tree_points points;
+};
+
+static void sample_species(struct sampled *sampled, const char *name)
+{
+    const struct wd_grow_params params = {.seed = 3, .openness = 0.4f};
+    *sampled = (struct sampled){0};
+    sampled->species = test_species(&sampled->arena, name);
+    assert_true(wd_tree_grow(&sampled->model, &sampled->species, &params, NULL));
+    const struct wd_point_look look = wd_point_look_of_species(&sampled->species);
+    assert_true(wd_tree_points_build(&sampled->points, &sampled->model.full, &look, POINTS));
+}
+
+static void sampled_finish(struct sampled *sampled)
+{
+    wd_tree_points_finish(&sampled->points);
+    wd_tree_model_finish(&sampled->model);
+    wd_arena_finish(&sampled->arena);
+}
+
+static void scrambled_numbers_fill_every_part(void **state)
+{
+    (void)state;
+    for (uint32_t key = 0; key < 20; key++)
+        for (uint32_t bits = 1; bits <= 10; bits++) {
+            uint8_t seen[1024] = {0};
+            uint32_t window = wd_hash2(key, bits) % 1000;
+            for (uint32_t i = window << bits; i < (window + 1) << bits; i++)
+                seen[wd_scrambled_radical(i, key) >> (32 - bits)]++;
+            for (uint32_t part = 0; part < 1u << bits; part++)
+                assert_int_equal(seen[part], 1);
+        }
+}
+
+static void orders_are_permutations(void **state)
+{
+    (void)state;
+    static const size_t counts[] = {0, 1, 2, 3, 100, 1000, 1025};
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
+        struct wd_vec3 points[1025];
+        uint32_t order[1025];
+        uint8_t seen[1025] = {0};
+        struct wd_random random = wd_random_of((uint32_t)k, 1);
+        for (size_t i = 0; i < counts[k]; i++)
+            points[i] = wd_random_vec3(&random);
+        if (counts[k] == 1000) /* broken coordinates are no reason to lose one */
+            points[17] = WD_V3(NAN, INFINITY, -INFINITY);
+        wd_progressive_order(order, points, counts[k], 5);
+        for (size_t i = 0; i < counts[k]; i++)
+            seen[order[i]]++;
+        for (size_t i = 0; i < counts[k]; i++)
+            assert_int_equal(seen[i], 1);
+    }
+}
+
+static void neighbours_on_the_curve_are_neighbours_in_space(void **state)
+{
+    (void)state;
+    enum { N = 16 };
+    struct wd_vec3 points[N * N * N];
+    uint32_t order[N * N * N];
+    for (int i = 0; i < N * N * N; i++)
+        points[i] = WD_V3(i % N, i / N % N, i / N / N);
+    wd_curve_order(order, points, N * N * N);
+    for (int i = 1; i < N * N * N; i++) {
+        struct wd_vec3 step = wd_v3_sub(points[order[i]], points[order[i - 1]]);
+        assert_float_equal(wd_v3_length(step), 1, 1e-6f);
+    }
+}
+
+/* Sum of squared deviations of how many of `count` points fall into each cell of a coarse grid
+ * over how many of all fall there. */
+static double unevenness(const struct wd_tree_points *points, const uint32_t *which, size_t count)
+{
+    enum { CELLS = 6 };
+    double all[CELLS * CELLS * CELLS] = {0}, some[CELLS * CELLS * CELLS] = {0}, sum = 0;
+    float low[3] = {1e9f, 1e9f, 1e9f}, high[3] = {-1e9f, -1e9f, -1e9f};
+    for (size_t i = 0; i < points->count; i++)
+        for (int k = 0; k < 3; k++) {
+            low[k] = fminf(low[k], points->points[i].position_m[k]);
+            high[k] = fmaxf(high[k], points->points[i].position_m[k]);
+        }
+    for (size_t i = 0; i < points->count + count; i++) {
+        size_t at = i < points->count ? i : which[i - points->count];
+        int cell = 0;
+        for (int k = 0; k < 3; k++) {
+            float share = (points->points[at].position_m[k] - low[k]) / (high[k] - low[k]);
+            cell = CELLS * cell + (int)fminf(share * CELLS, CELLS - 1);
+        }
+        (i < points->count ? all : some)[cell]++;
+    }
+    for (int i = 0; i < CELLS * CELLS * CELLS; i++) {
+        double wanted = all[i] * (double)count / (double)points->count;
+        sum += (some[i] - wanted) * (some[i] - wanted);
+    }
+    return sum;
+}
+
+static void prefixes_are_spread_better_than_chance(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SPECIES_COUNT; s++) {
+        struct sampled sampled;
+        sample_species(&sampled, test_species_names[s]);
+        for (uint32_t n = 400; n <= 1600; n *= 2) {
+            uint32_t prefix[1600], chance[1600];
+            double sum = 0;
+            for (uint32_t i = 0; i < n; i++)
+                prefix[i] = i;
+            for (uint32_t round = 0; round < 8; round++) {
+                for (uint32_t i = 0; i < n; i++)
+                    chance[i] = wd_hash3(round, i, 77) % POINTS;
+                sum += unevenness(&sampled.points, chance, n) / 8;
+            }
+            assert_true(unevenness(&sampled.points, prefix, n) < 0.75 * sum);
+        }
+        sampled_finish(&sampled);
+    }
+}
+
+/* Means over points [first, first + count): share of wood, normal, albedo bytes, height. */
+static void mean_of(const struct wd_tree_points *points, size_t first, size_t count,
+                    double mean[8])
+{
+    for (int k = 0; k < 8; k++)
+        mean[k] = 0;
+    for (size_t i = first; i < first + count; i++) {
+        const struct wd_tree_point *point = &points->points[i];
+        float normal[3];
+        wd_unpack_normal(point->normal, normal);
+        mean[0] += (point->kind & WD_POINT_LEAF ? 0.0 : 1.0) / (double)count;
+        for (int k = 0; k < 3; k++) {
+            mean[1 + k] += (double)normal[k] / (double)count;
+            mean[4 + k] += (double)(point->albedo >> (8 * k) & 255) / 255 / (double)count;
+        }
+        mean[7] += (double)point->position_m[2] / (double)count;
+    }
+}
+
+static void windows_keep_the_means(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SPECIES_COUNT; s++) {
+        struct sampled sampled;
+        double whole[8], part[8];
+        sample_species(&sampled, test_species_names[s]);
+        const struct wd_tree_points *points = &sampled.points;
+        mean_of(points, 0, POINTS, whole);
+        float area = points->leaf_area_m2 + points->wood_area_m2;
+        assert_float_equal(whole[0], points->wood_area_m2 / area, 1e-3f);
+        for (size_t count = 256; count <= 2048; count *= 2)
+            for (size_t first = 0; first < POINTS; first += POINTS / 4) {
+                double bound = 1.3 / sqrt((double)count); /* more than two deviations of chance */
+                mean_of(points, first, count, part);
+                assert_float_equal((float)part[0], (float)whole[0], 2 / (float)count);
+                for (int k = 1; k < 7; k++)
+                    assert_true(fabs(part[k] - whole[k]) < bound);
+                assert_true(fabs(part[7] - whole[7]) < 0.005 * (double)sampled.model.height_m);
+            }
+        sampled_finish(&sampled);
+    }
+}
+
+/* Share of a square about the tree that discs of the first `count` points cover, seen from a side
+ * that was not calibrated, next to the mesh's. */
+static void cover(const struct sampled *sampled, size_t count, double *discs, double *mesh)
+{
+    enum { N = 384 };
+    const struct wd_tree_points *points = &sampled->points;
+    const struct wd_tree_mesh *full = &sampled->model.full;
+    struct wd_vec3 right = WD_V3(0.6f, -0.8f, 0), toward = WD_V3(0.8f, 0.6f, 0);
+    float scale = 0.9f * N / fmaxf(full->max_m[2], full->max_m[0] - full->min_m[0]);
+    uint8_t *hit = calloc(2, (size_t)N * N);
+    float radius = scale * wd_tree_points_radius_m(points, WD_POINTS_ALL, count, 0);
+    for (size_t i = 0; i < count; i++) {
+        const float *p = points->points[i].position_m;
+        float n[3], x = 0.5f * N + scale * wd_v3_dot(WD_V3(p[0], p[1], 0), right);
+        float y = 0.05f * N + scale * p[2];
+        wd_unpack_normal(points->points[i].normal, n);
+        if (points->points[i].kind & WD_POINT_ONE_SIDED &&
+            wd_v3_dot(WD_V3(n[0], n[1], n[2]), toward) <= 0)
+            continue;
+        for (int py = (int)fmaxf(y - radius, 0); py < N && (float)py < y + radius; py++)
+            for (int px = (int)fmaxf(x - radius, 0); px < N && (float)px < x + radius; px++) {
+                float dx = (float)px + 0.5f - x, dy = (float)py + 0.5f - y;
+                if (dx * dx + dy * dy < radius * radius)
+                    hit[py * N + px] = 1;
+            }
+    }
+    for (uint32_t i = 0; i < full->index_count; i += 3) {
+        float at[3][2];
+        for (uint32_t k = 0; k < 3; k++) {
+            const float *p = full->vertices[full->indices[i + k]].position_m;
+            at[k][0] = 0.5f * N + scale * wd_v3_dot(WD_V3(p[0], p[1], 0), right);
+            at[k][1] = 0.05f * N + scale * p[2];
+        }
+        int x0 = (int)fmaxf(fminf(at[0][0], fminf(at[1][0], at[2][0])), 0);
+        int y0 = (int)fmaxf(fminf(at[0][1], fminf(at[1][1], at[2][1])), 0);
+        float x1 = fmaxf(at[0][0], fmaxf(at[1][0], at[2][0]));
+        float y1 = fmaxf(at[0][1], fmaxf(at[1][1], at[2][1]));
+        for (int py = y0; py < N && (float)py < y1; py++)
+            for (int px = x0; px < N && (float)px < x1; px++) {
+                int sides = 0;
+                for (int k = 0; k < 3; k++) {
+                    const float *a = at[k], *b = at[(k + 1) % 3];
+                    sides += (b[0] - a[0]) * ((float)py + 0.5f - a[1]) -
+                                 (b[1] - a[1]) * ((float)px + 0.5f - a[0]) > 0;
+                }
+                if (sides == 0 || sides == 3)
+                    hit[N * N + py * N + px] = 1;
+            }
+    }
+    *discs = *mesh = 0;
+    for (int i = 0; i < N * N; i++) {
+        *discs += hit[i];
+        *mesh += hit[N * N + i];
+    }
+    free(hit);
+}
+
+static void discs_cover_what_the_mesh_covers(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SPECIES_COUNT; s++) {
+        struct sampled sampled;
+        sample_species(&sampled, test_species_names[s]);
+        for (size_t count = 64; count <= POINTS; count *= 3) {
+            double discs, mesh;
+            cover(&sampled, count, &discs, &mesh);
+            if (fabs(discs / mesh - 1) > (count < 100 ? 0.08 : 0.05))
+                fail_msg("%s, %zu points: %.0f pixels, the mesh covers %.0f",
+                         test_species_names[s], count, discs, mesh);
+        }
+        sampled_finish(&sampled);
+    }
+}
+
+static void broken_meshes_give_none_or_few(void **state)
+{
+    (void)state;
+    const struct wd_point_look look = {{0.1f, 0.1f, 0.1f}, {0.1f, 0.1f, 0.1f}};
+    struct wd_tree_points points;
+    struct wd_tree_mesh mesh = {0};
+    assert_false(wd_tree_points_build(&points, &mesh, &look, 100));
+    for (uint32_t i = 0; i < 3; i++)
+        wd_tree_mesh_add_vertex(&mesh, &(struct wd_tree_vertex){.position_m = {NAN, 0, 0}});
+    wd_tree_mesh_add_triangle(&mesh, 0, 1, 2);
+    wd_tree_mesh_update_bounds(&mesh);
+    assert_false(wd_tree_points_build(&points, &mesh, &look, 100));
+    for (uint32_t i = 0; i < 3; i++)
+        wd_tree_mesh_add_vertex(
+            &mesh, &(struct wd_tree_vertex){.position_m = {(float)(i & 1), (float)(i >> 1), 0}});
+    wd_tree_mesh_add_triangle(&mesh, 3, 4, 5);
+    wd_tree_mesh_add_triangle(&mesh, 3, 4, 0);
+    wd_tree_mesh_update_bounds(&mesh);
+    assert_true(wd_tree_points_build(&points, &mesh, &look, 100));
+    assert_float_equal(points.leaf_area_m2, 0.5f, 1e-6f);
+    for (size_t i = 0; i < points.count; i++)
+        for (int k = 0; k < 3; k++)
+            assert_true(points.points[i].position_m[k] >= 0 &&
+                        points.points[i].position_m[k] <= 1);
+    wd_tree_points_finish(&points);
+    assert_false(wd_tree_points_build(&points, &mesh, &look, 0));
+    wd_tree_mesh_finish(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scrambled_numbers_fill_every_part),
+        cmocka_unit_test(orders_are_permutations),
+        cmocka_unit_test(neighbours_on_the_curve_are_neighbours_in_space),
+        cmocka_unit_test(prefixes_are_spread_better_than_chance),
+        cmocka_unit_test(windows_keep_the_means),
+        cmocka_unit_test(discs_cover_what_the_mesh_covers),
+        cmocka_unit_test(broken_meshes_give_none_or_few),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
