@@ -1,0 +1,145 @@
+#include "tree/leaf_parts.h"
+
+/* More leaflets than this are drawn as kites, fewer with their outline. */
+enum { OUTLINED_LEAFLETS = 16, AXIS_PIECES = 6, BLADE_PIECES = 4, PINNULES = 9 };
+
+/* The leaf's axis: an arc in the plane of y and z that bends down by `arch` radians in all. */
+static struct wd_vec3 axis_direction(float arch, float t)
+{
+    double turn = -(double)arch * (double)t;
+    return WD_V3(0, wd_dcos(turn), wd_dsin(turn));
+}
+
+static struct wd_vec3 axis_point(float arch, float t)
+{
+    struct wd_vec3 p = WD_V3(0, 0, 0);
+    const int steps = 12;
+    for (int i = 0; i < steps; i++)
+        p = wd_v3_mad(p, axis_direction(arch, t * ((float)i + 0.5f) / (float)steps),
+                      t / (float)steps);
+    return p;
+}
+
+/* A strip along the axis; half as wide at its end. */
+static void add_axis(struct wd_leaf_template *leaf, float arch, float width)
+{
+    uint32_t before[2] = {0};
+    for (int i = 0; i <= AXIS_PIECES; i++) {
+        float t = (float)i / AXIS_PIECES, half = 0.5f * width * (1 - 0.75f * t);
+        struct wd_vec3 p = axis_point(arch, t), d = axis_direction(arch, t);
+        struct wd_vec3 n = WD_V3(0, -d.z, d.y);
+        uint32_t right = wd_leaf_add_corner(leaf, wd_v3_add(p, WD_V3(half, 0, 0)), n, 0.501f, 0,
+                                            0.6f * t);
+        uint32_t left = wd_leaf_add_corner(leaf, wd_v3_add(p, WD_V3(-half, 0, 0)), n, 0.499f, 0,
+                                           0.6f * t);
+        if (i > 0) {
+            wd_leaf_add_triangle(leaf, before[0], right, left);
+            wd_leaf_add_triangle(leaf, before[0], left, before[1]);
+        }
+        before[0] = right;
+        before[1] = left;
+    }
+}
+
+/* Length of a leaflet at share t of the leafy part: palms and ashes are fullest in the middle,
+ * ferns in their lower third. */
+static float leaflet_share(const struct wd_species *species, float t)
+{
+    if (species->leaf.compound == WD_COMPOUND_BIPINNATE)
+        return fminf(0.55f + 1.8f * t, 1) * (1 - 0.93f * t * t);
+    return 0.55f + 0.45f * (float)wd_dsin(WD_PI * (0.12 + 0.76 * (double)t));
+}
+
+/* A pinna: small leaves left and right of its midrib. */
+static void add_pinna(struct wd_leaf_template *leaf, const struct wd_blade_place *place)
+{
+    for (int i = 0; i < 2 * PINNULES; i++) {
+        float t = ((float)(i / 2) + 0.3f) / PINNULES, side = i & 1 ? -1.0f : 1.0f;
+        float reach = place->width * (0.55f - 0.42f * t);
+        float foot = place->length / PINNULES * 0.92f;
+        struct wd_vec3 p = wd_v3_mad(place->foot, place->along, t * place->length);
+        p = wd_v3_mad(p, place->above, -0.08f * t * t * place->length);
+        struct wd_vec3 out = wd_v3_mad(wd_v3_scale(place->across, side), place->along, 0.35f);
+        wd_leaf_add_needle(leaf, p, wd_v3_unit(out), wd_v3_scale(place->along, side), reach, foot);
+    }
+}
+
+static void add_leaflet(struct wd_leaf_template *leaf, const struct wd_species *species,
+                        const struct wd_blade_place *place)
+{
+    const struct wd_leaf_outline *outline = wd_leaf_outline_of(species);
+    if (species->leaf.compound == WD_COMPOUND_BIPINNATE)
+        add_pinna(leaf, place);
+    else if (species->leaf.leaflets > OUTLINED_LEAFLETS)
+        wd_leaf_add_kite(leaf, outline, place);
+    else
+        wd_leaf_add_blade(leaf, outline, place);
+}
+
+void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species *species)
+{
+    float whole = species->leaf.length_cm, arch = species->leaf.arch;
+    float from = species->leaf.stalk_cm / whole;
+    float length = species->leaf.leaflet_length_cm / whole;
+    float width = species->leaf.leaflet_width_cm / whole;
+    int count = (int)species->leaf.leaflets;
+    add_axis(leaf, arch, count > OUTLINED_LEAFLETS ? 0.012f : 0.02f);
+    for (int i = 0; i < count; i++) {
+        bool last = i == count - 1 && count % 2;
+        float t = ((float)(i / 2) + 0.5f + 0.25f * (float)(i & 1)) / (0.5f * (float)count + 0.25f);
+        float at = wd_mixf(from, 0.985f, last ? 1 : t), side = i & 1 ? -1.0f : 1.0f;
+        float size = leaflet_share(species, last ? 0.8f : t);
+        struct wd_vec3 d = axis_direction(arch, at), up = WD_V3(0, -d.z, d.y);
+        struct wd_vec3 out = wd_v3_mad(wd_v3_scale(d, 0.55f + 0.7f * t), WD_V3(side, 0, 0), 1);
+        out = wd_v3_mad(out, WD_V3(0, 0, -1), count > OUTLINED_LEAFLETS ? 0.35f : 0.15f);
+        struct wd_blade_place place = wd_blade_place(axis_point(arch, at),
+                                                     last ? d : wd_v3_unit(out), up,
+                                                     size * length, width * (0.5f + 0.5f * size));
+        place.stiff = 0.6f * at;
+        add_leaflet(leaf, species, &place);
+    }
+}
+
+void wd_leaf_add_palmate(struct wd_leaf_template *leaf, const struct wd_species *species)
+{
+    float whole = species->leaf.length_cm, from = species->leaf.stalk_cm / whole;
+    float length = species->leaf.leaflet_length_cm / whole;
+    float width = species->leaf.leaflet_width_cm / whole;
+    int count = (int)species->leaf.leaflets;
+    struct wd_vec3 hub = WD_V3(0, from, 0);
+    wd_leaf_add_stalk(leaf, WD_V3(0, 0, 0), hub, WD_V3(1, 0, 0), 0.03f);
+    float spread = (float)WD_PI * (count > 5 ? 0.72f : 0.55f);
+    for (int i = 0; i < count; i++) {
+        float t = count > 1 ? 2 * (float)i / (float)(count - 1) - 1 : 0;
+        struct wd_vec3 out = wd_v3_turn(WD_V3(0, 1, 0), WD_V3(1, 0, 0), spread * t);
+        out = wd_v3_unit(wd_v3_mad(out, WD_V3(0, 0, -1), 0.2f));
+        float size = 1 - 0.32f * t * t;
+        struct wd_blade_place place = wd_blade_place(wd_v3_mad(hub, out, 0.06f), out,
+                                                     WD_V3(0, 0, 1), size * length, size * width);
+        place.stiff = 0.3f;
+        wd_leaf_add_blade(leaf, wd_leaf_outline_of(species), &place);
+    }
+}
+
+void wd_leaf_add_arching_blade(struct wd_leaf_template *leaf, const struct wd_species *species)
+{
+    float arch = species->leaf.arch, width = species->leaf.width_cm / species->leaf.length_cm;
+    uint32_t before[2] = {0};
+    for (int i = 0; i < BLADE_PIECES; i++) {
+        float t = (float)i / BLADE_PIECES, half = 0.5f * width * (1 - 0.75f * t * t);
+        /* most of the bend is in the outer half */
+        struct wd_vec3 p = axis_point(arch * t, t), d = axis_direction(arch * t, 1);
+        struct wd_vec3 n = WD_V3(0, -d.z, d.y);
+        uint32_t right = wd_leaf_add_corner(leaf, wd_v3_add(p, WD_V3(half, 0, 0)), n, 1, t, t);
+        uint32_t left = wd_leaf_add_corner(leaf, wd_v3_add(p, WD_V3(-half, 0, 0)), n, 0, t, t);
+        if (i > 0) {
+            wd_leaf_add_triangle(leaf, before[0], right, left);
+            wd_leaf_add_triangle(leaf, before[0], left, before[1]);
+        }
+        before[0] = right;
+        before[1] = left;
+    }
+    struct wd_vec3 d = axis_direction(arch, 1);
+    uint32_t tip = wd_leaf_add_corner(leaf, axis_point(arch, 1), WD_V3(0, -d.z, d.y), 0.5f, 1, 1);
+    wd_leaf_add_triangle(leaf, before[0], tip, before[1]);
+}

@@ -1,0 +1,126 @@
+#include "tree/leaf_template.h"
+
+#include <stdlib.h>
+
+#include "tree/leaf_parts.h"
+
+void wd_leaf_template_finish(struct wd_leaf_template *leaf)
+{
+    free(leaf->corners);
+    free(leaf->indices);
+    *leaf = (struct wd_leaf_template){0};
+}
+
+float wd_leaf_template_area(const struct wd_leaf_template *leaf)
+{
+    float area = 0;
+    for (size_t i = 0; i < leaf->index_count; i += 3) {
+        struct wd_vec3 a = leaf->corners[leaf->indices[i]].p;
+        struct wd_vec3 b = wd_v3_sub(leaf->corners[leaf->indices[i + 1]].p, a);
+        struct wd_vec3 c = wd_v3_sub(leaf->corners[leaf->indices[i + 2]].p, a);
+        area += 0.5f * wd_v3_length(wd_v3_cross(b, c));
+    }
+    return area;
+}
+
+static struct wd_blade_place whole_leaf(const struct wd_species *species, float from)
+{
+    return wd_blade_place(WD_V3(0, from, 0), WD_V3(0, 1, 0), WD_V3(0, 0, 1), 1 - from,
+                          species->leaf.width_cm / species->leaf.length_cm);
+}
+
+static void add_simple(struct wd_leaf_template *leaf, const struct wd_species *species)
+{
+    float from = fminf(species->leaf.stalk_cm / species->leaf.length_cm, 0.8f);
+    struct wd_blade_place place = whole_leaf(species, from);
+    if (from > 0)
+        wd_leaf_add_stalk(leaf, WD_V3(0, 0, 0), place.foot, WD_V3(1, 0, 0), 0.025f);
+    wd_leaf_add_blade(leaf, wd_leaf_outline_of(species), &place);
+}
+
+static void add_outlined(struct wd_leaf_template *leaf, const struct wd_species *species)
+{
+    switch (species->leaf.compound) {
+    case WD_COMPOUND_PINNATE:
+    case WD_COMPOUND_BIPINNATE:
+        wd_leaf_add_pinnate(leaf, species);
+        break;
+    case WD_COMPOUND_PALMATE:
+        wd_leaf_add_palmate(leaf, species);
+        break;
+    default:
+        if (species->leaf.shape == WD_LEAF_BLADE)
+            wd_leaf_add_arching_blade(leaf, species);
+        else
+            add_simple(leaf, species);
+    }
+}
+
+static void scale_to_area(struct wd_leaf_template *leaf, float area)
+{
+    float own = wd_leaf_template_area(leaf), factor = own > 0 ? sqrtf(area / own) : 1;
+    for (size_t i = 0; i < leaf->corner_count; i++)
+        leaf->corners[i].p = wd_v3_scale(leaf->corners[i].p, factor);
+}
+
+void wd_leaf_template_init(struct wd_leaf_template *leaf, const struct wd_species *species,
+                           enum wd_leaf_form form, uint32_t variant)
+{
+    *leaf = (struct wd_leaf_template){0};
+    if (species->leaf.shape == WD_LEAF_NEEDLES) {
+        wd_leaf_add_needles(leaf, species, variant);
+        return;
+    }
+    add_outlined(leaf, species);
+    if (form == WD_LEAF_AS_BLADE)
+        return;
+    float area = wd_leaf_template_area(leaf);
+    leaf->corner_count = leaf->index_count = 0;
+    struct wd_blade_place place = whole_leaf(species, 0);
+    wd_leaf_add_kite(leaf, wd_leaf_outline_of(species), &place);
+    scale_to_area(leaf, area);
+}
+
+/* Petals in rings, the inner ones smaller and steeper. */
+static void add_petals(struct wd_leaf_template *flower, int petals)
+{
+    static const struct wd_leaf_outline petal = {0, {{0.62f, 0.3f}, {1, 0.68f}, {0.6f, 0.96f}}, 3,
+                                                 0.2f, -0.18f, WD_VEINS_PARALLEL, 0, 0};
+    int rings = petals > 6 ? 2 : 1, each = (petals + rings - 1) / rings;
+    for (int i = 0; i < petals; i++) {
+        int ring = i / each;
+        float angle = 6.2831853f * ((float)(i % each) + 0.5f * (float)ring) / (float)each;
+        struct wd_vec3 out = wd_v3_turn(WD_V3(1, 0, 0), WD_V3(0, 1, 0), angle);
+        struct wd_vec3 along = wd_v3_unit(wd_v3_add(out, WD_V3(0, 0, 0.3f + 0.7f * (float)ring)));
+        float length = 0.5f * (1 - 0.25f * (float)ring);
+        struct wd_blade_place place = wd_blade_place(WD_V3(0, 0, 0.02f * (float)ring), along,
+                                                     WD_V3(0, 0, 1), length,
+                                                     length * (each > 5 ? 0.85f : 1.0f));
+        wd_leaf_add_blade(flower, &petal, &place);
+    }
+}
+
+/* Florets in a spiral around an upright axis, a cone in all. */
+static void add_panicle(struct wd_leaf_template *flower)
+{
+    enum { FLORETS = 26 };
+    for (int i = 0; i < FLORETS; i++) {
+        float t = (float)i / FLORETS, angle = (float)i * 2.3999632f, radius = 0.3f * (1 - 0.8f * t);
+        struct wd_vec3 out = wd_v3_turn(WD_V3(1, 0, 0), WD_V3(0, 1, 0), angle);
+        struct wd_vec3 p = wd_v3_add(wd_v3_scale(out, 0.4f * radius), WD_V3(0, 0, 0.1f + 0.85f * t));
+        struct wd_vec3 d = wd_v3_unit(wd_v3_add(out, WD_V3(0, 0, 0.5f)));
+        wd_leaf_add_needle(flower, p, d, wd_v3_cross(d, out), 0.7f * radius + 0.06f,
+                           0.35f * radius + 0.05f);
+    }
+}
+
+void wd_flower_template_init(struct wd_leaf_template *flower, const struct wd_species *species)
+{
+    *flower = (struct wd_leaf_template){0};
+    if (species->flower.petals > 0)
+        add_petals(flower, (int)species->flower.petals);
+    else
+        add_panicle(flower);
+    for (size_t i = 0; i < flower->corner_count; i++)
+        flower->corners[i].kind |= WD_VERTEX_FLOWER;
+}
