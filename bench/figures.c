@@ -15,6 +15,10 @@ static const struct figure {
     {"first-frame-warm-s", bench_first_frame_warm},
     {"first-frame-cold-s", bench_first_frame_cold},
     {"peak-memory-mb", bench_peak_memory},
+    {"grow-25k-ms", bench_grow},
+    {"grow-vs-ez-tree", bench_grow_ratio},
+    {"lod-coverage-bias-pct", bench_lod_coverage},
+    {"lod-radiance-bias-pct", bench_lod_radiance},
 };
 
 static int compare(const void *a, const void *b)

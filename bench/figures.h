@@ -13,6 +13,10 @@ bool bench_place_million(const char *gpu);
 bool bench_first_frame_warm(const char *gpu);
 bool bench_first_frame_cold(const char *gpu);
 bool bench_peak_memory(const char *gpu);
+bool bench_grow(const char *gpu);
+bool bench_grow_ratio(const char *gpu);
+bool bench_lod_coverage(const char *gpu);
+bool bench_lod_radiance(const char *gpu);
 
 /* Sorts and returns the middle one. */
 double bench_median(double *values, size_t count);

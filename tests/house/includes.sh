@@ -21,7 +21,7 @@ src/api: base scene world tree gpu bake forest frame methods output
 cli: viewer
 viewer:
 examples:
-bench: base scene world
+bench: base scene world tree
 '
 
 # Quoted includes with a folder, as "file:line folder"; weald/ and shared/ are open to all.

@@ -1,0 +1,115 @@
+/* Growing trees on one core: ours, and beside it ez-tree (npm) where node is there. */
+#include "figures.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "tree/grow.h"
+
+enum { RUNS = 15, TRIANGLES = 25000 };
+static const char SPECIES[] = "species/oak.json";
+
+/* Of this thread alone: what else the machine does is not counted. */
+static double cpu_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+static uint32_t triangles(const struct wd_tree_model *model)
+{
+    return model->full.index_count / 3;
+}
+
+/* The detail that makes trees of about TRIANGLES. */
+static bool find_detail(const struct wd_species *species, float *detail)
+{
+    float low = 0.01f, high = 4;
+    for (int i = 0; i < 14; i++) {
+        struct wd_tree_model model;
+        *detail = 0.5f * (low + high);
+        const struct wd_grow_params params = {.seed = 1, .openness = 0.35f, .detail = *detail};
+        if (!wd_tree_grow(&model, species, &params, NULL))
+            return false;
+        if (triangles(&model) < TRIANGLES)
+            low = *detail;
+        else
+            high = *detail;
+        wd_tree_model_finish(&model);
+    }
+    return true;
+}
+
+/* Median CPU time of growing: skeleton, leaves, full mesh and its reduced ones. */
+static bool grow_ms(double *median_ms)
+{
+    struct wd_arena arena = {0};
+    struct wd_species species;
+    double times[RUNS];
+    float detail;
+    bool ok = wd_species_load(&species, SPECIES, &arena, NULL) && find_detail(&species, &detail);
+    for (int i = -1; ok && i < RUNS; i++) {
+        struct wd_tree_model model;
+        const struct wd_grow_params params = {.seed = (uint32_t)(i + 2), .openness = 0.35f,
+                                              .detail = detail};
+        double start = cpu_ms();
+        ok = wd_tree_grow(&model, &species, &params, NULL);
+        if (ok && i >= 0)
+            times[i] = cpu_ms() - start;
+        if (ok && i == 0)
+            printf("%s, detail %.2f: %u triangles, %u of them wood, and %u in reduced meshes\n",
+                   SPECIES, (double)detail, triangles(&model), model.full.wood_index_count / 3,
+                   model.reduced.index_count / 3);
+        wd_tree_model_finish(&model);
+    }
+    if (ok)
+        *median_ms = bench_median(times, RUNS);
+    wd_arena_finish(&arena);
+    return ok;
+}
+
+bool bench_grow(const char *gpu)
+{
+    double ms;
+    (void)gpu;
+    if (!grow_ms(&ms))
+        return false;
+    printf("grow-25k-ms %.1f ms\n", ms);
+    return true;
+}
+
+/* Median of ez-tree's default tree, from bench/ez_tree.sh; 0 where it cannot be run, which it has
+ * said. */
+static bool ez_tree_ms(double *ms)
+{
+    FILE *pipe = popen("bench/ez_tree.sh", "r");
+    char line[256];
+    *ms = 0;
+    if (!pipe) {
+        fprintf(stderr, "bench: bench/ez_tree.sh cannot be started\n");
+        return false;
+    }
+    while (fgets(line, sizeof line, pipe)) {
+        fputs(line, stdout);
+        if (strncmp(line, "default", 7) == 0 && strstr(line, "median"))
+            *ms = strtod(strstr(line, "median") + 6, NULL);
+    }
+    return pclose(pipe) == 0;
+}
+
+bool bench_grow_ratio(const char *gpu)
+{
+    double ours, theirs;
+    (void)gpu;
+    if (!ez_tree_ms(&theirs) || !grow_ms(&ours))
+        return false;
+    if (theirs > 0)
+        printf("ours %.1f ms, ez-tree %.1f ms\ngrow-vs-ez-tree %.2f x\n", ours, theirs,
+               ours / theirs);
+    return true;
+}
