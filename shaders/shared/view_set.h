@@ -7,7 +7,7 @@
  *   normal  RGB model-space normal * 0.5 + 0.5, A sky openness (ambient occlusion)
  *   depth   R front, G back: mean depth of the nearest and of the farthest surfaces, 1 at the side
  *           toward the viewer, 0 at the far side (a z-field, Bruneton and Neyret 2012);
- *           B how much leaf lies on the ray: 1 - exp(-sheets); A share of what is seen that is leaf
+ *           B leaves on the ray: 1 - exp(-count / 4); A share of what is seen that is leaf
  * Texels that show nothing carry their neighbours' values but no coverage. */
 #ifndef WD_SHARED_VIEW_SET_H
 #define WD_SHARED_VIEW_SET_H

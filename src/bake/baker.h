@@ -13,8 +13,10 @@ enum wd_bake_parts { WD_BAKE_ALL, WD_BAKE_WOOD, WD_BAKE_LEAVES };
 
 /* A mesh on the device, and the look textures that its leaves and bark show. */
 struct wd_bake_mesh {
-    struct wd_binding vertices; /* struct wd_tree_vertex[] */
+    struct wd_buffer *vertices; /* struct wd_tree_vertex[] */
     struct wd_buffer *indices;  /* uint32_t[], made with VK_BUFFER_USAGE_STORAGE_BUFFER_BIT */
+    uint32_t first_vertex;      /* that index 0 means: a multiple of 64 */
+    uint32_t vertex_count;
     uint32_t first_index, index_count;
     uint32_t wood_index_count;  /* of index_count, these come first */
     struct wd_image *looks;
@@ -26,7 +28,7 @@ struct wd_baker {
     struct wd_frames frames;
     struct wd_pipeline depth, identity, resolve;
     VkSampler sampler;
-    struct wd_buffer samples, texels, readback; /* of one batch; grow on demand */
+    struct wd_buffer samples, texels; /* of one batch; grow on demand */
     const struct wd_log *log;
 };
 bool wd_baker_init(struct wd_baker *baker, struct wd_gpu *gpu, const struct wd_log *log);

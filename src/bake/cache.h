@@ -7,6 +7,7 @@
 #ifndef WD_BAKE_CACHE_H
 #define WD_BAKE_CACHE_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -20,18 +21,21 @@ struct wd_bake_cache {
     const char *directory; /* NULL or "": none */
     uint64_t max_bytes;    /* 0: WD_CACHE_BYTES */
     const struct wd_log *log;
+    atomic_bool warned;    /* that nothing can be written: once is enough */
 };
 
-/* A key: a running hash of byte strings. Begin with any value that names the purpose. */
+/* A key: a running hash of byte strings. Begin with wd_cache_code_key(), which changes whenever the
+ * sources of growth and baking do: what other code has made is never found. */
+uint64_t wd_cache_code_key(void);
 uint64_t wd_cache_key(uint64_t key, const void *data, size_t size);
 
 /* The block stored under `kind` (letters) and `key`, or NULL. At most `max_size` bytes are taken.
  * free() it. Safe to call from several threads and processes. */
-void *wd_cache_load(const struct wd_bake_cache *cache, const char *kind, uint64_t key,
+void *wd_cache_load(struct wd_bake_cache *cache, const char *kind, uint64_t key,
                     size_t max_size, size_t *size);
 
 /* Failure to write is a warning: the next start makes the thing again. */
-void wd_cache_store(const struct wd_bake_cache *cache, const char *kind, uint64_t key,
+void wd_cache_store(struct wd_bake_cache *cache, const char *kind, uint64_t key,
                     const void *data, size_t size);
 
 #endif

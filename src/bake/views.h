@@ -49,6 +49,6 @@ void wd_view_set_finish(struct wd_view_set *set); /* accepts {0} */
 bool wd_view_set_get(struct wd_view_set *set, struct wd_baker *baker,
                      const struct wd_bake_mesh *mesh, const struct wd_view_model *model,
                      const struct wd_view_atlas *atlas, const struct wd_view_set_params *params,
-                     const struct wd_bake_cache *cache, uint64_t model_key, bool *from_cache);
+                     struct wd_bake_cache *cache, uint64_t model_key, bool *from_cache);
 
 #endif

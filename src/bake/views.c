@@ -1,0 +1,205 @@
+#include "bake/views.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/pyramid.h"
+#include "base/memory.h"
+
+/* Rows that may be asked for: 4,900 views at most. */
+enum { MAX_ROWS = 64, MAX_COLUMNS = 360, LEAST_TILE = 4 };
+
+static void fill_in(struct wd_view_set_params *params)
+{
+    static const struct wd_hemisphere usual[] = {
+        {WD_VIEWS_RINGS, 10, 30}, {WD_VIEWS_OCTAHEDRAL, 12, 0}, {WD_VIEWS_EVEN, 9, 0}};
+    struct wd_hemisphere *h = &params->hemisphere;
+    if (h->rows == 0 && h->kind == 0 && h->columns == 0)
+        *h = usual[WD_VIEWS_EVEN];
+    if (h->rows == 0 && h->kind <= WD_VIEWS_EVEN)
+        *h = usual[h->kind];
+    params->size = params->size ? params->size : WD_VIEW_SIZE;
+    params->samples = params->samples ? params->samples : 4;
+}
+
+static bool check(const struct wd_view_set_params *params, const struct wd_log *log)
+{
+    const struct wd_hemisphere *h = &params->hemisphere;
+    uint32_t least_rows = h->kind == WD_VIEWS_EVEN ? 1 : 2, size = params->size;
+    if (h->kind > WD_VIEWS_EVEN)
+        return wd_error(log, "view set: layout %u; allowed are 0 rings, 1 octahedral, 2 even",
+                        h->kind);
+    if (h->rows < least_rows || h->rows > MAX_ROWS)
+        return wd_error(log, "view set: %u rows of views; allowed are %u to %d", h->rows,
+                        least_rows, MAX_ROWS);
+    if (h->kind == WD_VIEWS_RINGS && (h->columns < 3 || h->columns > MAX_COLUMNS))
+        return wd_error(log, "view set: %u views a ring; allowed are 3 to %d", h->columns,
+                        MAX_COLUMNS);
+    if (size < WD_VIEW_SIZE_MIN || size > WD_VIEW_SIZE_MAX || (size & (size - 1)) != 0)
+        return wd_error(log, "view set: views of %u texels; allowed are powers of two, %d to %d",
+                        size, WD_VIEW_SIZE_MIN, WD_VIEW_SIZE_MAX);
+    if (params->samples > WD_VIEW_SAMPLES_MAX)
+        return wd_error(log, "view set: %u samples a texel's side; allowed are 1 to %d",
+                        params->samples, WD_VIEW_SAMPLES_MAX);
+    return true;
+}
+
+bool wd_view_atlas_init(struct wd_view_atlas *atlas, struct wd_view_set_params *params,
+                        const struct wd_gpu *gpu, const struct wd_log *log)
+{
+    fill_in(params);
+    *atlas = (struct wd_view_atlas){0};
+    if (!check(params, log))
+        return false;
+    uint32_t views = wd_hemisphere_count(params->hemisphere), columns = 1, mips = 1;
+    while (columns * columns < views)
+        columns++;
+    while (params->size >> mips >= LEAST_TILE)
+        mips++;
+    uint32_t limit = gpu->properties.limits.maxImageDimension2D;
+    if (columns * params->size > limit)
+        return wd_error(log,
+                        "view set: %u views of %u texels make a layer of %u texels a side, "
+                        "%s has %u: use fewer or smaller views",
+                        views, params->size, columns * params->size, gpu->properties.deviceName,
+                        limit);
+    *atlas = (struct wd_view_atlas){params->hemisphere, params->size, columns, mips};
+    return true;
+}
+
+uint32_t wd_view_layer_size(const struct wd_view_atlas *atlas, uint32_t mip)
+{
+    return atlas->columns * (atlas->size >> mip);
+}
+
+size_t wd_view_mip_offset(const struct wd_view_atlas *atlas, uint32_t mip)
+{
+    size_t bytes = 0;
+    for (uint32_t i = 0; i < mip; i++)
+        bytes += (size_t)4 * wd_view_layer_size(atlas, i) * wd_view_layer_size(atlas, i);
+    return bytes;
+}
+
+size_t wd_view_plane_bytes(const struct wd_view_atlas *atlas)
+{
+    return wd_view_mip_offset(atlas, atlas->mips);
+}
+
+void wd_view_set_finish(struct wd_view_set *set)
+{
+    for (int plane = 0; plane < WD_VIEW_PLANES; plane++)
+        free(set->planes[plane]);
+    *set = (struct wd_view_set){0};
+}
+
+static void init_set(struct wd_view_set *set, const struct wd_view_atlas *atlas,
+                     const struct wd_view_model *model)
+{
+    *set = (struct wd_view_set){.atlas = *atlas, .model = *model};
+    for (int plane = 0; plane < WD_VIEW_PLANES; plane++)
+        set->planes[plane] = wd_alloc(wd_view_plane_bytes(atlas));
+}
+
+/* The picture that wd_view_project describes. */
+static struct wd_bake_shot shot_of(const struct wd_view_frame *frame, float samples)
+{
+    float x = 0.5f * samples / frame->half_width_m, y = -0.5f * samples / frame->half_height_m;
+    float depth = 0.5f / frame->half_depth_m;
+    return (struct wd_bake_shot){
+        .x = {frame->right.x * x, frame->right.y * x, 0.0f, 0.5f * samples},
+        .y = {frame->up.x * y, frame->up.y * y, frame->up.z * y,
+              0.5f * samples - frame->up.z * y * frame->middle_m},
+        .depth = {frame->toward.x * depth, frame->toward.y * depth, frame->toward.z * depth,
+                  0.5f - frame->toward.z * depth * frame->middle_m},
+    };
+}
+
+struct taking {
+    struct wd_view_set *set;
+    struct wd_pyramid pyramid;
+};
+
+static void take_view(void *user, uint32_t view, const uint8_t *planes)
+{
+    struct taking *taking = user;
+    const struct wd_view_atlas *atlas = &taking->set->atlas;
+    wd_pyramid_set(&taking->pyramid, planes);
+    for (uint32_t mip = 0; mip < atlas->mips; mip++) {
+        size_t stride = (size_t)4 * wd_view_layer_size(atlas, mip), tile = atlas->size >> mip;
+        size_t at = wd_view_mip_offset(atlas, mip) + view / atlas->columns * tile * stride +
+                    view % atlas->columns * tile * 4;
+        for (int plane = 0; plane < WD_VIEW_PLANES; plane++)
+            wd_pyramid_get(&taking->pyramid, mip, plane, taking->set->planes[plane] + at, stride);
+    }
+}
+
+bool wd_view_set_bake(struct wd_view_set *set, struct wd_baker *baker,
+                      const struct wd_bake_mesh *mesh, const struct wd_view_model *model,
+                      const struct wd_view_atlas *atlas, const struct wd_view_set_params *params)
+{
+    uint32_t views = wd_hemisphere_count(atlas->hemisphere);
+    struct wd_bake_shot *shots = wd_alloc_array(views, sizeof *shots);
+    for (uint32_t i = 0; i < views; i++) {
+        struct wd_view_frame frame =
+            wd_view_frame_of(*model, wd_hemisphere_direction(atlas->hemisphere, i));
+        shots[i] = shot_of(&frame, (float)(atlas->size * params->samples));
+    }
+    const struct wd_bake_job job = {
+        .mesh = *mesh,
+        .parts = params->parts,
+        .shots = shots,
+        .shot_count = views,
+        .width = atlas->size,
+        .height = atlas->size,
+        .samples = params->samples,
+    };
+    struct taking taking = {.set = set};
+    init_set(set, atlas, model);
+    wd_pyramid_init(&taking.pyramid, atlas->size, atlas->size, atlas->mips);
+    bool ok = wd_baker_run(baker, &job, take_view, &taking);
+    wd_pyramid_finish(&taking.pyramid);
+    free(shots);
+    if (!ok)
+        wd_view_set_finish(set);
+    return ok;
+}
+
+/* --- cache ------------------------------------------------------------------------------- */
+
+static uint64_t set_key(const struct wd_view_set_params *params, const struct wd_view_model *model,
+                        uint64_t model_key)
+{
+    const struct wd_hemisphere *h = &params->hemisphere;
+    const uint32_t form[] = {h->kind, h->rows, h->columns, params->size, params->samples,
+                             (uint32_t)params->parts};
+    const float bounds[] = {model->radius_m, model->bottom_m, model->top_m};
+    uint64_t key = wd_cache_key(wd_cache_code_key(), &model_key, sizeof model_key);
+    return wd_cache_key(wd_cache_key(key, form, sizeof form), bounds, sizeof bounds);
+}
+
+bool wd_view_set_get(struct wd_view_set *set, struct wd_baker *baker,
+                     const struct wd_bake_mesh *mesh, const struct wd_view_model *model,
+                     const struct wd_view_atlas *atlas, const struct wd_view_set_params *params,
+                     struct wd_bake_cache *cache, uint64_t model_key, bool *from_cache)
+{
+    size_t plane = wd_view_plane_bytes(atlas), size;
+    uint64_t key = set_key(params, model, model_key);
+    uint8_t *block = wd_cache_load(cache, "views", key, WD_VIEW_PLANES * plane, &size);
+    *from_cache = block && size == WD_VIEW_PLANES * plane;
+    if (*from_cache) {
+        init_set(set, atlas, model);
+        for (int i = 0; i < WD_VIEW_PLANES; i++)
+            memcpy(set->planes[i], block + (size_t)i * plane, plane);
+        free(block);
+        return true;
+    }
+    free(block);
+    if (!wd_view_set_bake(set, baker, mesh, model, atlas, params))
+        return false;
+    block = wd_alloc(WD_VIEW_PLANES * plane);
+    for (int i = 0; i < WD_VIEW_PLANES; i++)
+        memcpy(block + (size_t)i * plane, set->planes[i], plane);
+    wd_cache_store(cache, "views", key, block, WD_VIEW_PLANES * plane);
+    free(block);
+    return true;
+}
