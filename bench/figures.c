@@ -1,9 +1,12 @@
 /* Prints one figure: figures NAME [GPU]. */
 #include "figures.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 static const struct figure {
     const char *name;
@@ -19,6 +22,9 @@ static const struct figure {
     {"grow-vs-ez-tree", bench_grow_ratio},
     {"lod-coverage-bias-pct", bench_lod_coverage},
     {"lod-radiance-bias-pct", bench_lod_radiance},
+    {"bake-100-cold-s", bench_bake_cold},
+    {"bake-100-warm-s", bench_bake_warm},
+    {"bake-100-gpu-mb", bench_bake_memory},
 };
 
 static int compare(const void *a, const void *b)
@@ -31,6 +37,28 @@ double bench_median(double *values, size_t count)
 {
     qsort(values, count, sizeof *values, compare);
     return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
+double bench_now_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void bench_remove_directory(const char *path)
+{
+    DIR *directory = opendir(path);
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        char name[512];
+        if (entry->d_name[0] == '.')
+            continue;
+        snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
+        unlink(name);
+    }
+    if (directory)
+        closedir(directory);
+    rmdir(path);
 }
 
 int main(int argc, char **argv)

@@ -17,8 +17,14 @@ bool bench_grow(const char *gpu);
 bool bench_grow_ratio(const char *gpu);
 bool bench_lod_coverage(const char *gpu);
 bool bench_lod_radiance(const char *gpu);
+bool bench_bake_cold(const char *gpu);
+bool bench_bake_warm(const char *gpu);
+bool bench_bake_memory(const char *gpu);
 
 /* Sorts and returns the middle one. */
 double bench_median(double *values, size_t count);
+
+double bench_now_s(void); /* of a clock that never goes back */
+void bench_remove_directory(const char *path); /* with the files in it */
 
 #endif

@@ -1,20 +1,9 @@
 /* From nothing to the first frame of the default scene, and the memory it takes. */
 #include "figures.h"
 
-#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
-#include <time.h>
-#include <unistd.h>
-
-static double now_s(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 struct start {
     double forest_s, device_s, trees_s, frame_s, total_s;
@@ -31,13 +20,13 @@ static bool first_frame(const char *gpu, const char *cache_dir, struct start *st
     struct wd_picture picture = {0};
     struct wd_render_params render = {.samples = 1};
     double t[5];
-    t[0] = now_s();
+    t[0] = bench_now_s();
     bool ok = wd_forest_create(&forest, &forest_params) == WD_OK;
-    t[1] = now_s();
+    t[1] = bench_now_s();
     ok = ok && wd_renderer_create(&renderer, &renderer_params) == WD_OK;
-    t[2] = now_s();
+    t[2] = bench_now_s();
     ok = ok && wd_renderer_set_forest(renderer, forest) == WD_OK;
-    t[3] = now_s();
+    t[3] = bench_now_s();
     if (ok) {
         struct wd_render_defaults defaults;
         wd_forest_get_render_defaults(forest, &defaults);
@@ -46,7 +35,7 @@ static bool first_frame(const char *gpu, const char *cache_dir, struct start *st
         ok = wd_forest_get_camera(forest, NULL, &render.camera) == WD_OK &&
              wd_renderer_render(renderer, &render, &picture) == WD_OK;
     }
-    t[4] = now_s();
+    t[4] = bench_now_s();
     if (ok) {
         struct wd_forest_info info;
         struct wd_frame_stats stats;
@@ -67,21 +56,6 @@ static bool first_frame(const char *gpu, const char *cache_dir, struct start *st
     return ok;
 }
 
-static void remove_directory(const char *path)
-{
-    DIR *directory = opendir(path);
-    for (struct dirent *entry; directory && (entry = readdir(directory));) {
-        char name[512];
-        if (entry->d_name[0] == '.')
-            continue;
-        snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
-        unlink(name);
-    }
-    if (directory)
-        closedir(directory);
-    rmdir(path);
-}
-
 bool bench_first_frame_cold(const char *gpu)
 {
     char cache[] = "/tmp/weald-bench-XXXXXX";
@@ -91,7 +65,7 @@ bool bench_first_frame_cold(const char *gpu)
         return false;
     }
     bool ok = first_frame(gpu, cache, &start);
-    remove_directory(cache);
+    bench_remove_directory(cache);
     if (ok)
         printf("first-frame-cold-s %.2f s\n", start.total_s);
     return ok;
@@ -111,7 +85,7 @@ bool bench_first_frame_warm(const char *gpu)
         ok = first_frame(gpu, cache, &start);
         total[i] = start.total_s;
     }
-    remove_directory(cache);
+    bench_remove_directory(cache);
     if (ok)
         printf("first-frame-warm-s %.2f s\n", bench_median(total, 3));
     return ok;

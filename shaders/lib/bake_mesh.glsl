@@ -1,4 +1,5 @@
-/* A mesh's triangles in the frame of a picture. Expects `vertices`, `indices`, `shots` and `push`. */
+/* A mesh's triangles in the frame of a picture. Expects `vertices`, `indices`, `shots`, `looks` and
+ * `push`. */
 #include "lib/tree_vertex.glsl"
 
 
@@ -32,4 +33,29 @@ uvec3 bake_triangle(uint triangle)
 {
     uint at = push.first_index + 3u * triangle;
     return uvec3(indices[at], indices[at + 1u], indices[at + 2u]);
+}
+
+/* The look of a triangle of a picture, from its corners b and c as seen from a. */
+struct bake_look {
+    vec2 from, to_b, to_c;
+    float layer, lod;
+};
+
+bake_look bake_look_of(wd_tree_vertex a, wd_tree_vertex b, wd_tree_vertex c, float area)
+{
+    bake_look look;
+    look.from = unpackHalf2x16(a.uv);
+    look.to_b = unpackHalf2x16(b.uv) - look.from;
+    look.to_c = unpackHalf2x16(c.uv) - look.from;
+    look.layer = float(push.look_layer + wd_vertex_layer(a.kind));
+    vec2 size = vec2(textureSize(looks, 0).xy);
+    float texels = abs(look.to_b.x * look.to_c.y - look.to_b.y * look.to_c.x) * size.x * size.y;
+    look.lod = 0.5 * log2(max(texels / abs(area), 1.0));
+    return look;
+}
+
+vec4 bake_look_at(bake_look look, vec2 shares)
+{
+    vec2 uv = look.from + shares.x * look.to_b + shares.y * look.to_c;
+    return textureLod(looks, vec3(uv, look.layer), look.lod);
 }

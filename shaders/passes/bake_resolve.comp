@@ -33,19 +33,12 @@ void add_surface(inout bake_sum sum, wd_bake_shot shot, uint triangle, vec2 plac
     vec3 share = vec3(1.0 - bc.x - bc.y, bc);
     vec3 normal = share.x * tree_vertex_normal(u) + share.y * tree_vertex_normal(v)
                   + share.z * tree_vertex_normal(w);
-    vec2 uv_a = unpackHalf2x16(u.uv), uv_b = unpackHalf2x16(v.uv) - uv_a;
-    vec2 uv_c = unpackHalf2x16(w.uv) - uv_a;
     vec4 tint = share.x * unpackUnorm4x8(u.tint) + share.y * unpackUnorm4x8(v.tint)
                 + share.z * unpackUnorm4x8(w.tint);
     bool leaf = triangle >= push.wood_triangles;
-    float look_texels = abs(uv_b.x * uv_c.y - uv_b.y * uv_c.x) * float(textureSize(looks, 0).x)
-                        * float(textureSize(looks, 0).y);
-    float lod = 0.5 * log2(max(look_texels / abs(area), 1.0));
-    vec3 uv = vec3(uv_a + share.y * uv_b + share.z * uv_c,
-                   float(push.look_layer + (leaf ? 1u : 0u)));
     /* Pictures are lit as the crown's outside; wood within, seen through gaps, has little of that. */
     float inside = leaf ? 1.0 : clamp(1.6 * tint.a, 0.15, 1.0);
-    sum.color += textureLod(looks, uv, lod).rgb * tint.rgb * inside;
+    sum.color += bake_look_at(bake_look_of(u, v, w, area), bc).rgb * tint.rgb * inside;
     sum.normal += normalize(normal + vec3(0.0, 0.0, 1e-6));
     sum.openness += tint.a;
     sum.leaf += leaf ? 1.0 : 0.0;

@@ -13,6 +13,11 @@ struct wd_bake_shot {
 };
 WD_STATIC_ASSERT_SIZE(wd_bake_shot, 48);
 
+/* Samples of a triangle's bounding box from which on a workgroup draws it, and how many such
+ * triangles a batch of pictures may have (a dispatch's least guaranteed limit). */
+#define WD_BAKE_LARGE 512.0
+#define WD_BAKE_LIST 65535
+
 /* Push constants of the baking shaders. */
 struct wd_bake_push {
     uint32_t first_index, triangle_count, first_triangle; /* first_triangle: of the mesh, drawn */
@@ -20,7 +25,8 @@ struct wd_bake_push {
     uint32_t width, height;    /* texels */
     uint32_t samples;          /* a texel, along each side */
     uint32_t wood_triangles;   /* of the mesh: those from here on are leaves */
-    uint32_t look_layer;
+    uint32_t look_layer;       /* the species' first */
+    uint32_t cut_out;          /* 1: texels of the look below WD_LOOK_CUT are holes */
 };
 
 /* What one sample remembers while triangles are drawn. */

@@ -8,36 +8,13 @@
 #ifndef WD_SHARED_HEMISPHERE_H
 #define WD_SHARED_HEMISPHERE_H
 
-#include "shared/types.h"
+#include "shared/vec.h"
 
 #ifdef __STDC_VERSION__
-#include <math.h>
 #include <stdbool.h>
-#define WD_STRUCT struct
-#define WD_SIN(x) sinf(x)
-#define WD_COS(x) cosf(x)
 #define WD_ATAN2(y, x) atan2f(y, x)
-#define WD_SQRT(x) sqrtf(x)
-#define WD_FLOOR(x) floorf(x)
-#define WD_EXP2(x) exp2f(x)
-#define WD_ABS(x) fabsf(x)
-#define WD_MIN(x, y) fminf(x, y)
-#define WD_MAX(x, y) fmaxf(x, y)
-#define WD_TO_UINT(x) (uint32_t)(x)
-#define WD_TO_FLOAT(x) (float)(x)
 #else
-#define WD_STRUCT
-#define WD_SIN(x) sin(x)
-#define WD_COS(x) cos(x)
 #define WD_ATAN2(y, x) atan(y, x)
-#define WD_SQRT(x) sqrt(x)
-#define WD_FLOOR(x) floor(x)
-#define WD_EXP2(x) exp2(x)
-#define WD_ABS(x) abs(x)
-#define WD_MIN(x, y) min(x, y)
-#define WD_MAX(x, y) max(x, y)
-#define WD_TO_UINT(x) uint(x)
-#define WD_TO_FLOAT(x) float(x)
 #endif
 
 /* Elevation x azimuth (Sterling and Justin; row R3): `rows` rings from the horizon to the zenith
@@ -104,13 +81,13 @@ WD_FUNC WD_STRUCT wd_direction wd_hemisphere_direction(WD_STRUCT wd_hemisphere h
 {
     const float quarter = 1.57079632679f;
     if (h.kind == WD_VIEWS_OCTAHEDRAL) {
-        float step = 2.0f / WD_TO_FLOAT(h.rows - 1u);
-        return wd_octahedral_direction(WD_TO_FLOAT(view % h.rows) * step - 1.0f,
-                                       WD_TO_FLOAT(view / h.rows) * step - 1.0f);
+        float step = 2.0f / WD_FLOAT(h.rows - 1u);
+        return wd_octahedral_direction(WD_FLOAT(view % h.rows) * step - 1.0f,
+                                       WD_FLOAT(view / h.rows) * step - 1.0f);
     }
     if (h.kind == WD_VIEWS_RINGS) {
-        float up = WD_TO_FLOAT(view / h.columns) / WD_TO_FLOAT(h.rows - 1u);
-        float around = WD_TO_FLOAT(view % h.columns) / WD_TO_FLOAT(h.columns);
+        float up = WD_FLOAT(view / h.columns) / WD_FLOAT(h.rows - 1u);
+        float around = WD_FLOAT(view % h.columns) / WD_FLOAT(h.columns);
         return wd_direction_of_angles((1.0f - up) * quarter, around * 4.0f * quarter);
     }
     uint32_t ring = 0u;
@@ -119,8 +96,8 @@ WD_FUNC WD_STRUCT wd_direction wd_hemisphere_direction(WD_STRUCT wd_hemisphere h
     if (ring == 0u)
         return wd_direction_of_angles(0.0f, 0.0f);
     uint32_t place = view - (2u * ring * (ring - 1u) + 1u);
-    return wd_direction_of_angles(quarter * WD_TO_FLOAT(ring) / WD_TO_FLOAT(h.rows),
-                                  quarter * WD_TO_FLOAT(place) / WD_TO_FLOAT(ring));
+    return wd_direction_of_angles(quarter * WD_FLOAT(ring) / WD_FLOAT(h.rows),
+                                  quarter * WD_FLOAT(place) / WD_FLOAT(ring));
 }
 
 /* Turns counter-clockwise from east, times `parts`: 0 .. parts. */
@@ -142,7 +119,7 @@ WD_FUNC WD_STRUCT wd_view_place wd_hemisphere_place(WD_STRUCT wd_hemisphere h,
     if (level < 1e-6f)
         d.x = level = 1e-6f;
     if (h.kind == WD_VIEWS_OCTAHEDRAL) {
-        float sum = WD_ABS(d.x) + WD_ABS(d.y) + d.z, cells = WD_TO_FLOAT(h.rows - 1u);
+        float sum = WD_ABS(d.x) + WD_ABS(d.y) + d.z, cells = WD_FLOAT(h.rows - 1u);
         place.a = WD_MIN((0.5f + 0.5f * (d.x + d.y) / sum) * cells, cells - last);
         place.b = WD_MIN((0.5f + 0.5f * (d.x - d.y) / sum) * cells, cells - last);
         place.a = WD_MAX(place.a, 0.0f);
@@ -151,14 +128,14 @@ WD_FUNC WD_STRUCT wd_view_place wd_hemisphere_place(WD_STRUCT wd_hemisphere h,
     }
     float zenith = WD_ATAN2(level, d.z) * (1.0f / 1.57079632679f);
     if (h.kind == WD_VIEWS_RINGS) {
-        float cells = WD_TO_FLOAT(h.rows - 1u);
+        float cells = WD_FLOAT(h.rows - 1u);
         place.a = WD_MIN((1.0f - zenith) * cells, cells - last);
-        place.b = wd_direction_turn(d, WD_TO_FLOAT(h.columns));
+        place.b = wd_direction_turn(d, WD_FLOAT(h.columns));
         return place;
     }
     float around = wd_direction_turn(d, 4.0f), whole = WD_FLOOR(around);
-    float ring = WD_MIN(zenith * WD_TO_FLOAT(h.rows), WD_TO_FLOAT(h.rows) - last);
-    place.quarter = WD_TO_UINT(whole);
+    float ring = WD_MIN(zenith * WD_FLOAT(h.rows), WD_FLOAT(h.rows) - last);
+    place.quarter = WD_UINT(whole);
     place.b = ring * (around - whole);
     place.a = ring - place.b;
     return place;
@@ -183,7 +160,7 @@ WD_FUNC WD_STRUCT wd_view_blend wd_hemisphere_blend(WD_STRUCT wd_hemisphere h,
     WD_STRUCT wd_view_place place = wd_hemisphere_place(h, d);
     float floor_a = WD_FLOOR(place.a), floor_b = WD_FLOOR(place.b);
     float a = place.a - floor_a, b = place.b - floor_b;
-    uint32_t i = WD_TO_UINT(floor_a), j = WD_TO_UINT(floor_b);
+    uint32_t i = WD_UINT(floor_a), j = WD_UINT(floor_b);
     WD_STRUCT wd_view_blend blend;
     bool beyond = a + b > 1.0f;
     blend.view[0] = beyond ? wd_hemisphere_corner(h, place.quarter, i + 1u, j + 1u)
@@ -200,7 +177,7 @@ WD_FUNC WD_STRUCT wd_view_blend wd_hemisphere_blend(WD_STRUCT wd_hemisphere h,
 WD_FUNC uint32_t wd_hemisphere_nearest(WD_STRUCT wd_hemisphere h, WD_STRUCT wd_direction d)
 {
     WD_STRUCT wd_view_place place = wd_hemisphere_place(h, d);
-    uint32_t i = WD_TO_UINT(place.a), j = WD_TO_UINT(place.b), best = 0u;
+    uint32_t i = WD_UINT(place.a), j = WD_UINT(place.b), best = 0u;
     uint32_t corners = h.kind == WD_VIEWS_EVEN && i + j + 2u > h.rows ? 3u : 4u;
     float best_cosine = -2.0f;
     d.z = WD_MAX(d.z, 0.0f);

@@ -14,10 +14,10 @@
 
 #include "shared/hemisphere.h"
 
-#define WD_VIEW_PLANES 3
-#define WD_VIEW_ALBEDO 0
-#define WD_VIEW_NORMAL 1
-#define WD_VIEW_DEPTH 2
+#define WD_PLANES 3
+#define WD_PLANE_ALBEDO 0
+#define WD_PLANE_NORMAL 1
+#define WD_PLANE_DEPTH 2
 
 /* The upright cylinder around a model, and its layer of the atlas. */
 struct wd_view_model {
@@ -82,12 +82,12 @@ WD_FUNC WD_STRUCT wd_view_point wd_view_project(WD_STRUCT wd_view_frame f, float
 WD_FUNC WD_STRUCT wd_view_point wd_view_texel(WD_STRUCT wd_view_atlas atlas, uint32_t view,
                                               WD_STRUCT wd_view_point p, float lod)
 {
-    float edge = WD_MIN(0.5f * WD_EXP2(lod) / WD_TO_FLOAT(atlas.size), 0.5f);
-    float scale = 1.0f / WD_TO_FLOAT(atlas.columns);
+    float edge = WD_MIN(0.5f * WD_EXP2(lod) / WD_FLOAT(atlas.size), 0.5f);
+    float scale = 1.0f / WD_FLOAT(atlas.columns);
     p.x = WD_MIN(WD_MAX(p.x, edge), 1.0f - edge);
     p.y = WD_MIN(WD_MAX(p.y, edge), 1.0f - edge);
-    p.x = (WD_TO_FLOAT(view % atlas.columns) + p.x) * scale;
-    p.y = (WD_TO_FLOAT(view / atlas.columns) + p.y) * scale;
+    p.x = (WD_FLOAT(view % atlas.columns) + p.x) * scale;
+    p.y = (WD_FLOAT(view / atlas.columns) + p.y) * scale;
     return p;
 }
 

@@ -1,5 +1,6 @@
 #include "bake/baker.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,28 +14,31 @@ static const uint32_t bake_raster_comp[] =
 static const uint32_t bake_resolve_comp[] =
 #include "bake_resolve.comp.inc"
     ;
+#define STORAGE VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
 
 enum {
     GROUP = 64,                  /* threads, in every shader */
     INDEX_ALIGNMENT = 64,        /* indices; any storage buffer alignment that Vulkan allows */
     BATCH_SAMPLE_BYTES = 64 << 20,
-    STORAGE = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+    BATCH_SHOTS = 16,            /* keeps a thread's loops short; see bake_raster.comp */
 };
 
-static bool init_raster(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t identity)
+static bool init_raster(struct wd_baker *baker, uint32_t identity, uint32_t large)
 {
+    const uint32_t constants[] = {identity, large};
     const struct wd_compute_params params = {
         .shader = {bake_raster_comp, sizeof bake_raster_comp, "bake_raster.comp"},
-        .bindings = {4, {STORAGE, STORAGE, STORAGE, STORAGE}},
+        .bindings = {6,
+                     {STORAGE, STORAGE, STORAGE, STORAGE, STORAGE,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .push_size = sizeof(struct wd_bake_push),
-        .constants = {1, &identity},
+        .constants = {2, constants},
     };
-    return wd_pipeline_init_compute(pipeline, gpu, &params);
+    return wd_pipeline_init_compute(&baker->raster[identity][large], baker->gpu, &params);
 }
 
-bool wd_baker_init(struct wd_baker *baker, struct wd_gpu *gpu, const struct wd_log *log)
+static bool init_pipelines(struct wd_baker *baker)
 {
-    *baker = (struct wd_baker){.gpu = gpu, .log = log};
     const struct wd_compute_params resolve = {
         .shader = {bake_resolve_comp, sizeof bake_resolve_comp, "bake_resolve.comp"},
         .bindings = {6,
@@ -42,9 +46,21 @@ bool wd_baker_init(struct wd_baker *baker, struct wd_gpu *gpu, const struct wd_l
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .push_size = sizeof(struct wd_bake_push),
     };
-    bool ok = wd_frames_init(&baker->frames, gpu) && init_raster(&baker->depth, gpu, 0) &&
-              init_raster(&baker->identity, gpu, 1) &&
-              wd_pipeline_init_compute(&baker->resolve, gpu, &resolve) &&
+    for (uint32_t i = 0; i < 4; i++)
+        if (!init_raster(baker, i / 2, i % 2))
+            return false;
+    return wd_pipeline_init_compute(&baker->resolve, baker->gpu, &resolve);
+}
+
+bool wd_baker_init(struct wd_baker *baker, struct wd_gpu *gpu, const struct wd_log *log)
+{
+    *baker = (struct wd_baker){.gpu = gpu, .log = log};
+    const struct wd_buffer_params list = {
+        "bake list", (4 + 2 * (VkDeviceSize)WD_BAKE_LIST) * sizeof(uint32_t),
+        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+        WD_MEMORY_DEVICE};
+    bool ok = wd_frames_init(&baker->frames, gpu) && init_pipelines(baker) &&
+              wd_buffer_init(&baker->list, gpu, &list) &&
               wd_sampler_init(&baker->sampler, gpu, WD_SAMPLER_TRILINEAR_REPEAT);
     if (!ok)
         wd_baker_finish(baker);
@@ -56,12 +72,13 @@ void wd_baker_finish(struct wd_baker *baker)
     if (!baker->gpu)
         return;
     wd_frames_finish(&baker->frames);
-    wd_pipeline_finish(&baker->depth, baker->gpu);
-    wd_pipeline_finish(&baker->identity, baker->gpu);
+    for (int i = 0; i < 4; i++)
+        wd_pipeline_finish(&baker->raster[i / 2][i % 2], baker->gpu);
     wd_pipeline_finish(&baker->resolve, baker->gpu);
     vkDestroySampler(baker->gpu->device, baker->sampler, NULL);
     wd_buffer_finish(&baker->samples, baker->gpu);
     wd_buffer_finish(&baker->texels, baker->gpu);
+    wd_buffer_finish(&baker->list, baker->gpu);
     *baker = (struct wd_baker){0};
 }
 
@@ -97,6 +114,7 @@ static struct wd_bake_push job_push(const struct wd_bake_job *job)
         .samples = job->samples,
         .wood_triangles = mesh->wood_index_count / 3,
         .look_layer = mesh->look_layer,
+        .cut_out = mesh->cut_out,
     };
     if (job->parts == WD_BAKE_WOOD)
         push.triangle_count = push.wood_triangles;
@@ -107,31 +125,51 @@ static struct wd_bake_push job_push(const struct wd_bake_job *job)
     return push;
 }
 
-static void record_pass(struct wd_cmd *cmd, const struct batch *batch,
-                        const struct wd_pipeline *pipeline, uint64_t threads)
+static void bind_pass(struct wd_cmd *cmd, const struct batch *batch,
+                      const struct wd_pipeline *pipeline, const struct wd_binding *bindings)
 {
-    wd_cmd_bind(cmd, pipeline, batch->bindings);
+    wd_cmd_bind(cmd, pipeline, bindings);
     wd_cmd_push(cmd, pipeline, &batch->push, sizeof batch->push);
-    if (threads)
-        wd_cmd_dispatch_1d(cmd, (threads + GROUP - 1) / GROUP);
+}
+
+static uint64_t groups(uint64_t threads)
+{
+    return (threads + GROUP - 1) / GROUP;
+}
+
+/* Small triangles, then those that the first pass has put on the list. */
+static void record_raster(struct wd_cmd *cmd, const struct batch *batch, int identity)
+{
+    struct wd_baker *baker = batch->baker;
+    struct wd_binding bindings[6];
+    memcpy(bindings, batch->bindings, sizeof bindings);
+    bindings[4] = WD_BIND_BUFFER(&baker->list);
+    wd_cmd_use_buffer(cmd, &baker->samples, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_buffer(cmd, &baker->list, WD_USE_COMPUTE_WRITE);
+    bind_pass(cmd, batch, &baker->raster[identity][0], bindings);
+    if (batch->push.triangle_count)
+        wd_cmd_dispatch_1d(cmd, groups(batch->push.triangle_count));
+    wd_cmd_use_buffer(cmd, &baker->samples, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_buffer(cmd, &baker->list, WD_USE_INDIRECT);
+    bind_pass(cmd, batch, &baker->raster[identity][1], bindings);
+    wd_cmd_dispatch_indirect(cmd, &baker->list, 0);
 }
 
 static void record_batch(struct wd_cmd *cmd, const struct batch *batch)
 {
     struct wd_baker *baker = batch->baker;
-    uint64_t texels =
-        (uint64_t)batch->push.width * batch->push.height * batch->push.shot_count;
     wd_cmd_use_buffer(cmd, batch->job->mesh.vertices, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, batch->job->mesh.indices, WD_USE_COMPUTE_READ);
     wd_cmd_use_image(cmd, batch->job->mesh.looks, WD_USE_COMPUTE_READ);
     wd_cmd_fill_buffer(cmd, &baker->samples, 0);
-    wd_cmd_use_buffer(cmd, &baker->samples, WD_USE_COMPUTE_WRITE);
-    record_pass(cmd, batch, &baker->depth, batch->push.triangle_count);
-    wd_cmd_use_buffer(cmd, &baker->samples, WD_USE_COMPUTE_WRITE);
-    record_pass(cmd, batch, &baker->identity, batch->push.triangle_count);
+    wd_cmd_fill_buffer(cmd, &baker->list, 1);
+    record_raster(cmd, batch, 0);
+    record_raster(cmd, batch, 1);
     wd_cmd_use_buffer(cmd, &baker->samples, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &baker->texels, WD_USE_COMPUTE_WRITE);
-    record_pass(cmd, batch, &baker->resolve, texels);
+    bind_pass(cmd, batch, &baker->resolve, batch->bindings);
+    wd_cmd_dispatch_1d(
+        cmd, groups((uint64_t)batch->push.width * batch->push.height * batch->push.shot_count));
 }
 
 static bool run_batch(struct batch *batch)
@@ -169,9 +207,12 @@ bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
     const size_t picture = (size_t)job->width * job->height;
     const size_t sample_bytes =
         picture * job->samples * job->samples * sizeof(struct wd_bake_sample);
-    const size_t shot_bytes = picture * WD_VIEW_PLANES * 4;
+    const size_t shot_bytes = picture * WD_PLANES * 4;
     uint32_t most = (uint32_t)(BATCH_SAMPLE_BYTES / sample_bytes);
-    most = most < 1 ? 1 : most > job->shot_count ? job->shot_count : most;
+    most = most < 1 ? 1 : most > BATCH_SHOTS ? BATCH_SHOTS : most;
+    most = most > job->shot_count ? job->shot_count : most;
+    assert(job->samples * (job->width > job->height ? job->width : job->height) <=
+           WD_BAKE_SIDE_MAX);
     if (!grow(baker, &baker->samples, "bake samples", most * sample_bytes) ||
         !grow(baker, &baker->texels, "bake texels", most * shot_bytes))
         return false;

@@ -20,15 +20,18 @@ struct wd_bake_mesh {
     uint32_t first_index, index_count;
     uint32_t wood_index_count;  /* of index_count, these come first */
     struct wd_image *looks;
-    uint32_t look_layer;        /* bark; the leaf's is the next */
+    uint32_t look_layer;        /* the first of WD_LOOK_LAYERS */
+    uint32_t cut_out;           /* 1: the looks' alpha cuts holes (imported leaves) */
 };
 
 struct wd_baker {
     struct wd_gpu *gpu;
     struct wd_frames frames;
-    struct wd_pipeline depth, identity, resolve;
+    struct wd_pipeline raster[2][2]; /* [identity][large] */
+    struct wd_pipeline resolve;
     VkSampler sampler;
     struct wd_buffer samples, texels; /* of one batch; grow on demand */
+    struct wd_buffer list; /* of large triangles */
     const struct wd_log *log;
 };
 bool wd_baker_init(struct wd_baker *baker, struct wd_gpu *gpu, const struct wd_log *log);
@@ -40,10 +43,12 @@ struct wd_bake_job {
     const struct wd_bake_shot *shots; /* all of one size */
     uint32_t shot_count;
     uint32_t width, height; /* texels */
-    uint32_t samples;       /* a texel, along each side */
+    uint32_t samples;       /* a texel, along each side; times width or height: at most
+                               WD_BAKE_SIDE_MAX */
 };
+#define WD_BAKE_SIDE_MAX 1024
 
-/* Calls `take` once for each shot, in order, with its finest mip: WD_VIEW_PLANES images of
+/* Calls `take` once for each shot, in order, with its finest mip: WD_PLANES images of
  * width x height texels of 4 bytes (see shared/view_set.h), one after the other. */
 bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
                   void (*take)(void *user, uint32_t shot, const uint8_t *planes), void *user);

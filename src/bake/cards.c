@@ -34,14 +34,14 @@ size_t wd_cards_bytes(void)
 
 void wd_cards_finish(struct wd_cards *cards)
 {
-    for (int plane = 0; plane < WD_VIEW_PLANES; plane++)
+    for (int plane = 0; plane < WD_PLANES; plane++)
         free(cards->planes[plane]);
     *cards = (struct wd_cards){0};
 }
 
 static void init_cards(struct wd_cards *cards)
 {
-    for (int plane = 0; plane < WD_VIEW_PLANES; plane++)
+    for (int plane = 0; plane < WD_PLANES; plane++)
         cards->planes[plane] = wd_alloc(wd_cards_bytes());
 }
 
@@ -97,7 +97,7 @@ static void take_card(void *user, uint32_t card, const uint8_t *planes)
     for (uint32_t mip = 0; mip < WD_CARD_MIPS; mip++) {
         uint32_t width, height;
         wd_card_size(mip, &width, &height);
-        for (int plane = 0; plane < WD_VIEW_PLANES; plane++)
+        for (int plane = 0; plane < WD_PLANES; plane++)
             wd_pyramid_get(&taking->pyramid, mip, plane,
                            taking->cards->planes[plane] + wd_card_offset(card, mip),
                            (size_t)4 * width);
@@ -152,12 +152,12 @@ bool wd_cards_load(struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t
 {
     size_t plane = wd_cards_bytes(), size;
     uint8_t *block = wd_cache_load(cache, "cards", cards_key(model_key, parts),
-                                   WD_VIEW_PLANES * plane, &size);
-    bool found = block && size == WD_VIEW_PLANES * plane;
+                                   WD_PLANES * plane, &size);
+    bool found = block && size == WD_PLANES * plane;
     *cards = (struct wd_cards){0};
     if (found) {
         init_cards(cards);
-        for (int i = 0; i < WD_VIEW_PLANES; i++)
+        for (int i = 0; i < WD_PLANES; i++)
             memcpy(cards->planes[i], block + (size_t)i * plane, plane);
     }
     free(block);
@@ -168,9 +168,9 @@ void wd_cards_store(const struct wd_cards *cards, struct wd_bake_cache *cache, u
                     enum wd_bake_parts parts)
 {
     size_t plane = wd_cards_bytes();
-    uint8_t *block = wd_alloc(WD_VIEW_PLANES * plane);
-    for (int i = 0; i < WD_VIEW_PLANES; i++)
+    uint8_t *block = wd_alloc(WD_PLANES * plane);
+    for (int i = 0; i < WD_PLANES; i++)
         memcpy(block + (size_t)i * plane, cards->planes[i], plane);
-    wd_cache_store(cache, "cards", cards_key(model_key, parts), block, WD_VIEW_PLANES * plane);
+    wd_cache_store(cache, "cards", cards_key(model_key, parts), block, WD_PLANES * plane);
     free(block);
 }

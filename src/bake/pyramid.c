@@ -7,7 +7,7 @@
 #include "base/color.h"
 #include "base/memory.h"
 
-enum { VALUES = 4 * WD_VIEW_PLANES, COVERAGE = 3 };
+enum { VALUES = 4 * WD_PLANES, COVERAGE = 3 };
 
 /* Values 0..1 in the order of the planes' bytes, colours linear: sums weighted by coverage, and
  * the coverage itself. */

@@ -26,10 +26,10 @@ struct wd_pyramid {
 void wd_pyramid_init(struct wd_pyramid *pyramid, uint32_t width, uint32_t height, uint32_t mips);
 void wd_pyramid_finish(struct wd_pyramid *pyramid);
 
-/* Takes a finest mip: WD_VIEW_PLANES images of 4 bytes a texel, one after the other. */
+/* Takes a finest mip: WD_PLANES images of 4 bytes a texel, one after the other. */
 void wd_pyramid_set(struct wd_pyramid *pyramid, const uint8_t *planes);
 
-/* Writes a mip of a plane (WD_VIEW_*) at `out`, rows `stride` bytes apart. */
+/* Writes a mip of a plane (WD_PLANE_*) at `out`, rows `stride` bytes apart. */
 void wd_pyramid_get(const struct wd_pyramid *pyramid, uint32_t mip, int plane, uint8_t *out,
                     size_t stride);
 

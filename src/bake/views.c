@@ -41,6 +41,10 @@ static bool check(const struct wd_view_set_params *params, const struct wd_log *
     if (params->samples > WD_VIEW_SAMPLES_MAX)
         return wd_error(log, "view set: %u samples a texel's side; allowed are 1 to %d",
                         params->samples, WD_VIEW_SAMPLES_MAX);
+    if (size * params->samples > WD_BAKE_SIDE_MAX)
+        return wd_error(log,
+                        "view set: %u texels of %u samples a side make %u; allowed are %d", size,
+                        params->samples, size * params->samples, WD_BAKE_SIDE_MAX);
     return true;
 }
 
@@ -87,7 +91,7 @@ size_t wd_view_plane_bytes(const struct wd_view_atlas *atlas)
 
 void wd_view_set_finish(struct wd_view_set *set)
 {
-    for (int plane = 0; plane < WD_VIEW_PLANES; plane++)
+    for (int plane = 0; plane < WD_PLANES; plane++)
         free(set->planes[plane]);
     *set = (struct wd_view_set){0};
 }
@@ -96,7 +100,7 @@ static void init_set(struct wd_view_set *set, const struct wd_view_atlas *atlas,
                      const struct wd_view_model *model)
 {
     *set = (struct wd_view_set){.atlas = *atlas, .model = *model};
-    for (int plane = 0; plane < WD_VIEW_PLANES; plane++)
+    for (int plane = 0; plane < WD_PLANES; plane++)
         set->planes[plane] = wd_alloc(wd_view_plane_bytes(atlas));
 }
 
@@ -128,7 +132,7 @@ static void take_view(void *user, uint32_t view, const uint8_t *planes)
         size_t stride = (size_t)4 * wd_view_layer_size(atlas, mip), tile = atlas->size >> mip;
         size_t at = wd_view_mip_offset(atlas, mip) + view / atlas->columns * tile * stride +
                     view % atlas->columns * tile * 4;
-        for (int plane = 0; plane < WD_VIEW_PLANES; plane++)
+        for (int plane = 0; plane < WD_PLANES; plane++)
             wd_pyramid_get(&taking->pyramid, mip, plane, taking->set->planes[plane] + at, stride);
     }
 }
@@ -184,11 +188,11 @@ bool wd_view_set_get(struct wd_view_set *set, struct wd_baker *baker,
 {
     size_t plane = wd_view_plane_bytes(atlas), size;
     uint64_t key = set_key(params, model, model_key);
-    uint8_t *block = wd_cache_load(cache, "views", key, WD_VIEW_PLANES * plane, &size);
-    *from_cache = block && size == WD_VIEW_PLANES * plane;
+    uint8_t *block = wd_cache_load(cache, "views", key, WD_PLANES * plane, &size);
+    *from_cache = block && size == WD_PLANES * plane;
     if (*from_cache) {
         init_set(set, atlas, model);
-        for (int i = 0; i < WD_VIEW_PLANES; i++)
+        for (int i = 0; i < WD_PLANES; i++)
             memcpy(set->planes[i], block + (size_t)i * plane, plane);
         free(block);
         return true;
@@ -196,10 +200,10 @@ bool wd_view_set_get(struct wd_view_set *set, struct wd_baker *baker,
     free(block);
     if (!wd_view_set_bake(set, baker, mesh, model, atlas, params))
         return false;
-    block = wd_alloc(WD_VIEW_PLANES * plane);
-    for (int i = 0; i < WD_VIEW_PLANES; i++)
+    block = wd_alloc(WD_PLANES * plane);
+    for (int i = 0; i < WD_PLANES; i++)
         memcpy(block + (size_t)i * plane, set->planes[i], plane);
-    wd_cache_store(cache, "views", key, block, WD_VIEW_PLANES * plane);
+    wd_cache_store(cache, "views", key, block, WD_PLANES * plane);
     free(block);
     return true;
 }

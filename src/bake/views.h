@@ -30,7 +30,7 @@ bool wd_view_atlas_init(struct wd_view_atlas *atlas, struct wd_view_set_params *
 struct wd_view_set {
     struct wd_view_atlas atlas;
     struct wd_view_model model;
-    uint8_t *planes[WD_VIEW_PLANES]; /* all mips, finest first; 4 bytes a texel */
+    uint8_t *planes[WD_PLANES]; /* all mips, finest first; 4 bytes a texel */
 };
 /* Texels a side of a layer at a mip; byte offset of a mip in a plane; bytes of a plane. */
 uint32_t wd_view_layer_size(const struct wd_view_atlas *atlas, uint32_t mip);

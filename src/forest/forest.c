@@ -9,6 +9,7 @@
 #include "base/jobs.h"
 #include "base/memory.h"
 #include "forest/looks.h"
+#include "forest/model_bakes.h"
 #include "tree/variant.h"
 
 /* Layers that seven bits can tell apart, inventories included. */
@@ -98,7 +99,8 @@ static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
             const struct wd_tree_mesh *mesh = level_mesh(&work->grown[i], level);
             forest->ranges[i][level] =
                 (struct wd_mesh_range){(uint32_t)index_count, mesh->index_count,
-                                       (uint32_t)vertex_count, mesh->vertex_count};
+                                       (uint32_t)vertex_count, mesh->vertex_count,
+                                       mesh->wood_index_count};
             vertex_count += (mesh->vertex_count + WD_MESH_ALIGNMENT - 1) / WD_MESH_ALIGNMENT *
                             WD_MESH_ALIGNMENT;
             index_count += mesh->index_count;
@@ -119,100 +121,29 @@ static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
     bool ok =
         make_buffer(&forest->vertices, gpu, "tree vertices", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                     vertices, vertex_count * sizeof *vertices) &&
-        make_buffer(&forest->indices, gpu, "tree indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
+        make_buffer(&forest->indices, gpu, "tree indices",
+                    VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                     indices, index_count * sizeof *indices);
     free(vertices);
     free(indices);
     return ok;
 }
 
-static bool make_card_image(struct wd_image *image, struct wd_gpu *gpu, const char *name,
-                            VkFormat format, uint32_t models)
-{
-    const struct wd_image_params params = {
-        .name = name,
-        .format = format,
-        .width = WD_CARD_WIDTH,
-        .height = WD_CARD_HEIGHT,
-        .layers = WD_CARDS * models,
-        .mips = WD_CARD_MIPS,
-        .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
-        .view = WD_IMAGE_ARRAY,
-    };
-    if (params.layers > gpu->properties.limits.maxImageArrayLayers)
-        return wd_error(
-            gpu->log,
-            "%u tree models need %u image layers, %s has %u: use fewer species or variants", models,
-            params.layers, gpu->properties.deviceName, gpu->properties.limits.maxImageArrayLayers);
-    return wd_image_init(image, gpu, &params);
-}
-
-static bool upload_cards(struct wd_forest_device *forest, struct wd_gpu *gpu, uint32_t model,
-                         const struct wd_cards *cards)
-{
-    for (uint32_t card = 0; card < WD_CARDS; card++) {
-        for (uint32_t mip = 0; mip < WD_CARD_MIPS; mip++) {
-            uint32_t width, height, layer = model * WD_CARDS + card;
-            wd_card_size(mip, &width, &height);
-            size_t offset = wd_card_offset(card, mip), size = (size_t)4 * width * height;
-            if (!wd_image_upload(gpu, &forest->card_albedo, layer, mip, cards->albedo + offset,
-                                 size) ||
-                !wd_image_upload(gpu, &forest->card_normal, layer, mip, cards->normal + offset,
-                                 size))
-                return false;
-        }
-    }
-    return true;
-}
-
-/* --- cards ------------------------------------------------------------------------------- */
-
-static bool bake_model(struct preparation *work, struct wd_gpu *gpu, struct wd_card_baker *baker,
-                       uint32_t index, struct wd_cards *cards)
-{
-    const struct wd_forest_device_params *params = work->params;
-    const char *cache = params->cache_dir && params->cache_dir[0] ? params->cache_dir : NULL;
-    const uint8_t *look = work->looks + index / work->forest->variants * WD_LOOK_BYTES;
-    uint64_t key = wd_cards_key(&work->grown[index], look, WD_LOOK_HALF_BYTES);
-    if (cache && wd_cards_load(cards, cache, key)) {
-        work->forest->baked_from_cache++;
-        return true;
-    }
-    if (!baker->gpu && !wd_card_baker_init(baker, gpu, params->log))
-        return false;
-    struct wd_image image = {0};
-    bool ok = wd_looks_upload(&image, gpu, look, 1) &&
-              wd_cards_bake(cards, baker, &work->grown[index], &image);
-    wd_image_finish(&image, gpu);
-    if (ok && cache)
-        wd_cards_store(cards, cache, key, params->log);
-    return ok;
-}
-
-static bool prepare_cards(struct preparation *work, struct wd_gpu *gpu)
+/* What cards and view sets span, and the name of each model's content. */
+static void describe_content(struct preparation *work, uint32_t index)
 {
     struct wd_forest_device *forest = work->forest;
-    struct wd_card_baker baker = {0};
-    bool ok = make_card_image(&forest->card_albedo, gpu, "card albedo", VK_FORMAT_R8G8B8A8_SRGB,
-                              forest->model_count) &&
-              make_card_image(&forest->card_normal, gpu, "card normal", VK_FORMAT_R8G8B8A8_UNORM,
-                              forest->model_count);
-    for (uint32_t i = 0; i < forest->model_count && ok; i++) {
-        struct wd_cards cards = {0};
-        ok = wd_progress_report(work->params->progress, "baking trees", i, forest->model_count) &&
-             bake_model(work, gpu, &baker, i, &cards);
-        if (!ok)
-            break;
-        struct wd_model *model = &forest->host_models[i];
-        model->half_width_m = cards.half_width_m;
-        model->half_depth_m = cards.half_depth_m;
-        model->bottom_m = cards.bottom_m;
-        model->top_m = cards.top_m;
-        ok = upload_cards(forest, gpu, i, &cards);
-        wd_cards_finish(&cards);
-    }
-    wd_card_baker_finish(&baker);
-    return ok;
+    const struct wd_tree_mesh *mesh = &work->grown[index].full;
+    const struct wd_card_extent extent = wd_card_extent_of(mesh);
+    struct wd_model *model = &forest->host_models[index];
+    model->half_width_m = extent.half_width_m;
+    model->half_depth_m = extent.half_depth_m;
+    model->bottom_m = extent.bottom_m;
+    model->top_m = extent.top_m;
+    model->card_layer = WD_CARDS * index;
+    forest->model_keys[index] =
+        wd_model_key(mesh, work->looks + index / forest->variants * WD_LOOK_BYTES,
+                     WD_LOOK_HALF_BYTES);
 }
 
 /* --- the whole --------------------------------------------------------------------------- */
@@ -259,17 +190,20 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
         return false;
     for (uint32_t i = 0; i < forest->model_count; i++) {
         wd_variant_describe(&forest->host_models[i], params->scene, i, &work->grown[i]);
-        forest->host_models[i].card_layer = WD_CARDS * i;
+        describe_content(work, i);
     }
     double grown = wd_clock_s();
     forest->grown_us = (uint64_t)((grown - start) * 1e6);
-    bool ok = prepare_cards(work, gpu) && upload_meshes(work, gpu) &&
+    struct wd_image *cards[WD_PLANES] = {&forest->card_albedo, &forest->card_normal};
+    bool ok = upload_meshes(work, gpu) &&
               make_table(&forest->models, gpu, "tree models", forest->host_models,
                          forest->model_count * sizeof *forest->host_models) &&
               wd_looks_upload(&forest->looks, gpu, work->looks,
                               (uint32_t)params->scene->species_file_count) &&
               wd_look_details_upload(&forest->look_details, gpu, work->looks,
-                                     (uint32_t)params->scene->species_file_count);
+                                     (uint32_t)params->scene->species_file_count) &&
+              wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, cards, params->progress,
+                                   &forest->baked_from_cache);
     forest->baked_us = (uint64_t)((wd_clock_s() - grown) * 1e6);
     return ok;
 }
@@ -284,6 +218,9 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
     size_t slots = forest->model_count ? forest->model_count : 1;
     forest->ranges = wd_alloc_array(slots, sizeof *forest->ranges);
     forest->host_models = wd_alloc_array(slots, sizeof *forest->host_models);
+    forest->model_keys = wd_alloc_array(slots, sizeof *forest->model_keys);
+    forest->cache.directory = params->cache_dir ? wd_strdup(params->cache_dir) : NULL;
+    forest->cache.log = params->log;
     struct preparation work = {
         .forest = forest,
         .params = params,
@@ -325,6 +262,8 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
         vkDestroySampler(gpu->device, forest->card_sampler, NULL);
     free(forest->ranges);
     free(forest->host_models);
+    free(forest->model_keys);
+    free((char *)forest->cache.directory);
     free(forest->host_fades);
     *forest = (struct wd_forest_device){0};
 }

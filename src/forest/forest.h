@@ -13,6 +13,7 @@
 struct wd_mesh_range {
     uint32_t first_index, index_count;
     uint32_t first_vertex, vertex_count; /* first: a multiple of WD_MESH_ALIGNMENT */
+    uint32_t wood_index_count; /* of index_count, these come first */
 };
 /* Vertices; a multiple of every storage buffer alignment (256 bytes) that Vulkan allows. */
 #define WD_MESH_ALIGNMENT 64
@@ -33,6 +34,8 @@ struct wd_forest_device {
     VkSampler look_sampler, card_sampler, point_sampler; /* point: normals and shadows of cards */
     struct wd_mesh_range (*ranges)[2]; /* [model][WD_LEVEL_MESH, WD_LEVEL_REDUCED] */
     struct wd_model *host_models;
+    uint64_t *model_keys;      /* what names each model's content in the cache */
+    struct wd_bake_cache cache;
     struct wd_layer_fade *host_fades;
     uint32_t model_count, variants;
     float max_tree_height_m;

@@ -3,112 +3,114 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
-#include "bake/card_filter.h"
+#include "bake/pyramid.h"
 #include "base/memory.h"
 #include "shared/hash.h"
 
-enum {
-    SAMPLES_X = WD_CARD_WIDTH * WD_CARD_SUPERSAMPLING,
-    SAMPLES_Y = WD_CARD_HEIGHT * WD_CARD_SUPERSAMPLING,
-};
+enum { WIDTH = 128, HEIGHT = 256, MIPS = 8, TEXELS = WIDTH * HEIGHT };
 
-struct render {
-    uint8_t *albedo, *normal;
-    double coverage;
-};
-
-/* Leaves of 6 x 6 samples strewn over a third of the card, all of one colour, facing up. */
-static struct render strewn_leaves(void)
+/* Leaves of 3 x 3 texels strewn over a third of a picture, all of one colour, facing up, with
+ * half covered edges. */
+static uint8_t *strewn_leaves(double *coverage)
 {
-    struct render render = {wd_alloc((size_t)4 * SAMPLES_X * SAMPLES_Y),
-                            wd_alloc((size_t)4 * SAMPLES_X * SAMPLES_Y), 0.0};
-    size_t covered = 0;
-    for (size_t y = 0; y < SAMPLES_Y; y++) {
-        for (size_t x = 0; x < SAMPLES_X; x++) {
-            if (wd_hash2((uint32_t)(x / 6), (uint32_t)(y / 6)) % 3 != 0)
-                continue;
-            size_t at = 4 * (y * SAMPLES_X + x);
-            render.albedo[at] = 60;
-            render.albedo[at + 1] = 120;
-            render.albedo[at + 2] = 30;
-            render.albedo[at + 3] = 255;
-            render.normal[at] = render.normal[at + 1] = 128;
-            render.normal[at + 2] = 255;
-            render.normal[at + 3] = 200;
-            covered++;
-        }
+    uint8_t *planes = wd_alloc((size_t)4 * TEXELS * WD_PLANES);
+    *coverage = 0.0;
+    for (uint32_t i = 0; i < TEXELS; i++) {
+        uint32_t x = i % WIDTH, y = i / WIDTH;
+        if (wd_hash2(x / 3, y / 3) % 3 != 0)
+            continue;
+        uint8_t *albedo = planes + 4 * i, *normal = albedo + 4 * TEXELS;
+        uint8_t *depth = normal + 4 * TEXELS;
+        memcpy(albedo, (uint8_t[]){60, 120, 30, x % 3 == 0 ? 128 : 255}, 4);
+        memcpy(normal, (uint8_t[]){128, 128, 255, 200}, 4);
+        memcpy(depth, (uint8_t[]){180, 90, 50, 255}, 4);
+        *coverage += albedo[3] / 255.0 / TEXELS;
     }
-    render.coverage = (double)covered / ((double)SAMPLES_X * SAMPLES_Y);
-    return render;
+    return planes;
 }
 
-static struct wd_cards empty_cards(void)
+static uint8_t *mip_of(const struct wd_pyramid *pyramid, uint32_t mip, int plane)
 {
-    return (struct wd_cards){.albedo = wd_alloc(wd_cards_bytes()),
-                             .normal = wd_alloc(wd_cards_bytes())};
+    uint32_t width = pyramid->levels[mip].width, height = pyramid->levels[mip].height;
+    uint8_t *out = wd_alloc((size_t)4 * width * height);
+    wd_pyramid_get(pyramid, mip, plane, out, (size_t)4 * width);
+    return out;
 }
 
 static void every_mip_keeps_coverage(void **state)
 {
     (void)state;
-    struct render render = strewn_leaves();
-    struct wd_cards cards = empty_cards();
-    wd_card_filter(&cards, 1, render.albedo, render.normal);
-    for (uint32_t mip = 0; mip < WD_CARD_MIPS; mip++) {
-        uint32_t width, height;
-        wd_card_size(mip, &width, &height);
-        const uint8_t *texels = cards.albedo + wd_card_offset(1, mip);
+    struct wd_pyramid pyramid;
+    double coverage;
+    uint8_t *planes = strewn_leaves(&coverage);
+    wd_pyramid_init(&pyramid, WIDTH, HEIGHT, MIPS);
+    wd_pyramid_set(&pyramid, planes);
+    for (uint32_t mip = 0; mip < MIPS; mip++) {
+        uint8_t *texels = mip_of(&pyramid, mip, WD_PLANE_ALBEDO);
+        size_t count = (size_t)pyramid.levels[mip].width * pyramid.levels[mip].height;
         double sum = 0.0;
-        for (size_t i = 0; i < (size_t)width * height; i++)
+        for (size_t i = 0; i < count; i++)
             sum += texels[4 * i + 3] / 255.0;
-        assert_float_equal(sum / (width * height), render.coverage, 0.003);
+        assert_float_equal(sum / (double)count, coverage, 0.003);
+        free(texels);
     }
-    wd_cards_finish(&cards);
-    free(render.albedo);
-    free(render.normal);
+    wd_pyramid_finish(&pyramid);
+    free(planes);
 }
 
-static void colours_never_darken_toward_empty_texels(void **state)
+/* Nothing darkens or turns toward empty texels, in any plane. */
+static void looks_reach_into_empty_texels(void **state)
 {
     (void)state;
-    struct render render = strewn_leaves();
-    struct wd_cards cards = empty_cards();
-    wd_card_filter(&cards, 0, render.albedo, render.normal);
-    for (uint32_t mip = 0; mip < WD_CARD_MIPS; mip++) {
-        uint32_t width, height;
-        wd_card_size(mip, &width, &height);
-        const uint8_t *texels = cards.albedo + wd_card_offset(0, mip);
-        for (size_t i = 0; i < (size_t)width * height; i++) {
-            assert_in_range(texels[4 * i + 1], 119, 121);
-            assert_in_range(texels[4 * i], 59, 61);
+    static const uint8_t want[WD_PLANES][4] = {
+        {60, 120, 30, 0}, {128, 128, 255, 200}, {180, 90, 50, 255}};
+    struct wd_pyramid pyramid;
+    double coverage;
+    uint8_t *planes = strewn_leaves(&coverage);
+    wd_pyramid_init(&pyramid, WIDTH, HEIGHT, MIPS);
+    wd_pyramid_set(&pyramid, planes);
+    for (uint32_t mip = 0; mip < MIPS; mip++) {
+        size_t count = (size_t)pyramid.levels[mip].width * pyramid.levels[mip].height;
+        for (int plane = 0; plane < WD_PLANES; plane++) {
+            uint8_t *texels = mip_of(&pyramid, mip, plane);
+            for (size_t i = 0; i < count; i++)
+                for (int k = 0; k < (plane ? 4 : 3); k++)
+                    assert_in_range(texels[4 * i + (size_t)k] + 1, want[plane][k],
+                                    want[plane][k] + 2);
+            free(texels);
         }
     }
-    wd_cards_finish(&cards);
-    free(render.albedo);
-    free(render.normal);
+    wd_pyramid_finish(&pyramid);
+    free(planes);
 }
 
-static void an_empty_card_is_empty_at_every_mip(void **state)
+static void nothing_stays_nothing(void **state)
 {
     (void)state;
-    struct wd_cards cards = empty_cards();
-    uint8_t *nothing = wd_alloc((size_t)4 * SAMPLES_X * SAMPLES_Y);
-    wd_card_filter(&cards, 3, nothing, nothing);
-    for (size_t at = wd_card_offset(3, 0); at < wd_card_offset(3, WD_CARD_MIPS); at += 4)
-        assert_int_equal(cards.albedo[at + 3], 0);
-    free(nothing);
-    wd_cards_finish(&cards);
+    struct wd_pyramid pyramid;
+    uint8_t *planes = wd_alloc((size_t)4 * TEXELS * WD_PLANES);
+    wd_pyramid_init(&pyramid, WIDTH, HEIGHT, MIPS);
+    wd_pyramid_set(&pyramid, planes);
+    for (uint32_t mip = 0; mip < MIPS; mip++) {
+        uint8_t *texels = mip_of(&pyramid, mip, WD_PLANE_ALBEDO);
+        for (size_t i = 0; i < (size_t)pyramid.levels[mip].width * pyramid.levels[mip].height; i++)
+            assert_int_equal(texels[4 * i + 3], 0);
+        free(texels);
+    }
+    wd_pyramid_finish(&pyramid);
+    free(planes);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_mip_keeps_coverage),
-        cmocka_unit_test(colours_never_darken_toward_empty_texels),
-        cmocka_unit_test(an_empty_card_is_empty_at_every_mip),
+        cmocka_unit_test(looks_reach_into_empty_texels),
+        cmocka_unit_test(nothing_stays_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

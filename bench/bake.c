@@ -1,0 +1,74 @@
+/* A hundred unique trees, grown, baked and brought to the device. */
+#include "figures.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Seconds for growing and baking, and the device memory that is then in use. */
+static bool bake(const char *gpu, const char *cache_dir, double *seconds, double *megabytes)
+{
+    const struct wd_forest_params forest_params = {.scene_path = "bench/trees100.json"};
+    const struct wd_renderer_params renderer_params = {.gpu = gpu, .cache_dir = cache_dir};
+    struct wd_forest *forest = NULL;
+    struct wd_renderer *renderer = NULL;
+    struct wd_frame_stats stats;
+    bool ok = wd_forest_create(&forest, &forest_params) == WD_OK &&
+              wd_renderer_create(&renderer, &renderer_params) == WD_OK;
+    double start = bench_now_s();
+    ok = ok && wd_renderer_set_forest(renderer, forest) == WD_OK;
+    *seconds = bench_now_s() - start;
+    if (ok) {
+        wd_renderer_get_stats(renderer, &stats);
+        *megabytes = (double)stats.device_bytes / 1e6;
+        printf("%s: 100 trees grown and baked in %.2f s, %.0f MB of device memory\n",
+               wd_renderer_device_name(renderer), *seconds, *megabytes);
+    }
+    wd_renderer_destroy(&renderer);
+    wd_forest_destroy(&forest);
+    return ok;
+}
+
+static bool make_cache(char *path)
+{
+    if (mkdtemp(path))
+        return true;
+    fprintf(stderr, "bench: no temporary directory can be made in /tmp\n");
+    return false;
+}
+
+bool bench_bake_cold(const char *gpu)
+{
+    char cache[] = "/tmp/weald-bench-XXXXXX";
+    double seconds, megabytes;
+    if (!make_cache(cache))
+        return false;
+    bool ok = bake(gpu, cache, &seconds, &megabytes);
+    bench_remove_directory(cache);
+    if (ok)
+        printf("bake-100-cold-s %.2f s\n", seconds);
+    return ok;
+}
+
+bool bench_bake_warm(const char *gpu)
+{
+    char cache[] = "/tmp/weald-bench-XXXXXX";
+    double seconds[3], megabytes;
+    if (!make_cache(cache))
+        return false;
+    bool ok = bake(gpu, cache, &seconds[0], &megabytes); /* fills the cache */
+    for (int i = 0; i < 3 && ok; i++)
+        ok = bake(gpu, cache, &seconds[i], &megabytes);
+    bench_remove_directory(cache);
+    if (ok)
+        printf("bake-100-warm-s %.2f s\n", bench_median(seconds, 3));
+    return ok;
+}
+
+bool bench_bake_memory(const char *gpu)
+{
+    double seconds, megabytes;
+    if (!bake(gpu, NULL, &seconds, &megabytes))
+        return false;
+    printf("bake-100-gpu-mb %.0f MB\n", megabytes);
+    return true;
+}

@@ -1,0 +1,214 @@
+#include "forest/model_bakes.h"
+
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+
+static const VkFormat formats[WD_PLANES] = {
+    VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM};
+static const char *const names[WD_PLANES] = {"albedo", "normal", "depth"};
+
+struct wd_bake_mesh wd_forest_bake_mesh(struct wd_forest_device *forest, uint32_t model)
+{
+    const struct wd_mesh_range *range = &forest->ranges[model][WD_LEVEL_MESH];
+    return (struct wd_bake_mesh){
+        .vertices = &forest->vertices,
+        .indices = &forest->indices,
+        .first_vertex = range->first_vertex,
+        .vertex_count = range->vertex_count,
+        .first_index = range->first_index,
+        .index_count = range->index_count,
+        .wood_index_count = range->wood_index_count,
+        .looks = &forest->looks,
+        .look_layer = forest->host_models[model].look_layer,
+        .cut_out = forest->scene->species[model / forest->variants].imported ? 1 : 0,
+    };
+}
+
+static bool make_image(struct wd_image *image, struct wd_gpu *gpu, struct wd_image_params params)
+{
+    uint32_t most = gpu->properties.limits.maxImageArrayLayers;
+    params.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    params.view = WD_IMAGE_ARRAY;
+    if (params.layers > most)
+        return wd_error(gpu->log,
+                        "pictures of trees need %u image layers, %s has %u: use fewer species or "
+                        "variants",
+                        params.layers, gpu->properties.deviceName, most);
+    return wd_image_init(image, gpu, &params);
+}
+
+/* --- cards ------------------------------------------------------------------------------- */
+
+static bool upload_card_plane(struct wd_image *image, struct wd_gpu *gpu, uint32_t model,
+                              const uint8_t *plane)
+{
+    for (uint32_t card = 0; card < WD_CARDS; card++) {
+        for (uint32_t mip = 0; mip < WD_CARD_MIPS; mip++) {
+            uint32_t width, height;
+            wd_card_size(mip, &width, &height);
+            if (!wd_image_upload(gpu, image, model * WD_CARDS + card, mip,
+                                 plane + wd_card_offset(card, mip), (size_t)4 * width * height))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* The baker is made when the first model is not in the cache. */
+static bool get_cards(struct wd_cards *cards, struct wd_forest_device *forest, struct wd_gpu *gpu,
+                      struct wd_baker *baker, uint32_t index, enum wd_bake_parts parts,
+                      uint32_t *from_cache)
+{
+    const struct wd_model *model = &forest->host_models[index];
+    uint64_t key = forest->model_keys[index];
+    if (wd_cards_load(cards, &forest->cache, key, parts)) {
+        ++*from_cache;
+        return true;
+    }
+    const struct wd_bake_mesh mesh = wd_forest_bake_mesh(forest, index);
+    const struct wd_card_extent extent = {model->half_width_m, model->half_depth_m,
+                                          model->bottom_m, model->top_m};
+    if ((!baker->gpu && !wd_baker_init(baker, gpu, gpu->log)) ||
+        !wd_cards_bake(cards, baker, &mesh, &extent, parts))
+        return false;
+    wd_cards_store(cards, &forest->cache, key, parts);
+    return true;
+}
+
+bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
+                          enum wd_bake_parts parts, struct wd_image *images[WD_PLANES],
+                          const struct wd_progress *progress, uint32_t *from_cache)
+{
+    struct wd_baker baker = {0};
+    bool ok = true;
+    *from_cache = 0;
+    for (int k = 0; k < WD_PLANES && ok; k++)
+        ok = !images[k] || make_image(images[k], gpu,
+                                      (struct wd_image_params){.name = names[k],
+                                                               .format = formats[k],
+                                                               .width = WD_CARD_WIDTH,
+                                                               .height = WD_CARD_HEIGHT,
+                                                               .layers = WD_CARDS *
+                                                                         forest->model_count,
+                                                               .mips = WD_CARD_MIPS});
+    for (uint32_t i = 0; i < forest->model_count && ok; i++) {
+        struct wd_cards cards = {0};
+        ok = wd_progress_report(progress, "baking trees", i, forest->model_count) &&
+             get_cards(&cards, forest, gpu, &baker, i, parts, from_cache);
+        for (int k = 0; k < WD_PLANES && ok; k++)
+            ok = !images[k] || upload_card_plane(images[k], gpu, i, cards.planes[k]);
+        wd_cards_finish(&cards);
+    }
+    wd_baker_finish(&baker);
+    return ok;
+}
+
+/* --- view sets --------------------------------------------------------------------------- */
+
+static struct wd_view_model view_model(const struct wd_forest_device *forest, uint32_t index,
+                                       uint32_t variants)
+{
+    const struct wd_model *model = &forest->host_models[index];
+    uint32_t species = index / forest->variants, variant = index % forest->variants;
+    return (struct wd_view_model){model->half_width_m, model->bottom_m, model->top_m,
+                                  species * variants + variant % variants};
+}
+
+static bool upload_set(struct wd_view_sets *sets, struct wd_gpu *gpu, const struct wd_view_set *set)
+{
+    for (uint32_t mip = 0; mip < sets->atlas.mips; mip++) {
+        uint32_t side = wd_view_layer_size(&sets->atlas, mip);
+        for (int k = 0; k < WD_PLANES; k++)
+            if (!wd_image_upload(gpu, &sets->planes[k], set->model.layer, mip,
+                                 set->planes[k] + wd_view_mip_offset(&sets->atlas, mip),
+                                 (size_t)4 * side * side))
+                return false;
+    }
+    return true;
+}
+
+static bool get_set(struct wd_view_sets *sets, struct wd_gpu *gpu, struct wd_forest_device *forest,
+                    struct wd_baker *baker, uint32_t index, const struct wd_view_set_params *params,
+                    const struct wd_view_model *model)
+{
+    const struct wd_bake_mesh mesh = wd_forest_bake_mesh(forest, index);
+    struct wd_view_set set;
+    bool from_cache;
+    if (!wd_view_set_get(&set, baker, &mesh, model, &sets->atlas, params, &forest->cache,
+                         forest->model_keys[index], &from_cache))
+        return false;
+    sets->from_cache += from_cache;
+    bool ok = upload_set(sets, gpu, &set);
+    wd_view_set_finish(&set);
+    return ok;
+}
+
+static bool fill_sets(struct wd_view_sets *sets, struct wd_gpu *gpu,
+                      struct wd_forest_device *forest, const struct wd_view_set_params *views,
+                      uint32_t variants, const struct wd_progress *progress)
+{
+    struct wd_baker baker;
+    struct wd_view_model *models = wd_alloc_array(forest->model_count, sizeof *models);
+    bool ok = wd_baker_init(&baker, gpu, gpu->log);
+    for (uint32_t i = 0; i < forest->model_count && ok; i++) {
+        models[i] = view_model(forest, i, variants);
+        if (i % forest->variants < variants)
+            ok = wd_progress_report(progress, "baking views", models[i].layer, sets->layers) &&
+                 get_set(sets, gpu, forest, &baker, i, views, &models[i]);
+    }
+    size_t bytes = forest->model_count * sizeof *models;
+    const struct wd_buffer_params params = {"view models", bytes,
+                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, WD_MEMORY_DEVICE};
+    ok = ok && wd_buffer_init(&sets->models, gpu, &params) &&
+         wd_buffer_upload(gpu, &sets->models, 0, models, bytes);
+    wd_baker_finish(&baker);
+    free(models);
+    return ok;
+}
+
+bool wd_view_sets_init(struct wd_view_sets *sets, struct wd_gpu *gpu,
+                       struct wd_forest_device *forest, const struct wd_view_sets_params *params)
+{
+    double start = wd_clock_s();
+    struct wd_view_set_params views = params->views;
+    uint32_t variants = params->variants ? params->variants : forest->variants;
+    variants = variants < forest->variants ? variants : forest->variants;
+    *sets = (struct wd_view_sets){.layers = forest->model_count / forest->variants * variants};
+    bool ok = wd_view_atlas_init(&sets->atlas, &views, gpu, gpu->log);
+    for (int k = 0; k < WD_PLANES && ok; k++) {
+        uint32_t side = wd_view_layer_size(&sets->atlas, 0);
+        ok = make_image(&sets->planes[k], gpu,
+                        (struct wd_image_params){.name = names[k],
+                                                 .format = formats[k],
+                                                 .width = side,
+                                                 .height = side,
+                                                 .layers = sets->layers ? sets->layers : 1,
+                                                 .mips = sets->atlas.mips});
+        sets->bytes += sets->planes[k].memory_size;
+    }
+    ok = ok && (!forest->model_count ||
+                fill_sets(sets, gpu, forest, &views, variants, params->progress));
+    sets->baked_us = (uint64_t)((wd_clock_s() - start) * 1e6);
+    if (!ok)
+        wd_view_sets_finish(sets, gpu);
+    return ok;
+}
+
+void wd_view_sets_finish(struct wd_view_sets *sets, struct wd_gpu *gpu)
+{
+    for (int k = 0; k < WD_PLANES; k++)
+        wd_image_finish(&sets->planes[k], gpu);
+    wd_buffer_finish(&sets->models, gpu);
+    *sets = (struct wd_view_sets){0};
+}
+
+void wd_view_sets_use(struct wd_view_sets *sets, struct wd_cmd *cmd)
+{
+    for (int k = 0; k < WD_PLANES; k++)
+        if (sets->planes[k].image)
+            wd_cmd_use_image(cmd, &sets->planes[k], WD_USE_SHADER_READ);
+    if (sets->models.buffer)
+        wd_cmd_use_buffer(cmd, &sets->models, WD_USE_SHADER_READ);
+}

@@ -1,0 +1,39 @@
+/* model_bakes.h: pictures of a forest's models as device images: cards, and views from all over the
+ * hemisphere. Baked from the meshes on the device, or loaded from the forest's cache. */
+#ifndef WD_FOREST_MODEL_BAKES_H
+#define WD_FOREST_MODEL_BAKES_H
+
+#include "bake/views.h"
+#include "forest/forest.h"
+
+/* A model's full mesh as bakers want it. */
+struct wd_bake_mesh wd_forest_bake_mesh(struct wd_forest_device *forest, uint32_t model);
+
+/* Makes images of WD_CARDS layers a model for each plane (WD_PLANE_*) whose `images` is not NULL:
+ * cards of whole trees, or of wood and leaves apart (W6). They must be {0} before, and are the
+ * caller's to finish, also after a failure. */
+bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
+                          enum wd_bake_parts parts, struct wd_image *images[WD_PLANES],
+                          const struct wd_progress *progress, uint32_t *from_cache);
+
+/* View sets of all models, or of the first variants of each species. */
+struct wd_view_sets {
+    struct wd_view_atlas atlas;
+    struct wd_image planes[WD_PLANES]; /* 2D arrays, one layer a baked model */
+    struct wd_buffer models; /* struct wd_view_model[forest->model_count]: where a variant has no
+                                layer of its own, .layer is that of another of its species */
+    uint32_t layers, from_cache;
+    uint64_t baked_us, bytes;
+};
+struct wd_view_sets_params {
+    struct wd_view_set_params views;
+    uint32_t variants; /* of each species, that get pictures; 0: all */
+    const struct wd_progress *progress;
+};
+bool wd_view_sets_init(struct wd_view_sets *sets, struct wd_gpu *gpu,
+                       struct wd_forest_device *forest, const struct wd_view_sets_params *params);
+void wd_view_sets_finish(struct wd_view_sets *sets, struct wd_gpu *gpu); /* accepts {0} */
+/* Declares that this frame's passes read them. */
+void wd_view_sets_use(struct wd_view_sets *sets, struct wd_cmd *cmd);
+
+#endif
