@@ -5,7 +5,7 @@
  * workgroup each: no thread is left behind with one, and software devices, which end a thread's
  * loops after 65,535 turns in all, see each to its end. */
 #include "shared/bake.h"
-#include "shared/tree.h"
+#include "shared/forest.h"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint IDENTITY = 0u;
