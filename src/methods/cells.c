@@ -89,3 +89,42 @@ void wd_cells_finish(struct wd_cells *cells)
     free(cells->boxes);
     *cells = (struct wd_cells){0};
 }
+
+/* --- what a view sees -------------------------------------------------------------------- */
+
+static int nearer_first(const void *a, const void *b)
+{
+    const struct wd_near_cell *one = a, *other = b;
+    if (one->distance_m != other->distance_m)
+        return one->distance_m < other->distance_m ? -1 : 1;
+    return one->cell < other->cell ? -1 : 1;
+}
+
+void wd_cell_list_fill(struct wd_cell_list *list, const struct wd_cells *cells,
+                       const struct wd_view *view)
+{
+    size_t count = (size_t)cells->columns * cells->rows;
+    list->count = 0;
+    for (size_t i = 0; i < count; i++) {
+        const struct wd_cell_box *box = &cells->boxes[i];
+        if (cells->first[i] == cells->first[i + 1])
+            continue;
+        float min[3], max[3], squared = 0.0f;
+        for (int k = 0; k < 3; k++) {
+            min[k] = (float)((double)box->min_m[k] - view->eye_m[k]);
+            max[k] = (float)((double)box->max_m[k] - view->eye_m[k]);
+            float outside = fmaxf(fmaxf(min[k], -max[k]), 0.0f);
+            squared += outside * outside;
+        }
+        if (wd_frustum_box(&view->frustum, min, max) != WD_OUTSIDE)
+            *wd_push(list->items, list->count, list->capacity) =
+                (struct wd_near_cell){sqrtf(squared), (uint32_t)i};
+    }
+    qsort(list->items, list->count, sizeof *list->items, nearer_first);
+}
+
+void wd_cell_list_finish(struct wd_cell_list *list)
+{
+    free(list->items);
+    *list = (struct wd_cell_list){0};
+}

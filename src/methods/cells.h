@@ -2,6 +2,7 @@
 #ifndef WD_METHODS_CELLS_H
 #define WD_METHODS_CELLS_H
 
+#include "frame/view.h"
 #include "world/world.h"
 
 struct wd_cell_box {
@@ -24,5 +25,17 @@ void wd_cells_finish(struct wd_cells *cells);
 
 /* Length of the side of a cell that holds `trees` trees in the mean. */
 double wd_cells_size(const struct wd_world *world, double trees);
+
+/* Cells with trees that a view may see, nearest first. */
+struct wd_cell_list {
+    struct wd_near_cell {
+        float distance_m; /* of its trees' box from the eye */
+        uint32_t cell;
+    } *items;
+    size_t count, capacity;
+};
+void wd_cell_list_fill(struct wd_cell_list *list, const struct wd_cells *cells,
+                       const struct wd_view *view);
+void wd_cell_list_finish(struct wd_cell_list *list);
 
 #endif

@@ -3,7 +3,6 @@
  * all. Whatever the size of a cell, it is too large near the eye and too small far off. */
 #include "methods/method.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -15,11 +14,7 @@ struct grid {
     struct wd_selection selection; /* trees by themselves */
     struct wd_range *ranges;       /* of the list, one a cell */
     size_t range_count, range_capacity;
-    struct near_cell {
-        float distance_m;
-        uint32_t cell;
-    } *seen;
-    size_t seen_count, seen_capacity;
+    struct wd_cell_list seen;
 };
 
 static bool grid_use_forest(void *state, struct wd_gpu *gpu, struct wd_forest_device *forest)
@@ -48,40 +43,9 @@ static void grid_drop_forest(void *state, struct wd_gpu *gpu)
     wd_cells_finish(&grid->cells);
     wd_buffer_finish(&grid->list, gpu);
     wd_selection_finish(&grid->selection);
-    free(grid->seen);
+    wd_cell_list_finish(&grid->seen);
     free(grid->ranges);
     *grid = (struct grid){0};
-}
-
-static int nearer_first(const void *a, const void *b)
-{
-    const struct near_cell *one = a, *other = b;
-    if (one->distance_m != other->distance_m)
-        return one->distance_m < other->distance_m ? -1 : 1;
-    return one->cell < other->cell ? -1 : 1;
-}
-
-/* Cells in view, nearest first. */
-static void find_cells(struct grid *grid, const struct wd_view *view)
-{
-    size_t count = (size_t)grid->cells.columns * grid->cells.rows;
-    grid->seen_count = 0;
-    for (size_t i = 0; i < count; i++) {
-        const struct wd_cell_box *box = &grid->cells.boxes[i];
-        if (grid->cells.first[i] == grid->cells.first[i + 1])
-            continue;
-        float min[3], max[3], squared = 0.0f;
-        for (int k = 0; k < 3; k++) {
-            min[k] = (float)((double)box->min_m[k] - view->eye_m[k]);
-            max[k] = (float)((double)box->max_m[k] - view->eye_m[k]);
-            float outside = fmaxf(fmaxf(min[k], -max[k]), 0.0f);
-            squared += outside * outside;
-        }
-        if (wd_frustum_box(&view->frustum, min, max) != WD_OUTSIDE)
-            *wd_push(grid->seen, grid->seen_count, grid->seen_capacity) =
-                (struct near_cell){sqrtf(squared), (uint32_t)i};
-    }
-    qsort(grid->seen, grid->seen_count, sizeof *grid->seen, nearer_first);
 }
 
 static void grid_select(void *state, const struct wd_tree_draw *draw)
@@ -91,12 +55,12 @@ static void grid_select(void *state, const struct wd_tree_draw *draw)
     float cards_m = wd_level_card_distance(&rule, draw->forest->max_tree_height_m);
     wd_selection_clear(&grid->selection);
     grid->range_count = 0;
-    find_cells(grid, draw->view);
-    for (size_t i = 0; i < grid->seen_count; i++) {
-        uint32_t cell = grid->seen[i].cell;
+    wd_cell_list_fill(&grid->seen, &grid->cells, draw->view);
+    for (size_t i = 0; i < grid->seen.count; i++) {
+        uint32_t cell = grid->seen.items[i].cell;
         struct wd_range range = {grid->cells.first[cell], grid->cells.first[cell + 1],
                                  WD_CARD_VERTICES};
-        if (grid->seen[i].distance_m >= cards_m) {
+        if (grid->seen.items[i].distance_m >= cards_m) {
             *wd_push(grid->ranges, grid->range_count, grid->range_capacity) = range;
             continue;
         }

@@ -6,8 +6,13 @@
 #include "base/memory.h"
 #include "weald/renderer.h"
 
-static const struct wd_method *const methods[] = {&wd_method_octree, &wd_method_separate,
-                                                  &wd_method_grid, &wd_method_continuum};
+static const struct wd_method *const methods[] = {
+    &wd_method_octree,
+    &wd_method_separate,
+    &wd_method_grid,
+    &wd_method_lod,
+    &wd_method_continuum,
+};
 
 const char *const *wd_method_names(void)
 {

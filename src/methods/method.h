@@ -28,6 +28,7 @@ extern const struct wd_method wd_method_octree;   /* static geometry in octree o
                                                      state is a struct wd_selection */
 extern const struct wd_method wd_method_grid;     /* cells of a fixed grid (row G9) */
 extern const struct wd_method wd_method_continuum; /* cost by pixels: splats in compute */
+extern const struct wd_method wd_method_lod;      /* levels by distances of the user's (row O1) */
 
 /* The method of that name, or NULL. Names are in wd_scene_method_names, scene/methods.h. */
 const struct wd_method *wd_method_find(const char *name);

@@ -50,7 +50,7 @@ static void blend_levels(const struct wd_level_rule *rule, float from_m, float d
 struct wd_levels wd_levels_at(const struct wd_level_rule *rule, float height_m, float distance_m)
 {
     struct wd_levels levels;
-    float scale = height_m / REFERENCE_HEIGHT_M, not_mesh, meshes;
+    float scale = rule->plain ? 1.0f : height_m / REFERENCE_HEIGHT_M, not_mesh, meshes;
     blend_levels(rule, rule->mesh_m * scale, distance_m, &levels.show[WD_LEVEL_MESH], &not_mesh);
     blend_levels(rule, fmaxf(rule->reduced_m, rule->mesh_m) * scale, distance_m, &meshes,
                  &levels.show[WD_LEVEL_CARD]);
@@ -66,7 +66,10 @@ float wd_level_card_distance(const struct wd_level_rule *rule, float height_m)
 {
     if (rule->finest == WD_LEVEL_CARD)
         return 0.0f;
-    float meshes_m = fmaxf(rule->reduced_m, rule->mesh_m) * height_m / REFERENCE_HEIGHT_M;
+    float meshes_m = fmaxf(rule->reduced_m, rule->mesh_m);
+    if (rule->plain)
+        return meshes_m * (1.0f + rule->blend);
+    meshes_m *= height_m / REFERENCE_HEIGHT_M;
     return fmaxf(meshes_m, rule->farthest_m) * (1.0f + rule->blend);
 }
 
@@ -137,7 +140,7 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
     float fade = wd_layer_show(forest->host_fades[layer], distance_m);
     struct wd_level_rule own = *rule;
     if (layer && forest->scene->layers[layer - 1].mesh_distance_m > 0.0 &&
-        rule->finest == WD_LEVEL_MESH)
+        rule->finest == WD_LEVEL_MESH && !rule->plain)
         own.mesh_m = (float)forest->scene->layers[layer - 1].mesh_distance_m * view->lod_scale *
                      REFERENCE_HEIGHT_M / fmaxf(height_m, 0.01f);
     struct wd_levels levels = wd_levels_at(&own, height_m, distance_m);

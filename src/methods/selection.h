@@ -15,10 +15,11 @@ struct wd_levels {
 
 /* Distances of the levels for one view. */
 struct wd_level_rule {
-    float mesh_m, reduced_m; /* for a tree of 20 m; both grow with height */
+    float mesh_m, reduced_m; /* for a tree of 20 m; both grow with height, unless `plain` */
     float blend;             /* share of the distance over which levels blend */
     uint32_t finest;         /* WD_LEVEL_*: shadows of far cascades start lower */
     float farthest_m;        /* greatest mesh distance that a layer asks for itself */
+    bool plain;              /* distances hold for every tree, whatever its height or layer */
     bool parallel;           /* levels blend at the same time: the ghosts that G7 avoids */
 };
 struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,

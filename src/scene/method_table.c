@@ -41,6 +41,19 @@ static const struct wd_key continuum_keys[] = {
 };
 static const struct wd_keys continuum_table = TABLE(continuum);
 
+static const struct wd_key lod_keys[] = {
+    {"full_m", WD_KEY_DOUBLE, OPTION(lod, full_m), 0, 1e6, "40",
+     "Full meshes nearer than this, in metres.", .row = "O1"},
+    {"reduced_m", WD_KEY_DOUBLE, OPTION(lod, reduced_m), 0, 1e6, "140",
+     "Reduced meshes nearer than this, in metres; billboards beyond.", .row = "O1"},
+    {"blend", WD_KEY_DOUBLE, OPTION(lod, blend), 0, 0.9, "0.15",
+     "Share of a distance over which levels blend.", .row = "O1"},
+    {"faithful", WD_KEY_BOOL, OPTION(lod, faithful), .fallback = "false",
+     .doc = "Levels change at once, as switch nodes of a scene graph do: they pop.", .row = "O1"},
+    {0},
+};
+static const struct wd_keys lod_table = TABLE(lod);
+
 #define METHOD(method, rows, summary)                                                              \
     {#method, WD_KEY_OBJECT, offsetof(struct wd_method_options, method), .table = &method##_table, \
      .doc = summary, .row = rows}
@@ -49,9 +62,17 @@ static const struct wd_key method_keys[] = {
     {"separate", WD_KEY_OBJECT, .table = &separate_table, .row = "G9",
      .doc = "Every tree by a draw call of its own: the baseline."},
     METHOD(grid, "G9", "Billboards by cells of a fixed grid, meshes near: the other baseline."),
+    METHOD(lod, "O1", "Meshes of several levels by distances that the user sets, then billboards."),
     METHOD(continuum, "continuum", "Splats whose number follows the pixels they cover, in compute."),
     {0},
 };
 const struct wd_keys wd_scene_method_keys = {"methods", method_keys,
                                              sizeof(struct wd_method_options), NULL};
-const char *const wd_scene_method_names[] = {"octree", "separate", "grid", "continuum", NULL};
+const char *const wd_scene_method_names[] = {
+    "octree",
+    "separate",
+    "grid",
+    "lod",
+    "continuum",
+    NULL,
+};

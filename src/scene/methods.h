@@ -20,11 +20,17 @@ struct wd_continuum_options {
     int64_t min_splats; /* of a tree */
 };
 
+struct wd_lod_options {
+    double full_m, reduced_m, blend;
+    bool faithful;
+};
+
 /* By method; methods without options have no member. */
 struct wd_method_options {
     struct wd_octree_options octree;
     struct wd_grid_options grid;
     struct wd_continuum_options continuum;
+    struct wd_lod_options lod;
 };
 
 /* One key a method, in the order of wd_scene_method_names; `table` holds its options. */
