@@ -15,3 +15,14 @@ float card_opacity(float alpha, float lod)
     float sharp = clamp((alpha - 0.4) * 4.0 + 0.4, 0.0, 1.0);
     return mix(sharp, alpha, clamp(lod * 0.5 + 0.5, 0.0, 1.0));
 }
+
+/* A card's stored normal in world axes. `pose`: the tree's turn, its mirror, vertical over horizontal
+ * scale; `flip`: the card's own normal where it is seen from behind, else 0. */
+vec3 card_normal_of(vec3 stored, vec4 pose, vec3 flip)
+{
+    vec3 normal = stored * 2.0 - 1.0;
+    normal.x *= pose.z;
+    normal = vec3((pose.x * normal.x - pose.y * normal.y) * pose.w,
+                  (pose.y * normal.x + pose.x * normal.y) * pose.w, normal.z);
+    return normalize(normal - 2.0 * dot(normal, flip) * flip);
+}

@@ -27,15 +27,11 @@ void main()
     if (card_noise(in_uv, in_lod, in_flat.y, frame.sample_index) >= opacity)
         discard;
     vec4 packed = textureLod(card_normal, in_uv, in_lod);
-    vec3 normal = packed.xyz * 2.0 - 1.0;
-    normal.x *= in_pose.z;
-    normal = vec3((in_pose.x * normal.x - in_pose.y * normal.y) * in_pose.w,
-                  (in_pose.y * normal.x + in_pose.x * normal.y) * in_pose.w, normal.z);
-    normal -= 2.0 * dot(normal, in_flip) * in_flip;
+    vec3 normal = card_normal_of(packed.xyz, in_pose, in_flip);
     albedo.rgb *= in_tint.rgb;
     if (frame.view_mode == WD_MODE_LOD)
         albedo.rgb = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * packed.a);
     out_albedo = vec4(albedo.rgb, packed.a);
-    out_normal = vec4(normalize(normal) * 0.5 + 0.5, float(WD_MATERIAL_CARD) / 3.0);
+    out_normal = vec4(normal * 0.5 + 0.5, float(WD_MATERIAL_CARD) / 3.0);
     out_surface = in_flat.x;
 }

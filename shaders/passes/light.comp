@@ -21,6 +21,7 @@ layout(scalar, set = 0, binding = 7) readonly buffer Trees { wd_tree trees[]; };
 layout(scalar, set = 0, binding = 8) readonly buffer Models { wd_model models[]; };
 layout(set = 0, binding = 9, rgba32f) uniform image2D radiance_image;
 layout(scalar, set = 0, binding = 10) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
+layout(set = 0, binding = 11) uniform sampler2D overlay;
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
@@ -83,6 +84,10 @@ void main()
     if (at.x >= int(frame.width) || at.y >= int(frame.height))
         return;
     vec4 radiance = vec4(pixel_radiance(at), 1.0);
+    if (push.has_overlay != 0u) {
+        vec4 over = texelFetch(overlay, at, 0);
+        radiance.rgb = radiance.rgb * (1.0 - over.a) + over.rgb;
+    }
     if (frame.sample_index > 0u)
         radiance += imageLoad(radiance_image, at);
     imageStore(radiance_image, at, radiance);

@@ -13,6 +13,7 @@ struct wd_light_push {
     uint32_t tile_columns, tile_rows;
     uint32_t is_sea;     /* the water goes on beyond the terrain */
     WD_VEC2(extent_m);   /* of the terrain */
+    uint32_t has_overlay; /* a method has blended trees over the G-buffer */
 };
 
 /* What a tile of pixels shows; each list of tiles is shaded by a pipeline with these parts. */

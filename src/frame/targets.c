@@ -15,6 +15,7 @@ bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t wi
         {&targets->normal, {"normal", WD_NORMAL_FORMAT, width, height, 1, 1, target, 0}},
         {&targets->surface, {"surface", WD_SURFACE_FORMAT, width, height, 1, 1, target, 0}},
         {&targets->depth, {"depth", WD_DEPTH_FORMAT, width, height, 1, 1, depth, 0}},
+        {&targets->overlay, {"overlay", WD_OVERLAY_FORMAT, width, height, 1, 1, target, 0}},
         {&targets->radiance, {"radiance", WD_RADIANCE_FORMAT, width, height, 1, 1, storage, 0}},
         {&targets->display, {"display", WD_DISPLAY_FORMAT, width, height, 1, 1, storage, 0}},
         {&targets->shadow,
@@ -42,7 +43,7 @@ void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu)
 {
     struct wd_image *images[] = {&targets->albedo,   &targets->normal,  &targets->surface,
                                  &targets->depth,    &targets->radiance, &targets->display,
-                                 &targets->shadow};
+                                 &targets->overlay,  &targets->shadow};
     for (uint32_t i = 0; i < WD_CASCADES; i++) {
         if (targets->shadow_layers[i])
             vkDestroyImageView(gpu->device, targets->shadow_layers[i], NULL);

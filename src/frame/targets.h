@@ -9,12 +9,15 @@
 #define WD_NORMAL_FORMAT VK_FORMAT_A2B10G10R10_UNORM_PACK32
 #define WD_SURFACE_FORMAT VK_FORMAT_R32_UINT
 #define WD_DEPTH_FORMAT VK_FORMAT_D32_SFLOAT
+#define WD_OVERLAY_FORMAT VK_FORMAT_R16G16B16A16_SFLOAT
 #define WD_RADIANCE_FORMAT VK_FORMAT_R32G32B32A32_SFLOAT
 #define WD_DISPLAY_FORMAT VK_FORMAT_R8G8B8A8_UNORM
 
 struct wd_targets {
     uint32_t width, height;
     struct wd_image albedo, normal, surface, depth; /* the G-buffer: shaders/shared/frame.h */
+    struct wd_image overlay;                        /* premultiplied radiance over the G-buffer's,
+                                                       of methods that blend; else not written */
     struct wd_image radiance;                       /* storage: sum over the samples so far */
     struct wd_image display;                        /* storage: tone-mapped, sRGB-encoded bytes */
     struct wd_image shadow;                         /* depth, WD_CASCADES layers */

@@ -26,7 +26,18 @@ struct wd_light_params {
     const struct wd_view *view;
     const struct wd_frame_uniforms *frame;
     struct wd_binding uniforms;            /* the same, on the device */
+    enum wd_overlay { WD_OVERLAY_NONE, WD_OVERLAY_OVER } overlay; /* whether targets->overlay counts */
 };
+
+/* What shading needs besides the frame's uniforms: for methods that light trees by themselves. All
+ * of it is in use for reading by any shader. */
+struct wd_light_inputs {
+    struct wd_light_push push;
+    struct wd_binding shadow_map, sun_heights, trees, models;
+};
+bool wd_light_pass_inputs(struct wd_light_pass *pass, struct wd_cmd *cmd,
+                          const struct wd_light_params *params, struct wd_light_inputs *inputs);
+
 /* Stores radiance where frame->sample_index is 0, else adds to it. */
 void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
                           const struct wd_light_params *params);
