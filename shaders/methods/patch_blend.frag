@@ -14,15 +14,15 @@ layout(set = 0, binding = 7) uniform sampler2DArrayShadow shadow_map;
 layout(scalar, set = 0, binding = 8) readonly buffer SunHeights { float sun_height_m[]; };
 layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 
-#define push patch_push.light
 #define PARTS (WD_PART_GROUND | WD_PART_TREES)
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
 
+#include "lib/tree.glsl"
+#define push patch_push.light /* the libraries' name for it; lib/tree.glsl has others of its own */
 #include "lib/noise.glsl"
 #include "lib/sky.glsl"
 #include "lib/shadow.glsl"
 #include "lib/pixel.glsl"
-#include "lib/tree.glsl"
 #include "lib/crown.glsl"
 #include "lib/shade.glsl"
 #include "lib/card.glsl"

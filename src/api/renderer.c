@@ -174,6 +174,9 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
         .height = params->height,
         .samples = samples < max_samples ? samples : max_samples,
         .view_mode = (uint32_t)params->view,
+        .gbuffer = params->layers & ~(uint32_t)(WD_LAYER_DISPLAY | WD_LAYER_COLOR)
+                       ? WD_GBUFFER_READ
+                       : WD_GBUFFER_OWN,
         .velocity = params->layers & WD_LAYER_VELOCITY ? WD_VELOCITY_ON : WD_VELOCITY_OFF,
     };
     renderer->frame.ring.timing = params->timing == WD_TIME_PASSES ? WD_TIMING_ON : WD_TIMING_OFF;

@@ -79,14 +79,11 @@ struct recording {
     struct wd_binding uniforms;
 };
 
-/* The trees of one view, into `targets`. */
-static void record_trees(const struct recording *r, const struct wd_view *view,
-                         enum wd_tree_pass pass, const struct wd_rendering *targets)
+static struct wd_tree_draw tree_draw_of(const struct recording *r, const struct wd_view *view,
+                                        enum wd_tree_pass pass, struct wd_draw_stats *stats)
 {
     struct wd_frame *frame = r->frame;
-    const struct wd_method *method = frame->params.method;
-    struct wd_draw_stats stats = {0};
-    const struct wd_tree_draw draw = {
+    return (struct wd_tree_draw){
         .cmd = r->cmd,
         .pipelines = &frame->trees,
         .forest = frame->params.forest,
@@ -94,8 +91,27 @@ static void record_trees(const struct recording *r, const struct wd_view *view,
         .pass = pass,
         .targets = &frame->targets,
         .uniforms = r->uniforms,
-        .stats = &stats,
+        .stats = stats,
+        .view_mode = frame->params.view_mode,
     };
+}
+
+static void add_stats(struct wd_draw_stats *sum, const struct wd_draw_stats *stats)
+{
+    sum->draw_calls += stats->draw_calls;
+    sum->triangles += stats->triangles;
+    for (int level = 0; level < 3; level++)
+        sum->trees[level] += stats->trees[level];
+}
+
+/* The trees of one view, into `targets`. */
+static void record_trees(const struct recording *r, const struct wd_view *view,
+                         enum wd_tree_pass pass, const struct wd_rendering *targets)
+{
+    struct wd_frame *frame = r->frame;
+    const struct wd_method *method = frame->params.method;
+    struct wd_draw_stats stats = {0};
+    const struct wd_tree_draw draw = tree_draw_of(r, view, pass, &stats);
     bool trees = frame->params.forest->world->tree_count &&
                  (pass == WD_PASS_CAMERA || r->values.shadow_taps);
     if (trees && method->select)
@@ -104,8 +120,7 @@ static void record_trees(const struct recording *r, const struct wd_view *view,
     if (trees)
         method->draw(frame->method_state, &draw);
     wd_cmd_end_rendering(r->cmd);
-    frame->stats.draw_calls += stats.draw_calls;
-    frame->stats.triangles += stats.triangles;
+    add_stats(&frame->stats, &stats);
     if (pass == WD_PASS_CAMERA)
         frame->camera_stats = stats;
 }
@@ -156,17 +171,67 @@ static void record_gbuffer(const struct recording *r)
     wd_cmd_scope_end(r->cmd);
 }
 
+static bool blends(const struct recording *r)
+{
+    const struct wd_frame_params *params = &r->frame->params;
+    return params->method->blend && params->forest->world->tree_count &&
+           params->view_mode == WD_MODE_LIT;
+}
+
+static bool is_last(const struct recording *r)
+{
+    return r->values.sample_index + 1 == r->values.sample_count;
+}
+
+/* Trees that are blended over the rest, back to front. */
+static void record_blend(const struct recording *r, const struct wd_light_params *light)
+{
+    struct wd_frame *frame = r->frame;
+    struct wd_draw_stats stats = {0};
+    struct wd_light_inputs inputs;
+    const struct wd_tree_draw draw = tree_draw_of(r, &r->view, WD_PASS_CAMERA, &stats);
+    wd_cmd_scope_begin(r->cmd, "blend trees");
+    if (wd_light_pass_inputs(&frame->light, r->cmd, light, &inputs))
+        frame->params.method->blend(frame->method_state, &draw, &inputs);
+    wd_cmd_scope_end(r->cmd);
+    add_stats(&frame->stats, &stats);
+    add_stats(&frame->camera_stats, &stats);
+}
+
+static void record_layers(const struct recording *r)
+{
+    struct wd_frame *frame = r->frame;
+    struct wd_draw_stats stats = {0};
+    const struct wd_tree_draw draw = tree_draw_of(r, &r->view, WD_PASS_CAMERA, &stats);
+    const struct wd_rendering targets = wd_targets_gbuffer(&frame->targets, WD_LOAD_KEEP);
+    wd_cmd_scope_begin(r->cmd, "tree layers");
+    wd_cmd_begin_rendering(r->cmd, &targets);
+    frame->params.method->draw_layers(frame->method_state, &draw);
+    wd_cmd_end_rendering(r->cmd);
+    wd_cmd_scope_end(r->cmd);
+}
+
 static void record_light(const struct recording *r)
 {
     struct wd_frame *frame = r->frame;
-    const struct wd_light_params light = {&frame->targets, frame->params.forest, &r->view,
-                                          &r->values, r->uniforms};
+    const struct wd_light_params light = {
+        &frame->targets, frame->params.forest,
+        &r->view,        &r->values,
+        r->uniforms,     blends(r) ? WD_OVERLAY_OVER : WD_OVERLAY_NONE};
+    if (blends(r))
+        record_blend(r, &light);
     wd_cmd_scope_begin(r->cmd, "light");
     wd_light_pass_record(&frame->light, r->cmd, &light);
-    if (frame->params.velocity == WD_VELOCITY_ON &&
-        r->values.sample_index + 1 == r->values.sample_count)
-        wd_light_pass_record_velocity(&frame->light, r->cmd, &light, &frame->velocity_px);
     wd_cmd_scope_end(r->cmd);
+    if (!is_last(r))
+        return;
+    if (blends(r) && frame->params.gbuffer == WD_GBUFFER_READ)
+        record_layers(r);
+    if (frame->params.velocity == WD_VELOCITY_ON) {
+        wd_cmd_scope_begin(r->cmd, "velocity");
+        wd_light_pass_record_velocity(&frame->light, r->cmd, &light, &frame->velocity_px);
+        wd_cmd_scope_end(r->cmd);
+    }
 }
 
 static void record_display(const struct recording *r)

@@ -18,6 +18,10 @@ struct wd_frame_params {
     uint32_t width, height;
     uint32_t samples;
     uint32_t view_mode; /* WD_MODE_* */
+    enum wd_gbuffer_use {
+        WD_GBUFFER_OWN,  /* for the frame's own passes */
+        WD_GBUFFER_READ, /* its layers are read afterwards: trees stand in all of them */
+    } gbuffer;
     enum wd_velocity { WD_VELOCITY_OFF, WD_VELOCITY_ON } velocity;
 };
 

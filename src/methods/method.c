@@ -11,6 +11,7 @@ static const struct wd_method *const methods[] = {
     &wd_method_separate,
     &wd_method_grid,
     &wd_method_lod,
+    &wd_method_patch,
     &wd_method_continuum,
 };
 

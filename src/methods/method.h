@@ -2,6 +2,7 @@
 #ifndef WD_METHODS_METHOD_H
 #define WD_METHODS_METHOD_H
 
+#include "frame/passes/light.h"
 #include "methods/tree_draw.h"
 
 /* One way of drawing trees. Functions but `draw` may be NULL. For every view (the cascades of the
@@ -21,6 +22,13 @@ struct wd_method {
     /* Inside the open rendering of the view's targets: the G-buffer over the terrain that is there
      * already, or one cascade's depth. */
     void (*draw)(void *state, const struct wd_tree_draw *draw);
+    /* Of methods that blend, and only when pixels show light: outside of any rendering, with the
+     * camera's G-buffer complete: draws lit trees into targets->overlay, all of it. */
+    void (*blend)(void *state, const struct wd_tree_draw *draw,
+                  const struct wd_light_inputs *light);
+    /* Goes with `blend`: inside the open rendering of the G-buffer, after the light: the blended
+     * trees for its layers. */
+    void (*draw_layers)(void *state, const struct wd_tree_draw *draw);
 };
 
 extern const struct wd_method wd_method_separate; /* every tree by itself (row G9) */
@@ -29,6 +37,7 @@ extern const struct wd_method wd_method_octree;   /* static geometry in octree o
 extern const struct wd_method wd_method_grid;     /* cells of a fixed grid (row G9) */
 extern const struct wd_method wd_method_continuum; /* cost by pixels: splats in compute */
 extern const struct wd_method wd_method_lod;      /* levels by distances of the user's (row O1) */
+extern const struct wd_method wd_method_patch;    /* blended back to front (rows I1-I9) */
 
 /* The method of that name, or NULL. Names are in wd_scene_method_names, scene/methods.h. */
 const struct wd_method *wd_method_find(const char *name);

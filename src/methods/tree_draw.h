@@ -29,6 +29,7 @@ struct wd_tree_draw {
     struct wd_targets *targets;     /* of the frame: the terrain's depth is there already */
     struct wd_binding uniforms;     /* struct wd_frame_uniforms */
     struct wd_draw_stats *stats;    /* added to */
+    uint32_t view_mode;             /* WD_MODE_* */
 };
 
 /* Whether trees that stand alone share draws. */

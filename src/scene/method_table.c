@@ -54,6 +54,28 @@ static const struct wd_key lod_keys[] = {
 };
 static const struct wd_keys lod_table = TABLE(lod);
 
+static const char *const patch_orders[] = {"analytic", "exact", NULL};
+static const struct wd_key patch_keys[] = {
+    {"cells", WD_KEY_INTEGER, OPTION(patch, cells), 1, 1024, "128",
+     "Cells of a patch along a side.", .row = "I1"},
+    {"cell_m", WD_KEY_DOUBLE, OPTION(patch, cell_m), 0, 1e5, "0",
+     "Size of a cell in metres; 0: that of the densest grid of plants.", .row = "I1"},
+    {"order", WD_KEY_ENUM, OPTION(patch, order), .fallback = "\"analytic\"",
+     .choices = patch_orders, .row = "I2",
+     .doc = "Back to front by arithmetic on cells, or by a sort of the trees themselves."},
+    {"near_begin_m", WD_KEY_DOUBLE, OPTION(patch, near_begin_m), 0, 1e6, "30.48",
+     "Billboards begin to fade in at this distance, in metres (100 ft).", .row = "I7"},
+    {"near_end_m", WD_KEY_DOUBLE, OPTION(patch, near_end_m), 0, 1e6, "60.96",
+     "Billboards are whole from this distance on, where meshes begin to go, in metres (200 ft). "
+     "A layer's mesh_distance_m goes before it.", .row = "I7"},
+    {"resident_patches", WD_KEY_INTEGER, OPTION(patch, resident_patches), 1, 1e6, "256",
+     "Patches that are kept populated; those in view always are.", .row = "I1"},
+    {"faithful", WD_KEY_BOOL, OPTION(patch, faithful), .fallback = "false",
+     .doc = "Fades are whole numbers, as in the sample: billboards pop.", .row = "I7"},
+    {0},
+};
+static const struct wd_keys patch_table = TABLE(patch);
+
 #define METHOD(method, rows, summary)                                                              \
     {#method, WD_KEY_OBJECT, offsetof(struct wd_method_options, method), .table = &method##_table, \
      .doc = summary, .row = rows}
@@ -63,6 +85,7 @@ static const struct wd_key method_keys[] = {
      .doc = "Every tree by a draw call of its own: the baseline."},
     METHOD(grid, "G9", "Billboards by cells of a fixed grid, meshes near: the other baseline."),
     METHOD(lod, "O1", "Meshes of several levels by distances that the user sets, then billboards."),
+    METHOD(patch, "I1-I9", "Billboards of patches, blended back to front in an order by arithmetic."),
     METHOD(continuum, "continuum", "Splats whose number follows the pixels they cover, in compute."),
     {0},
 };
@@ -73,6 +96,7 @@ const char *const wd_scene_method_names[] = {
     "separate",
     "grid",
     "lod",
+    "patch",
     "continuum",
     NULL,
 };

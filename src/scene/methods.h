@@ -25,12 +25,23 @@ struct wd_lod_options {
     bool faithful;
 };
 
+enum wd_patch_sort { WD_PATCH_ANALYTIC, WD_PATCH_EXACT };
+struct wd_patch_options {
+    int64_t cells;  /* along a side */
+    double cell_m;  /* 0: the densest grid's */
+    double near_begin_m, near_end_m;
+    int order;      /* enum wd_patch_sort */
+    int64_t resident_patches;
+    bool faithful;
+};
+
 /* By method; methods without options have no member. */
 struct wd_method_options {
     struct wd_octree_options octree;
     struct wd_grid_options grid;
     struct wd_continuum_options continuum;
     struct wd_lod_options lod;
+    struct wd_patch_options patch;
 };
 
 /* One key a method, in the order of wd_scene_method_names; `table` holds its options. */

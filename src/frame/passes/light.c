@@ -38,7 +38,8 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     };
     bool ok = wd_pipeline_init_compute(&pass->view, gpu, &params);
     params.shader = (struct wd_spirv)SPIRV(light_comp);
-    params.bindings.count = 11;
+    params.bindings.count = 12;
+    params.bindings.types[11] = IMAGE;
     for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
         const uint32_t constants[] = {wd_tile_list_parts(list), list};
         params.constants = (struct wd_spec_constants){2, constants};
@@ -124,6 +125,7 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
         .sun_height = pass->sun_field.height,
         .variants = params->forest->variants ? params->forest->variants : 1,
         .is_sea = wd_water_is_sea(params->forest->ground.terrain, params->frame->water_level_m),
+        .has_overlay = params->overlay == WD_OVERLAY_OVER,
         .extent_m = {(float)wd_terrain_extent_x_m(params->forest->ground.terrain),
                      (float)wd_terrain_extent_y_m(params->forest->ground.terrain)},
         .tile_columns = (params->targets->width + WD_TILE - 1) / WD_TILE,
@@ -190,6 +192,8 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     if (!fit_lists(pass, cmd, (uint64_t)push.tile_columns * push.tile_rows))
         cmd->failed = true;
     use_gbuffer(cmd, targets);
+    if (push.has_overlay)
+        wd_cmd_use_image(cmd, &targets->overlay, WD_USE_COMPUTE_READ);
     wd_cmd_use_image(cmd, &targets->shadow, WD_USE_COMPUTE_READ);
     wd_cmd_use_image(cmd, &targets->radiance, WD_USE_COMPUTE_WRITE);
     if (cmd->failed)
@@ -206,6 +210,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         models_of(params->forest),
         WD_BIND_STORAGE_IMAGE(&targets->radiance),
         WD_BIND_BUFFER(&pass->lists),
+        WD_BIND_IMAGE(push.has_overlay ? &targets->overlay : &targets->albedo, pass->nearest),
     };
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);
@@ -215,6 +220,23 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     wd_cmd_bind(cmd, &pass->view, bindings);
     wd_cmd_push(cmd, &pass->view, &push, sizeof push);
     wd_cmd_dispatch(cmd, push.tile_columns, push.tile_rows, 1);
+}
+
+bool wd_light_pass_inputs(struct wd_light_pass *pass, struct wd_cmd *cmd,
+                          const struct wd_light_params *params, struct wd_light_inputs *inputs)
+{
+    wd_sun_field_update(&pass->sun_field, cmd, params->forest->ground.terrain,
+                        params->frame->sun_direction);
+    if (cmd->failed)
+        return false;
+    wd_cmd_use_buffer(cmd, &pass->sun_field.heights, WD_USE_SHADER_READ);
+    wd_cmd_use_image(cmd, &params->targets->shadow, WD_USE_SHADER_READ);
+    *inputs = (struct wd_light_inputs){
+        .push = push_of(pass, params),
+        .shadow_map = WD_BIND_IMAGE(&params->targets->shadow, pass->shadow),
+        .sun_heights = WD_BIND_BUFFER(&pass->sun_field.heights),
+    };
+    return true;
 }
 
 void wd_light_pass_record_velocity(struct wd_light_pass *pass, struct wd_cmd *cmd,
