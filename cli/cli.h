@@ -44,11 +44,11 @@ struct cli_options {
     const char *output, *camera, *path, *method, *seed, *data, *gpu;
     const char *screenshots, *report;
     uint32_t size_px[2];
-    uint32_t samples, frames, threads;
+    uint32_t samples, frames, threads, bounces;
     double frames_per_second, time_s;
     struct cli_words settings, method_options;
     enum wd_view_mode view;
-    bool help, json, quiet, times, gpu_validate, walk, faithful;
+    bool help, json, quiet, reference, times, gpu_validate, walk, faithful;
 };
 
 /* The bar on standard error, or plain lines at every quarter where that is no terminal. Silent in

@@ -57,7 +57,7 @@ static enum wd_result frame_camera(const struct cli_film *film, uint64_t frame,
     return wd_forest_get_path_camera(film->forest, film->path, time_s, camera, NULL);
 }
 
-static enum wd_result shoot_frame(struct cli_film *film, struct wd_renderer *renderer,
+static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *painter,
                                   struct wd_camera *previous)
 {
     uint64_t frame = film->frames_done;
@@ -68,7 +68,7 @@ static enum wd_result shoot_frame(struct cli_film *film, struct wd_renderer *ren
     params.previous_time_s = frame ? params.time_s - 1 / film->frames_per_second : params.time_s;
     params.previous_camera = frame ? previous : NULL;
     if (result == WD_OK)
-        result = wd_renderer_render(renderer, &params, &picture);
+        result = cli_painter_paint(painter, &params, &picture);
     if (result == WD_OK)
         result = wd_film_add(film->output, &picture);
     wd_picture_finish(&picture);
@@ -76,7 +76,7 @@ static enum wd_result shoot_frame(struct cli_film *film, struct wd_renderer *ren
     return result;
 }
 
-enum wd_result cli_film_shoot(struct cli_film *film, struct wd_renderer *renderer)
+enum wd_result cli_film_shoot(struct cli_film *film, struct cli_painter *painter)
 {
     struct wd_camera previous = {0};
     enum wd_result result = WD_OK;
@@ -84,7 +84,7 @@ enum wd_result cli_film_shoot(struct cli_film *film, struct wd_renderer *rendere
         cli_session_film_progress(film->session, film->frames_done, film->frame_count);
         if (cli_session_interrupted(film->session))
             return WD_ERROR_INTERRUPTED;
-        result = shoot_frame(film, renderer, &previous);
+        result = shoot_frame(film, painter, &previous);
         film->frames_done += result == WD_OK;
     }
     return result;

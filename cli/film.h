@@ -2,7 +2,7 @@
 #ifndef CLI_FILM_H
 #define CLI_FILM_H
 
-#include "picture.h"
+#include "painter.h"
 
 struct cli_film {
     struct cli_session *session;
@@ -19,7 +19,7 @@ struct cli_film {
  * cli_film_close whatever the result. */
 enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
                              const struct wd_forest *forest, const struct cli_plan *plan);
-enum wd_result cli_film_shoot(struct cli_film *film, struct wd_renderer *renderer);
+enum wd_result cli_film_shoot(struct cli_film *film, struct cli_painter *painter);
 /* Keeps the finished frames unless the output itself failed, and says so. Returns `result`, or
  * what went wrong in finishing. */
 enum wd_result cli_film_close(struct cli_film *film, enum wd_result result);

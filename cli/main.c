@@ -9,11 +9,14 @@ static const struct cli_command commands[] = {
     {"render", CLI_RENDER, "SCENE -o FILE", 1, 1, "draw a picture or a film",
      "Draws a picture of a scene, or a film of it along a path or of its wind. An .exr holds all\n"
      "layers: colour, depth in metres, world normal, albedo, species, 32-bit tree id, velocity.\n"
-     "Ctrl-C stops a film after the frames that are finished; these are kept.",
+     "Ctrl-C stops a film after the frames that are finished; these are kept. With --reference a\n"
+     "picture is path-traced on the processor; stopped, it leaves FILE.partial, from which the same\n"
+     "command goes on.",
      "  weald render scenes/valley.json -o valley.png\n"
      "  weald render scenes/valley.json -o valley.exr --camera overview --size 1920x1080\n"
      "  weald render scenes/valley.json -o flight.mp4 --path flight --samples 4\n"
      "  weald render scenes/valley.json -o frame-%05d.png --path flight --frames 48\n"
+     "  weald render scenes/valley.json -o truth.exr --reference --samples 256\n"
      "  weald render scenes/valley.json -o lod.png --view lod --method octree --times\n"
      "  weald render scenes/osg.json -o calm.png --set wind.speed_mps=0\n",
      cli_render},

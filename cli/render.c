@@ -7,7 +7,9 @@
 
 #include "film.h"
 #include "output_name.h"
-#include "picture.h"
+
+/* Paths a pixel of --reference, unless asked for otherwise. */
+enum { REFERENCE_SAMPLES = 64 };
 
 static bool make_plan(struct cli_session *session, struct cli_plan *plan)
 {
@@ -26,6 +28,12 @@ static bool make_plan(struct cli_session *session, struct cli_plan *plan)
                         options->output, options->frames);
     if (options->camera && options->path)
         return cli_fail(session, "--camera and --path exclude each other");
+    if (options->reference && options->method)
+        return cli_fail(session, "--method and --reference exclude each other");
+    if (options->reference && options->view != WD_VIEW_LIT)
+        return cli_fail(session, "--reference draws lit pictures only; an .exr holds the layers");
+    if (options->bounces && !options->reference)
+        return cli_fail(session, "--bounces is for --reference");
     return cli_method_check(session);
 }
 
@@ -38,46 +46,15 @@ static void choose_picture(const struct cli_session *session, const struct wd_fo
     struct wd_render_params *params = &plan->params;
     params->width = options->size_px[0] ? options->size_px[0] : defaults.width;
     params->height = options->size_px[1] ? options->size_px[1] : defaults.height;
-    params->samples = options->samples ? options->samples : defaults.samples;
+    params->samples = options->samples     ? options->samples
+                      : options->reference ? REFERENCE_SAMPLES
+                                           : defaults.samples;
     params->method = options->method;
     params->view = options->view;
     params->time_s = params->previous_time_s = options->time_s;
     params->timing = options->times ? WD_TIME_PASSES : WD_TIME_OFF;
     bool layers = plan->kind == CLI_OUTPUT_EXR || plan->kind == CLI_OUTPUT_NUMBERED_EXR;
     params->layers = layers ? WD_LAYER_ALL : WD_LAYER_DISPLAY;
-}
-
-static enum wd_result open_renderer(struct cli_session *session, const struct wd_forest *forest,
-                                    struct wd_renderer **renderer)
-{
-    const struct cli_options *options = session->options;
-    struct wd_renderer_params params = {
-        .gpu = options->gpu,
-        .validation = options->gpu_validate ? WD_VALIDATION_ON : WD_VALIDATION_OFF,
-        .threads = options->threads,
-        .progress = session->progress,
-        .log = session->log,
-    };
-    enum wd_result result = wd_renderer_create(renderer, &params);
-    return result == WD_OK ? wd_renderer_set_forest(*renderer, forest) : result;
-}
-
-static void print_times(struct cli_session *session, const struct wd_renderer *renderer)
-{
-    struct wd_frame_stats stats;
-    wd_renderer_get_stats(renderer, &stats);
-    cli_meter_clear(&session->meter);
-    printf("%-16s %10s %10s   (one sample)\n", "pass", "GPU ms", "CPU ms");
-    for (uint32_t i = 0; i < stats.pass_count; i++)
-        printf("%-16s %10.2f %10.2f\n", stats.passes[i].name, stats.passes[i].gpu_ms,
-               stats.passes[i].cpu_ms);
-    printf("%-16s %10.2f\n", "whole frame", stats.frame_ms);
-    printf("trees drawn: %llu as mesh, %llu reduced, %llu as billboard; %llu draw calls, "
-           "%llu triangles; device memory %.1f MB, at most %.1f MB\n",
-           (unsigned long long)stats.trees_mesh, (unsigned long long)stats.trees_reduced,
-           (unsigned long long)stats.trees_billboard, (unsigned long long)stats.draw_calls,
-           (unsigned long long)stats.triangles, (double)stats.device_bytes / 1e6,
-           (double)stats.device_bytes_peak / 1e6);
 }
 
 void cli_say_written(struct cli_session *session, const struct cli_plan *plan, const char *what)
@@ -103,21 +80,21 @@ static enum wd_result choose_camera(struct cli_session *session, const struct wd
 static enum wd_result render_picture(struct cli_session *session, const struct wd_forest *forest,
                                      struct cli_plan *plan)
 {
-    struct wd_renderer *renderer = NULL;
+    struct cli_painter painter = {0};
     struct wd_picture picture = {0};
     enum wd_result result = choose_camera(session, forest, &plan->params.camera);
     if (result == WD_OK)
-        result = open_renderer(session, forest, &renderer);
+        result = cli_painter_open(&painter, session, forest, plan);
     if (result == WD_OK)
-        result = wd_renderer_render(renderer, &plan->params, &picture);
+        result = cli_painter_paint(&painter, &plan->params, &picture);
     if (result == WD_OK)
         result = wd_picture_write(&picture, session->options->output, &session->log);
-    if (result == WD_OK && session->options->times)
-        print_times(session, renderer);
-    if (result == WD_OK)
+    if (result == WD_OK) {
+        cli_painter_print_times(&painter);
         cli_say_written(session, plan, "");
+    }
     wd_picture_finish(&picture);
-    wd_renderer_destroy(&renderer);
+    cli_painter_close(&painter);
     return result;
 }
 
@@ -125,16 +102,16 @@ static enum wd_result render_film(struct cli_session *session, const struct wd_f
                                   struct cli_plan *plan)
 {
     struct cli_film film;
-    struct wd_renderer *renderer = NULL;
+    struct cli_painter painter = {0};
     enum wd_result result = cli_film_open(&film, session, forest, plan);
     if (result == WD_OK)
-        result = open_renderer(session, forest, &renderer);
+        result = cli_painter_open(&painter, session, forest, plan);
     if (result == WD_OK)
-        result = cli_film_shoot(&film, renderer);
+        result = cli_film_shoot(&film, &painter);
     result = cli_film_close(&film, result);
-    if (result == WD_OK && session->options->times)
-        print_times(session, renderer);
-    wd_renderer_destroy(&renderer);
+    if (result == WD_OK)
+        cli_painter_print_times(&painter);
+    cli_painter_close(&painter);
     return result;
 }
 

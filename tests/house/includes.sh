@@ -17,7 +17,7 @@ src/frame: base scene world tree gpu bake forest methods
 src/methods: base scene world tree gpu bake forest frame
 src/reference: base scene world tree
 src/output: base
-src/api: base scene world tree gpu bake forest frame methods output
+src/api: base scene world tree gpu bake forest frame methods reference output
 cli: viewer
 viewer:
 examples:

@@ -1,0 +1,291 @@
+#include "weald/reference.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "api/forest.h"
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "reference/checkpoint.h"
+#include "reference/display.h"
+#include "shared/air.h"
+#include "world/surroundings.h"
+
+enum { MAX_SIZE = 16384, MAX_SAMPLES = 1 << 20, DEFAULT_SAMPLES = 64, DEFAULT_BOUNCES = 8 };
+static const double CHECKPOINT_S = 30.0;
+
+struct wd_reference {
+    const struct wd_forest *forest;
+    RTCDevice device;
+    struct wd_trace_models models;
+    unsigned threads;
+    struct wd_progress progress;
+    struct wd_log log;
+    struct wd_reference_stats stats;
+};
+
+/* --- making ------------------------------------------------------------------------------ */
+
+static void embree_error(void *user, enum RTCError code, const char *text)
+{
+    const struct wd_reference *reference = user;
+    wd_error(&reference->log, "Embree: %s (error %d)", text, (int)code);
+}
+
+/* Pictures differ between instruction sets by rounding; AVX2 is what most machines have. */
+static RTCDevice open_device(struct wd_reference *reference)
+{
+    char config[64];
+    const char *isa = __builtin_cpu_supports("avx2") ? "isa=avx2," : "";
+    snprintf(config, sizeof config, "%sthreads=%u", isa, reference->threads);
+    RTCDevice device = rtcNewDevice(config);
+    if (device)
+        rtcSetDeviceErrorFunction(device, embree_error, reference);
+    return device;
+}
+
+enum wd_result wd_reference_create(struct wd_reference **result, const struct wd_forest *forest,
+                                   const struct wd_reference_params *params)
+{
+    struct wd_reference *reference = wd_alloc(sizeof *reference);
+    *result = NULL;
+    *reference = (struct wd_reference){.forest = forest,
+                                       .threads = params->threads,
+                                       .progress = params->progress,
+                                       .log = params->log};
+    reference->device = open_device(reference);
+    if (!reference->device) {
+        wd_error(&reference->log, "Embree cannot be started (error %d)",
+                 (int)rtcGetDeviceError(NULL));
+        wd_reference_destroy(&reference);
+        return WD_ERROR_MEMORY;
+    }
+    if (!wd_trace_models_init(&reference->models, reference->device, &forest->scene,
+                              reference->threads, &reference->log)) {
+        wd_reference_destroy(&reference);
+        return WD_ERROR_INPUT;
+    }
+    *result = reference;
+    return WD_OK;
+}
+
+void wd_reference_destroy(struct wd_reference **reference)
+{
+    if (!reference || !*reference)
+        return;
+    wd_trace_models_finish(&(*reference)->models);
+    if ((*reference)->device)
+        rtcReleaseDevice((*reference)->device);
+    free(*reference);
+    *reference = NULL;
+}
+
+/* --- one picture --------------------------------------------------------------------------- */
+
+struct work {
+    struct wd_reference *reference;
+    const struct wd_reference_picture_params *params;
+    uint32_t samples, layers;
+    struct wd_frame_uniforms frame;
+    struct wd_trace_scene scene;
+    struct wd_tracer tracer;
+    struct wd_trace_job job;
+    struct wd_trace_sums sums;
+    struct wd_progress progress; /* its user is this */
+    double written_s;            /* when the checkpoint was last written */
+    bool pause;                  /* tracing stops only to write the checkpoint */
+    uint64_t key;
+};
+
+static bool check(const struct wd_reference *reference,
+                  const struct wd_reference_picture_params *params)
+{
+    const struct wd_log *log = &reference->log;
+    if (params->width < 1 || params->width > MAX_SIZE || params->height < 1 ||
+        params->height > MAX_SIZE)
+        return wd_error(log, "picture of %u x %u pixels: 1 to %d each way are possible",
+                        params->width, params->height, MAX_SIZE);
+    if (params->samples > MAX_SAMPLES)
+        return wd_error(log, "%u samples: at most %d are possible", params->samples, MAX_SAMPLES);
+    if (!(params->camera.fov_rad > 0.0 && params->camera.fov_rad < 3.14159))
+        return wd_error(log, "field of view of %g radians: between 0 and pi is possible",
+                        params->camera.fov_rad);
+    for (int k = 0; k < 3; k++) {
+        if (!(fabs(params->camera.position_m[k]) < 2.0e6))
+            return wd_error(log, "camera at %g m: within 2,000 km of the origin is possible",
+                            params->camera.position_m[k]);
+    }
+    return true;
+}
+
+/* All that the picture depends on but the number of samples. */
+static uint64_t picture_key(const struct work *work)
+{
+    const struct wd_camera *camera = &work->params->camera;
+    const struct wd_trace_models *models = &work->reference->models;
+    const double numbers[] = {camera->position_m[0], camera->position_m[1], camera->position_m[2],
+                              camera->yaw_rad, camera->pitch_rad, camera->fov_rad,
+                              work->tracer.bounces};
+    uint64_t key = wd_world_hash(&work->reference->forest->world);
+    key = XXH64(&work->frame, sizeof work->frame, key);
+    key = XXH64(numbers, sizeof numbers, key);
+    for (uint32_t i = 0; i < models->count; i++) {
+        const struct wd_tree_mesh *mesh = &models->models[i].grown.full;
+        key = XXH64(mesh->vertices, mesh->vertex_count * sizeof *mesh->vertices, key);
+        key = XXH64(mesh->indices, mesh->index_count * sizeof *mesh->indices, key);
+    }
+    return key;
+}
+
+static bool report(void *user, const char *stage, uint64_t done, uint64_t total)
+{
+    struct work *work = user;
+    if (!wd_progress_report(&work->reference->progress, stage, done, total))
+        return false;
+    work->pause = work->params->checkpoint && wd_clock_s() - work->written_s > CHECKPOINT_S;
+    return !work->pause;
+}
+
+static bool prepare(struct work *work)
+{
+    struct wd_reference *reference = work->reference;
+    const struct wd_reference_picture_params *params = work->params;
+    const struct wd_forest *forest = reference->forest;
+    double begin_s = wd_clock_s();
+    work->frame.time_s = (float)params->time_s;
+    work->frame.width = params->width;
+    work->frame.height = params->height;
+    wd_surroundings_set_camera(&work->frame, params->camera.position_m);
+    wd_surroundings_fill(&work->frame, &forest->scene, &forest->world.terrain);
+    work->job.view = wd_trace_view_of(&params->camera, params->width, params->height);
+    work->tracer = (struct wd_tracer){
+        .scene = &work->scene,
+        .sky = wd_sky_toward,
+        .bounces = params->bounces ? params->bounces : DEFAULT_BOUNCES,
+        .pixel_rad = wd_trace_pixel_rad(&work->job.view),
+        .is_sea = wd_water_is_sea(&forest->world.terrain, work->frame.water_level_m),
+    };
+    work->progress = (struct wd_progress){report, work};
+    work->job.tracer = &work->tracer;
+    work->job.threads = reference->threads;
+    work->job.progress = &work->progress;
+    wd_trace_sums_init(&work->sums, params->width, params->height);
+    bool ok = wd_trace_scene_init(&work->scene, &reference->models, &forest->scene, &forest->world,
+                                  &work->frame, &reference->log);
+    reference->stats.build_s = wd_clock_s() - begin_s;
+    return ok;
+}
+
+static bool resume(struct work *work)
+{
+    const char *path = work->params->checkpoint;
+    if (!path)
+        return true;
+    work->key = picture_key(work);
+    if (!wd_file_exists(path))
+        return true;
+    if (!wd_checkpoint_read(path, work->key, &work->sums, &work->reference->log))
+        return false;
+    for (size_t i = 0; i < (size_t)work->sums.tile_columns * work->sums.tile_rows; i++)
+        work->reference->stats.resumed_samples += work->sums.tile_samples[i];
+    return true;
+}
+
+static enum wd_result trace(struct work *work)
+{
+    const char *path = work->params->checkpoint;
+    double begin_s = wd_clock_s();
+    do {
+        work->written_s = wd_clock_s();
+        work->job.stopped = work->pause = false;
+        wd_trace_run(&work->job, &work->sums, work->samples);
+        if (work->job.stopped && path &&
+            !wd_checkpoint_write(path, work->key, &work->sums, &work->reference->log))
+            return WD_ERROR_OUTPUT;
+    } while (work->job.stopped && work->pause);
+    work->reference->stats.trace_s = wd_clock_s() - begin_s;
+    return work->job.stopped ? WD_ERROR_INTERRUPTED : WD_OK;
+}
+
+/* Tiles of a checkpoint may hold more samples than were asked for. */
+static float *mean_radiance(const struct wd_trace_sums *sums)
+{
+    float *color = wd_alloc_array((size_t)sums->width * sums->height, 3 * sizeof *color);
+    for (uint32_t y = 0; y < sums->height; y++) {
+        for (uint32_t x = 0; x < sums->width; x++) {
+            size_t pixel = (size_t)y * sums->width + x;
+            size_t tile = (size_t)(y / WD_TRACE_TILE) * sums->tile_columns + x / WD_TRACE_TILE;
+            for (size_t k = 0; k < 3; k++)
+                color[3 * pixel + k] =
+                    sums->radiance[3 * pixel + k] / (float)sums->tile_samples[tile];
+        }
+    }
+    return color;
+}
+
+static void fill_picture(struct work *work, struct wd_picture *picture)
+{
+    uint32_t width = work->sums.width, height = work->sums.height;
+    size_t pixels = (size_t)width * height;
+    picture->width = width;
+    picture->height = height;
+    picture->color = mean_radiance(&work->sums);
+    if (work->layers & WD_LAYER_DEPTH)
+        picture->depth_m = wd_alloc_array(pixels, sizeof(float));
+    if (work->layers & WD_LAYER_NORMAL)
+        picture->normal = wd_alloc_array(pixels, 3 * sizeof(float));
+    if (work->layers & WD_LAYER_ALBEDO)
+        picture->albedo = wd_alloc_array(pixels, 3 * sizeof(float));
+    if (work->layers & WD_LAYER_SPECIES)
+        picture->species = wd_alloc_array(pixels, sizeof(uint32_t));
+    if (work->layers & WD_LAYER_TREE_ID)
+        picture->tree_id = wd_alloc_array(pixels, sizeof(uint32_t));
+    wd_trace_layers(&work->job, picture);
+    if (work->layers & WD_LAYER_DISPLAY) {
+        picture->display = wd_alloc_array(pixels, 4);
+        wd_display_map(picture->color, width, height,
+                       (float)work->reference->forest->scene.quality.exposure_ev, picture->display);
+    }
+    if (!(work->layers & WD_LAYER_COLOR)) {
+        free(picture->color);
+        picture->color = NULL;
+    }
+}
+
+enum wd_result wd_reference_render(struct wd_reference *reference,
+                                   const struct wd_reference_picture_params *params,
+                                   struct wd_picture *picture)
+{
+    *picture = (struct wd_picture){0};
+    if (!check(reference, params))
+        return WD_ERROR_INPUT;
+    reference->stats = (struct wd_reference_stats){0};
+    struct work work = {
+        .reference = reference,
+        .params = params,
+        .samples = params->samples ? params->samples : DEFAULT_SAMPLES,
+        .layers = params->layers ? params->layers : WD_LAYER_DISPLAY,
+    };
+    enum wd_result result = !prepare(&work)   ? WD_ERROR_MEMORY
+                            : !resume(&work) ? WD_ERROR_INPUT
+                                             : trace(&work);
+    if (result == WD_OK) {
+        fill_picture(&work, picture);
+        if (params->checkpoint && wd_file_exists(params->checkpoint))
+            unlink(params->checkpoint);
+    }
+    reference->stats.rays = work.job.counts.rays;
+    reference->stats.self_hits = work.job.counts.self_hits;
+    wd_trace_scene_finish(&work.scene);
+    wd_trace_sums_finish(&work.sums);
+    return result;
+}
+
+void wd_reference_get_stats(const struct wd_reference *reference, struct wd_reference_stats *stats)
+{
+    *stats = reference->stats;
+}

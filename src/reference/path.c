@@ -1,0 +1,232 @@
+#include "reference/path.h"
+
+#include "shared/air.h"
+#include "shared/waves.h"
+#include "tree/vec.h"
+
+/* Scatterings after which paths may end by chance. */
+enum { SURE_BOUNCES = 2 };
+
+struct path {
+    const struct wd_tracer *tracer;
+    struct wd_trace_counts *counts;
+    struct wd_sampler sampler;
+    struct wd_trace_ray ray;
+    struct wd_vec3 radiance, throughput;
+    uint32_t left_tree, left_triangle; /* what the ray has just left */
+    bool mirrored, under_water;
+    uint32_t bounce;
+    float seen_m;                      /* how far off the eye sees something; infinite: the sky */
+};
+
+static const struct wd_frame_uniforms *frame_of(const struct path *path)
+{
+    return path->tracer->scene->frame;
+}
+
+static void add(struct path *path, struct wd_vec3 radiance)
+{
+    path->radiance = wd_v3_add(path->radiance, wd_v3_mul(path->throughput, radiance));
+}
+
+static struct wd_trace_hit nearest(struct path *path)
+{
+    struct wd_trace_hit hit = wd_trace_nearest(path->tracer->scene, &path->ray);
+    path->counts->rays++;
+    path->counts->self_hits += hit.at_m < INFINITY && hit.tree == path->left_tree &&
+                               hit.triangle == path->left_triangle;
+    return hit;
+}
+
+static bool sun_reaches(struct path *path, const struct wd_trace_ray *ray)
+{
+    path->counts->rays++;
+    return !wd_trace_blocked(path->tracer->scene, ray);
+}
+
+/* --- the sun --------------------------------------------------------------------------------- */
+
+/* A direction to the sun's disc, evenly over it; `*share`: brightness there over the disc's mean. */
+static struct wd_vec3 toward_sun(struct path *path, float *share)
+{
+    const struct wd_frame_uniforms *frame = frame_of(path);
+    struct wd_vec3 sun = wd_v3_of(frame->sun_direction), side = wd_v3_side(sun);
+    float point[2];
+    wd_sampler_next(&path->sampler, point);
+    float inside = point[0], cosine = 1 - (1 - frame->sun_cos_radius) * (1 - inside);
+    float sine = sqrtf(fmaxf(1 - cosine * cosine, 0)), turn = 6.2831853f * point[1];
+    struct wd_vec3 across = wd_v3_add(wd_v3_scale(side, cosf(turn)),
+                                      wd_v3_scale(wd_v3_cross(sun, side), sinf(turn)));
+    *share = 1.25f * sqrtf(sqrtf(inside));
+    return wd_v3_unit(wd_v3_mad(wd_v3_scale(sun, cosine), across, sine));
+}
+
+static void add_sun(struct path *path, const struct wd_surface *surface)
+{
+    struct wd_vec3 irradiance = wd_v3_of(frame_of(path)->sun_irradiance);
+    float share;
+    struct wd_vec3 toward = toward_sun(path, &share);
+    if (irradiance.y <= 0)
+        return;
+    struct wd_vec3 eye = wd_v3_scale(path->ray.direction, -1);
+    struct wd_vec3 scattered = wd_scatter_toward(surface, eye, toward);
+    if (scattered.x + scattered.y + scattered.z <= 0)
+        return;
+    struct wd_trace_ray ray = wd_surface_leave(surface, toward);
+    if (sun_reaches(path, &ray))
+        add(path, wd_v3_scale(wd_v3_mul(scattered, irradiance), share));
+}
+
+/* --- water ----------------------------------------------------------------------------------- */
+
+/* How far off the ray meets the water from above; infinite if it does not. */
+static float water_ahead_m(const struct path *path)
+{
+    const struct wd_frame_uniforms *frame = frame_of(path);
+    const struct wd_trace_ground *ground = &path->tracer->scene->ground;
+    float above_m = path->ray.from.z - (float)((double)frame->water_level_m - ground->origin_m[2]);
+    if (path->under_water || frame->water_level_m < -1e8f || above_m <= 0 ||
+        path->ray.direction.z >= -1e-6f)
+        return INFINITY;
+    float at_m = -above_m / path->ray.direction.z;
+    if (path->tracer->is_sea)
+        return at_m;
+    double x_m = (double)(path->ray.from.x + path->ray.direction.x * at_m) + ground->origin_m[0];
+    double y_m = (double)(path->ray.from.y + path->ray.direction.y * at_m) + ground->origin_m[1];
+    const struct wd_terrain *terrain = ground->terrain;
+    bool within = x_m > 0 && y_m > 0 && x_m < wd_terrain_extent_x_m(terrain) &&
+                  y_m < wd_terrain_extent_y_m(terrain);
+    return within ? at_m : INFINITY;
+}
+
+/* Light from below: what the water itself throws back, and, dimmed, what lies at `bottom_m`. */
+static void look_under(struct path *path, struct wd_vec3 at, float depth_m, float lit)
+{
+    const struct wd_frame_uniforms *frame = frame_of(path);
+    struct wd_vec3 through = wd_water_through(frame, depth_m);
+    struct wd_vec3 lost = wd_v3_sub(WD_V3(1, 1, 1), through);
+    add(path, wd_v3_mul(wd_water_body(frame, lit), lost));
+    path->throughput = wd_v3_mul(path->throughput, through);
+    path->ray.from = at;
+    path->under_water = true;
+}
+
+/* The ray meets the surface `at_m` off, and ground or nothing at `hit_m`. */
+static void meet_water(struct path *path, float at_m, float hit_m)
+{
+    const struct wd_frame_uniforms *frame = frame_of(path);
+    struct wd_vec3 at = wd_v3_mad(path->ray.from, path->ray.direction, at_m);
+    struct wd_vec3 direction = path->ray.direction;
+    float pixel_rad = path->bounce == 0 ? path->tracer->pixel_rad : 0.02f;
+    float footprint_m = at_m * pixel_rad / fmaxf(-direction.z, 0.02f);
+    struct wd_waves waves = wd_waves_at(frame, at.x, at.y, footprint_m);
+    float choice[2], share;
+    wd_sampler_next(&path->sampler, choice);
+    struct wd_vec3 above = wd_v3_add(at, WD_V3(0, 0, 2e-3f));
+    struct wd_trace_ray to_sun = {above, toward_sun(path, &share), INFINITY};
+    float lit = frame->sun_irradiance[1] > 0 && sun_reaches(path, &to_sun) ? share : 0;
+    add(path, wd_v3_scale(wd_water_glint(frame, waves, direction), lit));
+    if (choice[0] >= wd_water_fresnel(waves, direction)) {
+        look_under(path, at, fminf(hit_m - at_m, 1e4f), lit);
+        return;
+    }
+    float facing = wd_v3_dot(direction, waves.normal);
+    struct wd_vec3 mirrored = wd_v3_mad(direction, waves.normal, -2 * facing);
+    mirrored.z = fmaxf(mirrored.z, 0.02f);
+    path->ray = (struct wd_trace_ray){above, wd_v3_unit(mirrored), INFINITY};
+    path->mirrored = true;
+}
+
+/* --- the path -------------------------------------------------------------------------------- */
+
+/* The eye sees the sun's disc; everything else has it sampled, and water its glint. */
+static void escape(struct path *path)
+{
+    const struct wd_frame_uniforms *frame = frame_of(path);
+    add(path, path->tracer->sky(frame, path->ray.direction));
+    if (path->bounce == 0 && !path->mirrored && !path->under_water)
+        add(path, wd_sun_disc_toward(frame, path->ray.direction));
+}
+
+/* Whether the path goes on; what does is weighted so that the mean stays. */
+static bool survives(struct path *path)
+{
+    struct wd_vec3 *t = &path->throughput;
+    float point[2], chance = fminf(fmaxf(t->x, fmaxf(t->y, t->z)), 1);
+    wd_sampler_next(&path->sampler, point);
+    if (path->bounce < SURE_BOUNCES)
+        return chance > 0;
+    if (point[0] >= chance)
+        return false;
+    *t = wd_v3_scale(*t, 1 / chance);
+    return true;
+}
+
+static bool scatter(struct path *path, const struct wd_trace_hit *hit)
+{
+    struct wd_surface surface;
+    struct wd_scattered scattered;
+    wd_surface_at(&surface, path->tracer->scene, &path->ray, hit,
+                  path->bounce == 0 ? path->tracer->pixel_rad : 0);
+    add_sun(path, &surface);
+    struct wd_vec3 eye = wd_v3_scale(path->ray.direction, -1);
+    if (path->bounce++ >= path->tracer->bounces ||
+        !wd_scatter_sample(&scattered, &surface, eye, &path->sampler))
+        return false;
+    path->throughput = wd_v3_mul(path->throughput, scattered.weight);
+    path->ray = wd_surface_leave(&surface, scattered.direction);
+    path->left_tree = hit->tree;
+    path->left_triangle = hit->triangle;
+    path->mirrored = path->under_water = false;
+    return survives(path);
+}
+
+/* One ray on; false at the path's end. */
+static bool advance(struct path *path)
+{
+    struct wd_trace_hit hit = nearest(path);
+    float water_m = water_ahead_m(path);
+    bool primary = path->bounce == 0 && !path->mirrored && !path->under_water;
+    if (primary)
+        path->seen_m = fminf(hit.at_m, water_m);
+    if (water_m < hit.at_m) {
+        meet_water(path, water_m, hit.at_m);
+        path->left_tree = UINT32_MAX;
+        return true;
+    }
+    if (hit.at_m < INFINITY)
+        return scatter(path, &hit);
+    escape(path);
+    return false;
+}
+
+/* Haze between the eye and what it sees is lit where the ground there lets the sun pass. */
+static struct wd_vec3 through_haze(const struct path *path, struct wd_vec3 direction)
+{
+    const struct wd_frame_uniforms *frame = frame_of(path);
+    if (path->seen_m >= INFINITY)
+        return path->radiance;
+    struct wd_trace_ray to_sun = {wd_v3_mad(wd_v3_scale(direction, path->seen_m),
+                                            WD_V3(0, 0, 1), 0.05f),
+                                  wd_v3_of(frame->sun_direction), INFINITY};
+    bool shaded = wd_trace_blocked_by_ground(path->tracer->scene, &to_sun);
+    path->counts->rays++;
+    return wd_fog_apply(frame, path->radiance, direction, path->seen_m, shaded ? 0.0f : 1.0f);
+}
+
+struct wd_vec3 wd_path_radiance(const struct wd_tracer *tracer, struct wd_vec3 direction,
+                                struct wd_sampler sampler, struct wd_trace_counts *counts)
+{
+    struct path path = {
+        .tracer = tracer,
+        .counts = counts,
+        .sampler = sampler,
+        .ray = {{0, 0, 0}, direction, INFINITY},
+        .throughput = {1, 1, 1},
+        .left_tree = UINT32_MAX,
+        .seen_m = INFINITY,
+    };
+    while (advance(&path))
+        ;
+    return through_haze(&path, direction);
+}

@@ -1,0 +1,170 @@
+#include "reference/scene.h"
+
+#include <math.h>
+
+#include "base/log.h"
+#include "shared/frame.h"
+#include "shared/hash.h"
+
+/* Rays begin a little off the surface that they leave; what they meet nearer than this is that
+ * surface itself. */
+static const float NEAR_M = 1e-3f;
+
+/* Where the crown's mass is: the model's bend, which grows with the square of height, is replaced
+ * by a lean that agrees there. */
+static const float LEAN_HEIGHT = 0.7f;
+
+/* --- placing trees ----------------------------------------------------------------------- */
+
+/* Columns x, y, z, translation. */
+static void tree_transform(const struct wd_trace_scene *scene, const struct wd_tree *tree,
+                           const struct wd_model *model, float m[12])
+{
+    const struct wd_frame_uniforms *frame = scene->frame;
+    struct wd_tree_pose pose = wd_tree_pose_of(*tree, *model);
+    const int32_t foot_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
+    float lean[3] = {0, 0, 0}, height_m = LEAN_HEIGHT * WD_TREE_HEIGHT_M(*tree);
+    if (frame->wind_speed_mps > 0 && height_m > 0) {
+        const struct wd_wind wind = {frame->wind_speed_mps, frame->wind_gust,
+                                     frame->wind_toward[0], frame->wind_toward[1]};
+        struct wd_wind_shift shift = wd_wind_offset(
+            wind, wd_wind_tree_of(*tree, model->flexibility), height_m, frame->time_s);
+        lean[0] = shift.x_m / height_m;
+        lean[1] = shift.y_m / height_m;
+        lean[2] = shift.z_m / height_m;
+    }
+    float across = pose.across, x = across * pose.mirror;
+    const float columns[12] = {pose.turn_cos * x,       pose.turn_sin * x,      0,
+                               -pose.turn_sin * across, pose.turn_cos * across, 0,
+                               lean[0] * pose.up,       lean[1] * pose.up,      (1 + lean[2]) * pose.up,
+                               0,                       0,                      0};
+    for (int k = 0; k < 12; k++)
+        m[k] = columns[k];
+    for (int k = 0; k < 3; k++)
+        m[9 + k] = (float)(foot_mm[k] - frame->camera_mm[k]) * 0.001f - frame->camera_frac_m[k];
+}
+
+/* Layers come and go with distance, tree by tree. */
+static bool is_shown(const struct wd_trace_scene *scene, size_t index, const float at[3])
+{
+    uint32_t layer = scene->world->layer_of_tree[index];
+    if (layer >= scene->scene->layer_count)
+        return true;
+    const struct wd_scene_layer *from = &scene->scene->layers[layer];
+    const struct wd_layer_fade fade = {
+        (float)from->fade_near_m[0], (float)from->fade_near_m[1], (float)from->fade_far_m[0],
+        (float)from->fade_far_m[1]};
+    float distance_m = sqrtf(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
+    return wd_hash_unit(scene->world->trees[index].random) < wd_layer_show(fade, distance_m);
+}
+
+static void place_tree(struct wd_trace_scene *scene, size_t index)
+{
+    const struct wd_tree *tree = &scene->world->trees[index];
+    const struct wd_trace_model *model = wd_trace_model_of(scene->models, tree);
+    float m[12];
+    tree_transform(scene, tree, &model->model, m);
+    if (!is_shown(scene, index, m + 9))
+        return;
+    RTCGeometry instance = rtcNewGeometry(scene->models->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, model->scene);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+    rtcSetGeometryMask(instance, UINT32_MAX);
+    rtcCommitGeometry(instance);
+    rtcAttachGeometryByID(scene->top, instance, (unsigned)index);
+    rtcReleaseGeometry(instance);
+}
+
+bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_models *models,
+                         const struct wd_scene *description, const struct wd_world *world,
+                         const struct wd_frame_uniforms *frame, const struct wd_log *log)
+{
+    RTCDevice device = models->device;
+    double origin_m[3];
+    *scene = (struct wd_trace_scene){
+        .world = world, .scene = description, .models = models, .frame = frame};
+    for (int k = 0; k < 3; k++)
+        origin_m[k] = frame->camera_mm[k] * 0.001 + (double)frame->camera_frac_m[k];
+    wd_trace_ground_init(&scene->ground, device, &world->terrain, origin_m);
+    scene->top = rtcNewScene(device);
+    rtcSetSceneFlags(scene->top, RTC_SCENE_FLAG_COMPACT);
+    rtcSetSceneBuildQuality(scene->top, RTC_BUILD_QUALITY_MEDIUM);
+    rtcAttachGeometryByID(scene->top, scene->ground.geometry, (unsigned)world->tree_count);
+    for (size_t i = 0; i < world->tree_count; i++)
+        place_tree(scene, i);
+    rtcCommitScene(scene->top);
+    enum RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_NONE)
+        return true;
+    wd_trace_scene_finish(scene);
+    return wd_error(log, "no memory, or a fault in Embree (error %d), for %zu trees", (int)error,
+                    world->tree_count);
+}
+
+void wd_trace_scene_finish(struct wd_trace_scene *scene)
+{
+    if (scene->top)
+        rtcReleaseScene(scene->top);
+    wd_trace_ground_finish(&scene->ground);
+    *scene = (struct wd_trace_scene){0};
+}
+
+/* --- rays ---------------------------------------------------------------------------------- */
+
+static struct RTCRay embree_ray(const struct wd_trace_ray *ray)
+{
+    return (struct RTCRay){
+        .org_x = ray->from.x,
+        .org_y = ray->from.y,
+        .org_z = ray->from.z,
+        .tnear = NEAR_M,
+        .dir_x = ray->direction.x,
+        .dir_y = ray->direction.y,
+        .dir_z = ray->direction.z,
+        .tfar = ray->far_m,
+        .mask = UINT32_MAX,
+    };
+}
+
+struct wd_trace_hit wd_trace_nearest(const struct wd_trace_scene *scene,
+                                     const struct wd_trace_ray *ray)
+{
+    struct RTCRayHit rayhit = {.ray = embree_ray(ray),
+                               .hit = {.geomID = RTC_INVALID_GEOMETRY_ID,
+                                       .instID = {RTC_INVALID_GEOMETRY_ID}}};
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene->top, &context, &rayhit);
+    const struct RTCHit *found = &rayhit.hit;
+    struct wd_trace_hit hit = {.at_m = INFINITY};
+    if (found->geomID == RTC_INVALID_GEOMETRY_ID)
+        return hit;
+    bool ground = found->instID[0] == RTC_INVALID_GEOMETRY_ID;
+    hit.at_m = rayhit.ray.tfar;
+    hit.tree = ground ? (uint32_t)scene->world->tree_count : found->instID[0];
+    hit.triangle = found->primID;
+    hit.u = found->u;
+    hit.v = found->v;
+    if (ground)
+        hit.normal = wd_v3_normalize(WD_V3(found->Ng_x, found->Ng_y, found->Ng_z));
+    return hit;
+}
+
+static bool blocked(RTCScene scene, const struct wd_trace_ray *ray)
+{
+    struct RTCRay shadow = embree_ray(ray);
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene, &context, &shadow);
+    return shadow.tfar < 0;
+}
+
+bool wd_trace_blocked(const struct wd_trace_scene *scene, const struct wd_trace_ray *ray)
+{
+    return blocked(scene->top, ray);
+}
+
+bool wd_trace_blocked_by_ground(const struct wd_trace_scene *scene, const struct wd_trace_ray *ray)
+{
+    return blocked(scene->ground.scene, ray);
+}

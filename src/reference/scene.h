@@ -1,0 +1,48 @@
+/* scene.h: everything that rays can meet: the ground, and an instance of its model for every tree.
+ * Rays run in the camera-relative frame of shared/frame.h. */
+#ifndef WD_REFERENCE_SCENE_H
+#define WD_REFERENCE_SCENE_H
+
+#include "reference/ground.h"
+#include "reference/models.h"
+#include "world/world.h"
+
+struct wd_trace_scene {
+    const struct wd_world *world;
+    const struct wd_scene *scene;
+    const struct wd_trace_models *models;
+    const struct wd_frame_uniforms *frame; /* camera, light, wind and ground colours */
+    struct wd_trace_ground ground;
+    RTCScene top; /* ids: the tree's index; the ground's is world->tree_count */
+};
+
+/* A place where a ray ends. */
+struct wd_trace_hit {
+    float at_m;          /* infinite: the sky */
+    uint32_t tree;       /* index; world->tree_count for the ground */
+    uint32_t triangle;   /* of the tree's model, or of the ground */
+    float u, v;          /* on the tree's triangle */
+    struct wd_vec3 normal; /* of the ground's triangle */
+};
+
+/* Places every tree as it stands at frame->time_s: leaning in the wind, without flutter. Layers
+ * that show only in part at the tree's distance show that share of their trees. All arguments must
+ * outlive the result and must not move. */
+bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_models *models,
+                         const struct wd_scene *description, const struct wd_world *world,
+                         const struct wd_frame_uniforms *frame, const struct wd_log *log);
+void wd_trace_scene_finish(struct wd_trace_scene *scene); /* accepts {0} */
+
+struct wd_trace_ray {
+    struct wd_vec3 from, direction; /* unit */
+    float far_m;
+};
+
+/* The nearest hit; at_m infinite if there is none. Thread-safe. */
+struct wd_trace_hit wd_trace_nearest(const struct wd_trace_scene *scene,
+                                     const struct wd_trace_ray *ray);
+/* Whether anything, or the ground alone, stands in the way. Thread-safe. */
+bool wd_trace_blocked(const struct wd_trace_scene *scene, const struct wd_trace_ray *ray);
+bool wd_trace_blocked_by_ground(const struct wd_trace_scene *scene, const struct wd_trace_ray *ray);
+
+#endif

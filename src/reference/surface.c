@@ -1,0 +1,229 @@
+#include "reference/surface.h"
+
+#include "base/color.h"
+#include "shared/ground_cover.h"
+#include "tree/vec.h"
+
+static const float COARSE_FOOTPRINT_M = 0.4f;
+
+/* --- trees ----------------------------------------------------------------------------------- */
+
+/* The triangle's corners by how much of each the hit holds. */
+struct corners {
+    const struct wd_tree_vertex *vertex[3];
+    float share[3];
+};
+
+static struct corners corners_of(const struct wd_trace_model *model, const struct wd_trace_hit *hit)
+{
+    struct corners corners = {.share = {1 - hit->u - hit->v, hit->u, hit->v}};
+    const uint32_t *index = model->grown.full.indices + 3 * (size_t)hit->triangle;
+    for (int k = 0; k < 3; k++)
+        corners.vertex[k] = &model->grown.full.vertices[index[k]];
+    return corners;
+}
+
+static struct wd_vec3 vertex_normal(const struct corners *corners)
+{
+    struct wd_vec3 sum = {0};
+    for (int k = 0; k < 3; k++) {
+        float normal[3];
+        wd_unpack_normal(corners->vertex[k]->normal, normal);
+        sum = wd_v3_mad(sum, wd_v3_of(normal), corners->share[k]);
+    }
+    return sum;
+}
+
+static struct wd_vec3 flat_normal(const struct corners *corners)
+{
+    struct wd_vec3 p[3];
+    for (int k = 0; k < 3; k++)
+        p[k] = wd_v3_of(corners->vertex[k]->position_m);
+    return wd_v3_cross(wd_v3_sub(p[1], p[0]), wd_v3_sub(p[2], p[0]));
+}
+
+/* From a model's frame into the world's: the inverse transpose of the pose. */
+static struct wd_vec3 pose_normal(const struct wd_tree_pose *pose, struct wd_vec3 n)
+{
+    n.x *= pose->mirror;
+    struct wd_vec3 turned = {(pose->turn_cos * n.x - pose->turn_sin * n.y) * pose->up,
+                             (pose->turn_sin * n.x + pose->turn_cos * n.y) * pose->up,
+                             n.z * pose->across};
+    return wd_v3_unit(turned);
+}
+
+static struct wd_vec3 vertex_tint(const struct corners *corners)
+{
+    struct wd_vec3 sum = {0};
+    for (int k = 0; k < 3; k++) {
+        uint32_t tint = corners->vertex[k]->tint;
+        struct wd_vec3 rgb = WD_V3(tint & 255u, tint >> 8 & 255u, tint >> 16 & 255u);
+        sum = wd_v3_mad(sum, rgb, corners->share[k] / 255);
+    }
+    return sum;
+}
+
+/* A sheet's upper side has its texture as it was drawn; the lower side has a texture of its own. */
+static void leaf_surface(struct wd_surface *surface, const struct wd_trace_model *model,
+                         const struct wd_trace_hit *hit, struct wd_vec3 eye,
+                         struct wd_trace_texel *texel)
+{
+    float turn = wd_trace_uv_turn(model, hit->triangle);
+    bool upper = wd_v3_dot(surface->flat, eye) * turn > 0;
+    surface->glossy = upper && texel->layer == WD_LOOK_LEAF;
+    if (!upper && texel->layer == WD_LOOK_LEAF)
+        texel->layer = WD_LOOK_LEAF_BACK;
+}
+
+static struct wd_vec3 texel_color(const struct wd_trace_model *model,
+                                  const struct wd_trace_texel *texel)
+{
+    const uint8_t *rgb = model->look->albedo + texel->layer * WD_TRACE_MAP_BYTES + texel->offset;
+    return WD_V3(wd_srgb_decode(rgb[0]), wd_srgb_decode(rgb[1]), wd_srgb_decode(rgb[2]));
+}
+
+/* What comes through a leaf: its share of the albedo is the species', thicker veins let through
+ * less. Both together are never more than all. */
+static struct wd_vec3 leaf_transmittance(const struct wd_surface *surface,
+                                         const struct wd_trace_model *model,
+                                         const struct wd_trace_texel *texel)
+{
+    size_t at = texel->layer * WD_TRACE_MAP_BYTES + texel->offset;
+    float thin = (float)model->look->detail[at + 3] * (2 / 255.0f);
+    struct wd_vec3 a = surface->albedo;
+    struct wd_vec3 t = wd_v3_scale(wd_v3_mul(a, wd_v3_of(model->model.transmittance)), thin);
+    return WD_V3(fminf(t.x, 1 - a.x), fminf(t.y, 1 - a.y), fminf(t.z, 1 - a.z));
+}
+
+static void tree_surface(struct wd_surface *surface, const struct wd_trace_scene *scene,
+                         const struct wd_trace_hit *hit, struct wd_vec3 eye)
+{
+    const struct wd_tree *tree = &scene->world->trees[hit->tree];
+    const struct wd_trace_model *model = wd_trace_model_of(scene->models, tree);
+    struct corners corners = corners_of(model, hit);
+    struct wd_tree_pose pose = wd_tree_pose_of(*tree, model->model);
+    bool leaf = (corners.vertex[0]->kind & WD_VERTEX_LEAF) != 0;
+    struct wd_trace_texel texel = wd_trace_texel_at(model, hit->triangle, hit->u, hit->v);
+    surface->flat = pose_normal(&pose, flat_normal(&corners));
+    surface->outward = pose_normal(&pose, vertex_normal(&corners));
+    if (leaf)
+        leaf_surface(surface, model, hit, eye, &texel);
+    struct wd_vec3 look = wd_v3_mul(texel_color(model, &texel), vertex_tint(&corners));
+    if (leaf)
+        look = wd_v3_mul(look, wd_tree_tint(*tree));
+    surface->albedo = wd_v3_clamp(look, 0, 1);
+    if (leaf)
+        surface->transmittance = leaf_transmittance(surface, model, &texel);
+    surface->coat_alpha = model->model.roughness * model->model.roughness;
+}
+
+/* --- ground ---------------------------------------------------------------------------------- */
+
+static float height_at(const struct wd_terrain *terrain, uint32_t i, uint32_t j)
+{
+    return terrain->height_m[(size_t)j * terrain->width + i];
+}
+
+/* Central differences; one-sided at the edge. */
+static void sample_slope(const struct wd_terrain *terrain, uint32_t i, uint32_t j, float slope[2])
+{
+    uint32_t west = i ? i - 1 : 0, east = i + 1 < terrain->width ? i + 1 : i;
+    uint32_t south = j ? j - 1 : 0, north = j + 1 < terrain->height ? j + 1 : j;
+    float cell_m = (float)terrain->cell_m;
+    slope[0] = (height_at(terrain, east, j) - height_at(terrain, west, j)) /
+               ((float)(east - west) * cell_m);
+    slope[1] = (height_at(terrain, i, north) - height_at(terrain, i, south)) /
+               ((float)(north - south) * cell_m);
+}
+
+/* The lower of two neighbours on a grid of `count` and the share of the upper, clamped. */
+static uint32_t grid_place(double at, uint32_t count, float *share)
+{
+    double last = count - 1.0, x = at < 0 ? 0 : at > last ? last : at;
+    uint32_t cell = (uint32_t)x;
+    if (cell + 1 >= count)
+        cell = count >= 2 ? count - 2 : 0;
+    *share = count >= 2 ? (float)(x - cell) : 0;
+    return cell;
+}
+
+/* Interpolated between samples, as pictures are drawn with it. */
+static void smooth_slope(const struct wd_terrain *terrain, double x_m, double y_m, float slope[2])
+{
+    float u, v, corner[4][2];
+    uint32_t i = grid_place(x_m / terrain->cell_m, terrain->width, &u);
+    uint32_t j = grid_place(y_m / terrain->cell_m, terrain->height, &v);
+    for (uint32_t k = 0; k < 4; k++)
+        sample_slope(terrain, i + (k & 1), j + (k >> 1), corner[k]);
+    for (int k = 0; k < 2; k++)
+        slope[k] = wd_mixf(wd_mixf(corner[0][k], corner[1][k], u),
+                           wd_mixf(corner[2][k], corner[3][k], u), v);
+}
+
+static float canopy_cover(const struct wd_world *world, double x_m, double y_m)
+{
+    if (!world->cover || !world->cover_width || !world->cover_height)
+        return 0;
+    float u, v;
+    uint32_t width = world->cover_width, height = world->cover_height;
+    uint32_t i = grid_place(x_m / world->cover_cell_m - 0.5, width, &u);
+    uint32_t j = grid_place(y_m / world->cover_cell_m - 0.5, height, &v);
+    const uint8_t *south = world->cover + (size_t)j * width + i;
+    const uint8_t *north = height > 1 ? south + width : south;
+    int right = width > 1;
+    return wd_mixf(wd_mixf(south[0], south[right], u), wd_mixf(north[0], north[right], u), v) / 255;
+}
+
+static void ground_surface(struct wd_surface *surface, const struct wd_trace_scene *scene,
+                           const struct wd_trace_hit *hit, struct wd_vec3 direction,
+                           float pixel_rad)
+{
+    const struct wd_trace_ground *ground = &scene->ground;
+    double x_m = (double)surface->place.x + ground->origin_m[0];
+    double y_m = (double)surface->place.y + ground->origin_m[1];
+    float slope[2], footprint_m = COARSE_FOOTPRINT_M;
+    smooth_slope(&scene->world->terrain, x_m, y_m, slope);
+    if (pixel_rad > 0) {
+        /* a mean of the pixel's length away from the eye and its width */
+        struct wd_vec3 level = wd_v3_normalize(WD_V3(-slope[0], -slope[1], 1));
+        float facing = fabsf(wd_v3_dot(level, direction));
+        footprint_m = hit->at_m * pixel_rad / sqrtf(fmaxf(facing, 0.02f));
+    }
+    struct wd_ground_look look =
+        wd_ground_cover(scene->frame, surface->place, slope[0], slope[1],
+                        canopy_cover(scene->world, x_m, y_m), footprint_m);
+    surface->albedo = look.albedo;
+    surface->outward = look.normal;
+    surface->flat = hit->normal;
+}
+
+/* --- both ------------------------------------------------------------------------------------ */
+
+void wd_surface_at(struct wd_surface *surface, const struct wd_trace_scene *scene,
+                   const struct wd_trace_ray *ray, const struct wd_trace_hit *hit, float pixel_rad)
+{
+    struct wd_vec3 eye = wd_v3_scale(ray->direction, -1);
+    *surface = (struct wd_surface){.place = wd_v3_mad(ray->from, ray->direction, hit->at_m)};
+    if (hit->tree < scene->world->tree_count)
+        tree_surface(surface, scene, hit, eye);
+    else
+        ground_surface(surface, scene, hit, ray->direction, pixel_rad);
+    if (wd_v3_dot(surface->flat, eye) < 0)
+        surface->flat = wd_v3_scale(surface->flat, -1);
+    surface->normal = surface->outward;
+    if (wd_v3_dot(surface->normal, surface->flat) < 0)
+        surface->normal = wd_v3_scale(surface->normal, -1);
+    if (wd_v3_dot(surface->normal, eye) <= 0)
+        surface->normal = surface->flat;
+    /* two millimetres, and more where floats are coarser than that */
+    struct wd_vec3 p = surface->place;
+    float farthest_m = fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
+    surface->offset_m = fmaxf(2e-3f, farthest_m * 1e-6f);
+}
+
+struct wd_trace_ray wd_surface_leave(const struct wd_surface *surface, struct wd_vec3 direction)
+{
+    float side = wd_v3_dot(direction, surface->flat) < 0 ? -surface->offset_m : surface->offset_m;
+    return (struct wd_trace_ray){wd_v3_mad(surface->place, surface->flat, side), direction,
+                                 INFINITY};
+}
