@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "tree/fronds.h"
 #include "tree/look.h"
 #include "tree/progressive.h"
 
@@ -38,6 +39,10 @@ static float leafy_from(const struct wd_tree_form *form, const struct wd_branch 
         return 0.85f;
     if (branch->order == last - 1 && branch->order >= 0)
         return form->species->form == WD_FORM_CONIFER && last < 2 ? 0.35f : 0.55f;
+    if (branch->order == WD_TRUNK && form->species->form == WD_FORM_BRAMBLE)
+        return 0.12f;
+    if (branch->order == WD_TRUNK && form->species->form == WD_FORM_SHRUB)
+        return 0.8f;
     return branch->order == WD_TRUNK ? 0.975f : 0.9f;
 }
 
@@ -94,18 +99,30 @@ static void weigh_carriers(struct carriers *carriers, struct wd_foliage *foliage
     wd_tree_density_blur(&foliage->crown);
 }
 
-/* Where around the twig the n-th leaf stands: in two rows on flat sprays, else in a spiral. */
+static int leaves_a_node(const struct wd_species *species)
+{
+    if (species->leaf.shape == WD_LEAF_NEEDLES)
+        return 1;
+    return species->leaf.phyllotaxis == WD_PHYLLOTAXIS_OPPOSITE  ? 2
+           : species->leaf.phyllotaxis == WD_PHYLLOTAXIS_WHORLED ? 3
+                                                                 : 1;
+}
+
+/* Where around the twig the n-th leaf stands: pairs and whorls turn from node to node so that each
+ * stands over the gap of the one before; single leaves in two rows on flat sprays, else a spiral. */
 static struct wd_vec3 leaf_side(const struct wd_tree_form *form, struct wd_vec3 twig, int n,
                                 struct wd_random *random)
 {
     const struct wd_species *species = form->species;
     struct wd_vec3 side = wd_v3_side(twig), over = wd_v3_cross(side, twig);
     bool rows = species->orders[species->order_count - 1].flatness > 0.6f;
+    int per = leaves_a_node(species), node = n / per;
     float angle = (float)n * 2.3999632f;
-    if (species->leaf.phyllotaxis == WD_PHYLLOTAXIS_OPPOSITE)
-        angle = (float)WD_PI * ((float)(n & 1) + 0.5f * (float)(n >> 1 & 1));
+    if (per > 1)
+        angle = (float)WD_PI * ((float)(2 * (n % per)) + (float)(node & 1)) / (float)per;
     else if (rows)
-        angle = (float)WD_PI * (float)(n & 1) + 0.35f * wd_random_signed(random);
+        angle = (float)WD_PI * (float)(n & 1);
+    angle += (per > 1 || rows ? 0.3f : 0.15f) * wd_random_signed(random);
     return wd_v3_turn(side, over, angle);
 }
 
@@ -156,7 +173,9 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
     const struct wd_branch *branch = &skeleton->branches[carrier->branch];
     leaf->key = wd_hash3(branch->key, 0x1eaf, (uint32_t)n);
     struct wd_random random = wd_random_of(leaf->key, 1);
-    float place = ((float)n + wd_random_unit(&random)) / (float)of;
+    int per = leaves_a_node(form->species), nodes = (of + per - 1) / per;
+    struct wd_random joint = wd_random_of(wd_hash3(branch->key, 0x70de, (uint32_t)(n / per)), 1);
+    float place = ((float)(n / per) + wd_random_unit(&joint)) / (float)nodes;
     struct wd_vec3 twig;
     size_t node;
     struct wd_vec3 p = wd_branch_point(skeleton, branch, wd_mixf(carrier->from, 1, place), &twig,
@@ -173,11 +192,11 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
     leaf->size_m = wd_mixf(1.2f, 0.85f, wd_clampf(1.5f * leaf->sky, 0, 1)) *
                    wd_random_range(&random, 0.8f, 1.15f);
     float gap = form->species->orders[form->species->order_count - 1].spacing_m;
-    float loose = needles ? 0.02f : 0.4f * gap;
+    float loose = needles ? 0.02f : 0.3f * gap;
     if (needles) /* a spire ends in short shoots */
         leaf->size_m *= wd_clampf(2.2f * wd_tree_envelope_m(form, WD_V3(0, 0, p.z)) /
                                       form->crown_radius_m, 0.62f, 1);
-    leaf->position_m = wd_v3_mad(p, wd_random_vec3(&random), loose * form->scale);
+    leaf->position_m = wd_v3_mad(p, wd_random_vec3(&joint), loose * form->scale);
     leaf->flexibility = skeleton->nodes[node].flexibility;
     int parent = branch->parent >= 0 ? branch->parent : 0;
     tint_leaf(leaf, skeleton->branches[parent].key, &random);
@@ -214,6 +233,8 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
     const struct wd_species *species = form->species;
     bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
     double spread = wd_dpow((double)form->spread, 1.1);
+    if (species->leaf.count == 0)
+        return 0;
     double count = (double)species->leaf.count * (double)form->detail;
     count *= fmin(spread, needles ? 1 : 1.2);
     double real_m = 0.01 * (double)(needles ? species->leaf.shoot_cm : species->leaf.length_cm);
@@ -226,6 +247,8 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
 /* Sprays that would hang into the ground lie on it. */
 static void lift_leaf(struct wd_leaf *leaf)
 {
+    float edge = 0.5f * leaf->size_m * (1 - fabsf(leaf->normal.z)); /* it stands on its side */
+    leaf->position_m.z = fmaxf(leaf->position_m.z, 0.01f + edge);
     float room = 0.03f - leaf->position_m.z;
     if (leaf->axis.z * leaf->size_m >= room)
         return;
@@ -248,16 +271,44 @@ static void scale_leaves(struct wd_foliage *foliage, const struct wd_species *sp
     foliage->area_m2 = area_m2;
 }
 
+/* The grid around wood and leaves, from a little below the crown. */
+static void init_crown(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
+                       const struct wd_tree_form *form)
+{
+    float cell = fmaxf(0.09f * form->crown_radius_m, 0.012f * form->height_m);
+    bool fronds = wd_species_has_fronds(form->species);
+    float around = fronds ? form->crown_radius_m : 4 * cell;
+    struct wd_vec3 low = WD_V3(0, 0, form->crown_base_m), high = WD_V3(0, 0, form->height_m);
+    for (size_t b = 0; b < skeleton->branch_count; b++) {
+        const struct wd_branch *branch = &skeleton->branches[b];
+        for (size_t i = 0; i < branch->node_count; i++) {
+            struct wd_vec3 p = skeleton->nodes[branch->first_node + i].position_m;
+            if (branch->order == WD_TRUNK)
+                p.z = fmaxf(p.z, form->crown_base_m);
+            low = WD_V3(fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z));
+            high = WD_V3(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
+        }
+    }
+    low = wd_v3_sub(low, WD_V3(around, around, fronds ? around : 3 * cell));
+    high = wd_v3_add(high, WD_V3(around, around, 4 * cell));
+    low.z = fmaxf(low.z, -cell);
+    wd_tree_density_init(&foliage->crown, low, high, cell);
+}
+
 void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
                      const struct wd_tree_form *form)
 {
     *foliage = (struct wd_foliage){0};
     struct carriers carriers = {0};
-    float area = leaf_area_m2(form), reach = 1.35f * form->crown_radius_m;
+    float area = leaf_area_m2(form);
     size_t wanted = leaf_count(form, area);
-    float cell = fmaxf(0.09f * form->crown_radius_m, 0.012f * form->height_m);
-    wd_tree_density_init(&foliage->crown, WD_V3(-reach, -reach, 0.6f * form->crown_base_m),
-                         WD_V3(reach, reach, 1.1f * form->height_m), cell);
+    area = wanted > 0 ? area : 0;
+    init_crown(foliage, skeleton, form);
+    if (wd_species_has_fronds(form->species)) {
+        wd_fronds_place(foliage, skeleton, form);
+        shuffle(foliage->leaves, foliage->count, form->key);
+        return;
+    }
     gather_carriers(&carriers, skeleton, form);
     weigh_carriers(&carriers, foliage, skeleton, area);
     foliage->leaves = wd_alloc_array(wanted + 1, sizeof *foliage->leaves);

@@ -12,9 +12,9 @@ enum {
 
 /* Leaves out the thinnest branches until the rest fits the budget. */
 static void fit_wood(struct wd_wood_style *style, const struct wd_skeleton *skeleton,
-                     size_t triangles)
+                     const struct wd_species *species, size_t triangles)
 {
-    while (wd_wood_triangles(skeleton, style) > triangles)
+    while (wd_wood_triangles(skeleton, species, style) > triangles)
         style->least_radius_m = 1.08f * style->least_radius_m + 1e-4f;
 }
 
@@ -23,7 +23,8 @@ static void build_full(struct wd_tree_mesh *mesh, const struct wd_skeleton *skel
 {
     float least = form->species->leaf.shape == WD_LEAF_NEEDLES ? 0.0055f : 0;
     struct wd_wood_style style = {least * fminf(form->scale, 1), 1, 12};
-    fit_wood(&style, skeleton, (size_t)(FULL_WOOD_TRIANGLES * fmaxf(form->detail, 1)));
+    fit_wood(&style, skeleton, form->species,
+             (size_t)(FULL_WOOD_TRIANGLES * fmaxf(form->detail, 1)));
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
     wd_foliage_mesh(mesh, foliage, form->species);
@@ -34,7 +35,7 @@ static void build_reduced(struct wd_tree_mesh *mesh, const struct wd_skeleton *s
                           const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
     struct wd_wood_style style = {0.002f, 4, 5};
-    fit_wood(&style, skeleton, REDUCED_WOOD_TRIANGLES);
+    fit_wood(&style, skeleton, form->species, REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
     wd_foliage_mesh_reduced(mesh, foliage, form->species, REDUCED_LEAVES);

@@ -25,14 +25,35 @@ static void set_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *f
 {
     const struct wd_branch *trunk = &skeleton->branches[0];
     float leader = form->species->apical_dominance, all = skeleton->nodes[0].load;
-    float base = 0.5f * form->dbh_m, above = fmaxf(form->height_m - 1.3f, 0.3f * form->height_m);
+    float whole = form->height_m / form->species->decay.broken_at; /* before it broke */
+    float base = 0.5f * form->dbh_m, above = fmaxf(whole - 1.3f, 0.3f * whole);
     for (size_t i = 0; i < trunk->node_count; i++) {
         struct wd_skeleton_node *node = &skeleton->nodes[trunk->first_node + i];
-        float height = wd_clampf((form->height_m - node->position_m.z) / above, 0, 1.1f);
+        float height = wd_clampf((whole - node->position_m.z) / above, 0, 1.1f);
         float clear = 1 - 0.16f * wd_clampf(node->position_m.z / form->crown_base_m, 0, 1);
         float carried = clear * sqrtf(node->load / all);
         float taper = (float)wd_dpow((double)height, 0.85);
         node->radius_m = fmaxf(base * (leader > 0.85f ? taper : carried), TIP_RADIUS_M);
+    }
+}
+
+/* Stems of a stool are thinner the shorter they are; a palm's stem hardly tapers. */
+static void set_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *form, size_t index)
+{
+    const struct wd_branch *stem = &skeleton->branches[index];
+    struct wd_skeleton_node *nodes = &skeleton->nodes[stem->first_node];
+    bool stool = form->species->form == WD_FORM_SHRUB || form->species->form == WD_FORM_BRAMBLE;
+    float base = 0.5f * form->dbh_m, tip = 0.75f, highest = 0;
+    for (size_t i = 0; i < stem->node_count; i++)
+        highest = fmaxf(highest, nodes[i].position_m.z);
+    if (stool) {
+        base *= wd_clampf(highest / form->height_m, 0.3f, 1) *
+                (0.8f + 0.2f * wd_hash_unit(stem->key));
+        tip = 0.12f;
+    }
+    for (size_t i = 0; i < stem->node_count; i++) {
+        float share = (float)i / (float)(stem->node_count - 1);
+        nodes[i].radius_m = fmaxf(base * wd_mixf(1, tip, share), fminf(0.3f * base, TIP_RADIUS_M));
     }
 }
 
@@ -57,24 +78,37 @@ static void set_flexibility(struct wd_skeleton *skeleton, const struct wd_tree_f
     }
 }
 
+static void set_branch(struct wd_skeleton *skeleton, const struct wd_tree_form *form,
+                       const struct wd_branch *branch)
+{
+    struct wd_skeleton_node *nodes = &skeleton->nodes[branch->first_node];
+    const struct wd_skeleton_node *foot =
+        &skeleton->nodes[skeleton->branches[branch->stem].first_node];
+    float base = skeleton->stem_count > 1 ? foot->radius_m : 0.5f * form->dbh_m;
+    float joint = skeleton->nodes[branch->parent_node].radius_m;
+    float most = form->species->orders[branch->order].radius_ratio * joint;
+    float wanted = base * sqrtf(nodes[0].load / foot->load), shrink = 1;
+    if (wanted > most)
+        shrink = most / wanted;
+    if (form->species->form == WD_FORM_SNAG) /* it no longer bears what made it thick */
+        shrink = most * (0.55f + 0.45f * wd_hash_unit(branch->key)) / wanted;
+    for (size_t i = 0; i < branch->node_count; i++) {
+        float tip = 1 - 0.35f * (float)i / (float)branch->node_count;
+        float radius = base * sqrtf(nodes[i].load / foot->load) * shrink * tip;
+        nodes[i].radius_m = wd_clampf(radius, fminf(TIP_RADIUS_M, 0.9f * joint), joint);
+    }
+}
+
 void wd_skeleton_set_radii(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
+    bool lone = form->species->order_count > 0 && skeleton->stem_count == 1 &&
+                form->species->form != WD_FORM_SHRUB && form->species->form != WD_FORM_BRAMBLE;
     set_loads(skeleton);
-    set_trunk(skeleton, form);
+    if (lone)
+        set_trunk(skeleton, form);
+    for (size_t i = 0; !lone && i < skeleton->stem_count; i++)
+        set_stem(skeleton, form, i);
     set_flexibility(skeleton, form);
-    float base = 0.5f * form->dbh_m, all = skeleton->nodes[0].load;
-    for (size_t b = 1; b < skeleton->branch_count; b++) {
-        const struct wd_branch *branch = &skeleton->branches[b];
-        struct wd_skeleton_node *nodes = &skeleton->nodes[branch->first_node];
-        float joint = skeleton->nodes[branch->parent_node].radius_m;
-        float most = form->species->orders[branch->order].radius_ratio * joint;
-        float wanted = base * sqrtf(nodes[0].load / all), shrink = 1;
-        if (wanted > most)
-            shrink = most / wanted;
-        for (size_t i = 0; i < branch->node_count; i++) {
-            float tip = 1 - 0.35f * (float)i / (float)branch->node_count;
-            float radius = base * sqrtf(nodes[i].load / all) * shrink * tip;
-            nodes[i].radius_m = wd_clampf(radius, fminf(TIP_RADIUS_M, 0.9f * joint), joint);
-        }
-    }
+    for (size_t b = skeleton->stem_count; b < skeleton->branch_count; b++)
+        set_branch(skeleton, form, &skeleton->branches[b]);
 }

@@ -1,4 +1,4 @@
-#include "tree/skeleton.h"
+#include "tree/skeleton_parts.h"
 
 #include <stdlib.h>
 
@@ -26,19 +26,8 @@ struct wd_vec3 wd_branch_point(const struct wd_skeleton *skeleton, const struct 
     return wd_v3_mix(a[0].position_m, a[1].position_m, t);
 }
 
-/* What a chain of nodes is grown by. */
-struct stem {
-    int order, parent;
-    size_t parent_node;
-    struct wd_vec3 start, direction;
-    float length_m, along_m;
-    float upturn, tip_upturn, wander; /* radians per metre */
-    int steps;
-    uint32_t key;
-};
-
-static void add_node(struct wd_skeleton *skeleton, struct wd_vec3 position,
-                     struct wd_vec3 direction, float along_m)
+void wd_skeleton_add_node(struct wd_skeleton *skeleton, struct wd_vec3 position,
+                          struct wd_vec3 direction, float along_m)
 {
     struct wd_skeleton_node *node =
         wd_push(skeleton->nodes, skeleton->node_count, skeleton->node_capacity);
@@ -47,7 +36,7 @@ static void add_node(struct wd_skeleton *skeleton, struct wd_vec3 position,
     node->along_m = along_m;
 }
 
-static struct wd_branch *add_branch(struct wd_skeleton *skeleton, const struct stem *stem)
+struct wd_branch *wd_skeleton_add_branch(struct wd_skeleton *skeleton, const struct wd_stem *stem)
 {
     struct wd_branch *branch =
         wd_push(skeleton->branches, skeleton->branch_count, skeleton->branch_capacity);
@@ -56,6 +45,8 @@ static struct wd_branch *add_branch(struct wd_skeleton *skeleton, const struct s
     branch->parent_node = stem->parent_node;
     branch->first_node = skeleton->node_count;
     branch->key = stem->key;
+    branch->stem = stem->parent < 0 ? (int)skeleton->branch_count - 1
+                                    : skeleton->branches[stem->parent].stem;
     return branch;
 }
 
@@ -67,15 +58,23 @@ static struct wd_vec3 bend_up(struct wd_vec3 d, float angle)
     return wd_v3_unit(wd_v3_mad(d, up, fabsf(angle) * level));
 }
 
+/* Twigs that hang in curtains are bounded by the ground alone. */
+static bool hangs(const struct wd_branch_order *spec)
+{
+    return spec->tip_upturn < -1.8f;
+}
+
 /* Grows a branch node by node: wander, bending, and a turn back where it would leave the crown. */
 static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *form,
-                      const struct stem *stem)
+                      const struct wd_stem *stem)
 {
     struct wd_random random = wd_random_of(stem->key, 0x57e);
-    struct wd_branch *branch = add_branch(skeleton, stem);
+    struct wd_branch *branch = wd_skeleton_add_branch(skeleton, stem);
     struct wd_vec3 p = stem->start, d = stem->direction, drift = WD_V3(0, 0, 0);
     float step = stem->length_m / (float)stem->steps;
-    add_node(skeleton, p, d, stem->along_m);
+    float ground = fminf(0.35f, 0.06f * form->height_m);
+    bool hanging = hangs(&form->species->orders[stem->order]);
+    wd_skeleton_add_node(skeleton, p, d, stem->along_m);
     for (int i = 1; i <= stem->steps; i++) {
         float t = ((float)i - 0.5f) / (float)stem->steps;
         drift = wd_v3_mad(wd_v3_scale(drift, 0.5f), wd_random_vec3(&random), 1);
@@ -83,54 +82,20 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
         d = wd_v3_unit(wd_v3_mad(d, drift, fminf(stem->wander * step, 0.35f)));
         d = bend_up(d, wd_clampf(bend * step / form->spread, -0.8f, 0.8f));
         struct wd_vec3 next = wd_v3_mad(p, d, step);
-        if (next.z < 0.35f && d.z < 0) {
+        if (next.z < ground && d.z < 0) {
+            if (hanging && i > 1)
+                break;
             d = wd_v3_unit(WD_V3(d.x, d.y, 0.1f));
             next = wd_v3_mad(p, d, step);
         }
-        if (wd_tree_envelope_share(form, next) > 1.04f) {
+        if (!hanging && wd_tree_envelope_share(form, next) > 1.04f) {
             struct wd_vec3 out = wd_v3_unit_or(WD_V3(p.x, p.y, 0), WD_V3(0, 0, 1));
             d = wd_v3_unit(wd_v3_mad(d, out, -0.6f * fmaxf(wd_v3_dot(d, out), 0)));
             next = wd_v3_mad(p, d, 0.6f * step);
         }
         branch->length_m += wd_v3_length(wd_v3_sub(next, p));
         p = next;
-        add_node(skeleton, p, d, stem->along_m + branch->length_m);
-    }
-    branch->node_count = skeleton->node_count - branch->first_node;
-}
-
-/* Share of the crown's length up to which there is a trunk: above, it has dissolved into limbs. */
-static float trunk_end(const struct wd_tree_form *form)
-{
-    float leader = form->species->apical_dominance;
-    return leader > 0.85f ? 1 : 0.22f + 0.8f * leader;
-}
-
-/* The trunk keeps upright as far as it goes. */
-static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
-{
-    const struct wd_species *species = form->species;
-    enum { STEPS = 30 };
-    struct stem stem = {.order = WD_TRUNK, .parent = -1, .key = wd_hash2(form->key, 0x7)};
-    struct wd_random random = wd_random_of(stem.key, 0x57e);
-    struct wd_branch *branch = add_branch(skeleton, &stem);
-    float crown = form->height_m - form->crown_base_m;
-    float step = (form->crown_base_m + crown * trunk_end(form)) / STEPS;
-    float loose = 1 - species->apical_dominance;
-    struct wd_vec3 p = WD_V3(0, 0, 0), drift = WD_V3(0, 0, 0);
-    struct wd_vec3 d = wd_v3_unit(WD_V3(0.06f * loose * wd_random_signed(&random),
-                                        0.06f * loose * wd_random_signed(&random), 1));
-    add_node(skeleton, p, d, 0);
-    for (int i = 1; i <= STEPS; i++) {
-        float inside = wd_smoothf(form->crown_base_m, form->height_m, p.z);
-        drift = wd_v3_mad(wd_v3_scale(drift, 0.45f), wd_random_vec3(&random), 1);
-        float bend = species->trunk_wander * (1 + 4 * loose * inside) * step;
-        d = wd_v3_mad(d, drift, bend);
-        d = wd_v3_add(d, WD_V3(-0.03f * p.x * step, -0.03f * p.y * step, 0.10f * step));
-        d = wd_v3_unit(d);
-        p = wd_v3_mad(p, d, step / fmaxf(d.z, 0.5f));
-        branch->length_m += step / fmaxf(d.z, 0.5f);
-        add_node(skeleton, p, d, branch->length_m);
+        wd_skeleton_add_node(skeleton, p, d, stem->along_m + branch->length_m);
     }
     branch->node_count = skeleton->node_count - branch->first_node;
 }
@@ -172,11 +137,15 @@ struct joint {
     uint32_t key;
 };
 
-static int steps_of(int order, float length_m)
+/* Hanging twigs need as many steps as their bend, others as few as their length allows. */
+static int steps_of(const struct wd_branch_order *spec, int order, float length_m)
 {
     static const int most[3] = {9, 5, 2};
     int steps = 2 + (int)(length_m * (order == 0 ? 1.6f : 2.5f));
-    return steps < most[order] ? steps : most[order];
+    int bends = 1 + (int)(2.5f * length_m * fabsf(spec->tip_upturn));
+    if (steps > most[order])
+        steps = most[order];
+    return bends <= steps ? steps : bends < 7 ? bends : 7;
 }
 
 static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order,
@@ -185,7 +154,7 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     enum { TRIES = 5 };
     const struct wd_branch_order *spec = &form->species->orders[order];
     struct wd_random random = wd_random_of(joint->key, 0x101);
-    struct stem stem = {.order = order, .parent = joint->parent, .key = joint->key,
+    struct wd_stem stem = {.order = order, .parent = joint->parent, .key = joint->key,
                         .upturn = spec->upturn, .tip_upturn = spec->tip_upturn,
                         .wander = spec->wander};
     struct wd_vec3 axis;
@@ -205,11 +174,15 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
         }
     }
     struct wd_vec3 ahead = bend_up(stem.direction, 0.3f * spec->upturn * joint->length_m);
-    stem.length_m = wd_tree_envelope_reach_m(form, stem.start, ahead, joint->length_m);
+    stem.length_m = joint->length_m;
+    if (!hangs(spec))
+        stem.length_m = wd_tree_envelope_reach_m(form, stem.start, ahead, joint->length_m);
     stem.length_m *= wd_random_range(&random, 0.9f, 1.05f);
     if (stem.length_m < 0.3f * joint->length_m)
         stem.length_m = 0.3f * joint->length_m;
-    stem.steps = steps_of(order, stem.length_m);
+    if (form->species->form == WD_FORM_SNAG) /* broken off anywhere */
+        stem.length_m *= wd_random_range(&random, 0.12f, 0.9f);
+    stem.steps = steps_of(spec, order, stem.length_m);
     grow_stem(skeleton, form, &stem);
     if (order < 2)
         mark_crowd(skeleton, &skeleton->branches[skeleton->branch_count - 1]);
@@ -223,13 +196,18 @@ static float spacing_m(const struct wd_tree_form *form, int order)
     return form->species->orders[order].spacing_m * (float)squeeze;
 }
 
+static bool still_there(const struct wd_tree_form *form, uint32_t key)
+{
+    return wd_hash_unit(wd_hash2(key, 0xdeca)) < form->species->decay.limbs;
+}
+
 /* Limbs up the trunk, golden angle apart or in whorls, as long as the crown is wide there. */
 static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
     const struct wd_species *species = form->species;
     struct wd_random random = wd_random_of(form->key, 0x11b5);
     float crown = form->height_m - form->crown_base_m, spacing = spacing_m(form, 0);
-    float end = crown * trunk_end(form), top = form->crown_base_m + end;
+    float end = crown * wd_tree_trunk_end(form), top = form->crown_base_m + end;
     int whorl = (int)species->whorl, index = 0;
     for (float z = 0.1f * spacing; z < 0.98f * end; index++) {
         float around = (float)index * 2.3999632f + wd_random_unit(&random), t = z / end;
@@ -246,7 +224,8 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
                 joint.length_m = fmaxf(joint.length_m, joint.height * (crown - z));
             joint.length_m *= wd_random_range(&random, 0.85f, 1.0f);
             joint.key = wd_hash3(form->key, 0x11b, (uint32_t)(index * 16 + i));
-            grow_joint(skeleton, form, 0, &joint);
+            if (still_there(form, joint.key))
+                grow_joint(skeleton, form, 0, &joint);
         }
         float dense = end < crown ? 0.7f + 0.7f * t : 1 - 0.4f * t;
         z += spacing * wd_random_range(&random, 0.8f, 1.2f) * dense;
@@ -261,16 +240,20 @@ static bool grow_along(struct wd_skeleton *skeleton, const struct wd_tree_form *
     const struct wd_branch_order *spec = &form->species->orders[order];
     struct wd_branch parent = skeleton->branches[parent_index];
     struct wd_random random = wd_random_of(parent.key, 0xa1);
+    bool stool = parent.order == WD_TRUNK && order == 0;
     float spacing = spacing_m(form, order), start = spec->start, crown_low = form->crown_base_m;
     if (parent.order == WD_TRUNK)
-        start = wd_mixf(crown_low / form->height_m, 1, 0.72f);
+        start = wd_mixf(crown_low / form->height_m, 1, stool ? 0 : 0.72f);
     float limb = parent.length_m * (parent.order == WD_TRUNK ? 0.25f : 1), index = 0;
+    if (stool)
+        limb = 1.6f * form->crown_radius_m;
     for (float at = start * parent.length_m; at < 0.99f * parent.length_m; index++) {
         if (skeleton->branch_count >= WD_MAX_BRANCHES)
             return false;
         float share = at / parent.length_m, z = skeleton->nodes[parent.first_node].position_m.z;
         struct joint joint = {.parent = parent_index, .share = share};
-        joint.height = wd_clampf((z - crown_low) / (form->height_m - crown_low), 0, 1);
+        joint.height = stool ? share : wd_clampf((z - crown_low) / (form->height_m - crown_low),
+                                                 0, 1);
         float left = wd_random_range(&random, 0, 1) < 0.08f ? 0.5f : 0;
         float turn = ((int)index & 1) + left;
         joint.around_rad = (float)WD_PI * turn;
@@ -278,7 +261,8 @@ static bool grow_along(struct wd_skeleton *skeleton, const struct wd_tree_form *
         joint.length_m = spec->length_ratio * limb * (1.15f - 0.75f * share);
         joint.length_m *= wd_random_range(&random, 0.8f, 1.1f);
         joint.key = wd_hash3(parent.key, 0xb0, (uint32_t)index);
-        grow_joint(skeleton, form, order, &joint);
+        if (still_there(form, joint.key))
+            grow_joint(skeleton, form, order, &joint);
         at += spacing * wd_random_range(&random, 0.7f, 1.3f);
     }
     return true;
@@ -289,7 +273,7 @@ static bool grow_along(struct wd_skeleton *skeleton, const struct wd_tree_form *
 static bool grow_order(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order)
 {
     int count = (int)skeleton->branch_count;
-    bool leader = form->species->form == WD_FORM_BROADLEAF && trunk_end(form) > 0.7f;
+    bool leader = form->species->form == WD_FORM_BROADLEAF && wd_tree_trunk_end(form) > 0.7f;
     for (int i = 0; i < count; i++) {
         int parent = skeleton->branches[i].order;
         bool next = parent == order - 1 || (parent == WD_TRUNK && leader && order == 1);
@@ -297,6 +281,22 @@ static bool grow_order(struct wd_skeleton *skeleton, const struct wd_tree_form *
             return false;
     }
     return true;
+}
+
+static bool grow_branches(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
+{
+    const struct wd_species *species = form->species;
+    bool stool = species->form == WD_FORM_SHRUB || species->form == WD_FORM_BRAMBLE;
+    bool ok = true;
+    if (species->order_count == 0)
+        return true;
+    if (!stool)
+        ok = grow_limbs(skeleton, form);
+    for (size_t i = 0; ok && stool && i < skeleton->stem_count; i++)
+        ok = grow_along(skeleton, form, 0, (int)i);
+    for (int order = 1; ok && order < (int)species->order_count; order++)
+        ok = grow_order(skeleton, form, order);
+    return ok;
 }
 
 bool wd_skeleton_grow(struct wd_skeleton *skeleton, const struct wd_tree_form *form,
@@ -307,11 +307,8 @@ bool wd_skeleton_grow(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     wd_tree_density_init(&skeleton->crowd, WD_V3(-reach, -reach, 0),
                          WD_V3(reach, reach, 1.1f * form->height_m),
                          fmaxf(0.12f * form->crown_radius_m, 0.05f));
-    grow_trunk(skeleton, form);
-    bool ok = grow_limbs(skeleton, form);
-    for (int order = 1; ok && order < (int)form->species->order_count; order++)
-        ok = grow_order(skeleton, form, order);
-    if (!ok) {
+    wd_skeleton_grow_stems(skeleton, form);
+    if (!grow_branches(skeleton, form)) {
         wd_skeleton_finish(skeleton);
         return wd_error(log, "species %s at %g m has more than %d branches; allowed are wider "
                              "spacing_m or fewer orders",

@@ -20,7 +20,8 @@ struct wd_skeleton_node {
 
 struct wd_branch {
     int order;                /* WD_TRUNK, then 0 .. order_count - 1 */
-    int parent;               /* index of the branch it grows from, -1 for the trunk */
+    int parent;               /* index of the branch it grows from, -1 for a trunk */
+    int stem;                 /* index of the trunk that carries it; its own for a trunk */
     size_t parent_node;       /* node of the parent at or below the joint */
     size_t first_node, node_count;
     float length_m;
@@ -33,6 +34,7 @@ struct wd_skeleton {
     size_t node_count, node_capacity;
     struct wd_branch *branches;
     size_t branch_count, branch_capacity;
+    size_t stem_count;             /* trunks: 1, or the stems of a shrub; the first branches */
     struct wd_tree_density crowd; /* where branches are already: later ones grow into gaps */
 };
 

@@ -1,13 +1,15 @@
 #include "tree/wood.h"
 
+#include "tree/buttress.h"
 #include "tree/look.h"
 
-enum { MAX_SIDES = 12, MAX_RINGS = 48 };
+enum { MAX_RINGS = 48 };
 
 struct ring {
     struct wd_vec3 center_m, direction;
     float radius_m, along_m, flexibility;
     float flare; /* extra radius of the root flare, as a share */
+    float jag_m; /* splinters of broken wood stand up so far */
 };
 
 static int sides_of(float radius_m, int most)
@@ -26,7 +28,7 @@ static int gather_rings(const struct wd_skeleton *skeleton, const struct wd_bran
             continue;
         const struct wd_skeleton_node *node = &skeleton->nodes[branch->first_node + (size_t)i];
         rings[count++] = (struct ring){node->position_m, node->direction, node->radius_m,
-                                       node->along_m, node->flexibility, 0};
+                                       node->along_m, node->flexibility, 0, 0};
     }
     return count;
 }
@@ -43,13 +45,14 @@ static int branch_rings(const struct wd_skeleton *skeleton, const struct wd_bran
 
 /* The foot needs more rings than the skeleton has nodes: the flare falls off within two stem
  * diameters. The first ring is below ground, so that no gap shows on slopes. */
-static int trunk_rings(const struct wd_skeleton *skeleton, const struct wd_tree_form *form,
-                       int node_step, struct ring *rings)
+static int trunk_rings(const struct wd_skeleton *skeleton, const struct wd_branch *trunk,
+                       const struct wd_tree_form *form, int node_step, struct ring *rings)
 {
     static const float heights[] = {-1, 0, 0.25f, 0.6f, 1.1f, 1.9f};
     struct ring nodes[MAX_RINGS];
-    int node_count = gather_rings(skeleton, &skeleton->branches[0], node_step, nodes), count = 0;
-    float dbh = form->dbh_m, below = -wd_clampf(0.75f * dbh, 0.02f, 0.3f);
+    int node_count = gather_rings(skeleton, trunk, node_step, nodes), count = 0;
+    float dbh = skeleton->stem_count > 1 ? 2 * nodes[0].radius_m : form->dbh_m;
+    float below = -wd_clampf(0.75f * dbh, 0.02f, 0.3f);
     for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
         float z = heights[i] < 0 ? below : heights[i] * dbh;
         float share = wd_clampf(z / fmaxf(nodes[1].center_m.z, 0.01f), -1, 1);
@@ -64,7 +67,8 @@ static int trunk_rings(const struct wd_skeleton *skeleton, const struct wd_tree_
     for (int i = 1; i < node_count; i++)
         rings[count++] = nodes[i];
     for (int i = 0; i < count; i++) {
-        double fall = wd_dexp(-fmaxf(rings[i].center_m.z, -0.1f * dbh) / (0.75 * (double)dbh));
+        float above = fmaxf(rings[i].center_m.z, -0.1f * dbh);
+        double fall = wd_dexp(-(double)above / (0.75 * (double)dbh));
         rings[i].flare = (form->species->root_flare - 1) * (float)fall;
     }
     return count;
@@ -76,7 +80,7 @@ struct tube {
     const struct wd_tree_density *crown;
     const struct wd_bark_tint *bark;
     int sides;
-    bool trunk;
+    bool trunk, fins; /* fins: buttresses shape its rings */
 };
 
 static uint32_t ring_tint(const struct tube *tube, const struct ring *ring)
@@ -98,20 +102,58 @@ static float ring_radius(const struct tube *tube, const struct ring *ring, float
                              0.02f * two);
 }
 
+/* Vertex i of a ring, in metres along its two axes. */
+static void ring_place(const struct tube *tube, const struct ring *ring, int i, float place[2])
+{
+    float turn = (float)i / (float)tube->sides, radius = ring_radius(tube, ring, turn);
+    if (tube->fins) {
+        wd_buttress_outline(tube->form, ring->center_m.z, ring->radius_m, tube->sides, i, place);
+    } else {
+        place[0] = (float)wd_dcos(2 * WD_PI * (double)turn);
+        place[1] = (float)wd_dsin(2 * WD_PI * (double)turn);
+    }
+    place[0] *= radius;
+    place[1] *= radius;
+}
+
+/* Square to the outline, from the neighbours' places; of a round ring, away from its middle. */
+static struct wd_vec3 ring_normal(const struct tube *tube, const struct ring *ring, int i,
+                                  const float place[2], struct wd_vec3 side, struct wd_vec3 over)
+{
+    float x = place[0], y = place[1];
+    if (tube->fins) {
+        float before[2], after[2];
+        ring_place(tube, ring, (i + tube->sides - 1) % tube->sides, before);
+        ring_place(tube, ring, (i + 1) % tube->sides, after);
+        x = after[1] - before[1];
+        y = before[0] - after[0];
+    }
+    return wd_v3_unit(wd_v3_mad(wd_v3_scale(side, x), over, y));
+}
+
+static float splinter_m(const struct tube *tube, const struct ring *ring, int i)
+{
+    uint32_t place = (uint32_t)(int32_t)(1000 * ring->along_m);
+    return ring->jag_m * wd_hash_unit(wd_hash3(tube->form->key, place, (uint32_t)i));
+}
+
 static uint32_t add_ring(const struct tube *tube, const struct ring *ring, struct wd_vec3 side)
 {
     struct wd_vec3 over = wd_v3_cross(ring->direction, side);
     uint32_t first = tube->mesh->vertex_count, tint = ring_tint(tube, ring);
     for (int i = 0; i <= tube->sides; i++) {
-        float turn = (float)i / (float)tube->sides;
-        float angle_turn = i == tube->sides ? 0 : turn;
-        struct wd_vec3 out = wd_v3_turn(side, over, angle_turn * (float)(2 * WD_PI));
-        struct wd_vec3 p = wd_v3_mad(ring->center_m, out, ring_radius(tube, ring, angle_turn));
+        float place[2];
+        ring_place(tube, ring, i % tube->sides, place);
+        struct wd_vec3 out = ring_normal(tube, ring, i % tube->sides, place, side, over);
+        struct wd_vec3 p = wd_v3_mad(ring->center_m, side, place[0]);
+        p = wd_v3_mad(p, over, place[1]);
+        if (ring->jag_m > 0)
+            p = wd_v3_mad(p, ring->direction, splinter_m(tube, ring, i % tube->sides));
         float normal[3] = {out.x, out.y, out.z};
         struct wd_tree_vertex vertex = {
             .position_m = {p.x, p.y, p.z},
             .normal = wd_pack_normal(normal),
-            .uv = wd_pack_uv(turn, ring->along_m),
+            .uv = wd_pack_uv((float)i / (float)tube->sides, ring->along_m),
             .tint = tint,
             .kind = (uint32_t)ring->flexibility & 0xffu,
         };
@@ -159,7 +201,22 @@ static void add_tube(const struct tube *tube, const struct ring *rings, int coun
         join_rings(tube, low, high);
         low = high;
     }
-    close_tip(tube, &rings[count - 1], low, tubes == count ? 0.7f * end : 0);
+    float beyond = rings[count - 1].jag_m > 0 ? -0.4f * end : 0.7f * end;
+    close_tip(tube, &rings[count - 1], low, tubes == count ? beyond : 0);
+}
+
+static bool is_drawn(const struct wd_skeleton *skeleton, const struct wd_branch *branch,
+                     const struct wd_wood_style *style)
+{
+    return branch->order == WD_TRUNK ||
+           skeleton->nodes[branch->first_node].radius_m >= style->least_radius_m;
+}
+
+static int branch_sides(const struct wd_skeleton *skeleton, const struct wd_branch *branch,
+                        const struct wd_species *species, const struct wd_wood_style *style)
+{
+    int sides = sides_of(skeleton->nodes[branch->first_node].radius_m, style->most_sides);
+    return branch->order == WD_TRUNK ? wd_buttress_sides(species, sides) : sides;
 }
 
 void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
@@ -169,29 +226,33 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
     struct wd_bark_tint bark = wd_bark_tint_of(form->species);
     for (size_t b = 0; b < skeleton->branch_count; b++) {
         const struct wd_branch *branch = &skeleton->branches[b];
-        struct ring rings[MAX_RINGS + 8];
-        float radius = skeleton->nodes[branch->first_node].radius_m;
-        bool trunk = branch->order == WD_TRUNK;
-        if (!trunk && radius < style->least_radius_m)
+        if (!is_drawn(skeleton, branch, style))
             continue;
-        struct tube tube = {mesh, form, crown, &bark, sides_of(radius, style->most_sides), trunk};
-        int count = trunk ? trunk_rings(skeleton, form, style->node_step, rings)
+        struct ring rings[MAX_RINGS + 8];
+        bool trunk = branch->order == WD_TRUNK;
+        struct tube tube = {.mesh = mesh, .form = form, .crown = crown, .bark = &bark,
+                            .sides = branch_sides(skeleton, branch, form->species, style),
+                            .trunk = trunk};
+        tube.fins = trunk && tube.sides > style->most_sides;
+        int count = trunk ? trunk_rings(skeleton, branch, form, style->node_step, rings)
                           : branch_rings(skeleton, branch, style->node_step, rings);
+        if (form->species->form == WD_FORM_SNAG)
+            rings[count - 1].jag_m = 1.6f * rings[count - 1].radius_m;
         add_tube(&tube, rings, count);
     }
 }
 
-size_t wd_wood_triangles(const struct wd_skeleton *skeleton, const struct wd_wood_style *style)
+size_t wd_wood_triangles(const struct wd_skeleton *skeleton, const struct wd_species *species,
+                         const struct wd_wood_style *style)
 {
     size_t triangles = 0;
     for (size_t b = 0; b < skeleton->branch_count; b++) {
         const struct wd_branch *branch = &skeleton->branches[b];
-        float radius = skeleton->nodes[branch->first_node].radius_m;
-        if (branch->order != WD_TRUNK && radius < style->least_radius_m)
+        if (!is_drawn(skeleton, branch, style))
             continue;
         size_t last = branch->node_count - 1, step = (size_t)style->node_step;
         size_t segments = (last + step - 1) / step + (branch->order == WD_TRUNK ? 5 : 0);
-        triangles += (2 * segments - 1) * (size_t)sides_of(radius, style->most_sides);
+        triangles += (2 * segments - 1) * (size_t)branch_sides(skeleton, branch, species, style);
     }
     return triangles;
 }

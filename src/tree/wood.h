@@ -17,6 +17,7 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                   const struct wd_wood_style *style);
 
 /* Triangles that wd_wood_mesh would make. */
-size_t wd_wood_triangles(const struct wd_skeleton *skeleton, const struct wd_wood_style *style);
+size_t wd_wood_triangles(const struct wd_skeleton *skeleton, const struct wd_species *species,
+                         const struct wd_wood_style *style);
 
 #endif

@@ -37,7 +37,8 @@ static void for_all(void (*check)(const struct wd_species *species,
     struct wd_arena arena = {0};
     for (int s = 0; s < SPECIES_COUNT; s++) {
         struct wd_species species = test_species(&arena, test_species_names[s]);
-        const float cases[][2] = {{0, 0}, {0, 1}, {3, 0.5f}, {species.height_range_m[1], 0.2f},
+        float young = fminf(3, 0.4f * species.height_range_m[1]);
+        const float cases[][2] = {{0, 0}, {0, 1}, {young, 0.5f}, {species.height_range_m[1], 0.2f},
                                   {species.height_range_m[0], 0}};
         for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
             struct wd_tree_model model = grow(&species, 3 + (uint32_t)i, cases[i][0], cases[i][1]);
@@ -68,8 +69,12 @@ static void same_parameters_same_bytes(void **state)
 static void known_hashes(void **state)
 {
     static const uint64_t expected[SPECIES_COUNT] = {
-        0x2e867d851f150dc9u, 0x65b58e2f9c74345du, 0xcfcbced6f12991f8u,
-        0x31d34e12e2c4a714u, 0xd0439d3de9669d51u};
+        0x40f5671514528640u, 0x2a8cfc75bf58e0ddu, 0xdb458c3bde9924e8u,
+        0xb5391c284fd7eb43u, 0xcdcd9dfb60ee335fu, 0xb440f57633f7409fu,
+        0xf814e00a5655feddu, 0xfdbb74e329718132u, 0x44cb1f16fcc02028u,
+        0x6fb5bd7561af041fu, 0x27a960134a072a64u, 0x7b1bbdcc1aab993fu,
+        0x8b050332ff870f95u, 0xd895f010300f118eu, 0x90ba1155ba2b2b1eu,
+        0x2932986f6c1954bfu, 0xf07916f7b080575au};
     struct wd_arena arena = {0};
     int wrong = 0;
     (void)state;
@@ -87,10 +92,11 @@ static void known_hashes(void **state)
     assert_int_equal(wrong, 0);
 }
 
-static void check_mesh(const struct wd_tree_mesh *mesh)
+static void check_mesh(const struct wd_tree_mesh *mesh, bool leafy)
 {
     assert_true(mesh->index_count % 3 == 0 && mesh->wood_index_count % 3 == 0);
-    assert_true(mesh->wood_index_count > 0 && mesh->wood_index_count < mesh->index_count);
+    assert_true(mesh->wood_index_count > 0);
+    assert_true(leafy == (mesh->wood_index_count < mesh->index_count));
     for (uint32_t i = 0; i < mesh->index_count; i++) {
         assert_true(mesh->indices[i] < mesh->vertex_count);
         uint32_t leaf = mesh->vertices[mesh->indices[i]].kind & WD_VERTEX_LEAF;
@@ -107,22 +113,24 @@ static void check_mesh(const struct wd_tree_mesh *mesh)
 static void check_model(const struct wd_species *species, const struct wd_tree_model *model,
                         float height_m)
 {
-    check_mesh(&model->full);
-    check_mesh(&model->reduced);
+    bool leafy = species->leaf.count > 0;
+    check_mesh(&model->full, leafy);
+    check_mesh(&model->reduced, leafy);
     assert_float_equal(model->height_m / height_m, 1, 1e-4);
     assert_float_equal(model->full.max_m[2] / height_m, 1, 0.03);
     assert_float_equal(model->reduced.max_m[2] / height_m, 1, 0.06);
-    if (!(model->full.min_m[2] <= -0.005f && model->full.min_m[2] >= -0.4f))
+    if (!(model->full.min_m[2] <= -0.0005f && model->full.min_m[2] >= -0.4f))
         print_error("%s %g m: lowest %g m\n", species->name, (double)height_m,
                     (double)model->full.min_m[2]);
-    assert_true(model->full.min_m[2] <= -0.005f && model->full.min_m[2] >= -0.4f);
-    assert_true(model->crown_radius_m > 0.02f * height_m && model->crown_radius_m < height_m);
+    assert_true(model->full.min_m[2] <= -0.0005f && model->full.min_m[2] >= -0.4f);
+    assert_true(!leafy || model->crown_radius_m > 0.02f * height_m);
+    assert_true(model->crown_radius_m < 2 * height_m);
     assert_true(model->crown_base_m >= 0 && model->crown_base_m < height_m);
     double dbh = wd_species_stem_of_height_cm(species, (double)height_m) * 0.01;
-    if (!((double)model->dbh_m > 0.7 * dbh && (double)model->dbh_m < 2 * dbh))
+    if (!((double)model->dbh_m > 0.55 * dbh && (double)model->dbh_m < 2 * dbh))
         print_error("%s %g m: dbh %g, expected %g m\n", species->name, (double)height_m,
                     (double)model->dbh_m, dbh);
-    assert_true((double)model->dbh_m > 0.7 * dbh && (double)model->dbh_m < 2 * dbh);
+    assert_true((double)model->dbh_m > 0.55 * dbh && (double)model->dbh_m < 2 * dbh);
 }
 
 static void models_are_sound(void **state)
@@ -158,7 +166,8 @@ static void check_winding(const struct wd_species *species, const struct wd_tree
     if (inward * 1000 > mesh->wood_index_count / 3)
         print_error("%s %g m: %u of %u inward\n", species->name, (double)height_m, inward,
                     mesh->wood_index_count / 3);
-    assert_true(inward * 1000 <= mesh->wood_index_count / 3); /* sharp bends of twigs */
+    bool splinters = species->form == WD_FORM_SNAG;
+    assert_true(inward * (splinters ? 50 : 250) <= mesh->wood_index_count / 3); /* sharp bends */
 }
 
 static void wood_faces_outward(void **state)
@@ -171,7 +180,7 @@ static void budgets_of_mature_trees_hold(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    for (int s = 0; s < SPECIES_COUNT; s++)
+    for (int s = 0; s < MANY_LEAVES; s++)
         for (int open = 0; open <= 1; open++) {
             struct wd_species species = test_species(&arena, test_species_names[s]);
             struct wd_tree_model model = grow(&species, 11, 0, (float)open);
@@ -232,7 +241,7 @@ static void check_prefix(const struct wd_species *species, const struct wd_tree_
 {
     uint32_t all = test_leaf_triangles(&model->full), part = all / 4;
     (void)species;
-    if (height_m < 5)
+    if (height_m < 5 || all < 8000)
         return; /* too few leaves for statistics */
     struct sample whole = sample_leaves(&model->full, all);
     struct sample prefix = sample_leaves(&model->full, part);
@@ -267,7 +276,7 @@ static void reduced_mesh_keeps_area_and_coverage(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    for (int s = 0; s < SPECIES_COUNT; s++)
+    for (int s = 0; s < MANY_LEAVES; s++)
         for (int open = 0; open <= 1; open++) {
             struct wd_species species = test_species(&arena, test_species_names[s]);
             struct wd_tree_model model = grow(&species, 5, 0, 0.6f * (float)open);
@@ -332,7 +341,8 @@ static void size_follows_from_age_or_stem(void **state)
     struct wd_arena arena = {0};
     for (int s = 0; s < SPECIES_COUNT; s++) {
         struct wd_species species = test_species(&arena, test_species_names[s]);
-        struct wd_grow_params old = {.age_years = 60}, again = {.age_years = 30};
+        struct wd_grow_params old = {.age_years = 0.3f * (float)species.growth.span_years},
+                              again = {.age_years = 0.5f * old.age_years};
         assert_true(wd_grow_params_resolve(&old, &species, NULL));
         assert_true(wd_grow_params_resolve(&again, &species, NULL));
         assert_true(old.height_m > again.height_m && old.dbh_m > again.dbh_m);
@@ -340,7 +350,7 @@ static void size_follows_from_age_or_stem(void **state)
         assert_true(wd_grow_params_resolve(&stem, &species, NULL));
         assert_true(wd_grow_params_resolve(&tall, &species, NULL));
         assert_float_equal(stem.height_m, again.height_m, 0.01);
-        assert_float_equal(tall.age_years, 30, 0.1);
+        assert_float_equal(tall.age_years, again.age_years, 0.1);
         struct wd_grow_params both = {.dbh_m = 1.5f * again.dbh_m, .height_m = again.height_m};
         struct wd_tree_model model;
         assert_true(wd_tree_grow(&model, &species, &both, NULL));

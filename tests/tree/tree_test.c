@@ -1,6 +1,8 @@
 #include "tree_test.h"
 
-const char *const test_species_names[SPECIES_COUNT] = {"oak", "beech", "birch", "spruce", "pine"};
+const char *const test_species_names[SPECIES_COUNT] = {
+    "oak", "beech", "birch", "spruce", "pine", "maple", "willow", "catalpa", "camellia-red",
+    "larch", "coconut", "angelique", "hazel", "bramble", "fern", "grass", "snag"};
 
 struct wd_species test_species(struct wd_arena *arena, const char *name)
 {

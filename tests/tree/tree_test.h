@@ -13,7 +13,10 @@
 
 #include "tree/grow.h"
 
-enum { SPECIES_COUNT = 5 };
+enum {
+    SPECIES_COUNT = 17, /* all, but one camellia for the three colours */
+    MANY_LEAVES = 5,    /* the first of them: large trees for statistics */
+};
 extern const char *const test_species_names[SPECIES_COUNT];
 
 /* Loads species/NAME.json of the source tree; fails the test when that does not work. */

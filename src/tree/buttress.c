@@ -1,0 +1,49 @@
+#include "tree/buttress.h"
+
+enum { FIN_VERTICES = 5 };
+
+int wd_buttress_sides(const struct wd_species *species, int most)
+{
+    int count = (int)species->buttress.count;
+    return count > 0 && most >= 12 ? FIN_VERTICES * count : most;
+}
+
+/* How far a fin reaches at height z: a concave slope from the ground to its own top. */
+static float fin_reach_m(const struct wd_tree_form *form, int fin, float z_m, float radius_m,
+                         float *share)
+{
+    const struct wd_species *species = form->species;
+    uint32_t key = wd_hash3(form->key, 0xb077, (uint32_t)fin);
+    float top = species->buttress.height * form->height_m *
+                (0.6f + 0.55f * wd_hash_unit(key));
+    float most = species->buttress.reach * form->dbh_m *
+                 (0.6f + 0.6f * wd_hash_unit(wd_hash1(key)));
+    float h = wd_clampf(z_m / top, 0, 1), slope = (1 - h) * (1 - h) * (1 - 0.35f * h);
+    *share = 1 - h * h * h;
+    return radius_m + fmaxf(most - radius_m, 0) * slope;
+}
+
+void wd_buttress_outline(const struct wd_tree_form *form, float z_m, float radius_m, int sides,
+                         int i, float place[2])
+{
+    int count = (int)form->species->buttress.count, fin = i / FIN_VERTICES, at = i % FIN_VERTICES;
+    double turn = 2 * WD_PI * (double)i / (double)sides;
+    double jitter = (double)wd_hash_unit(wd_hash3(form->key, 0xb07, (uint32_t)fin)) - 0.5;
+    double axis = 2 * WD_PI * ((double)fin + 0.5 + 0.3 * jitter) / (double)count, share_d;
+    float share, reach = fin_reach_m(form, fin, z_m, radius_m, &share) / radius_m;
+    float thin = wd_clampf(0.05f * form->dbh_m / radius_m + 0.06f, 0.06f, 0.3f);
+    /* valley, root, tip, tip, root: along the fin and across it, in radii */
+    const float out[FIN_VERTICES] = {0, 0.97f, reach, reach, 0.97f};
+    const float side[FIN_VERTICES] = {0, -1.6f * thin, -0.6f * thin, 0.6f * thin, 1.6f * thin};
+    double ca = wd_dcos(axis), sa = wd_dsin(axis), ct = wd_dcos(turn), st = wd_dsin(turn);
+    double fin_x = (double)out[at] * ca - (double)side[at] * sa;
+    double fin_y = (double)out[at] * sa + (double)side[at] * ca;
+    if (at == 0) { /* the valley lies between two fins */
+        double valley = 2 * WD_PI * (double)fin / (double)count;
+        fin_x = 0.92 * wd_dcos(valley);
+        fin_y = 0.92 * wd_dsin(valley);
+    }
+    share_d = (double)share;
+    place[0] = (float)(ct + (fin_x - ct) * share_d);
+    place[1] = (float)(st + (fin_y - st) * share_d);
+}
