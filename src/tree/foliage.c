@@ -227,7 +227,8 @@ static float leaf_area_m2(const struct wd_tree_form *form)
     return 1.05f * projection * form->species->leaf.area_index;
 }
 
-/* Small trees draw fewer leaves, and never smaller ones than real. */
+/* Small trees draw fewer leaves, and never smaller ones than real. Large ones draw larger leaves,
+ * but for plants that are seen from near. */
 static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
 {
     const struct wd_species *species = form->species;
@@ -236,7 +237,8 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
     if (species->leaf.count == 0)
         return 0;
     double count = (double)species->leaf.count * (double)form->detail;
-    count *= fmin(spread, needles ? 1 : 1.2);
+    bool low = species->form == WD_FORM_SHRUB || species->form == WD_FORM_BRAMBLE;
+    count *= fmin(spread, needles ? 1 : low ? 4 : 1.2);
     double real_m = 0.01 * (double)(needles ? species->leaf.shoot_cm : species->leaf.length_cm);
     double most = (double)(area_m2 / wd_leaf_unit_area(species)) / (real_m * real_m);
     if (count > most)
@@ -306,7 +308,7 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
     init_crown(foliage, skeleton, form);
     if (wd_species_has_fronds(form->species)) {
         wd_fronds_place(foliage, skeleton, form);
-        shuffle(foliage->leaves, foliage->count, form->key);
+        order_leaves(foliage, form->key);
         return;
     }
     gather_carriers(&carriers, skeleton, form);

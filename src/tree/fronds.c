@@ -23,10 +23,13 @@ static float radians(float degrees)
 static struct frond palm_frond(const struct wd_tree_form *form, float age, int n,
                                struct wd_random *random)
 {
+    /* a young palm's oldest fronds cannot hang: the ground is too near */
+    float full_m = 0.01f * form->species->leaf.length_cm * wd_mixf(0.62f, 1, fminf(form->scale, 1));
+    float room = wd_clampf(form->crown_base_m / full_m - 0.4f, 0, 1);
     struct frond frond = {.azimuth_rad = 2.3999632f * (float)n + 0.15f * wd_random_signed(random)};
-    float full = 0.01f * form->species->leaf.length_cm * wd_mixf(0.62f, 1, fminf(form->scale, 1));
-    frond.rise_rad = radians(wd_mixf(80, -42, age) + 7 * wd_random_signed(random));
-    frond.size_m = full * wd_mixf(0.72f, 1, wd_smoothf(0, 0.25f, age)) *
+    frond.rise_rad = radians(wd_mixf(80, wd_mixf(36, -42, room), age) +
+                             7 * wd_random_signed(random));
+    frond.size_m = full_m * wd_mixf(0.72f, 1, wd_smoothf(0, 0.25f, age)) *
                    wd_random_range(random, 0.93f, 1.04f);
     frond.out_m = 0.35f * form->dbh_m;
     return frond;
@@ -79,25 +82,24 @@ static void place_frond(struct wd_leaf *leaf, const struct wd_skeleton *skeleton
                         const struct wd_tree_form *form, int n, int of)
 {
     const struct wd_branch *stem = &skeleton->branches[0];
-    bool palm = form->species->form == WD_FORM_PALM;
+    bool palm = form->species->form == WD_FORM_PALM, fern = form->species->form == WD_FORM_FERN;
     leaf->key = wd_hash3(form->key, 0xf209d, (uint32_t)n);
     struct wd_random random = wd_random_of(leaf->key, 1);
     float age = ((float)n + wd_random_unit(&random)) / (float)of;
     struct frond frond = palm ? palm_frond(form, age, n, &random)
-                         : form->species->form == WD_FORM_FERN
-                             ? fern_frond(form, age, n, &random)
-                             : grass_blade(form, age, &random);
+                         : fern ? fern_frond(form, age, n, &random)
+                                : grass_blade(form, age, &random);
     struct wd_vec3 top, out = level(frond.azimuth_rad);
+    float share = palm ? 1 - 0.35f * age / (float)stem->node_count : 1;
     size_t node;
-    struct wd_vec3 foot = wd_branch_point(skeleton, stem, palm ? 1 - 0.35f * age / (float)stem->node_count : 1,
-                                          &top, &node);
+    struct wd_vec3 foot = wd_branch_point(skeleton, stem, share, &top, &node);
     if (form->species->form == WD_FORM_GRASS)
         foot.z = 0;
     leaf->position_m = wd_v3_mad(foot, out, frond.out_m);
     leaf->axis = wd_v3_turn(out, WD_V3(0, 0, 1), frond.rise_rad);
     leaf->normal = wd_v3_turn(WD_V3(0, 0, 1), out, -frond.rise_rad);
     /* fronds twist a little about their own axis, blades a lot */
-    float twist = (palm ? 0.25f : form->species->form == WD_FORM_FERN ? 0.12f : 0.8f);
+    float twist = palm ? 0.25f : fern ? 0.12f : 0.8f;
     leaf->normal = wd_v3_turn(leaf->normal, wd_v3_cross(leaf->axis, leaf->normal),
                               twist * wd_random_signed(&random));
     leaf->shading = wd_v3_unit(wd_v3_mad(WD_V3(0, 0, 0.8f), out, 0.5f));

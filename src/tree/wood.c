@@ -187,6 +187,16 @@ static void close_tip(const struct tube *tube, const struct ring *ring, uint32_t
         wd_tree_mesh_add_triangle(tube->mesh, low + i, low + i + 1, tip);
 }
 
+/* The broken face has a hard edge: the ring again, facing along the stem. */
+static uint32_t add_break(const struct tube *tube, const struct ring *ring, struct wd_vec3 side)
+{
+    uint32_t first = add_ring(tube, ring, side);
+    float normal[3] = {ring->direction.x, ring->direction.y, ring->direction.z};
+    for (uint32_t i = first; i < tube->mesh->vertex_count; i++)
+        tube->mesh->vertices[i].normal = wd_pack_normal(normal);
+    return first;
+}
+
 /* Rings share their vertices with the next segment; the frame is carried along without twist. A
  * thin branch ends in a point, a trunk that has dissolved in a blunt end between its limbs. */
 static void add_tube(const struct tube *tube, const struct ring *rings, int count)
@@ -201,7 +211,10 @@ static void add_tube(const struct tube *tube, const struct ring *rings, int coun
         join_rings(tube, low, high);
         low = high;
     }
-    float beyond = rings[count - 1].jag_m > 0 ? -0.4f * end : 0.7f * end;
+    bool broken = rings[count - 1].jag_m > 0 && tubes == count;
+    float beyond = broken ? -0.4f * end : 0.7f * end;
+    if (broken)
+        low = add_break(tube, &rings[count - 1], side);
     close_tip(tube, &rings[count - 1], low, tubes == count ? beyond : 0);
 }
 
