@@ -111,7 +111,7 @@ static double unevenness(const struct wd_tree_points *points, const uint32_t *wh
 static void prefixes_are_spread_better_than_chance(void **state)
 {
     (void)state;
-    for (int s = 0; s < SPECIES_COUNT; s++) {
+    for (int s = 0; s < MANY_LEAVES; s++) {
         struct sampled sampled;
         sample_species(&sampled, test_species_names[s]);
         for (uint32_t n = 400; n <= 1600; n *= 2) {
@@ -152,7 +152,7 @@ static void mean_of(const struct wd_tree_points *points, size_t first, size_t co
 static void windows_keep_the_means(void **state)
 {
     (void)state;
-    for (int s = 0; s < SPECIES_COUNT; s++) {
+    for (int s = 0; s < MANY_LEAVES; s++) {
         struct sampled sampled;
         double whole[8], part[8];
         sample_species(&sampled, test_species_names[s]);
@@ -233,7 +233,7 @@ static void cover(const struct sampled *sampled, size_t count, double *discs, do
 static void discs_cover_what_the_mesh_covers(void **state)
 {
     (void)state;
-    for (int s = 0; s < SPECIES_COUNT; s++) {
+    for (int s = 0; s < MANY_LEAVES; s++) {
         struct sampled sampled;
         sample_species(&sampled, test_species_names[s]);
         for (size_t count = 64; count <= POINTS; count *= 3) {
