@@ -3,10 +3,10 @@
  * and the pattern stays with the tree. Magnified edges are sharpened instead. */
 #include "shared/hash.h"
 
-float card_noise(vec3 uv, float lod, uint random, uint sample_index)
+float card_noise(vec2 uv, float lod, uint random, uint sample_index)
 {
     vec2 cells = vec2(WD_CARD_WIDTH_TEXELS, WD_CARD_HEIGHT_TEXELS) * exp2(-max(floor(lod), 0.0));
-    uvec2 cell = uvec2(uv.xy * cells);
+    uvec2 cell = uvec2(uv * cells);
     return wd_hash_unit(wd_hash_mix((cell.x | (cell.y << 16)) ^ random ^ sample_index * 0x9e3779b9u));
 }
 
@@ -14,15 +14,4 @@ float card_opacity(float alpha, float lod)
 {
     float sharp = clamp((alpha - 0.4) * 4.0 + 0.4, 0.0, 1.0);
     return mix(sharp, alpha, clamp(lod * 0.5 + 0.5, 0.0, 1.0));
-}
-
-/* A card's stored normal in world axes. `pose`: the tree's turn, its mirror, vertical over horizontal
- * scale; `flip`: the card's own normal where it is seen from behind, else 0. */
-vec3 card_normal_of(vec3 stored, vec4 pose, vec3 flip)
-{
-    vec3 normal = stored * 2.0 - 1.0;
-    normal.x *= pose.z;
-    normal = vec3((pose.x * normal.x - pose.y * normal.y) * pose.w,
-                  (pose.y * normal.x + pose.x * normal.y) * pose.w, normal.z);
-    return normalize(normal - 2.0 * dot(normal, flip) * flip);
 }

@@ -26,33 +26,33 @@ layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 #include "lib/crown.glsl"
 #include "lib/shade.glsl"
 #include "lib/card.glsl"
+#include "lib/card_flat.glsl"
 
-layout(location = 0) in vec3 in_uv;
-layout(location = 1) flat in vec4 in_pose;
-layout(location = 2) flat in vec4 in_tint;
-layout(location = 3) flat in uvec2 in_flat;
-layout(location = 4) flat in vec3 in_flip;
-layout(location = 5) flat in float in_lod;
+layout(location = 0) in vec2 in_uv;
+layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
+layout(location = 2) flat in uvec3 in_more; /* layer_lod, random, surface */
 
 layout(location = 0) out vec4 out_color;
 
 void main()
 {
-    vec4 albedo = textureLod(card_albedo, in_uv, in_lod);
-    float opacity = card_opacity(albedo.a, in_lod) * in_tint.a;
+    float lod = card_lod(in_more.x);
+    vec3 uv = vec3(in_uv, card_layer(in_more.x));
+    vec4 albedo = textureLod(card_albedo, uv, lod), tint_show = unpackUnorm4x8(in_card.y);
+    float opacity = card_opacity(albedo.a, lod) * tint_show.a;
     if (opacity < 1.0 / 255.0)
         discard;
-    vec4 packed = textureLod(card_normal, in_uv, in_lod);
+    vec4 packed = textureLod(card_normal, uv, lod);
     wd_pixel pixel;
     pixel.ray = pixel_ray(ivec2(gl_FragCoord.xy));
     pixel.direction = normalize(pixel.ray);
     pixel.axis_m = frame.near_m / gl_FragCoord.z;
     pixel.rel = pixel.ray * pixel.axis_m;
-    pixel.albedo = albedo.rgb * in_tint.rgb;
+    pixel.albedo = albedo.rgb * tint_show.rgb * 2.0;
     pixel.openness = packed.a;
-    pixel.normal = card_normal_of(packed.xyz, in_pose, in_flip);
+    pixel.normal = card_world_normal(packed.xyz, in_card);
     pixel.material = WD_MATERIAL_CARD;
-    pixel.surface = in_flat.x;
+    pixel.surface = in_more.z;
     float sun_share, ground_share;
     vec3 radiance = shade(pixel, uvec2(gl_FragCoord.xy), sun_share, ground_share);
     radiance = apply_fog(radiance, pixel.direction, length(pixel.rel), ground_share);

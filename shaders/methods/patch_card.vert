@@ -16,13 +16,12 @@ layout(scalar, push_constant) uniform Push { wd_patch_push push; };
 
 #include "lib/tree.glsl"
 
+#include "lib/card_flat.glsl"
+
 /* as tree_card.vert */
-layout(location = 0) out vec3 out_uv;
-layout(location = 1) flat out vec4 out_pose;
-layout(location = 2) flat out vec4 out_tint;
-layout(location = 3) flat out uvec2 out_flat;
-layout(location = 4) flat out vec3 out_flip;
-layout(location = 5) flat out float out_lod;
+layout(location = 0) out vec2 out_uv;
+layout(location = 1) flat out uvec4 out_card;
+layout(location = 2) flat out uvec3 out_more;
 
 /* The tree at that place in the order, or -1. */
 int tree_at(uint place)
@@ -91,12 +90,22 @@ void main()
                   - up * (side.y * tall_m);
     offset += tree_sway(tree, model.flexibility, max(offset.z, 0.0), frame.time_s);
 
+    card_flat constants;
+    constants.turn = pose.turn;
+    constants.tint = tree_tint(tree);
+    constants.show = show;
+    constants.normal = normal;
+    constants.behind = dot(normal, toward) < 0.0;
+    constants.mirror = pose.mirror.x;
+    constants.ratio = pose.up / pose.across;
+    constants.layer = model.card_layer + card;
     float tall_px = WD_TREE_HEIGHT_M(tree) * push.pixels_per_radian / distance_m;
-    out_uv = vec3(vec2(side.x * mirror, side.y) * 0.5 + 0.5, float(model.card_layer + card));
-    out_pose = vec4(pose.turn, pose.mirror.x, pose.up / pose.across);
-    out_flip = dot(normal, toward) < 0.0 ? normal : vec3(0.0);
-    out_tint = vec4(tree_tint(tree), show);
-    out_lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, 8.0);
-    out_flat = uvec2(uint(index) + 1u, tree.random ^ (card * 0x9e3779b9u));
+    constants.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, 8.0);
+    constants.random = tree.random ^ (card * 0x9e3779b9u);
+    constants.surface = uint(index) + 1u;
+    wd_card_flat packed = card_pack(constants);
+    out_uv = vec2(side.x * mirror, side.y) * 0.5 + 0.5;
+    out_card = uvec4(packed.turn, packed.tint_show, packed.normal, packed.ratio_flags);
+    out_more = uvec3(packed.layer_lod, packed.random, packed.surface);
     gl_Position = frame.clip_from_rel * vec4(foot + offset, 1.0);
 }

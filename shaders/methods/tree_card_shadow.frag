@@ -5,15 +5,16 @@
 layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
 
 #include "lib/card.glsl"
+#include "lib/card_flat.glsl"
 
-layout(location = 0) in vec3 in_uv;
-layout(location = 2) flat in vec4 in_tint;
-layout(location = 3) flat in uvec2 in_flat;
-layout(location = 5) flat in float in_lod;
+layout(location = 0) in vec2 in_uv;
+layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
+layout(location = 2) flat in uvec3 in_more; /* layer_lod, random, surface */
 
 void main()
 {
-    float opacity = card_opacity(textureLod(card_albedo, in_uv, in_lod).a, in_lod) * in_tint.a;
-    if (card_noise(in_uv, in_lod, in_flat.y, 0u) >= opacity)
+    float lod = card_lod(in_more.x), show = unpackUnorm4x8(in_card.y).a;
+    float alpha = textureLod(card_albedo, vec3(in_uv, card_layer(in_more.x)), lod).a;
+    if (card_noise(in_uv, lod, in_more.y, 0u) >= card_opacity(alpha, lod) * show)
         discard;
 }

@@ -26,7 +26,7 @@
 /* For the sun: one card that faces it. */
 #define WD_SHADOW_CARD_VERTICES 4
 /* Trees that one draw of cards may hold: the length of the index pattern. */
-#define WD_CARD_BATCH 65536
+#define WD_CARD_BATCH 131072
 
 #define WD_LEVEL_MESH 0
 #define WD_LEVEL_REDUCED 1

@@ -118,6 +118,13 @@ void wd_cmd_draw(struct wd_cmd *cmd, uint32_t vertices, uint32_t instances)
         vkCmdDraw(cmd->vk, vertices, instances, 0, 0);
 }
 
+void wd_cmd_bind_vertices(struct wd_cmd *cmd, const struct wd_buffer *vertices)
+{
+    const VkDeviceSize offset = 0;
+    if (!cmd->failed)
+        vkCmdBindVertexBuffers(cmd->vk, 0, 1, &vertices->buffer, &offset);
+}
+
 void wd_cmd_bind_indices(struct wd_cmd *cmd, const struct wd_buffer *indices)
 {
     if (!cmd->failed)
@@ -129,6 +136,15 @@ void wd_cmd_draw_indexed(struct wd_cmd *cmd, const VkDrawIndexedIndirectCommand 
     if (!cmd->failed)
         vkCmdDrawIndexed(cmd->vk, draw->indexCount, draw->instanceCount, draw->firstIndex,
                          draw->vertexOffset, draw->firstInstance);
+}
+
+void wd_cmd_draw_indexed_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer,
+                                  VkDeviceSize offset)
+{
+    assert(cmd->rendering);
+    if (!cmd->failed)
+        vkCmdDrawIndexedIndirect(cmd->vk, buffer->buffer, offset, 1,
+                                 sizeof(VkDrawIndexedIndirectCommand));
 }
 
 void wd_cmd_draw_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer, VkDeviceSize offset,

@@ -113,11 +113,15 @@ void wd_cmd_push(struct wd_cmd *cmd, const struct wd_pipeline *pipeline, const v
 /* Draws and indirect work that do nothing in a failed frame (prefer them to vkCmd*). The buffer's
  * use must have been declared as WD_USE_INDIRECT. */
 void wd_cmd_draw(struct wd_cmd *cmd, uint32_t vertices, uint32_t instances);
-/* 32-bit indices, in use as WD_USE_INDEX. */
+/* Vertices of the pipeline's layout, 32-bit indices; both in use as WD_USE_INDEX. */
+void wd_cmd_bind_vertices(struct wd_cmd *cmd, const struct wd_buffer *vertices);
 void wd_cmd_bind_indices(struct wd_cmd *cmd, const struct wd_buffer *indices);
 void wd_cmd_draw_indexed(struct wd_cmd *cmd, const VkDrawIndexedIndirectCommand *draw);
 void wd_cmd_draw_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer, VkDeviceSize offset,
                           uint32_t draws, uint32_t stride);
+/* One indexed draw with its parameters from the buffer. */
+void wd_cmd_draw_indexed_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer,
+                                  VkDeviceSize offset);
 void wd_cmd_dispatch_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer,
                               VkDeviceSize offset);
 /* Fills a whole buffer with a 32-bit value; declares the use. */

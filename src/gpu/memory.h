@@ -14,7 +14,7 @@ enum wd_gpu_use {
     WD_USE_COMPUTE_WRITE,    /* storage buffer or image: write, or read and write */
     WD_USE_GRAPHICS_READ,    /* storage buffer or sampled image, in vertex and fragment stages */
     WD_USE_SHADER_READ,      /* both of the above */
-    WD_USE_INDEX,            /* index buffer */
+    WD_USE_INDEX,            /* index or vertex buffer */
     WD_USE_INDIRECT,         /* indirect commands, also read by compute */
     WD_USE_COLOR_TARGET,
     WD_USE_DEPTH_TARGET,

@@ -45,9 +45,17 @@ bool wd_pipeline_init_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
 enum { WD_MAX_COLOR_TARGETS = 4 };
 enum wd_cull { WD_CULL_NONE, WD_CULL_BACK, WD_CULL_FRONT };
 enum wd_blend { WD_BLEND_OFF, WD_BLEND_PREMULTIPLIED };
+enum { WD_MAX_VERTEX_ATTRIBUTES = 4 };
 struct wd_graphics_params {
     struct wd_spirv vertex;
     struct wd_spirv fragment; /* .words NULL: depth only */
+    struct wd_vertex_layout {
+        uint32_t stride, count; /* count 0: vertices are pulled from storage buffers */
+        struct {
+            VkFormat format;
+            uint32_t offset;
+        } attributes[WD_MAX_VERTEX_ATTRIBUTES]; /* by location */
+    } vertices;
     struct wd_bindings bindings;
     uint32_t push_size;
     struct wd_spec_constants constants; /* for both stages */
@@ -62,8 +70,7 @@ struct wd_graphics_params {
     float depth_bias_constant, depth_bias_slope; /* both 0: off */
     bool depth_clamp;            /* used where the device can */
 };
-/* Vertices are pulled from storage buffers: there is no vertex input. Viewport and scissor are
- * dynamic; wd_cmd_begin_rendering sets them. */
+/* Viewport and scissor are dynamic; wd_cmd_begin_rendering sets them. */
 bool wd_pipeline_init_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
                                const struct wd_graphics_params *params);
 void wd_pipeline_finish(struct wd_pipeline *pipeline, struct wd_gpu *gpu);

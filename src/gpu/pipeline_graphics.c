@@ -76,8 +76,20 @@ static VkResult create_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu
                                 const VkPipelineShaderStageCreateInfo *stages,
                                 uint32_t stage_count)
 {
+    const VkVertexInputBindingDescription buffer = {.stride = params->vertices.stride};
+    VkVertexInputAttributeDescription attributes[WD_MAX_VERTEX_ATTRIBUTES];
+    for (uint32_t i = 0; i < params->vertices.count; i++)
+        attributes[i] = (VkVertexInputAttributeDescription){
+            .location = i,
+            .format = params->vertices.attributes[i].format,
+            .offset = params->vertices.attributes[i].offset,
+        };
     const VkPipelineVertexInputStateCreateInfo vertex_input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+        .vertexBindingDescriptionCount = params->vertices.count ? 1 : 0,
+        .pVertexBindingDescriptions = &buffer,
+        .vertexAttributeDescriptionCount = params->vertices.count,
+        .pVertexAttributeDescriptions = attributes,
     };
     const VkPipelineInputAssemblyStateCreateInfo assembly = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
@@ -160,7 +172,8 @@ static bool create_with_shaders(struct wd_pipeline *pipeline, struct wd_gpu *gpu
 bool wd_pipeline_init_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
                                const struct wd_graphics_params *params)
 {
-    assert(params->color_count <= WD_MAX_COLOR_TARGETS);
+    assert(params->color_count <= WD_MAX_COLOR_TARGETS &&
+           params->vertices.count <= WD_MAX_VERTEX_ATTRIBUTES);
     *pipeline = (struct wd_pipeline){.bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS};
     VkShaderStageFlags stages = wd_pipeline_stages(pipeline);
     if (gpu->lost ||

@@ -26,7 +26,7 @@ static const uint32_t splat_twice_comp[] =
 #include "continuum_splat_twice.comp.inc"
     ;
 static const uint32_t resolve_vert[] =
-#include "continuum_resolve.vert.inc"
+#include "whole_target.vert.inc"
     ;
 static const uint32_t resolve_frag[] =
 #include "continuum_resolve.frag.inc"

@@ -1,9 +1,10 @@
 /* Static geometry in octree order (Guerrero 2006, section 3; row G5): the cards of all trees lie in
  * one soup ordered depth-first, so that any octant is one range and neighbours merge. The soup is
- * not stored: the vertex shader makes vertex i of tree i / 12.
+ * not stored: compute makes the cards of the ranges that a view shows (card_soup.h).
  *
  * Octants are visited from near to far, and none with more than `sorted_trees` is drawn as one range:
  * what is hidden then fails the depth test before it is shaded. */
+#include "methods/card_soup.h"
 #include "methods/method.h"
 
 #include <math.h>
@@ -116,38 +117,55 @@ static void visit(const struct traversal *t, uint32_t index)
     }
 }
 
+struct octree_state {
+    struct wd_selection selection;
+    struct wd_card_soup soup;
+};
+
+static bool octree_init(void *state, struct wd_gpu *gpu)
+{
+    struct octree_state *octree = state;
+    return wd_card_soup_init(&octree->soup, gpu);
+}
+
 static void octree_finish(void *state, struct wd_gpu *gpu)
 {
-    (void)gpu;
-    wd_selection_finish(state);
+    struct octree_state *octree = state;
+    wd_selection_finish(&octree->selection);
+    wd_card_soup_finish(&octree->soup, gpu);
 }
 
 static void octree_select(void *state, const struct wd_tree_draw *draw)
 {
+    struct octree_state *octree = state;
     const struct wd_forest_device *forest = draw->forest;
     const struct wd_octree_options *options = &forest->scene->methods.octree;
     struct traversal traversal = {
         .draw = draw,
-        .selection = state,
+        .selection = &octree->selection,
         .rule = wd_level_rule_of(forest, draw->view, draw->pass),
         .max_cull_depth = (uint32_t)options->max_cull_depth,
         .sorted_trees = options->sorted_trees ? (uint32_t)options->sorted_trees : UINT32_MAX,
     };
     traversal.rule.parallel = options->faithful;
     traversal.card_distance_m = wd_level_card_distance(&traversal.rule, forest->max_tree_height_m);
-    wd_selection_clear(state);
+    wd_selection_clear(&octree->selection);
     if (forest->world->octree.count)
         visit(&traversal, 0);
+    wd_card_soup_make(&octree->soup, draw, &octree->selection);
 }
 
 static void octree_draw(void *state, const struct wd_tree_draw *draw)
 {
-    wd_tree_draw_selection(draw, state, WD_DRAW_GROUPED);
+    struct octree_state *octree = state;
+    wd_card_soup_draw(&octree->soup, draw);
+    wd_tree_draw_selection(draw, &octree->selection, WD_DRAW_GROUPED);
 }
 
 const struct wd_method wd_method_octree = {
     .name = "octree",
-    .state_size = sizeof(struct wd_selection),
+    .state_size = sizeof(struct octree_state),
+    .init = octree_init,
     .finish = octree_finish,
     .select = octree_select,
     .draw = octree_draw,

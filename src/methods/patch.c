@@ -53,7 +53,8 @@ struct patch_state {
     float (*host_near)[2];
     struct wd_instance *sorted; /* scratch of the exact order */
     uint32_t *listed;
-    struct wd_selection meshes, shadows;
+    struct wd_selection meshes;
+    void *shadows; /* state of `octree`, which draws them */
     uint64_t frame;
 };
 
@@ -85,7 +86,8 @@ static bool patch_init(void *state, struct wd_gpu *gpu)
         .fragment = SPIRV(tree_card_frag),
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT}};
-    return init_pipeline(&patch->blend, gpu, &blend) &&
+    patch->shadows = wd_alloc(wd_method_octree.state_size);
+    return wd_method_octree.init(patch->shadows, gpu) && init_pipeline(&patch->blend, gpu, &blend) &&
            init_pipeline(&patch->layers, gpu, &layers);
 }
 
@@ -94,6 +96,8 @@ static void patch_finish(void *state, struct wd_gpu *gpu)
     struct patch_state *patch = state;
     wd_pipeline_finish(&patch->blend, gpu);
     wd_pipeline_finish(&patch->layers, gpu);
+    wd_method_octree.finish(patch->shadows, gpu);
+    free(patch->shadows);
 }
 
 /* --- the forest -------------------------------------------------------------------------- */
@@ -163,9 +167,9 @@ static void patch_drop_forest(void *state, struct wd_gpu *gpu)
     wd_buffer_finish(&patch->near, gpu);
     wd_cells_finish(&patch->patches);
     wd_selection_finish(&patch->meshes);
-    wd_selection_finish(&patch->shadows);
     struct wd_pipeline blend = patch->blend, layers = patch->layers;
-    *patch = (struct patch_state){.blend = blend, .layers = layers};
+    void *shadows = patch->shadows;
+    *patch = (struct patch_state){.blend = blend, .layers = layers, .shadows = shadows};
 }
 
 /* --- population on demand ---------------------------------------------------------------- */
@@ -307,7 +311,7 @@ static void patch_select(void *state, const struct wd_tree_draw *draw)
 {
     struct patch_state *patch = state;
     if (draw->pass == WD_PASS_SHADOW) {
-        wd_method_octree.select(&patch->shadows, draw);
+        wd_method_octree.select(patch->shadows, draw);
         return;
     }
     const struct wd_patch_order order = order_of(patch, draw->view);
@@ -465,7 +469,7 @@ static void patch_draw(void *state, const struct wd_tree_draw *draw)
 {
     struct patch_state *patch = state;
     if (draw->pass == WD_PASS_SHADOW) {
-        wd_method_octree.draw(&patch->shadows, draw);
+        wd_method_octree.draw(patch->shadows, draw);
         return;
     }
     wd_tree_draw_selection(draw, &patch->meshes, WD_DRAW_GROUPED);

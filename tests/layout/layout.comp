@@ -1,5 +1,6 @@
 #version 460
 /* Every struct that C and GLSL share, so that the compiled module tells its offsets. */
+#include "shared/card_soup.h"
 #include "shared/forest.h"
 #include "shared/frame.h"
 
@@ -11,9 +12,16 @@ layout(scalar, binding = 4) buffer Instances { wd_instance instance; };
 layout(scalar, binding = 5) buffer Pushes { wd_tree_push push; };
 layout(scalar, binding = 6) buffer Frames { wd_frame_uniforms frame; };
 layout(scalar, binding = 7) buffer Points { wd_tree_point point; };
+layout(scalar, binding = 8) buffer Chunks { wd_card_chunk chunk; };
+layout(scalar, binding = 9) buffer Cards { wd_card_flat card; };
+layout(scalar, binding = 10) buffer Corners { wd_card_vertex corner; };
+layout(scalar, binding = 11) buffer Planes { wd_cull_planes cull; };
+layout(scalar, binding = 12) buffer SoupPushes { wd_card_soup_push soup; };
+layout(scalar, binding = 13) buffer Draws { wd_draw_indexed draw; };
 
 void main()
 {
     tree.id = vertex.uv + point.kind + model.card_layer + uint(fade.near_begin_m) + instance.tree + push.level
-              + frame.width;
+              + frame.width + chunk.first_tree + card.turn + corner.card + uint(cull.plane[0].x)
+              + soup.variants + draw.index_count;
 }

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "shared/card_soup.h"
 #include "shared/forest.h"
 #include "shared/frame.h"
 
@@ -39,6 +40,18 @@ static const struct member members[] = {
     M(wd_tree_push, variants), M(wd_tree_push, cascade), M(wd_tree_push, level),
     M(wd_tree_push, show), M(wd_tree_push, pixels_per_radian),
     M(wd_tree_push, card_vertices),
+    M(wd_card_chunk, first_tree), M(wd_card_chunk, trees_slots),
+    M(wd_card_flat, turn), M(wd_card_flat, tint_show), M(wd_card_flat, normal),
+    M(wd_card_flat, ratio_flags), M(wd_card_flat, layer_lod), M(wd_card_flat, random),
+    M(wd_card_flat, surface),
+    M(wd_card_vertex, clip), M(wd_card_vertex, layer_lod), M(wd_card_vertex, random_show),
+    M(wd_card_vertex, card),
+    M(wd_cull_planes, plane),
+    M(wd_card_soup_push, chunk_count), M(wd_card_soup_push, variants),
+    M(wd_card_soup_push, cascade), M(wd_card_soup_push, pixels_per_radian),
+    M(wd_draw_indexed, index_count), M(wd_draw_indexed, instance_count),
+    M(wd_draw_indexed, first_index), M(wd_draw_indexed, vertex_offset),
+    M(wd_draw_indexed, first_instance),
 #define F(name) M(wd_frame_uniforms, name)
     F(clip_from_rel), F(rel_from_clip), F(previous_clip_from_rel), F(steady_clip_from_rel),
     F(shadow_from_rel), F(cascade_far_m), F(cascade_texel_m), F(cascade_depth_m), F(camera_mm),

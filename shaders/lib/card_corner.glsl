@@ -1,0 +1,142 @@
+/* Geometry of a tree's crossed billboards. Expects `frame`, `push` (with cascade and
+ * pixels_per_radian), SHADOW, tree.glsl and `fades`. */
+#include "lib/card_flat.glsl"
+
+/* Which upright card comes first (slot 0) and second among those that face the viewer most. */
+uint facing_card(uint slot, vec2 toward)
+{
+    vec3 facing = abs(vec3(toward.y, 0.86602540378 * toward.x - 0.5 * toward.y,
+                           0.86602540378 * toward.x + 0.5 * toward.y));
+    uint least = facing.x <= facing.y && facing.x <= facing.z ? 0u : facing.y <= facing.z ? 1u : 2u;
+    return (least + 1u + slot) % 3u;
+}
+
+/* Direction of an upright card's width. */
+vec2 card_axis(uint card)
+{
+    return card == 0u   ? vec2(1.0, 0.0)
+           : card == 1u ? vec2(0.5, 0.86602540378)
+                        : vec2(-0.5, 0.86602540378);
+}
+
+/* One tree as its cards see it. */
+struct card_tree {
+    wd_tree tree;
+    wd_model model;
+    tree_pose pose;
+    vec3 foot;   /* rel */
+    vec3 toward; /* unit, from its middle to the eye */
+    float show;  /* of its layer at this distance */
+    float lod;
+};
+
+card_tree card_tree_of(wd_tree tree, wd_model model)
+{
+    card_tree t;
+    t.tree = tree;
+    t.model = model;
+    t.pose = tree_pose_of(tree, model);
+    t.foot = tree_foot_rel(tree);
+    float height_m = WD_TREE_HEIGHT_M(tree), distance_m = length(t.foot);
+    t.toward = -normalize(t.foot + vec3(0.0, 0.0, 0.5 * height_m));
+    t.show = wd_layer_show(fades[WD_TREE_LAYER(tree)], distance_m);
+    float tall_px = height_m * (SHADOW != 0u ? 1.0 / frame.cascade_texel_m[push.cascade]
+                                             : push.pixels_per_radian / distance_m);
+    t.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, 8.0);
+    return t;
+}
+
+/* A card as seen: its middle and half its width and height as offsets from the foot. */
+struct card_frame {
+    vec3 middle, across, down;
+    vec3 normal; /* toward the side that the card was rendered from */
+    uint layer;  /* of the model's own */
+    float share; /* of the card that shows at this angle */
+};
+
+/* As the sun sees the tree: as wide as the crown, as tall as stem and crown's depth together; the
+ * silhouette is that from the side, or from above when the sun stands high. */
+card_frame sun_card(card_tree t)
+{
+    vec3 sun = frame.sun_direction;
+    float level = length(sun.xy);
+    vec2 across = level > 1e-3 ? vec2(-sun.y, sun.x) / level : vec2(1.0, 0.0);
+    vec3 up = vec3(-across.y * sun.z, across.x * sun.z, level);
+    float tall = 0.5 * (t.model.top_m - t.model.bottom_m) * t.pose.up * level
+                 + t.model.half_depth_m * t.pose.across * sun.z * 0.8;
+    card_frame card;
+    card.middle = vec3(0.0, 0.0, 0.5 * (t.model.top_m + t.model.bottom_m) * t.pose.up);
+    card.across = vec3(across * (t.model.half_width_m * t.pose.across), 0.0);
+    card.down = up * -tall;
+    card.layer = sun.z > 0.8 ? WD_CARD_SIDES : 0u;
+    card.share = 1.0;
+    card.normal = sun;
+    return card;
+}
+
+card_frame level_card(card_tree t)
+{
+    float half_m = t.model.half_depth_m;
+    card_frame card;
+    card.middle = vec3(0.0, 0.0, t.model.height_m * WD_CARD_TOP * t.pose.up);
+    card.across = tree_offset(t.pose, vec3(half_m, 0.0, 0.0));
+    card.down = tree_offset(t.pose, vec3(0.0, -half_m, 0.0));
+    card.layer = WD_CARD_SIDES;
+    card.normal = vec3(0.0, 0.0, 1.0);
+    card.share = smoothstep(WD_LEVEL_CARD_SINE, 0.6, abs(t.toward.z));
+    return card;
+}
+
+/* Cards seen edge on would streak: they go before that, and the others stand for them. */
+card_frame upright_card(card_tree t, uint slot)
+{
+    vec2 own_toward = vec2(dot(t.toward.xy, t.pose.turn),
+                           dot(t.toward.xy, vec2(-t.pose.turn.y, t.pose.turn.x))) * t.pose.mirror;
+    card_frame card;
+    card.layer = facing_card(slot, own_toward);
+    vec2 axis = tree_turn(t.pose, card_axis(card.layer));
+    card.middle = vec3(0.0, 0.0, 0.5 * (t.model.top_m + t.model.bottom_m) * t.pose.up);
+    card.across = vec3(axis * (t.model.half_width_m * t.pose.across), 0.0);
+    card.down = vec3(0.0, 0.0, -0.5 * (t.model.top_m - t.model.bottom_m) * t.pose.up);
+    card.normal = vec3(vec2(axis.y, -axis.x) * t.pose.mirror.x, 0.0);
+    float facing = abs(dot(card.normal.xy, t.toward.xy)) / max(length(t.toward.xy), 0.1);
+    card.share = smoothstep(0.5, 0.75, facing);
+    return card;
+}
+
+/* Slot 0 and 1: the upright ones; 2: the level one. */
+card_frame card_at(card_tree t, uint slot)
+{
+    if (SHADOW != 0u)
+        return sun_card(t);
+    if (slot >= WD_UPRIGHT_VERTICES / 4u)
+        return level_card(t);
+    return upright_card(t, slot);
+}
+
+/* Corner `side` (x right, y down, -1..1) in clip space. */
+vec4 card_clip(card_tree t, card_frame card, vec2 side)
+{
+    vec3 offset = card.middle + card.across * side.x + card.down * side.y;
+    offset += tree_sway(t.tree, t.model.flexibility, offset.z, frame.time_s);
+    vec3 rel = t.foot + offset;
+    return SHADOW != 0u ? shadow_clip(push.cascade, rel) : frame.clip_from_rel * vec4(rel, 1.0);
+}
+
+/* `show` is that of the level of detail. */
+wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show)
+{
+    card_flat result;
+    result.turn = t.pose.turn;
+    result.tint = tree_tint(t.tree);
+    result.show = show * t.show * card.share;
+    result.normal = card.normal;
+    result.behind = dot(card.normal, t.toward) < 0.0;
+    result.mirror = t.pose.mirror.x;
+    result.ratio = t.pose.up / t.pose.across;
+    result.layer = t.model.card_layer + card.layer;
+    result.lod = t.lod;
+    result.random = t.tree.random ^ (card.layer * 0x9e3779b9u);
+    result.surface = index + 1u;
+    return card_pack(result);
+}

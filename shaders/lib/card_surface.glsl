@@ -1,0 +1,15 @@
+/* A card's point in the G-buffer. Expects `frame`, `card_normal`, tree.glsl, card_flat.glsl and the
+ * outputs out_albedo, out_normal and out_surface. */
+
+/* `albedo` is that of the card at uv (z: layer); `card` is turn, tint_show, normal, ratio_flags. */
+void card_surface(vec3 uv, float lod, vec4 albedo, uvec4 card, uint surface)
+{
+    vec4 packed = textureLod(card_normal, uv, lod);
+    albedo.rgb *= unpackUnorm4x8(card.y).rgb * 2.0;
+    if (frame.view_mode == WD_MODE_LOD)
+        albedo.rgb = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * packed.a);
+    out_albedo = vec4(albedo.rgb, packed.a);
+    out_normal = vec4(card_world_normal(packed.xyz, card) * 0.5 + 0.5,
+                      float(WD_MATERIAL_CARD) / 3.0);
+    out_surface = surface;
+}
