@@ -26,7 +26,9 @@ enum cli_command_bit {
     CLI_DEVICES = 1 << 5,
     CLI_MANUAL = 1 << 6,
     CLI_METHODS = 1 << 7,
-    CLI_EVERY = (1 << 8) - 1,
+    CLI_GROW = 1 << 8,
+    CLI_EXPORT = 1 << 9,
+    CLI_EVERY = (1 << 10) - 1,
 };
 
 enum { CLI_MAX_SIZE_PX = 16384, CLI_MAX_WORDS = 32 };
@@ -45,10 +47,14 @@ struct cli_options {
     const char *screenshots, *report;
     uint32_t size_px[2];
     uint32_t samples, frames, threads, bounces;
+    uint32_t variants, max_trees, grow_seed;
     double frames_per_second, time_s;
+    double height_m, dbh_cm, age_years, openness, detail, month, distance_m; /* of grow */
+    const char *season, *form;
     struct cli_words settings, method_options;
     enum wd_view_mode view;
-    bool help, json, quiet, reference, times, gpu_validate, walk, faithful;
+    bool help, json, quiet, reference, times, gpu_validate, walk, sheet,
+         faithful;
 };
 
 /* The bar on standard error, or plain lines at every quarter where that is no terminal. Silent in
@@ -118,6 +124,8 @@ bool cli_method_check(struct cli_session *session);
 bool cli_places_check(struct cli_session *session, const struct wd_forest *forest);
 
 enum cli_status cli_render(struct cli_session *session);
+enum cli_status cli_grow(struct cli_session *session);
+enum cli_status cli_export(struct cli_session *session);
 enum cli_status cli_view(struct cli_session *session);
 enum cli_status cli_info(struct cli_session *session);
 enum cli_status cli_check(struct cli_session *session);

@@ -20,6 +20,24 @@ static const struct cli_command commands[] = {
      "  weald render scenes/valley.json -o lod.png --view lod --method octree --times\n"
      "  weald render scenes/osg.json -o calm.png --set wind.speed_mps=0\n",
      cli_render},
+    {"grow", CLI_GROW, "SPECIES|FILE... -o FILE", 0, 64,
+     "grow a tree, or read a model: as a picture, a GLB or an OBJ",
+     "Grows one individual of a species, or reads an artist's model (.obj, .gltf, .glb, .fbx, .dae)\n"
+     "as a tree, and draws it on plain ground or writes it for other programs. Several stand side\n"
+     "by side. A .glb holds every level of detail (MSFT_lod) and all textures; metres, y up.",
+     "  weald grow oak --age 80 --seed 3 -o oak.glb\n"
+     "  weald grow spruce --height 25 --open 1 -o spruce.png\n"
+     "  weald grow birch --variants 5 --season autumn -o birches.png --size 1600x700\n"
+     "  weald grow maple.obj --height 18 -o maple.png --camera-distance 6\n"
+     "  weald grow --sheet oak beech pine -o sheet.png\n",
+     cli_grow},
+    {"export", CLI_EXPORT, "SCENE -o FILE.glb", 1, 1, "write a scene for other programs",
+     "Plants a scene and writes its trees and its ground as one .glb: each individual's meshes once,\n"
+     "with levels of detail (MSFT_lod), and where it stands (EXT_mesh_gpu_instancing). Metres, y up,\n"
+     "about the middle of the ground, whose own coordinates are in the scene's extras.",
+     "  weald export scenes/bei.json --data ~/data -o bei.glb\n"
+     "  weald export scenes/valley.json -o valley.glb --max-trees 2000000\n",
+     cli_export},
     {"view", CLI_VIEW, "SCENE", 1, 1, "walk or fly through a scene in a window",
      "Opens a window to walk and fly through a scene. Cameras saved with Shift+C go to\n"
      "SCENE.cameras.json beside the scene, or to the working directory.",

@@ -114,6 +114,7 @@ struct wd_scene_path {
     size_t key_count;
 };
 
+struct wd_grow_params;
 struct wd_scene {
     const char *path;        /* of the file */
     const char *name;
@@ -124,6 +125,8 @@ struct wd_scene {
     size_t species_file_count;
     struct wd_species *species; /* loaded, parallel to species_files */
     int64_t variants;        /* grown individuals a species */
+    const struct wd_grow_params *individuals; /* NULL; or, not from a file, one a species: each is
+                                grown so (tree/grow.h), and `variants` is 1 */
     struct wd_scene_layer *layers;
     size_t layer_count;
     struct wd_scene_inventory *inventories;
@@ -186,6 +189,7 @@ extern const struct wd_keys wd_scene_keys;
 /* What a scene is loaded with. */
 struct wd_scene_params {
     const char *data_dir;    /* what ${data} in file names stands for; NULL: none */
+    bool planted;            /* trees come from elsewhere: bare ground is no cause to warn */
     const char *const *settings; /* "key=value" in place of the file's: struct wd_keys_input */
 };
 

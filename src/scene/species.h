@@ -173,6 +173,13 @@ extern const struct wd_keys wd_species_keys, wd_species_model_keys;
 /* Whether the name ends like a model: .obj, .gltf, .glb, .fbx or .dae. */
 bool wd_species_is_model_file(const char *path);
 
+/* The file of a species by name, in species/ and ../species/ of the working directory or among the
+ * installed ones; NULL (logged, with the names there are) if there is none. free() it. */
+char *wd_species_find_file(const char *name, const struct wd_log *log);
+
+/* Names of the species in the first of those folders that has any, sorted, in the arena. */
+size_t wd_species_list(const char ***names, struct wd_arena *arena);
+
 /* Reads one species file of either kind, or takes a model file as a species with the defaults of
  * its kind. Strings and lists live in `arena`. */
 bool wd_species_load(struct wd_species *species, const char *path, struct wd_arena *arena,

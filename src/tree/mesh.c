@@ -100,3 +100,17 @@ uint32_t wd_pack_uv(float u, float v)
 {
     return pack_half(u) | pack_half(v) << 16;
 }
+
+static float unpack_half(uint32_t half)
+{
+    uint32_t exponent = half >> 10 & 31, mantissa = half & 1023;
+    float value = exponent ? ldexpf(1 + (float)mantissa / 1024, (int)exponent - 15)
+                           : ldexpf((float)mantissa / 1024, -14);
+    return half & 0x8000 ? -value : value;
+}
+
+void wd_unpack_uv(uint32_t packed, float uv[2])
+{
+    uv[0] = unpack_half(packed & 0xffff);
+    uv[1] = unpack_half(packed >> 16);
+}

@@ -27,5 +27,6 @@ void wd_tree_mesh_update_bounds(struct wd_tree_mesh *mesh);
 uint32_t wd_pack_normal(const float normal[3]);
 void wd_unpack_normal(uint32_t packed, float normal[3]);
 uint32_t wd_pack_uv(float u, float v);
+void wd_unpack_uv(uint32_t packed, float uv[2]);
 
 #endif

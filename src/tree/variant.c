@@ -19,6 +19,8 @@ bool wd_variant_grow(struct wd_tree_model *model, const struct wd_scene *scene, 
 {
     uint32_t variants = (uint32_t)scene->variants, variant = index % variants;
     const struct wd_species *species = &scene->species[index / variants];
+    if (scene->individuals)
+        return wd_tree_grow(model, species, &scene->individuals[index], log);
     const struct wd_grow_params params = {
         .seed = variant + 1,
         .height_m = variant_height(species, variant, variants),

@@ -130,6 +130,8 @@ bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
         return wd_error(params->log, "%s: %zu layers, at most %d are allowed", scene->path,
                         scene->layer_count, INVENTORY_LAYER - 1);
     struct wd_tree_list list = {0};
+    for (size_t i = 0; i < params->tree_count; i++)
+        wd_tree_list_add(&list, &params->trees[i]);
     struct wd_inventory *inventories = wd_alloc_array(scene->inventory_count, sizeof *inventories);
     bool ok = make(world, inventories, &placement, &list);
     for (size_t i = 0; i < scene->inventory_count; i++)

@@ -10,6 +10,8 @@ struct wd_world_params {
     bool has_seed;
     unsigned threads;       /* 0: all */
     uint64_t max_trees;     /* 0: 64 million; more is an error that says so */
+    const struct wd_tree *trees; /* planted first, as they are but for their ids; NULL: none */
+    size_t tree_count;
     const struct wd_progress *progress;
     const struct wd_log *log;
 };

@@ -1,0 +1,256 @@
+#include "sheet.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "grow.h"
+
+enum {
+    CELL_PX = 230,
+    TEXT_PX = 42, /* below each cell */
+    HEAD_PX = 30,
+    GAP_PX = 6,
+    AGES = 6,
+    FORMS = 3,
+    COLUMNS = AGES + FORMS,
+    MAX_SPECIES = 64,
+    SAMPLES = 8,
+};
+
+/* One column of ages and seasons. */
+static const struct column {
+    const char *title;
+    double size; /* share of the typical height */
+    double openness, month;
+} columns[AGES] = {
+    {"young", 0.3, 0.6, 0},     {"forest-grown", 1, 0, 0}, {"open-grown", 1, 1, 0},
+    {"spring (may)", 1, 0.5, 5}, {"autumn", 1, 0.5, 10.6},  {"winter", 1, 0.5, 1.5},
+};
+static const struct form {
+    const char *title;
+    enum wd_specimen_form form;
+} forms[FORMS] = {{"full", WD_SPECIMEN_FULL},
+                  {"reduced", WD_SPECIMEN_REDUCED},
+                  {"cards", WD_SPECIMEN_CARDS}};
+
+struct sheet {
+    struct cli_session *session;
+    struct wd_renderer *renderer;
+    struct wd_picture picture;
+    const char *species[MAX_SPECIES];
+    uint32_t species_count;
+    uint32_t cells_done;
+    char *names; /* owns the default list */
+};
+
+/* --- cells ------------------------------------------------------------------------------- */
+
+static void paste(struct sheet *sheet, const struct wd_picture *cell, uint32_t x, uint32_t y)
+{
+    for (uint32_t row = 0; row < cell->height; row++)
+        memcpy(sheet->picture.display + 4 * ((size_t)(y + row) * sheet->picture.width + x),
+               cell->display + (size_t)4 * row * cell->width, (size_t)4 * cell->width);
+}
+
+static uint32_t cell_x(uint32_t column)
+{
+    return GAP_PX + column * (CELL_PX + GAP_PX) + (column >= AGES ? 2 * GAP_PX : 0);
+}
+
+static uint32_t cell_y(uint32_t row)
+{
+    return HEAD_PX + row * (CELL_PX + TEXT_PX + GAP_PX);
+}
+
+static enum wd_result draw_cell(struct sheet *sheet, const struct wd_specimen *specimen,
+                                enum wd_specimen_form form, uint32_t row, uint32_t column,
+                                struct wd_picture *cell)
+{
+    const struct cli_specimen_view view = {
+        .width = CELL_PX,
+        .height = CELL_PX,
+        .samples = SAMPLES,
+        .layers = WD_LAYER_DISPLAY | WD_LAYER_COLOR | WD_LAYER_TREE_ID,
+        .form = form,
+        .method = sheet->session->options->method,
+    };
+    struct cli_session *session = sheet->session;
+    uint32_t total = sheet->species_count * COLUMNS;
+    if (!session->progress.report(session->progress.user, "cells", sheet->cells_done++, total))
+        return WD_ERROR_INTERRUPTED;
+    enum wd_result result =
+        cli_specimens_picture(session, sheet->renderer, &specimen, 1, &view, cell);
+    if (result == WD_OK)
+        paste(sheet, cell, cell_x(column), cell_y(row));
+    return result;
+}
+
+static void label(struct sheet *sheet, uint32_t row, uint32_t column, uint32_t line,
+                  const char *text)
+{
+    cli_sheet_text(&sheet->picture, cell_x(column) + 3, cell_y(row) + CELL_PX + 5 + 18 * line, 2,
+                   text);
+}
+
+/* --- a row ------------------------------------------------------------------------------- */
+
+static double typical_height(struct sheet *sheet, const char *source, enum wd_result *result)
+{
+    struct wd_specimen *specimen;
+    struct wd_specimen_info info = {0};
+    const struct wd_specimen_params params = {.source = source, .log = sheet->session->log};
+    *result = wd_specimen_create(&specimen, &params);
+    if (*result == WD_OK)
+        wd_specimen_get_info(specimen, &info);
+    wd_specimen_destroy(&specimen);
+    return info.height_m;
+}
+
+static enum wd_result draw_age(struct sheet *sheet, uint32_t row, uint32_t index, double height_m)
+{
+    const struct column *column = &columns[index];
+    const struct wd_specimen_params params = {
+        .source = sheet->species[row],
+        .height_m = height_m * column->size,
+        .openness = column->openness,
+        .month = column->month,
+        .log = sheet->session->log,
+    };
+    struct wd_specimen *specimen;
+    struct wd_specimen_info info;
+    struct wd_picture cell = {0};
+    char text[64];
+    enum wd_result result = wd_specimen_create(&specimen, &params);
+    if (result != WD_OK)
+        return result;
+    wd_specimen_get_info(specimen, &info);
+    result = draw_cell(sheet, specimen, WD_SPECIMEN_FULL, row, index, &cell);
+    snprintf(text, sizeof text, index == 0 ? "%.18s" : "%.0s", info.name);
+    label(sheet, row, index, 1, text);
+    int used = snprintf(text, sizeof text, "%.*f m", info.height_m < 10 ? 1 : 0, info.height_m);
+    if (info.age_years > 0)
+        snprintf(text + used, sizeof text - (size_t)used, ", %.0f years", info.age_years);
+    label(sheet, row, index, 0, text);
+    wd_picture_finish(&cell);
+    wd_specimen_destroy(&specimen);
+    return result;
+}
+
+/* What a picture shows of the tree: pixels covered, and their mean luminance. */
+struct tally {
+    double pixels, radiance;
+};
+
+static struct tally tally_of(const struct wd_picture *picture)
+{
+    struct tally tally = {0};
+    for (size_t i = 0; i < (size_t)picture->width * picture->height; i++) {
+        const float *c = picture->color + 3 * i;
+        if (!picture->tree_id[i])
+            continue;
+        tally.pixels++;
+        tally.radiance += 0.2126 * (double)c[0] + 0.7152 * (double)c[1] + 0.0722 * (double)c[2];
+    }
+    if (tally.pixels > 0)
+        tally.radiance /= tally.pixels;
+    return tally;
+}
+
+static void label_form(struct sheet *sheet, uint32_t row, uint32_t index,
+                       const struct wd_specimen *specimen, const struct tally *tally,
+                       const struct tally *full)
+{
+    struct wd_specimen_level level;
+    char text[64] = "crossed billboards";
+    if (wd_specimen_get_level(specimen, index, &level))
+        snprintf(text, sizeof text, "%u triangles", level.wood_triangles + level.leaf_triangles);
+    label(sheet, row, AGES + index, 0, text);
+    snprintf(text, sizeof text, "%ux%u px", CELL_PX, CELL_PX);
+    if (index > 0 && full->pixels > 0)
+        snprintf(text, sizeof text, "cover%+.1f%% light%+.1f%%",
+                 100 * (tally->pixels / full->pixels - 1),
+                 100 * (tally->radiance / full->radiance - 1));
+    label(sheet, row, AGES + index, 1, text);
+}
+
+static enum wd_result draw_forms(struct sheet *sheet, uint32_t row)
+{
+    const struct wd_specimen_params params = {
+        .source = sheet->species[row], .openness = 0.5, .log = sheet->session->log};
+    struct wd_specimen *specimen;
+    struct tally full = {0};
+    enum wd_result result = wd_specimen_create(&specimen, &params);
+    for (uint32_t i = 0; i < FORMS && result == WD_OK; i++) {
+        struct wd_picture cell = {0};
+        result = draw_cell(sheet, specimen, forms[i].form, row, AGES + i, &cell);
+        if (result == WD_OK) {
+            struct tally tally = tally_of(&cell);
+            if (i == 0)
+                full = tally;
+            label_form(sheet, row, i, specimen, &tally, &full);
+        }
+        wd_picture_finish(&cell);
+    }
+    wd_specimen_destroy(&specimen);
+    return result;
+}
+
+static enum wd_result draw_row(struct sheet *sheet, uint32_t row)
+{
+    enum wd_result result;
+    double height_m = typical_height(sheet, sheet->species[row], &result);
+    for (uint32_t i = 0; i < AGES && result == WD_OK; i++)
+        result = draw_age(sheet, row, i, height_m);
+    return result == WD_OK ? draw_forms(sheet, row) : result;
+}
+
+/* --- the sheet --------------------------------------------------------------------------- */
+
+static bool choose_species(struct sheet *sheet)
+{
+    const struct cli_options *options = sheet->session->options;
+    for (int i = 0; i < options->operand_count && i < MAX_SPECIES; i++)
+        sheet->species[sheet->species_count++] = options->operands[i];
+    if (sheet->species_count)
+        return true;
+    sheet->names = wd_species_names();
+    for (char *name = strtok(sheet->names, "\n"); name && sheet->species_count < MAX_SPECIES;
+         name = strtok(NULL, "\n"))
+        sheet->species[sheet->species_count++] = name;
+    return sheet->species_count > 0 ||
+           cli_fail(sheet->session, "no species named, and there are none in species/");
+}
+
+static bool make_paper(struct sheet *sheet)
+{
+    struct wd_picture *picture = &sheet->picture;
+    picture->width = cell_x(COLUMNS);
+    picture->height = cell_y(sheet->species_count);
+    size_t bytes = (size_t)4 * picture->width * picture->height;
+    picture->display = malloc(bytes);
+    if (!picture->display)
+        return cli_fail(sheet->session, "out of memory");
+    memset(picture->display, 240, bytes);
+    for (uint32_t i = 0; i < COLUMNS; i++)
+        cli_sheet_text(picture, cell_x(i) + 3, 8, 2,
+                       i < AGES ? columns[i].title : forms[i - AGES].title);
+    return true;
+}
+
+enum wd_result cli_sheet(struct cli_session *session)
+{
+    struct sheet sheet = {.session = session};
+    enum wd_result result = WD_ERROR_INPUT;
+    if (choose_species(&sheet) && make_paper(&sheet))
+        result = cli_renderer_open(session, &sheet.renderer);
+    for (uint32_t row = 0; row < sheet.species_count && result == WD_OK; row++)
+        result = draw_row(&sheet, row);
+    if (result == WD_OK)
+        result = wd_picture_write(&sheet.picture, session->options->output, &session->log);
+    wd_renderer_destroy(&sheet.renderer);
+    wd_picture_finish(&sheet.picture);
+    free(sheet.names);
+    return result;
+}

@@ -1,0 +1,25 @@
+/* specimen.h: what stands behind the public struct wd_specimen. */
+#ifndef WD_API_SPECIMEN_H
+#define WD_API_SPECIMEN_H
+
+#include "tree/import.h"
+#include "weald/tree.h"
+
+struct wd_specimen {
+    struct wd_species species; /* in its season */
+    struct wd_grow_params params;
+    struct wd_tree_model model;
+    char *source;              /* the file that the species is from */
+    double month;              /* 0: summer */
+    struct wd_arena arena;
+    struct wd_log log;
+};
+
+enum { WD_SPECIMEN_LEVELS = 2 };
+
+const struct wd_tree_mesh *wd_specimen_mesh(const struct wd_specimen *specimen, uint32_t level);
+
+/* Where specimen `index` of a row stands, metres east of the first. */
+double wd_specimen_place_m(const struct wd_specimen *const *specimens, uint32_t index);
+
+#endif

@@ -1,0 +1,173 @@
+/* A forest of specimens: the same renderer as for any scene, on ground that draws no attention. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/forest.h"
+#include "api/specimen.h"
+#include "base/memory.h"
+
+enum { GROUND_M = 4000 };
+
+static const char scene_text[] =
+    "{\"name\": \"specimens\", \"variants\": 1,"
+    " \"terrain\": {\"kind\": \"flat\", \"size_m\": [4000, 4000]},"
+    " \"sun\": {\"azimuth_deg\": 228, \"elevation_deg\": 42}, \"wind\": {\"speed_mps\": 0},"
+    " \"fog\": {\"visibility_m\": 60000},"
+    " \"ground\": {\"grass\": [0.16, 0.155, 0.14], \"soil\": [0.16, 0.155, 0.14],"
+    " \"litter\": [0.15, 0.145, 0.13], \"rock\": [0.16, 0.155, 0.14]},"
+    " \"quality\": {\"samples\": 16, \"shadow_size\": 2048, \"shadow_taps\": 9}}";
+
+/* --- cameras ----------------------------------------------------------------------------- */
+
+struct row {
+    double left_m, right_m, height_m, depth_m;
+};
+
+static struct row measure(const struct wd_specimen *const *specimens, uint32_t count)
+{
+    struct row row = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        const struct wd_tree_mesh *mesh = &specimens[i]->model.full;
+        double at = wd_specimen_place_m(specimens, i);
+        row.left_m = fmin(row.left_m, at + (double)mesh->min_m[0]);
+        row.right_m = fmax(row.right_m, at + (double)mesh->max_m[0]);
+        row.height_m = fmax(row.height_m, (double)mesh->max_m[2]);
+        row.depth_m = fmax(row.depth_m, -(double)mesh->min_m[1]);
+    }
+    return row;
+}
+
+static void place_camera(struct wd_scene_camera *camera, const char *name, const struct row *row,
+                         double distance_m, double eye_m, double target_m, double fov_deg,
+                         struct wd_arena *arena)
+{
+    double middle = 0.5 * GROUND_M + 0.5 * (row->left_m + row->right_m);
+    *camera = (struct wd_scene_camera){
+        .name = name,
+        .frame = "local",
+        .position_m = {middle, 0.5 * GROUND_M - distance_m, eye_m},
+        .look_at_m = wd_arena_alloc(arena, 3 * sizeof(double)),
+        .look_at_count = 3,
+        .fov_deg = fov_deg,
+    };
+    camera->look_at_m[0] = middle;
+    camera->look_at_m[1] = 0.5 * GROUND_M;
+    camera->look_at_m[2] = target_m;
+}
+
+/* "fit" stands off far enough for the nearest leaves, at two fifths of the height and level, so
+ * that the stem stays upright; "eye" looks up only as far as a head would. */
+static double make_cameras(struct wd_scene *scene, const struct row *row, double aspect,
+                           double distance_m)
+{
+    const double fov_deg = 30, margin = 1.07, slope = tan(0.5 * fov_deg * (3.14159265358979 / 180));
+    double half_width = 0.5 * (row->right_m - row->left_m), half_height = 0.5 * row->height_m;
+    double fit = margin * fmax(half_height / slope, half_width / (slope * aspect)) + row->depth_m;
+    double eye = fmin(1.65, 0.6 * row->height_m), near = distance_m > 0 ? distance_m : fit;
+    scene->cameras = wd_arena_alloc(&scene->arena, 2 * sizeof *scene->cameras);
+    scene->camera_count = 2;
+    place_camera(&scene->cameras[0], "fit", row, fit, half_height, half_height, fov_deg,
+                 &scene->arena);
+    place_camera(&scene->cameras[1], "eye", row, near, eye,
+                 fmin(half_height, eye + 0.4 * near), 50, &scene->arena);
+    return fmax(fit, near);
+}
+
+/* --- the forest -------------------------------------------------------------------------- */
+
+static bool make_scene(struct wd_scene *scene, const struct wd_specimen *const *specimens,
+                       uint32_t count, const struct wd_log *log)
+{
+    struct wd_arena arena = {0};
+    if (!wd_keys_read(&wd_scene_keys, "specimens", scene_text, sizeof scene_text - 1, &arena, log,
+                      scene)) {
+        wd_arena_finish(&arena);
+        return false;
+    }
+    scene->arena = arena;
+    struct wd_grow_params *individuals =
+        wd_arena_alloc(&scene->arena, count * sizeof *individuals);
+    scene->species_files = wd_arena_alloc(&scene->arena, count * sizeof *scene->species_files);
+    scene->species = wd_arena_alloc(&scene->arena, count * sizeof *scene->species);
+    scene->species_file_count = count;
+    bool ok = true;
+    for (uint32_t i = 0; i < count && ok; i++) {
+        struct wd_species *species = &scene->species[i], whole;
+        const struct wd_specimen *from = specimens[i];
+        scene->species_files[i].name = wd_arena_strdup(&scene->arena, from->species.name);
+        scene->species_files[i].value = wd_arena_strdup(&scene->arena, from->source);
+        individuals[i] = from->params;
+        ok = wd_species_load(species, from->source, &scene->arena, log);
+        whole = *species;
+        if (ok && species->model.file) {
+            species->model.height_m = from->model.height_m;
+            ok = wd_species_import_models(species, 1, NULL, log);
+        } else if (ok && from->month != 0) {
+            ok = wd_species_in_month(species, &whole, from->month, log);
+        }
+    }
+    scene->individuals = individuals;
+    return ok;
+}
+
+static uint32_t whole_cm(double metres)
+{
+    double cm = round(metres * 100);
+    return cm < 1 ? 1 : cm > 65535 ? 65535 : (uint32_t)cm;
+}
+
+static struct wd_tree *make_trees(const struct wd_specimen *const *specimens, uint32_t count)
+{
+    struct wd_tree *trees = wd_alloc_array(count, sizeof *trees);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct wd_tree_model *model = &specimens[i]->model;
+        double x_m = 0.5 * GROUND_M + wd_specimen_place_m(specimens, i);
+        trees[i] = (struct wd_tree){
+            .x_mm = (int32_t)lround(x_m * 1000),
+            .y_mm = GROUND_M / 2 * 1000,
+            .kind = i,
+            .size = whole_cm((double)model->height_m) |
+                    whole_cm(2 * (double)model->crown_radius_m) << 16,
+            .look = 128u << 16,
+            .random = 0x80000000u,
+        };
+    }
+    return trees;
+}
+
+enum wd_result wd_forest_create_specimens(struct wd_forest **result,
+                                          const struct wd_specimen *const *specimens,
+                                          uint32_t count, double aspect, double distance_m,
+                                          const struct wd_log *log)
+{
+    *result = NULL;
+    struct wd_forest *forest = wd_alloc(sizeof *forest);
+    forest->log = log ? *log : (struct wd_log){0};
+    bool ok = make_scene(&forest->scene, specimens, count, &forest->log);
+    if (ok) {
+        struct wd_tree *trees = make_trees(specimens, count);
+        struct row row = measure(specimens, count);
+        double far = make_cameras(&forest->scene, &row, aspect, distance_m);
+        forest->scene.quality.shadow_distance_m = far + 3 * row.height_m;
+        const struct wd_world_params world = {
+            .trees = trees, .tree_count = count, .log = &forest->log};
+        ok = wd_world_init(&forest->world, &forest->scene, &world);
+        free(trees);
+    }
+    if (!ok) {
+        wd_forest_destroy(&forest);
+        return WD_ERROR_INPUT;
+    }
+    *result = forest;
+    return WD_OK;
+}
+
+void wd_forest_set_specimen_form(struct wd_forest *forest, enum wd_specimen_form form)
+{
+    const double everywhere = 1e6;
+    if (form == WD_SPECIMEN_AS_SEEN)
+        return;
+    forest->scene.quality.mesh_distance_m = form == WD_SPECIMEN_FULL ? everywhere : 0;
+    forest->scene.quality.reduced_distance_m = form == WD_SPECIMEN_CARDS ? 0 : everywhere;
+}

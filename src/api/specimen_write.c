@@ -1,0 +1,223 @@
+/* Trees and forests as files for other programs. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "api/forest.h"
+#include "api/specimen.h"
+#include "base/memory.h"
+#include "tree/export.h"
+#include "tree/variant.h"
+
+enum { DEFAULT_MAX_TREES = 1000000, GROUND_SIDE = 513 };
+
+static bool has_ending(const char *path, const char *ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcasecmp(path + length - tail, ending) == 0;
+}
+
+enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, uint32_t count,
+                                  const char *path, const struct wd_log *log)
+{
+    bool glb = has_ending(path, ".glb");
+    if (!glb && !has_ending(path, ".obj")) {
+        wd_error(log, "%s: trees are written as .glb or .obj", path);
+        return WD_ERROR_INPUT;
+    }
+    struct wd_export_tree *trees = wd_alloc_array(count, sizeof *trees);
+    for (uint32_t i = 0; i < count; i++) {
+        trees[i] = (struct wd_export_tree){
+            .name = specimens[i]->species.name,
+            .species = &specimens[i]->species,
+            .level_count = WD_SPECIMEN_LEVELS,
+            .place_m = wd_specimen_place_m(specimens, i),
+        };
+        for (uint32_t level = 0; level < WD_SPECIMEN_LEVELS; level++)
+            trees[i].levels[level] = wd_specimen_mesh(specimens[i], level);
+    }
+    const struct wd_export what = {.trees = trees, .tree_count = count};
+    bool ok = glb ? wd_export_glb(&what, path, log) : wd_export_obj(&what, path, log);
+    free(trees);
+    return ok ? WD_OK : WD_ERROR_OUTPUT;
+}
+
+/* --- a whole forest ---------------------------------------------------------------------- */
+
+struct scene_export {
+    const struct wd_forest *forest;
+    struct wd_tree_model *models;
+    struct wd_model *described;
+    struct wd_export_tree *trees;
+    struct wd_export_instance *instances; /* sorted by model */
+    struct wd_export_ground ground;
+    struct wd_export what;
+    uint32_t model_count, variants;
+};
+
+static uint32_t model_of(const struct scene_export *export, const struct wd_tree *tree)
+{
+    return WD_TREE_SPECIES(*tree) * export->variants + WD_TREE_VARIANT(*tree) % export->variants;
+}
+
+static bool grow_models(struct scene_export *export, const struct wd_progress *progress,
+                        const struct wd_log *log)
+{
+    const struct wd_scene *scene = &export->forest->scene;
+    for (uint32_t i = 0; i < export->model_count; i++) {
+        if (!wd_progress_report(progress, "growing trees", i, export->model_count) ||
+            !wd_variant_grow(&export->models[i], scene, i, log))
+            return false;
+        wd_variant_describe(&export->described[i], scene, i, &export->models[i]);
+    }
+    return true;
+}
+
+static void place_tree(struct wd_export_instance *instance, const struct wd_tree *tree,
+                       const struct wd_model *model, const double origin_m[3])
+{
+    const int32_t at_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
+    for (int k = 0; k < 3; k++)
+        instance->position_m[k] = (float)(at_mm[k] * 0.001 - origin_m[k]);
+    double yaw = (tree->look & 0xffffu) * (6.283185307179586 / 65536.0);
+    float across = (float)(tree->size >> 16) * 0.01f / model->crown_m;
+    instance->yaw_rad = (float)yaw;
+    instance->across = tree->look & 0x1000000u ? -across : across;
+    instance->up = (float)(tree->size & 0xffffu) * 0.01f / model->height_m;
+    instance->id = tree->id;
+}
+
+/* Counting sort by model. */
+static void place_trees(struct scene_export *export)
+{
+    const struct wd_world *world = &export->forest->world;
+    size_t *next = wd_alloc_array(export->model_count + 1, sizeof *next);
+    export->instances = wd_alloc_array(world->tree_count + 1, sizeof *export->instances);
+    for (size_t i = 0; i < world->tree_count; i++)
+        next[model_of(export, &world->trees[i]) + 1]++;
+    for (uint32_t m = 0; m < export->model_count; m++)
+        next[m + 1] += next[m];
+    for (uint32_t m = 0; m < export->model_count; m++) {
+        uint32_t count = (uint32_t)(next[m + 1] - next[m]);
+        if (count == 0)
+            continue;
+        const struct wd_species *species = &export->forest->scene.species[m / export->variants];
+        export->trees[export->what.tree_count++] = (struct wd_export_tree){
+            .name = species->name,
+            .species = species,
+            .levels = {&export->models[m].full, &export->models[m].reduced},
+            .level_count = 2,
+            .instances = export->instances + next[m],
+            .instance_count = count,
+        };
+    }
+    for (size_t i = 0; i < world->tree_count; i++) {
+        uint32_t m = model_of(export, &world->trees[i]);
+        place_tree(&export->instances[next[m]++], &world->trees[i], &export->described[m],
+                   export->what.origin_m);
+    }
+    free(next);
+}
+
+static void ground_vertex(const struct scene_export *export, const double step_m[2], uint32_t x,
+                          uint32_t y, float position[3], float normal[3])
+{
+    const struct wd_terrain *terrain = &export->forest->world.terrain;
+    const double *origin = export->what.origin_m;
+    double at[2] = {x * step_m[0], y * step_m[1]};
+    double slope_x = (wd_terrain_height(terrain, at[0] + step_m[0], at[1]) -
+                      wd_terrain_height(terrain, at[0] - step_m[0], at[1])) / (2 * step_m[0]);
+    double slope_y = (wd_terrain_height(terrain, at[0], at[1] + step_m[1]) -
+                      wd_terrain_height(terrain, at[0], at[1] - step_m[1])) / (2 * step_m[1]);
+    double length = sqrt(slope_x * slope_x + slope_y * slope_y + 1);
+    position[0] = (float)(at[0] - origin[0]);
+    position[1] = (float)(at[1] - origin[1]);
+    position[2] = (float)(wd_terrain_height(terrain, at[0], at[1]) - origin[2]);
+    normal[0] = (float)(-slope_x / length);
+    normal[1] = (float)(-slope_y / length);
+    normal[2] = (float)(1 / length);
+}
+
+static void make_ground(struct scene_export *export)
+{
+    enum { SIDE = GROUND_SIDE, QUADS = SIDE - 1 };
+    const struct wd_terrain *terrain = &export->forest->world.terrain;
+    const double step_m[2] = {wd_terrain_extent_x_m(terrain) / QUADS,
+                              wd_terrain_extent_y_m(terrain) / QUADS};
+    float(*positions)[3] = wd_alloc_array((size_t)SIDE * SIDE, sizeof *positions);
+    float(*normals)[3] = wd_alloc_array((size_t)SIDE * SIDE, sizeof *normals);
+    uint32_t *indices = wd_alloc_array((size_t)QUADS * QUADS, 6 * sizeof *indices), *to = indices;
+    for (uint32_t y = 0; y < SIDE; y++) {
+        for (uint32_t x = 0; x < SIDE; x++) {
+            uint32_t a = y * SIDE + x;
+            ground_vertex(export, step_m, x, y, positions[a], normals[a]);
+            if (x == QUADS || y == QUADS)
+                continue;
+            const uint32_t quad[6] = {a, a + 1, a + SIDE, a + SIDE, a + 1, a + SIDE + 1};
+            memcpy(to, quad, sizeof quad);
+            to += 6;
+        }
+    }
+    export->ground = (struct wd_export_ground){
+        .positions_m = (const float(*)[3])positions,
+        .normals = (const float(*)[3])normals,
+        .vertex_count = SIDE * SIDE,
+        .indices = indices,
+        .index_count = 6 * QUADS * QUADS,
+    };
+    memcpy(export->ground.color, export->forest->scene.ground.grass, sizeof export->ground.color);
+    export->what.ground = &export->ground;
+}
+
+static void finish(struct scene_export *export)
+{
+    for (uint32_t i = 0; i < export->model_count; i++)
+        wd_tree_model_finish(&export->models[i]);
+    free(export->models);
+    free(export->described);
+    free(export->trees);
+    free(export->instances);
+    free((void *)export->ground.positions_m);
+    free((void *)export->ground.normals);
+    free((void *)export->ground.indices);
+}
+
+enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path, uint64_t max_trees,
+                               const struct wd_progress *progress, const struct wd_log *log)
+{
+    const struct wd_terrain *terrain = &forest->world.terrain;
+    uint64_t most = max_trees ? max_trees : DEFAULT_MAX_TREES;
+    struct scene_export export = {.forest = forest, .variants = (uint32_t)forest->scene.variants};
+    if (!has_ending(path, ".glb")) {
+        wd_error(log, "%s: forests are written as .glb", path);
+        return WD_ERROR_INPUT;
+    }
+    if (forest->world.tree_count > most) {
+        wd_error(log, "%s: the forest has %zu trees; at most %llu are written", path,
+                 forest->world.tree_count, (unsigned long long)most);
+        return WD_ERROR_INPUT;
+    }
+    export.model_count = (uint32_t)forest->scene.species_file_count * export.variants;
+    export.models = wd_alloc_array(export.model_count + 1, sizeof *export.models);
+    export.described = wd_alloc_array(export.model_count + 1, sizeof *export.described);
+    export.trees = wd_alloc_array(export.model_count + 1, sizeof *export.trees);
+    double *origin = export.what.origin_m;
+    origin[0] = 0.5 * wd_terrain_extent_x_m(terrain);
+    origin[1] = 0.5 * wd_terrain_extent_y_m(terrain);
+    origin[2] = wd_terrain_height(terrain, origin[0], origin[1]);
+    enum wd_result result = WD_ERROR_INTERRUPTED;
+    if (grow_models(&export, progress, log)) {
+        place_trees(&export);
+        make_ground(&export);
+        export.what.trees = export.trees;
+        if (terrain->crs) { /* what is placed is placed: from here on it is for the reader */
+            export.what.crs = terrain->crs;
+            origin[0] += terrain->origin_m[0];
+            origin[1] += terrain->origin_m[1];
+        }
+        result = wd_export_glb(&export.what, path, log) ? WD_OK : WD_ERROR_OUTPUT;
+    }
+    finish(&export);
+    return result;
+}
