@@ -59,7 +59,7 @@ enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, ui
 
 /* A forest of nothing but these specimens, in a row on plain level ground under a clear sky, with
  * cameras "fit" (all of it in a frame of the given shape) and "eye" (a person's eye at the given
- * distance). The specimens are copied.
+ * distance). The specimens must outlive the forest.
  *   aspect      width over height of the pictures to come
  *   distance_m  of "eye"; 0: that of "fit" */
 enum wd_result wd_forest_create_specimens(struct wd_forest **forest,

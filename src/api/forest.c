@@ -64,7 +64,9 @@ void wd_forest_destroy(struct wd_forest **forest)
     if (!forest || !*forest)
         return;
     wd_world_finish(&(*forest)->world);
-    wd_species_drop_models((*forest)->scene.species, (*forest)->scene.species_file_count);
+    if (!(*forest)->scene.individuals) /* specimens keep their own */
+        wd_species_drop_models((*forest)->scene.species,
+                               (*forest)->scene.species_file_count);
     wd_scene_finish(&(*forest)->scene);
     free(*forest);
     *forest = NULL;

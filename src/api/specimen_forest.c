@@ -16,7 +16,8 @@ static const char scene_text[] =
     " \"fog\": {\"visibility_m\": 60000},"
     " \"ground\": {\"grass\": [0.16, 0.155, 0.14], \"soil\": [0.16, 0.155, 0.14],"
     " \"litter\": [0.15, 0.145, 0.13], \"rock\": [0.16, 0.155, 0.14]},"
-    " \"quality\": {\"samples\": 16, \"shadow_size\": 2048, \"shadow_taps\": 9}}";
+    " \"quality\": {\"samples\": 16, \"shadow_size\": 2048, \"shadow_taps\": 9,"
+    " \"exposure_ev\": 0.6}}";
 
 /* --- cameras ----------------------------------------------------------------------------- */
 
@@ -80,8 +81,10 @@ static bool make_scene(struct wd_scene *scene, const struct wd_specimen *const *
                        uint32_t count, const struct wd_log *log)
 {
     struct wd_arena arena = {0};
-    if (!wd_keys_read(&wd_scene_keys, "specimens", scene_text, sizeof scene_text - 1, &arena, log,
-                      scene)) {
+    const struct wd_scene_params params = {.planted = true};
+    const struct wd_keys_input input = {.path = "specimens", .text = scene_text,
+                                        .size = sizeof scene_text - 1, .user = &params};
+    if (!wd_keys_read_input(&wd_scene_keys, &input, &arena, log, scene)) {
         wd_arena_finish(&arena);
         return false;
     }
@@ -91,24 +94,14 @@ static bool make_scene(struct wd_scene *scene, const struct wd_specimen *const *
     scene->species_files = wd_arena_alloc(&scene->arena, count * sizeof *scene->species_files);
     scene->species = wd_arena_alloc(&scene->arena, count * sizeof *scene->species);
     scene->species_file_count = count;
-    bool ok = true;
-    for (uint32_t i = 0; i < count && ok; i++) {
-        struct wd_species *species = &scene->species[i], whole;
-        const struct wd_specimen *from = specimens[i];
-        scene->species_files[i].name = wd_arena_strdup(&scene->arena, from->species.name);
-        scene->species_files[i].value = wd_arena_strdup(&scene->arena, from->source);
-        individuals[i] = from->params;
-        ok = wd_species_load(species, from->source, &scene->arena, log);
-        whole = *species;
-        if (ok && species->model.file) {
-            species->model.height_m = from->model.height_m;
-            ok = wd_species_import_models(species, 1, NULL, log);
-        } else if (ok && from->month != 0) {
-            ok = wd_species_in_month(species, &whole, from->month, log);
-        }
+    for (uint32_t i = 0; i < count; i++) {
+        scene->species_files[i].name = specimens[i]->species.name;
+        scene->species_files[i].value = specimens[i]->source;
+        scene->species[i] = specimens[i]->species;
+        individuals[i] = specimens[i]->params;
     }
     scene->individuals = individuals;
-    return ok;
+    return true;
 }
 
 static uint32_t whole_cm(double metres)
