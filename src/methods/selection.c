@@ -21,7 +21,8 @@ struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
         .blend = (float)scene->quality.blend,
         .finest = WD_LEVEL_MESH,
     };
-    if (pass == WD_PASS_CAMERA || view->cascade < REDUCED_CASCADE) {
+    bool specimens = scene->individuals != NULL; /* few: whole shadows at any distance */
+    if (pass == WD_PASS_CAMERA || view->cascade < REDUCED_CASCADE || specimens) {
         for (size_t i = 0; i < scene->layer_count; i++)
             rule.farthest_m =
                 fmaxf(rule.farthest_m, (float)scene->layers[i].mesh_distance_m * view->lod_scale);
