@@ -25,6 +25,8 @@ static const struct figure {
     {"bake-100-cold-s", bench_bake_cold},
     {"bake-100-warm-s", bench_bake_warm},
     {"bake-100-gpu-mb", bench_bake_memory},
+    {"reference-agreement-pct", bench_reference_agreement},
+    {"reference-mrays-s", bench_reference_rays},
 };
 
 static int compare(const void *a, const void *b)

@@ -20,6 +20,8 @@ bool bench_lod_radiance(const char *gpu);
 bool bench_bake_cold(const char *gpu);
 bool bench_bake_warm(const char *gpu);
 bool bench_bake_memory(const char *gpu);
+bool bench_reference_agreement(const char *gpu);
+bool bench_reference_rays(const char *gpu);
 
 /* Sorts and returns the middle one. */
 double bench_median(double *values, size_t count);

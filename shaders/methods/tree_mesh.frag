@@ -42,7 +42,7 @@ void detail_leaf(inout wd_surface leaf, vec4 look, float near)
         uv.z += float(WD_LOOK_LEAF_BACK - WD_LOOK_LEAF);
     wd_relief relief = look_relief(look_details, look_frame(face, in_place.xyz, in_uv.xy), uv);
     float lit = dot(face, frame.sun_direction);
-    leaf.albedo = mix(leaf.albedo, texture(looks, uv).rgb * in_tint.rgb, near);
+    leaf.albedo = texture(looks, uv).rgb * in_tint.rgb;
     float through = mix(1.0, 2.0 * relief.rest, near * smoothstep(0.05, -0.05, lit));
     leaf.albedo *= through;
     vec3 own = dot(relief.normal, in_normal) < 0.0 ? -relief.normal : relief.normal;

@@ -1,0 +1,122 @@
+/* The path tracer through the public interface: it sees what the renderer draws; bad input. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../../bench/agreement.h"
+#include "suite.h"
+
+static struct suite *suite_of(void **state)
+{
+    return *state;
+}
+
+static void test_agreement(void **state)
+{
+    struct suite *suite = suite_of(state);
+    struct bench_agreement a;
+    assert_true(bench_agreement_measure(&a, suite->small_path, "walk", "software"));
+    print_message("%llu inner pixels, ids %.2f%%, normals %.2f deg, depth %.2f mm, albedo %+.2f%%, "
+                  "ground %+.2f%%\n",
+                  (unsigned long long)a.inner_pixels, a.id_pct, a.normal_deg, a.depth_mm,
+                  a.albedo_pct, a.ground_albedo_pct);
+    assert_true(a.inner_pixels > 20000);
+    assert_true(a.id_pct >= 99.0);
+    assert_true(a.normal_deg < 3.0);
+    assert_true(a.depth_mm < 20.0);
+    assert_true(fabs(a.albedo_pct) < 5.0);
+    assert_true(fabs(a.ground_albedo_pct) < 3.0);
+}
+
+static struct wd_reference *open_reference(struct suite *suite, bool (*report)(void *, const char *,
+                                                                               uint64_t, uint64_t))
+{
+    const struct wd_reference_params params = {.progress = {report, suite}, .log = suite->log};
+    struct wd_reference *reference;
+    assert_int_equal(wd_reference_create(&reference, suite->forest, &params), WD_OK);
+    return reference;
+}
+
+static bool stop_half_way(void *user, const char *stage, uint64_t done, uint64_t total)
+{
+    (void)user, (void)stage;
+    return done < total / 2;
+}
+
+static struct wd_reference_picture_params picture_params(struct suite *suite)
+{
+    struct wd_reference_picture_params params = {
+        .width = 48, .height = 36, .samples = 8, .layers = WD_LAYER_COLOR};
+    assert_int_equal(wd_forest_get_camera(suite->forest, "walk", &params.camera), WD_OK);
+    return params;
+}
+
+/* Stopped and gone on with is the same as never stopped. */
+static void test_resume(void **state)
+{
+    struct suite *suite = suite_of(state);
+    struct wd_reference *stopping = open_reference(suite, stop_half_way);
+    struct wd_reference *reference = open_reference(suite, NULL);
+    struct wd_reference_picture_params params = picture_params(suite);
+    struct wd_picture whole, resumed;
+    struct wd_reference_stats stats;
+    assert_int_equal(wd_reference_render(reference, &params, &whole), WD_OK);
+    params.checkpoint = suite_path(suite, "picture.partial");
+    assert_int_equal(wd_reference_render(stopping, &params, &resumed), WD_ERROR_INTERRUPTED);
+    assert_int_equal(access(params.checkpoint, F_OK), 0);
+    struct wd_reference_picture_params other = params;
+    other.camera.yaw_rad += 0.1;
+    suite_clear(suite);
+    assert_int_equal(wd_reference_render(reference, &other, &resumed), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "another scene, camera"));
+    assert_int_equal(wd_reference_render(reference, &params, &resumed), WD_OK);
+    wd_reference_get_stats(reference, &stats);
+    assert_true(stats.resumed_samples > 0);
+    assert_int_equal(stats.self_hits, 0);
+    assert_memory_equal(whole.color, resumed.color, (size_t)48 * 36 * 3 * sizeof(float));
+    assert_int_not_equal(access(params.checkpoint, F_OK), 0);
+    wd_picture_finish(&whole);
+    wd_picture_finish(&resumed);
+    wd_reference_destroy(&stopping);
+    wd_reference_destroy(&reference);
+}
+
+static void test_bad_input(void **state)
+{
+    struct suite *suite = suite_of(state);
+    struct wd_reference *reference = open_reference(suite, NULL);
+    struct wd_picture picture;
+    struct wd_reference_picture_params params = picture_params(suite);
+    suite_clear(suite);
+    params.width = 0;
+    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "0 x 36"));
+    params = picture_params(suite);
+    params.camera.fov_rad = 4;
+    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
+    params = picture_params(suite);
+    params.camera.position_m[1] = NAN;
+    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
+    params = picture_params(suite);
+    params.samples = 1u << 30;
+    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
+    assert_null(picture.color);
+    wd_reference_destroy(&reference);
+    wd_reference_destroy(&reference);
+}
+
+int main(int argc, char **argv)
+{
+    static struct suite suite;
+    if (argc != 2 || !suite_init(&suite, argv[1]))
+        return 1;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_prestate(test_agreement, &suite),
+        cmocka_unit_test_prestate(test_resume, &suite),
+        cmocka_unit_test_prestate(test_bad_input, &suite),
+    };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    suite_finish(&suite);
+    return failed;
+}
