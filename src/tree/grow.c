@@ -1,11 +1,13 @@
 #include "tree/grow.h"
 
+#include "tree/coverage.h"
 #include "tree/foliage.h"
 #include "tree/import.h"
 #include "tree/wood.h"
 
 enum {
-    FULL_WOOD_TRIANGLES = 26000,
+    FULL_WOOD_TRIANGLES = 25000, /* at detail 1, with the least */
+    LEAST_WOOD_TRIANGLES = 1000,
     REDUCED_WOOD_TRIANGLES = 1600,
     REDUCED_LEAVES = 2600, /* two triangles each */
 };
@@ -24,7 +26,7 @@ static void build_full(struct wd_tree_mesh *mesh, const struct wd_skeleton *skel
     float least = form->species->leaf.shape == WD_LEAF_NEEDLES ? 0.0055f : 0;
     struct wd_wood_style style = {least * fminf(form->scale, 1), 1, 12};
     fit_wood(&style, skeleton, form->species,
-             (size_t)(FULL_WOOD_TRIANGLES * fmaxf(form->detail, 1)));
+             (size_t)(FULL_WOOD_TRIANGLES * form->detail) + LEAST_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
     wd_foliage_mesh(mesh, foliage, form->species);
@@ -74,6 +76,7 @@ static void finish_model(struct wd_tree_model *model, const struct wd_foliage *f
     float factor = form->height_m / model->full.max_m[2];
     scale_mesh(&model->full, factor);
     scale_mesh(&model->reduced, factor);
+    wd_tree_mesh_fit_coverage(&model->reduced, &model->full);
     model->height_m = form->height_m;
     model->crown_radius_m = factor * crown_radius_m(foliage);
     model->crown_base_m = factor * form->crown_base_m;

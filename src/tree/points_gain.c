@@ -9,108 +9,41 @@
 
 #include "base/memory.h"
 #include "tree/points.h"
-#include "tree/vec.h"
+#include "tree/silhouette.h"
 
-enum { PIXELS = 160, MAX_BINS = 1 << 12, LEVEL_TURNS = 2 };
+enum { MAX_BINS = 1 << 12, LEVEL_TURNS = 2 };
 
-/* A picture of the model from one side, orthographic, `size` pixels square. */
 struct plan {
-    struct wd_vec3 right, up, toward;
-    float low[2], scale; /* metres at pixel 0; pixels a metre */
-    uint8_t *tree, *wood; /* covered by the whole mesh, by its wood */
+    struct wd_silhouette tree, wood; /* of the whole mesh, of its wood */
     float *leaf_distance, *distance; /* squared, pixels: to the nearest point of leaves, of all */
 };
 
-static void project(const struct plan *plan, const float p[3], float at[2])
-{
-    struct wd_vec3 v = WD_V3(p[0], p[1], p[2]);
-    at[0] = (wd_v3_dot(v, plan->right) - plan->low[0]) * plan->scale;
-    at[1] = (wd_v3_dot(v, plan->up) - plan->low[1]) * plan->scale;
-}
-
-static int pixel_from(float x) /* first pixel whose middle is at x or beyond */
-{
-    return x > 0.5f ? (x < PIXELS ? (int)ceilf(x - 0.5f) : PIXELS) : 0; /* NaN: 0 */
-}
-
-static void cover_triangle(uint8_t *mask, const float a[2], const float b[2], const float c[2])
-{
-    float area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-    if (!(fabsf(area) > 1e-9f))
-        return;
-    float turn = area > 0 ? 1 : -1;
-    int x0 = pixel_from(fminf(a[0], fminf(b[0], c[0])));
-    int x1 = pixel_from(fmaxf(a[0], fmaxf(b[0], c[0])));
-    int y0 = pixel_from(fminf(a[1], fminf(b[1], c[1])));
-    int y1 = pixel_from(fmaxf(a[1], fmaxf(b[1], c[1])));
-    for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++) {
-            float px = (float)x + 0.5f, py = (float)y + 0.5f;
-            float u = (b[0] - a[0]) * (py - a[1]) - (b[1] - a[1]) * (px - a[0]);
-            float v = (c[0] - b[0]) * (py - b[1]) - (c[1] - b[1]) * (px - b[0]);
-            float w = (a[0] - c[0]) * (py - c[1]) - (a[1] - c[1]) * (px - c[0]);
-            if (u * turn >= 0 && v * turn >= 0 && w * turn >= 0)
-                mask[y * PIXELS + x] = 1;
-        }
-}
-
-static void cover_mesh(struct plan *plan, const struct wd_tree_mesh *mesh)
-{
-    for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) {
-        float at[3][2];
-        for (uint32_t k = 0; k < 3; k++)
-            project(plan, mesh->vertices[mesh->indices[i + k]].position_m, at[k]);
-        cover_triangle(plan->tree, at[0], at[1], at[2]);
-        if (i < mesh->wood_index_count)
-            cover_triangle(plan->wood, at[0], at[1], at[2]);
-    }
-}
-
-/* The whole model, a pixel from the edge, at the same scale from all sides. */
-static void frame_mesh(struct plan *plan, const struct wd_tree_mesh *mesh)
-{
-    struct wd_vec3 middle = WD_V3(0.5f * (mesh->min_m[0] + mesh->max_m[0]),
-                                  0.5f * (mesh->min_m[1] + mesh->max_m[1]),
-                                  0.5f * (mesh->min_m[2] + mesh->max_m[2]));
-    float x = mesh->max_m[0] - mesh->min_m[0], y = mesh->max_m[1] - mesh->min_m[1];
-    float half = 0.5f * fmaxf(fmaxf(sqrtf(x * x + y * y), mesh->max_m[2] - mesh->min_m[2]), 2e-3f);
-    plan->scale = 0.5f * (PIXELS - 2) / half;
-    plan->low[0] = wd_v3_dot(middle, plan->right) - half - 1 / plan->scale;
-    plan->low[1] = wd_v3_dot(middle, plan->up) - half - 1 / plan->scale;
-}
-
 static void plan_init(struct plan *plan, const struct wd_tree_mesh *mesh, struct wd_vec3 toward)
 {
-    size_t pixels = (size_t)PIXELS * PIXELS;
-    struct wd_vec3 right = wd_v3_side(toward);
-    *plan = (struct plan){
-        .right = right,
-        .up = wd_v3_cross(right, toward),
-        .toward = toward,
-        .tree = wd_alloc(pixels),
-        .wood = wd_alloc(pixels),
-        .leaf_distance = wd_alloc_array(pixels, sizeof(float)),
-        .distance = wd_alloc_array(pixels, sizeof(float)),
-    };
-    frame_mesh(plan, mesh);
-    cover_mesh(plan, mesh);
+    size_t pixels = (size_t)WD_SILHOUETTE * WD_SILHOUETTE;
+    wd_silhouette_init(&plan->tree, mesh, toward);
+    wd_silhouette_init(&plan->wood, mesh, toward);
+    wd_silhouette_cover(&plan->tree, mesh, 0, mesh->index_count);
+    wd_silhouette_cover(&plan->wood, mesh, 0, mesh->wood_index_count);
+    plan->leaf_distance = wd_alloc_array(pixels, sizeof(float));
+    plan->distance = wd_alloc_array(pixels, sizeof(float));
 }
 
 static void plan_finish(struct plan *plan)
 {
-    free(plan->tree);
-    free(plan->wood);
+    wd_silhouette_finish(&plan->tree);
+    wd_silhouette_finish(&plan->wood);
     free(plan->leaf_distance);
     free(plan->distance);
 }
 
 static void spread_point(float *distance, const float at[2], float reach)
 {
-    int x0 = pixel_from(at[0] - reach), x1 = pixel_from(at[0] + reach);
-    int y0 = pixel_from(at[1] - reach), y1 = pixel_from(at[1] + reach);
+    int x0 = wd_silhouette_pixel(at[0] - reach), x1 = wd_silhouette_pixel(at[0] + reach);
+    int y0 = wd_silhouette_pixel(at[1] - reach), y1 = wd_silhouette_pixel(at[1] + reach);
     for (int y = y0; y < y1; y++) {
         float dy = (float)y + 0.5f - at[1];
-        float *row = distance + y * PIXELS;
+        float *row = distance + y * WD_SILHOUETTE;
         for (int x = x0; x < x1; x++) {
             float dx = (float)x + 0.5f - at[0], d = dx * dx + dy * dy;
             row[x] = d < row[x] ? d : row[x];
@@ -128,17 +61,17 @@ static bool faces(const struct wd_tree_point *point, struct wd_vec3 toward)
 static void measure_distances(struct plan *plan, const struct wd_tree_point *points, size_t count,
                               float reach)
 {
-    size_t pixels = (size_t)PIXELS * PIXELS;
+    size_t pixels = (size_t)WD_SILHOUETTE * WD_SILHOUETTE;
     for (size_t i = 0; i < pixels; i++)
         plan->leaf_distance[i] = 1e12f;
     for (int pass = 0; pass < 2; pass++) { /* leaves first */
         for (size_t i = 0; i < count; i++) {
             bool leaf = points[i].kind & WD_POINT_LEAF;
             float at[2];
-            project(plan, points[i].position_m, at);
+            wd_silhouette_project(&plan->tree, points[i].position_m, at);
             if (leaf && pass == 0)
                 spread_point(plan->leaf_distance, at, reach);
-            else if (!leaf && pass == 1 && faces(&points[i], plan->toward))
+            else if (!leaf && pass == 1 && faces(&points[i], plan->tree.toward))
                 spread_point(plan->distance, at, reach);
         }
         if (pass == 0)
@@ -156,12 +89,12 @@ static void count_distances(struct quantile *quantile, const struct plan *plan,
                             enum wd_point_use use, float scale)
 {
     const float *distance = use == WD_POINTS_ALL ? plan->distance : plan->leaf_distance;
-    for (size_t i = 0; i < (size_t)PIXELS * PIXELS; i++) {
-        if (use == WD_POINTS_LEAVES && plan->wood[i])
+    for (size_t i = 0; i < (size_t)WD_SILHOUETTE * WD_SILHOUETTE; i++) {
+        if (use == WD_POINTS_LEAVES && plan->wood.covered[i])
             continue; /* drawn anyway */
         float bin = sqrtf(distance[i]) * scale;
         quantile->bins[bin < MAX_BINS ? (int)bin : MAX_BINS]++;
-        quantile->wanted += plan->tree[i];
+        quantile->wanted += plan->tree.covered[i];
     }
 }
 
@@ -189,14 +122,14 @@ static void calibrate_count(const struct wd_tree_points *points, struct plan *pl
     bool found = false;
     for (float most = 1.5f; !found && most < 40; most *= 3) {
         found = true;
-        float reach_m = sqrtf(most * each), scale = (float)MAX_BINS / (reach_m * plans[0].scale);
+        float reach_m = sqrtf(most * each), scale = (float)MAX_BINS / (reach_m * plans[0].tree.scale);
         for (int i = 0; i < plan_count; i++)
-            measure_distances(&plans[i], points->points, count, reach_m * plans[i].scale);
+            measure_distances(&plans[i], points->points, count, reach_m * plans[i].tree.scale);
         for (int use = 0; use < WD_POINT_USES; use++) {
             *quantile = (struct quantile){0};
             for (int i = 0; i < plan_count; i++)
                 count_distances(quantile, &plans[i], (enum wd_point_use)use, scale);
-            float radius = quantile_radius(quantile, scale) / plans[0].scale;
+            float radius = quantile_radius(quantile, scale) / plans[0].tree.scale;
             gain[use] = radius > 0 ? radius * radius / each : most;
             found = found && radius > 0;
         }

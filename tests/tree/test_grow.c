@@ -69,11 +69,11 @@ static void same_parameters_same_bytes(void **state)
 static void known_hashes(void **state)
 {
     static const uint64_t expected[SPECIES_COUNT] = {
-        0x708d1a082c030f63u, 0x8dc5c1aa19f766ccu, 0xc289da9eaac33645u,
-        0x62dd2f97e58b76b3u, 0x297b8d352ffdec69u, 0x9aa8d8dc7f1d089cu,
-        0xaf696510df86ac6fu, 0x578b3100b34a7ad9u, 0x4e905043ffe557eau,
-        0xfcf042830d355080u, 0x22d407c9cc52cd63u, 0x74938f4db6b18a8du,
-        0x96e1b0a5a38b8a6eu, 0x854eb8e3bb81dd1bu, 0x1e969799030e0b57u,
+        0xd24880e052e274efu, 0xa160f87c7aa967b0u, 0x65b72e92ff93ed09u,
+        0x6fcdc7c9932cd7ccu, 0xba9310343044b933u, 0x06e08a312ab02e61u,
+        0xf7f7ba11bafbf6c8u, 0x0cdbf8598b5b7551u, 0x8423416817d39d6eu,
+        0x3a2bca887ad15f8fu, 0x34cb6720d656f9f6u, 0x74938f4db6b18a8du,
+        0x96e1b0a5a38b8a6eu, 0x2ec9c7e60fc219a9u, 0x28c2bc577ae016d4u,
         0x0c86aaaa0f7fda20u, 0xb8e8d75761954a06u};
     struct wd_arena arena = {0};
     int wrong = 0;
@@ -282,9 +282,10 @@ static void reduced_mesh_keeps_area_and_coverage(void **state)
             const struct wd_tree_mesh *full = &model.full, *reduced = &model.reduced;
             uint32_t full_count = test_leaf_triangles(full);
             uint32_t reduced_count = test_leaf_triangles(reduced);
+            /* not all of the area: fewer, larger leaves overlap less */
             double ratio = test_leaf_area(reduced, 0, reduced_count) /
                            test_leaf_area(full, 0, full_count);
-            assert_float_equal(ratio, 1, 0.1);
+            assert_true(ratio > 0.5 && ratio < 1.1);
             struct sample a = sample_leaves(full, full_count);
             struct sample b = sample_leaves(reduced, reduced_count);
             assert_alike(&a, &b, 1.5 * (double)model.crown_radius_m, 0.07);
@@ -294,7 +295,7 @@ static void reduced_mesh_keeps_area_and_coverage(void **state)
                 double two = coverage(reduced, &species, model.height_m, azimuth, up);
                 print_message("%s open %d view %d: reduced covers %+.1f%%\n",
                               test_species_names[s], open, view, 100 * (two / one - 1));
-                assert_float_equal(two / one, 1, 0.13);
+                assert_float_equal(two / one, 1, 0.05);
             }
             wd_tree_model_finish(&model);
         }

@@ -1,0 +1,123 @@
+#include "tree/coverage.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "tree/silhouette.h"
+
+enum { VIEWS = 2, STEPS = 3 };
+/* Beyond these, leaves would no longer look like leaves. */
+static const float LEAST = 0.25f, MOST = 4;
+
+struct fit {
+    struct wd_tree_mesh *mesh;
+    struct wd_vec3 *middles; /* [vertex] of its leaf */
+    struct wd_vec3 *unscaled; /* [vertex] */
+    struct wd_silhouette views[VIEWS];
+};
+
+static struct wd_vec3 position(const struct wd_tree_mesh *mesh, uint32_t vertex)
+{
+    const float *p = mesh->vertices[vertex].position_m;
+    return WD_V3(p[0], p[1], p[2]);
+}
+
+static uint32_t root_of(uint32_t *parents, uint32_t i)
+{
+    while (parents[i] != i)
+        i = parents[i] = parents[parents[i]];
+    return i;
+}
+
+static void find_middles(struct fit *fit)
+{
+    const struct wd_tree_mesh *mesh = fit->mesh;
+    uint32_t count = mesh->vertex_count;
+    uint32_t *parents = wd_alloc_array(count + 1, sizeof *parents);
+    uint32_t *members = wd_alloc_array(count + 1, sizeof *members);
+    struct wd_vec3 *sums = wd_alloc_array(count + 1, sizeof *sums);
+    for (uint32_t i = 0; i < count; i++)
+        parents[i] = i;
+    for (uint32_t i = mesh->wood_index_count; i + 2 < mesh->index_count; i += 3)
+        for (uint32_t k = 1; k < 3; k++)
+            parents[root_of(parents, mesh->indices[i + k])] =
+                root_of(parents, mesh->indices[i]);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t root = root_of(parents, i);
+        fit->unscaled[i] = position(mesh, i);
+        sums[root] = wd_v3_add(sums[root], fit->unscaled[i]);
+        members[root]++;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t root = root_of(parents, i);
+        fit->middles[i] = wd_v3_scale(sums[root], 1 / (float)members[root]);
+    }
+    free(parents);
+    free(members);
+    free(sums);
+}
+
+/* Wood is made of vertices of its own, which are left as they are. */
+static void scale_leaves(struct fit *fit, float factor)
+{
+    struct wd_tree_mesh *mesh = fit->mesh;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+        if (!(mesh->vertices[i].kind & WD_VERTEX_LEAF))
+            continue;
+        struct wd_vec3 p = wd_v3_mix(fit->middles[i], fit->unscaled[i], factor);
+        mesh->vertices[i].position_m[0] = p.x;
+        mesh->vertices[i].position_m[1] = p.y;
+        mesh->vertices[i].position_m[2] = p.z;
+    }
+}
+
+static float covered(struct fit *fit, const struct wd_tree_mesh *mesh)
+{
+    size_t sum = 0;
+    for (int i = 0; i < VIEWS; i++) {
+        wd_silhouette_clear(&fit->views[i]);
+        wd_silhouette_cover(&fit->views[i], mesh, 0, mesh->index_count);
+        sum += wd_silhouette_count(&fit->views[i]);
+    }
+    return (float)sum;
+}
+
+/* Coverage grows with the factor, slower and slower: the secant through the last two tries. */
+static void find_factor(struct fit *fit, float wanted)
+{
+    float factor = 1, found = covered(fit, fit->mesh), last_factor = 1, last_found = found;
+    for (int step = 0; step < STEPS && fabsf(found - wanted) > 0.005f * wanted; step++) {
+        float slope = (found - last_found) / (factor - last_factor);
+        if (step == 0 || !(slope > 0.1f * found / factor))
+            slope = found / factor;
+        last_factor = factor;
+        last_found = found;
+        factor = wd_clampf(factor + (wanted - found) / slope, LEAST, MOST);
+        if (factor == last_factor)
+            break;
+        scale_leaves(fit, factor);
+        found = covered(fit, fit->mesh);
+    }
+}
+
+void wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full)
+{
+    static const struct wd_vec3 towards[VIEWS] = {{0.96f, 0, 0.28f}, {0, 0.6f, 0.8f}};
+    if (reduced->wood_index_count == reduced->index_count)
+        return;
+    struct fit fit = {
+        .mesh = reduced,
+        .middles = wd_alloc_array(reduced->vertex_count, sizeof *fit.middles),
+        .unscaled = wd_alloc_array(reduced->vertex_count, sizeof *fit.unscaled),
+    };
+    for (int i = 0; i < VIEWS; i++)
+        wd_silhouette_init(&fit.views[i], full, towards[i]);
+    find_middles(&fit);
+    float wanted = covered(&fit, full);
+    find_factor(&fit, wanted);
+    for (int i = 0; i < VIEWS; i++)
+        wd_silhouette_finish(&fit.views[i]);
+    free(fit.middles);
+    free(fit.unscaled);
+    wd_tree_mesh_update_bounds(reduced);
+}

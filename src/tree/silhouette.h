@@ -1,0 +1,36 @@
+/* silhouette.h: which pixels of a small picture a mesh covers, seen from one side. */
+#ifndef WD_TREE_SILHOUETTE_H
+#define WD_TREE_SILHOUETTE_H
+
+#include "tree/mesh.h"
+#include "tree/vec.h"
+
+#define WD_SILHOUETTE 160 /* pixels a side */
+
+/* Orthographic; pixel (x, y) is covered[y * WD_SILHOUETTE + x], its middle at x + 0.5, y + 0.5. */
+struct wd_silhouette {
+    struct wd_vec3 right, up, toward;
+    float low[2], scale; /* metres at pixel 0; pixels a metre */
+    uint8_t *covered;    /* 0 or 1 */
+};
+
+/* An empty picture that frames `frame` (its bounds are set), at the same scale from all sides. */
+void wd_silhouette_init(struct wd_silhouette *silhouette, const struct wd_tree_mesh *frame,
+                        struct wd_vec3 toward);
+void wd_silhouette_finish(struct wd_silhouette *silhouette);
+void wd_silhouette_clear(struct wd_silhouette *silhouette);
+
+/* Covers what the triangles of indices [first, end) cover: pixels whose middle lies in one. */
+void wd_silhouette_cover(struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
+                         uint32_t first, uint32_t end);
+size_t wd_silhouette_count(const struct wd_silhouette *silhouette);
+
+void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p[3], float at[2]);
+
+/* First pixel whose middle is at x or beyond, within the picture; 0 for NaN. */
+static inline int wd_silhouette_pixel(float x)
+{
+    return x > 0.5f ? (x < WD_SILHOUETTE ? (int)ceilf(x - 0.5f) : WD_SILHOUETTE) : 0;
+}
+
+#endif
