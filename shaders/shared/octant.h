@@ -2,7 +2,7 @@
 #ifndef WD_SHARED_OCTANT_H
 #define WD_SHARED_OCTANT_H
 
-#include "shared/types.h"
+#include "shared/vec.h"
 
 /* Sides: seen from east (+x), west, north (+y), south, above (+z), below. */
 #define WD_OCTANT_SIDES 6
@@ -14,5 +14,45 @@ struct wd_octant_look {
     uint32_t normal[WD_OCTANT_SIDES]; /* its mean normal * 0.5 + 0.5, world axes; A: sky openness */
 };
 WD_STATIC_ASSERT_SIZE(wd_octant_look, 48);
+
+/* The frame of a picture from a side: right and up in it, toward the viewer. */
+struct wd_octant_frame {
+    WD_VECTOR right, up, toward;
+};
+
+WD_FUNC WD_STRUCT wd_octant_frame wd_octant_frame_of(uint32_t side)
+{
+    WD_STRUCT wd_octant_frame f;
+    float sign = (side & 1u) == 0u ? 1.0f : -1.0f;
+    f.toward = side < 2u ? WD_V3(sign, 0.0f, 0.0f)
+               : side < 4u ? WD_V3(0.0f, sign, 0.0f)
+                           : WD_V3(0.0f, 0.0f, sign);
+    f.right = side < 2u ? WD_V3(0.0f, sign, 0.0f)
+              : side < 4u ? WD_V3(-sign, 0.0f, 0.0f)
+                          : WD_V3(1.0f, 0.0f, 0.0f);
+    f.up = side < 4u ? WD_V3(0.0f, 0.0f, 1.0f) : WD_V3(0.0f, sign, 0.0f);
+    return f;
+}
+
+/* A picture of a cube's slice from one side; slice 0 is the farthest from the viewer. 32 bytes. */
+struct wd_octant_picture {
+    int32_t corner_mm[3]; /* the cube's least */
+    float size_m;
+    uint32_t side;
+    uint32_t slice, slices;
+    uint32_t tile; /* of the atlas, row by row */
+};
+WD_STATIC_ASSERT_SIZE(wd_octant_picture, 32);
+
+/* A tree in a picture. */
+struct wd_octant_entry {
+    uint32_t tree, picture;
+};
+
+struct wd_octant_push {
+    uint32_t variants;
+    uint32_t tile_pixels, tile_columns; /* the atlas is square */
+    uint32_t first_entry;
+};
 
 #endif

@@ -8,7 +8,7 @@
 
 enum {
     WD_OCTANT_PIXELS = 16,   /* a side of an octant's picture, where params say 0 */
-    WD_CLUSTER_PIXELS = 4,   /* a side of a cell's */
+    WD_CLUSTER_PIXELS = 8,   /* a side of a cell's */
     WD_CLUSTER_SIZE = 12,    /* cells a side of a cluster (the paper's) */
     WD_CLUSTER_SIZE_MAX = 32,
 };

@@ -1,0 +1,118 @@
+#version 460
+#include "shared/forest.h"
+#include "shared/hash.h"
+#include "shared/octant.h"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Models { wd_model models[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer Pictures { wd_octant_picture pictures[]; };
+layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
+layout(set = 0, binding = 5) uniform sampler2DArray card_normal;
+layout(set = 0, binding = 6) uniform sampler2DArray card_depth;
+layout(scalar, push_constant) uniform Push { wd_octant_push push; };
+
+#include "lib/octant.glsl"
+
+layout(location = 0) in vec2 in_place;
+layout(location = 1) flat in uvec2 in_entry;
+
+layout(location = 0) out vec4 out_albedo;
+layout(location = 1) out vec4 out_normal;
+
+/* The card to show, where in it, and how it is turned: its width and its normal in model axes. */
+struct octant_card {
+    vec3 uv;
+    vec2 width, normal;
+    float behind, mirrored; /* 1: seen from behind; -1: its width runs against the picture's right */
+};
+
+/* Seen from the side: the card that faces the viewer most, turned to face it wholly. */
+octant_card upright_card(octant_tree t)
+{
+    vec2 toward = octant_model_axis(t, t.axes.toward.xy);
+    vec2 right = octant_model_axis(t, t.axes.right.xy);
+    octant_card card;
+    float best = -1.0;
+    uint index = 0u;
+    for (uint i = 0u; i < WD_CARD_SIDES; i++) {
+        float angle = 1.0471975512 * float(i);
+        vec2 normal = vec2(sin(angle), -cos(angle));
+        if (abs(dot(normal, toward)) > best) {
+            best = abs(dot(normal, toward));
+            card.normal = normal;
+            index = i;
+        }
+    }
+    card.width = vec2(-card.normal.y, card.normal.x);
+    card.behind = dot(card.normal, toward) < 0.0 ? 1.0 : 0.0;
+    card.mirrored = dot(card.width, right) < 0.0 ? -1.0 : 1.0;
+    float across = (in_place.x - t.foot.x) / (t.model.half_width_m * t.pose.across);
+    float z = (in_place.y - t.foot.y) / t.pose.up;
+    card.uv = vec3(0.5 + 0.5 * card.mirrored * across,
+                   (t.model.top_m - z) / (t.model.top_m - t.model.bottom_m),
+                   float(t.model.card_layer + index));
+    return card;
+}
+
+octant_card level_card(octant_tree t)
+{
+    vec2 off = in_place - t.foot.xy;
+    vec2 world = off.x * t.axes.right.xy + off.y * t.axes.up.xy;
+    vec2 own = octant_model_axis(t, world) / (t.pose.across * t.model.half_depth_m);
+    octant_card card;
+    card.behind = t.picture.side == 5u ? 1.0 : 0.0;
+    card.mirrored = 1.0;
+    card.width = card.normal = vec2(0.0);
+    card.uv = vec3(0.5 + 0.5 * own.x, 0.5 - 0.5 * own.y, float(t.model.card_layer + WD_CARD_SIDES));
+    return card;
+}
+
+/* Metres from the cube's far side toward the viewer of what the card shows. */
+float depth_m(octant_tree t, octant_card card, vec4 depth)
+{
+    float near = card.behind > 0.5 ? 1.0 - depth.y : depth.x;
+    if (!octant_level(t))
+        return t.foot.z + (near - 0.5) * 2.0 * t.model.half_width_m * t.pose.across;
+    float from = t.model.bottom_m, to = t.model.top_m;
+    return t.foot.z + t.pose.up * (card.behind > 0.5 ? mix(-to, -from, near) : mix(from, to, near));
+}
+
+vec3 world_normal(octant_tree t, octant_card card, vec3 n)
+{
+    if (!octant_level(t))
+        return dot(n.xy, card.width) * card.mirrored * t.axes.right
+               + dot(n.xy, card.normal) * t.axes.toward + vec3(0.0, 0.0, n.z);
+    n.x *= t.pose.mirror;
+    n.xy = vec2(n.x * t.pose.turn_cos - n.y * t.pose.turn_sin,
+                n.x * t.pose.turn_sin + n.y * t.pose.turn_cos);
+    return card.behind > 0.5 ? vec3(n.xy, -n.z) : n;
+}
+
+void main()
+{
+    octant_tree t = octant_tree_of(in_entry.x, in_entry.y);
+    octant_card card;
+    if (octant_level(t))
+        card = level_card(t);
+    else
+        card = upright_card(t);
+    float pixel_m = t.picture.size_m / float(push.tile_pixels);
+    float texel_m = 2.0 * t.model.half_width_m * t.pose.across / float(WD_CARD_WIDTH_TEXELS);
+    float lod = max(log2(pixel_m / texel_m), 0.0);
+    vec4 albedo = textureLod(card_albedo, card.uv, lod);
+    uint seed = in_entry.x * 6u + t.picture.side;
+    uvec2 at = uvec2(gl_FragCoord.xy) % push.tile_pixels;
+    float noise = wd_hash_unit(wd_hash2(seed, at.x | at.y << 16));
+    float toward_m = depth_m(t, card, textureLod(card_depth, card.uv, lod));
+    float slice_m = t.picture.size_m / float(t.picture.slices);
+    float from_m = float(t.picture.slice) * slice_m;
+    bool inside = all(greaterThanEqual(card.uv.xy, vec2(0.0))) && all(lessThan(card.uv.xy, vec2(1.0)))
+                  && toward_m >= from_m && toward_m < from_m + slice_m;
+    if (noise >= albedo.a || !inside)
+        discard;
+    vec4 normal = textureLod(card_normal, card.uv, lod);
+    vec3 turned = world_normal(t, card, normal.xyz * 2.0 - 1.0);
+    out_albedo = vec4(albedo.rgb * wd_tree_tint(t.tree), 1.0);
+    out_normal = vec4(normalize(turned + vec3(0.0, 0.0, 1e-5)) * 0.5 + 0.5, normal.a);
+    gl_FragDepth = (toward_m - from_m) / slice_m * 0.999 + 0.001;
+}
