@@ -5,12 +5,14 @@
 #include "shared/hash.h"
 
 layout(constant_id = 0) const uint SHADOW = 0u;
+layout(constant_id = 1) const uint DETAIL = 0u;
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_tree_vertex vertices[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_instance instances[]; };
+layout(scalar, set = 0, binding = 7) readonly buffer Leaves { wd_tree_leaf leaves[]; };
 layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
 #include "lib/tree.glsl"
@@ -23,6 +25,17 @@ layout(location = 3) flat out uvec3 out_flat; /* surface, material (+ 4: mirrore
                                                  triangle */
 layout(location = 4) flat out float out_show;
 layout(location = 5) out vec4 out_place; /* camera-relative; a: share that moss covers */
+
+/* Whether this vertex' leaf is drawn as a twig. */
+bool is_spray(wd_tree_vertex v, wd_tree tree, tree_pose pose)
+{
+    uint name = v.kind >> WD_VERTEX_LEAF_SHIFT;
+    if (DETAIL == 0u || push.spray_reach == 0.0 || name == 0u)
+        return false;
+    vec3 at = tree_foot_rel(tree) + tree_offset(pose, leaves[name - 1u].position_m);
+    return wd_hash_unit(wd_hash2(leaves[name - 1u].random, tree.random))
+           < wd_spray_share(length(at), push.spray_reach);
+}
 
 /* Moss keeps to the foot of the stem, to the side away from the midday sun and to what faces up. */
 float moss_share(vec3 normal, float height_m)
@@ -58,7 +71,7 @@ void main()
     out_flat = uvec3(instance.tree + 1u, (leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
                          | (pose.mirror.x < 0.0 ? 4u : 0u),
                      wd_hash2(uint(gl_VertexIndex), tree.random));
-    out_show = instance.show;
+    out_show = is_spray(v, tree, pose) ? 0.0 : instance.show;
     out_place = vec4(rel, leaf ? 0.0 : model.moss * moss_share(normal, offset.z));
     gl_Position = SHADOW != 0u ? shadow_clip(push.cascade, rel)
                                : frame.clip_from_rel * vec4(rel, 1.0);

@@ -80,6 +80,12 @@ struct wd_instance {
     float show;     /* noise below this shows: 1 whole, 0 nothing (G7) */
 };
 
+/* A leaf drawn as the twig that it stands for. */
+struct wd_spray_instance {
+    uint32_t tree; /* index in octree order */
+    uint32_t leaf; /* of its model's wd_tree_leaf */
+};
+
 /* Push constants of every tree pipeline. */
 struct wd_tree_push {
     uint32_t variants;  /* models a species: model = species * variants + variant */
@@ -89,6 +95,7 @@ struct wd_tree_push {
     float pixels_per_radian; /* of the camera */
     uint32_t card_vertices;  /* a tree: WD_CARD_VERTICES, or WD_UPRIGHT_VERTICES where all are seen
                                 so level that the third card shows nothing */
+    float spray_reach;       /* of wd_spray_share; 0: no leaf is drawn as a twig */
 };
 
 #endif

@@ -33,11 +33,38 @@ struct wd_tree_vertex {
     uint32_t tint;   /* R, G, B: multiplier of the look texture, 255 is 1; A: sky openness of the
                         place in the crown, 0 dark .. 255 free */
     uint32_t kind;   /* bits 0..7: flexibility (0 trunk foot .. 255 leaf tip); bit 8: leaf;
-                        bit 9: flower */
+                        bit 9: flower; bits 10..31: 1 + the wd_tree_leaf that it is part of, or 0 */
 };
 WD_STATIC_ASSERT_SIZE(wd_tree_vertex, 28);
 #define WD_VERTEX_LEAF 0x100u
 #define WD_VERTEX_FLOWER 0x200u /* together with WD_VERTEX_LEAF: a petal */
+
+#define WD_VERTEX_LEAF_SHIFT 10
+
+/* A drawn leaf or needle shoot, which on a large tree stands for a twig with many: close to the
+ * camera that twig is drawn instead (its leaves, or needles, of their real size). 36 bytes. */
+struct wd_tree_leaf {
+    WD_VEC3(position_m);    /* of its foot */
+    uint32_t axis, normal;  /* to the tip; the upper side: as wd_tree_vertex.normal */
+    uint32_t shading;       /* how the crown faces the light here, likewise */
+    uint32_t tint;          /* as wd_tree_vertex.tint */
+    float size_m;           /* of the leaf: the unit of the twig's mesh */
+    uint32_t random;        /* bits 0..7: flexibility */
+};
+WD_STATIC_ASSERT_SIZE(wd_tree_leaf, 36);
+
+/* Twigs of broad leaves are whole nearer than the one, and nothing is drawn as a twig beyond the
+ * other; those of needles come at half of either: they are smaller, and many more. */
+#define WD_SPRAY_WHOLE_M 3.5f
+#define WD_SPRAY_NONE_M 5.5f
+
+/* Share of the leaves at this distance that are drawn as twigs; `reach`: factor on distances. */
+WD_FUNC float wd_spray_share(float distance_m, float reach)
+{
+    float t = (WD_SPRAY_NONE_M * reach - distance_m)
+              / ((WD_SPRAY_NONE_M - WD_SPRAY_WHOLE_M) * reach);
+    return t < 0.0f ? 0.0f : (t > 1.0f ? 1.0f : t);
+}
 
 /* Layers of a species' looks. */
 #define WD_LOOK_BARK 0

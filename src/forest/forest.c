@@ -196,6 +196,7 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     forest->grown_us = (uint64_t)((grown - start) * 1e6);
     struct wd_image *cards[WD_PLANES] = {&forest->card_albedo, &forest->card_normal};
     bool ok = upload_meshes(work, gpu) &&
+              wd_forest_sprays_init(&forest->sprays, gpu, work->grown, forest->model_count) &&
               make_table(&forest->models, gpu, "tree models", forest->host_models,
                          forest->model_count * sizeof *forest->host_models) &&
               wd_looks_upload(&forest->looks, gpu, work->looks,
@@ -254,6 +255,7 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
         wd_image_finish(images[i], gpu);
     wd_ground_finish(&forest->ground, gpu);
+    wd_forest_sprays_finish(&forest->sprays, gpu);
     if (forest->look_sampler)
         vkDestroySampler(gpu->device, forest->look_sampler, NULL);
     if (forest->point_sampler)
@@ -288,6 +290,7 @@ void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
             wd_cmd_use_image(cmd, images[i], WD_USE_SHADER_READ);
     }
     wd_ground_use(&forest->ground, cmd);
+    wd_forest_sprays_use(&forest->sprays, cmd);
 }
 
 uint32_t wd_forest_fade_of(const struct wd_forest_device *forest, size_t tree)

@@ -4,6 +4,7 @@
 
 #include "bake/cards.h"
 #include "forest/ground.h"
+#include "forest/sprays.h"
 #include "gpu/command.h"
 #include "shared/forest.h"
 #include "world/world.h"
@@ -33,6 +34,7 @@ struct wd_forest_device {
     struct wd_image card_albedo, card_normal; /* WD_CARDS layers a model */
     VkSampler look_sampler, card_sampler, point_sampler; /* point: normals and shadows of cards */
     struct wd_mesh_range (*ranges)[2]; /* [model][WD_LEVEL_MESH, WD_LEVEL_REDUCED] */
+    struct wd_forest_sprays sprays;
     struct wd_model *host_models;
     uint64_t *model_keys;      /* what names each model's content in the cache */
     struct wd_bake_cache cache;

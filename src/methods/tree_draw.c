@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "frame/targets.h"
+#include "methods/spray_draw.h"
 
 static const uint32_t tree_mesh_vert[] =
 #include "tree_mesh.vert.inc"
@@ -51,12 +52,13 @@ static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
     const uint32_t constants[] = {pass == WD_PASS_SHADOW, detail};
     struct wd_graphics_params params = {
         .vertex = SPIRV(tree_mesh_vert),
-        .bindings = {7,
+        .bindings = {8,
                      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .constants = {2, constants},
     };
     const struct wd_spirv fragments[] = {SPIRV(tree_mesh_frag), SPIRV(tree_mesh_shadow_frag)};
@@ -88,8 +90,11 @@ static bool init_card(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
     *pipelines = (struct wd_tree_pipelines){0};
-    if (!init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, 1))
+    if (!init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, 1) ||
+        !wd_spray_pipeline_init(&pipelines->spray, gpu)) {
+        wd_tree_pipelines_finish(pipelines, gpu);
         return false;
+    }
     for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
         if (!init_mesh(&pipelines->mesh[pass], gpu, pass, 0) ||
             !init_card(&pipelines->card_range[pass], gpu, pass, 0) ||
@@ -104,6 +109,7 @@ bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *
 void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
     wd_pipeline_finish(&pipelines->mesh_detail, gpu);
+    wd_pipeline_finish(&pipelines->spray, gpu);
     for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
         wd_pipeline_finish(&pipelines->mesh[pass], gpu);
         wd_pipeline_finish(&pipelines->card_range[pass], gpu);
@@ -141,13 +147,27 @@ static void draw_indexed(const struct wd_tree_draw *draw, uint32_t indices, uint
     draw->stats->triangles += (uint64_t)indices / 3 * instances;
 }
 
-static void bind_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_range *range,
-                      uint32_t level, struct wd_binding instances)
+/* The leaves of a model, or something in their place. */
+static struct wd_binding bind_leaves(const struct wd_forest_device *forest, uint32_t model)
+{
+    const struct wd_spray_range *range = &forest->sprays.ranges[model];
+    uint32_t count = range->leaf_count ? range->leaf_count : 1;
+    return (struct wd_binding){
+        .buffer = &forest->sprays.leaves,
+        .offset = (VkDeviceSize)range->first_leaf * sizeof(struct wd_tree_leaf),
+        .size = (VkDeviceSize)count * sizeof(struct wd_tree_leaf),
+    };
+}
+
+static void bind_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_batch *batch,
+                      struct wd_binding instances)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const struct wd_pipeline *pipeline = draw->pass == WD_PASS_CAMERA && level == WD_LEVEL_MESH
-                                             ? &draw->pipelines->mesh_detail
-                                             : &draw->pipelines->mesh[draw->pass];
+    const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
+    const struct wd_pipeline *pipeline =
+        draw->pass == WD_PASS_CAMERA && batch->level == WD_LEVEL_MESH
+            ? &draw->pipelines->mesh_detail
+            : &draw->pipelines->mesh[draw->pass];
     const struct wd_binding vertices = {
         .buffer = &forest->vertices,
         .offset = (VkDeviceSize)range->first_vertex * sizeof(struct wd_tree_vertex),
@@ -160,8 +180,10 @@ static void bind_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_rang
                                           instances,
                                           WD_BIND_IMAGE(&forest->looks, forest->look_sampler),
                                           WD_BIND_IMAGE(&forest->look_details,
-                                                        forest->look_sampler)};
-    const struct wd_tree_push push = tree_push(draw, level);
+                                                        forest->look_sampler),
+                                          bind_leaves(forest, batch->model)};
+    struct wd_tree_push push = tree_push(draw, batch->level);
+    push.spray_reach = forest->sprays.ranges[batch->model].reach;
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
     wd_cmd_bind_indices(draw->cmd, &forest->indices);
@@ -178,7 +200,7 @@ static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selecti
     for (size_t i = 0; i < selection->batch_count; i++) {
         const struct wd_mesh_batch *batch = &selection->batches[i];
         const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
-        bind_mesh(draw, range, batch->level, instances);
+        bind_mesh(draw, batch, instances);
         draw->stats->trees[batch->level] += batch->count;
         if (grouping == WD_DRAW_GROUPED) {
             draw_indexed(draw, range->index_count, batch->count, range->first_index, 0,
@@ -256,5 +278,7 @@ void wd_tree_draw_selection(const struct wd_tree_draw *draw, struct wd_selection
 {
     wd_selection_sort(selection, draw->forest->model_count);
     draw_meshes(draw, selection, grouping);
+    if (draw->pass == WD_PASS_CAMERA)
+        wd_spray_draw(draw, selection);
     draw_cards(draw, selection, grouping);
 }

@@ -14,6 +14,7 @@ struct wd_tree_pipelines {
     /* [WD_PASS_CAMERA, WD_PASS_SHADOW] */
     struct wd_pipeline mesh[2];
     struct wd_pipeline mesh_detail; /* full meshes for the camera */
+    struct wd_pipeline spray;       /* leaves close by as twigs */
     struct wd_pipeline card_range[2], card_listed[2];
 };
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu);

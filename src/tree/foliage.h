@@ -36,6 +36,9 @@ float wd_leaf_unit_area(const struct wd_species *species);
 void wd_foliage_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
                      const struct wd_species *species);
 
+/* The leaves as records for drawing them as twigs, foliage->count of them. */
+void wd_foliage_records(struct wd_tree_leaf *records, const struct wd_foliage *foliage);
+
 /* Appends the first leaves as `count` plain kites that together have the area of all. */
 void wd_foliage_mesh_reduced(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
                              const struct wd_species *species, size_t count);

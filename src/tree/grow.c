@@ -1,7 +1,12 @@
 #include "tree/grow.h"
 
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
 #include "tree/coverage.h"
 #include "tree/foliage.h"
+#include "tree/leaf_spray.h"
 #include "tree/import.h"
 #include "tree/wood.h"
 
@@ -68,6 +73,24 @@ static float crown_radius_m(const struct wd_foliage *foliage)
     return sum / SECTORS;
 }
 
+/* Records of the leaves and the twig they stand for, by their mean size. */
+static void build_spray(struct wd_tree_model *model, const struct wd_foliage *foliage,
+                        const struct wd_species *species)
+{
+    double area = 0;
+    for (size_t i = 0; i < foliage->count; i++)
+        area += (double)(foliage->leaves[i].size_m * foliage->leaves[i].size_m);
+    if (foliage->count == 0 || foliage->count > UINT32_MAX >> (WD_VERTEX_LEAF_SHIFT + 1))
+        return;
+    wd_leaf_spray_mesh(&model->spray, species, (float)sqrt(area / (double)foliage->count));
+    if (model->spray.index_count == 0)
+        return;
+    model->leaves = wd_alloc_array(foliage->count, sizeof *model->leaves);
+    model->leaf_count = (uint32_t)foliage->count;
+    model->spray_reach = species->leaf.shape == WD_LEAF_NEEDLES ? 0.5f : 1;
+    wd_foliage_records(model->leaves, foliage);
+}
+
 /* The mesh is brought to exactly the asked height: growth itself ends near it. */
 static void finish_model(struct wd_tree_model *model, const struct wd_foliage *foliage,
                          const struct wd_tree_form *form)
@@ -77,6 +100,11 @@ static void finish_model(struct wd_tree_model *model, const struct wd_foliage *f
     scale_mesh(&model->full, factor);
     scale_mesh(&model->reduced, factor);
     wd_tree_mesh_fit_coverage(&model->reduced, &model->full);
+    for (uint32_t i = 0; i < model->leaf_count; i++) {
+        model->leaves[i].size_m *= factor;
+        for (int axis = 0; axis < 3; axis++)
+            model->leaves[i].position_m[axis] *= factor;
+    }
     model->height_m = form->height_m;
     model->crown_radius_m = factor * crown_radius_m(foliage);
     model->crown_base_m = factor * form->crown_base_m;
@@ -104,6 +132,7 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     wd_foliage_grow(&foliage, &skeleton, &form);
     build_full(&model->full, &skeleton, &foliage, &form);
     build_reduced(&model->reduced, &skeleton, &foliage, &form);
+    build_spray(model, &foliage, form.species);
     finish_model(model, &foliage, &form);
     model->age_years = resolved.age_years;
     wd_foliage_finish(&foliage);
@@ -116,6 +145,8 @@ void wd_tree_model_finish(struct wd_tree_model *model)
     if (!model->borrowed) {
         wd_tree_mesh_finish(&model->full);
         wd_tree_mesh_finish(&model->reduced);
+        wd_tree_mesh_finish(&model->spray);
+        free(model->leaves);
     }
     *model = (struct wd_tree_model){0};
 }

@@ -29,6 +29,11 @@ bool wd_grow_params_resolve(struct wd_grow_params *params, const struct wd_speci
 struct wd_tree_model {
     struct wd_tree_mesh full;
     struct wd_tree_mesh reduced;
+    struct wd_tree_leaf *leaves; /* as the full mesh's vertices name them; NULL where a drawn leaf
+                                    is one leaf */
+    uint32_t leaf_count;
+    float spray_reach;           /* of wd_spray_share; 0 without leaves */
+    struct wd_tree_mesh spray;   /* the twig that each stands for (tree/leaf_spray.h), or empty */
     float height_m;       /* of the highest point */
     float crown_radius_m; /* mean horizontal reach of the crown */
     float crown_base_m;   /* height of the lowest living branch */

@@ -13,6 +13,7 @@ struct brush {
     float arch; /* factor of what stands above or below the plane: leaves differ */
     float own;  /* share of the sheet's own normal; the rest is the crown's */
     uint32_t tint;
+    uint32_t name; /* of the leaf, in place in a vertex' kind */
 };
 
 static struct wd_vec3 to_tree(const struct brush *brush, struct wd_vec3 v)
@@ -36,7 +37,7 @@ static void add_corner(const struct brush *brush, const struct wd_leaf_corner *c
         .normal = wd_pack_normal(normal),
         .uv = wd_pack_uv(corner->u, corner->v),
         .tint = brush->tint,
-        .kind = corner->kind | (uint32_t)wd_clampf(bend, 0, 255),
+        .kind = corner->kind | brush->name | (uint32_t)wd_clampf(bend, 0, 255),
     };
     wd_tree_mesh_add_vertex(brush->mesh, &vertex);
 }
@@ -115,6 +116,28 @@ float wd_leaf_unit_area(const struct wd_species *species)
     return area;
 }
 
+static uint32_t pack_vec3(struct wd_vec3 v)
+{
+    const float normal[3] = {v.x, v.y, v.z};
+    return wd_pack_normal(normal);
+}
+
+void wd_foliage_records(struct wd_tree_leaf *records, const struct wd_foliage *foliage)
+{
+    for (size_t i = 0; i < foliage->count; i++) {
+        const struct wd_leaf *leaf = &foliage->leaves[i];
+        records[i] = (struct wd_tree_leaf){
+            .position_m = {leaf->position_m.x, leaf->position_m.y, leaf->position_m.z},
+            .axis = pack_vec3(leaf->axis),
+            .normal = pack_vec3(leaf->normal),
+            .shading = pack_vec3(leaf->shading),
+            .tint = wd_pack_tint(leaf->tint, leaf->sky),
+            .size_m = leaf->size_m,
+            .random = (leaf->key & ~0xffu) | (uint32_t)wd_clampf(leaf->flexibility, 0, 255),
+        };
+    }
+}
+
 static size_t template_bytes(const struct wd_leaf_template *leaf)
 {
     return leaf->corner_count * sizeof(struct wd_tree_vertex) +
@@ -133,6 +156,7 @@ static void add_leaves(struct wd_tree_mesh *mesh, const struct wd_foliage *folia
         struct brush brush = brush_of(mesh, leaf);
         if (sheet && species->leaf.arch <= 0)
             brush.arch = 0.5f + 1.2f * wd_hash_unit(wd_hash2(leaf->key, 0xb3));
+        brush.name = (uint32_t)(i + 1) << WD_VERTEX_LEAF_SHIFT;
         add_template(&brush, &leaves[leaf->key % WD_LEAF_VARIANTS]);
     }
     for (uint32_t i = 0; i < WD_LEAF_VARIANTS; i++)

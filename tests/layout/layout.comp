@@ -18,10 +18,12 @@ layout(scalar, binding = 10) buffer Corners { wd_card_vertex corner; };
 layout(scalar, binding = 11) buffer Planes { wd_cull_planes cull; };
 layout(scalar, binding = 12) buffer SoupPushes { wd_card_soup_push soup; };
 layout(scalar, binding = 13) buffer Draws { wd_draw_indexed draw; };
+layout(scalar, binding = 14) buffer Leaves { wd_tree_leaf leaf; };
+layout(scalar, binding = 15) buffer Sprays { wd_spray_instance spray; };
 
 void main()
 {
     tree.id = vertex.uv + point.kind + model.card_layer + uint(fade.near_begin_m) + instance.tree + push.level
               + frame.width + chunk.first_tree + card.turn + corner.card + uint(cull.plane[0].x)
-              + soup.variants + draw.index_count;
+              + soup.variants + draw.index_count + leaf.random + spray.leaf;
 }

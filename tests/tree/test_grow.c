@@ -69,12 +69,12 @@ static void same_parameters_same_bytes(void **state)
 static void known_hashes(void **state)
 {
     static const uint64_t expected[SPECIES_COUNT] = {
-        0xd24880e052e274efu, 0xa160f87c7aa967b0u, 0x65b72e92ff93ed09u,
-        0x6fcdc7c9932cd7ccu, 0xba9310343044b933u, 0x06e08a312ab02e61u,
-        0xf7f7ba11bafbf6c8u, 0x0cdbf8598b5b7551u, 0x8423416817d39d6eu,
-        0x3a2bca887ad15f8fu, 0x34cb6720d656f9f6u, 0x74938f4db6b18a8du,
-        0x96e1b0a5a38b8a6eu, 0x2ec9c7e60fc219a9u, 0x28c2bc577ae016d4u,
-        0x0c86aaaa0f7fda20u, 0xb8e8d75761954a06u};
+        0xe6ddd3de5e47815fu, 0x10144d40bc3e0774u, 0xaf7b3a4e4d8d8705u,
+        0x7e2523dd6b104264u, 0x929ccbb97891abd3u, 0xd4e44657e6ce1ff9u,
+        0x2486cae8df9a1c50u, 0xac0fd7cee93b6879u, 0xc5f1ce4896209ed6u,
+        0xdddd839f3a6d5693u, 0x4545c3d0059fa0e6u, 0x808ae64a484bb919u,
+        0xc5347ce00276c00eu, 0xc99857172d2bc389u, 0x5af70b493ab35cb4u,
+        0xd4d085297ded8598u, 0xb8e8d75761954a06u};
     struct wd_arena arena = {0};
     int wrong = 0;
     (void)state;

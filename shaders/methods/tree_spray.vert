@@ -1,0 +1,60 @@
+#version 460
+/* The twig that a drawn leaf stands for, close to the camera. */
+#include "shared/frame.h"
+#include "shared/forest.h"
+#include "shared/hash.h"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_tree_vertex vertices[]; };
+layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_spray_instance instances[]; };
+layout(scalar, set = 0, binding = 7) readonly buffer Leaves { wd_tree_leaf leaves[]; };
+layout(scalar, push_constant) uniform Push { wd_tree_push push; };
+
+#include "lib/tree.glsl"
+#include "lib/tree_vertex.glsl"
+
+layout(location = 0) out vec3 out_normal;
+layout(location = 1) out vec3 out_uv;
+layout(location = 2) out vec4 out_tint;
+layout(location = 3) flat out uvec3 out_flat;
+layout(location = 4) flat out float out_show;
+layout(location = 5) out vec4 out_place;
+
+void main()
+{
+    wd_spray_instance instance = instances[gl_InstanceIndex];
+    wd_tree tree = trees[instance.tree];
+    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                            + WD_TREE_VARIANT(tree) % push.variants];
+    wd_tree_leaf leaf = leaves[instance.leaf];
+    wd_tree_vertex v = vertices[gl_VertexIndex];
+    bool blade = (v.kind & WD_VERTEX_LEAF) != 0u;
+    vec3 along = octahedral_decode(unpackSnorm2x16(leaf.axis));
+    vec3 above = octahedral_decode(unpackSnorm2x16(leaf.normal));
+    vec3 shading = octahedral_decode(unpackSnorm2x16(leaf.shading));
+    mat3 turn = mat3(cross(along, above), along, above);
+    vec3 own = turn * octahedral_decode(unpackSnorm2x16(v.normal));
+    own = dot(own, shading) < 0.0 ? -own : own;
+
+    tree_pose pose = tree_pose_of(tree, model);
+    vec3 at = tree_offset(pose, leaf.position_m + turn * v.position_m * leaf.size_m);
+    vec3 normal = tree_normal(pose, mix(shading, own, 0.5));
+    at += tree_sway(tree, model.flexibility, at.z, frame.time_s);
+    if (frame.wind_speed_mps > 0.0) {
+        float phase = fract(float(leaf.random >> 8) * (1.0 / 16777216.0)
+                            + 0.31 * dot(v.position_m, vec3(1.0)));
+        float bend = min(float((leaf.random & 0xffu) + (v.kind & 0xffu)) * (1.0 / 255.0), 1.0);
+        at += normal * wd_wind_flutter(tree_wind(), bend, phase, frame.time_s);
+    }
+    vec4 tint = unpackUnorm4x8(v.tint), leaf_tint = unpackUnorm4x8(leaf.tint);
+    out_normal = normal;
+    out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + wd_vertex_layer(v.kind)));
+    out_tint = vec4(blade ? tint.rgb * leaf_tint.rgb * tree_tint(tree) : tint.rgb, leaf_tint.a);
+    out_flat = uvec3(instance.tree + 1u, (blade ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
+                                             | (pose.mirror.x < 0.0 ? 4u : 0u), 0u);
+    out_show = 1.0;
+    out_place = vec4(tree_foot_rel(tree) + at, 0.0);
+    gl_Position = frame.clip_from_rel * vec4(out_place.xyz, 1.0);
+}

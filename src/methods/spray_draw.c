@@ -1,0 +1,145 @@
+#include "methods/spray_draw.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "shared/hash.h"
+#include "shared/tree_pose.h"
+
+static const uint32_t tree_spray_vert[] =
+#include "tree_spray.vert.inc"
+    ;
+static const uint32_t tree_spray_frag[] =
+#include "tree_mesh.frag.inc"
+    ;
+
+bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+{
+    static const uint32_t constants[] = {0, 1};
+    const struct wd_graphics_params params = {
+        .vertex = {tree_spray_vert, sizeof tree_spray_vert, "tree_spray.vert"},
+        .fragment = {tree_spray_frag, sizeof tree_spray_frag, "tree_mesh.frag"},
+        .bindings = {8,
+                     {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+        .constants = {2, constants},
+        .push_size = sizeof(struct wd_tree_push),
+        .color_count = 3,
+        .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
+        .depth_format = WD_DEPTH_FORMAT,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+    };
+    return wd_pipeline_init_graphics(pipeline, gpu, &params);
+}
+
+/* Twigs of one model, gathered before they are uploaded. */
+struct gather {
+    struct wd_spray_instance *items;
+    size_t count, capacity;
+};
+
+/* A tree as it stands: camera-relative. */
+struct stand {
+    uint32_t index;
+    float foot[3], reach;
+    struct wd_tree_pose pose;
+};
+
+static void gather_leaf(struct gather *gather, const struct wd_tree_draw *draw,
+                        const struct stand *stand, const struct wd_tree_leaf *leaf, uint32_t index)
+{
+    const struct wd_tree_pose *pose = &stand->pose;
+    const float *foot = stand->foot;
+    const struct wd_tree *tree = &draw->forest->world->trees[stand->index];
+    float x = leaf->position_m[0] * pose->mirror, y = leaf->position_m[1];
+    float at[3] = {foot[0] + (pose->turn_cos * x - pose->turn_sin * y) * pose->across,
+                   foot[1] + (pose->turn_sin * x + pose->turn_cos * y) * pose->across,
+                   foot[2] + leaf->position_m[2] * pose->up};
+    float square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
+    if (square > WD_SPRAY_NONE_M * WD_SPRAY_NONE_M * stand->reach * stand->reach ||
+        wd_hash_unit(wd_hash2(leaf->random, tree->random)) >=
+            wd_spray_share(sqrtf(square), stand->reach))
+        return;
+    float reach = 2 * leaf->size_m * fmaxf(pose->across, pose->up), min[3], max[3];
+    for (int k = 0; k < 3; k++) {
+        min[k] = at[k] - reach;
+        max[k] = at[k] + reach;
+    }
+    if (wd_frustum_box(&draw->view->frustum, min, max) != WD_OUTSIDE)
+        *wd_push(gather->items, gather->count, gather->capacity) =
+            (struct wd_spray_instance){stand->index, index};
+}
+
+static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, uint32_t model,
+                        uint32_t tree_index)
+{
+    const struct wd_forest_device *forest = draw->forest;
+    const struct wd_tree *tree = &forest->world->trees[tree_index];
+    const int32_t place_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
+    const struct wd_spray_range *range = &forest->sprays.ranges[model];
+    struct stand stand = {tree_index, {0}, range->reach,
+                          wd_tree_pose_of(*tree, forest->host_models[model])};
+    for (int k = 0; k < 3; k++)
+        stand.foot[k] = (float)(place_mm[k] * 0.001 - draw->view->eye_m[k]);
+    float reach = 0.01f * (float)(tree->size >> 16) + WD_SPRAY_NONE_M * range->reach;
+    if (stand.foot[0] * stand.foot[0] + stand.foot[1] * stand.foot[1] > reach * reach)
+        return;
+    for (uint32_t i = 0; i < range->leaf_count; i++)
+        gather_leaf(gather, draw, &stand, &forest->sprays.host_leaves[range->first_leaf + i], i);
+}
+
+static void draw_range(const struct wd_tree_draw *draw, const struct wd_spray_range *range,
+                       const struct gather *gather)
+{
+    const struct wd_forest_device *forest = draw->forest;
+    struct wd_binding instances;
+    void *memory = wd_cmd_upload(draw->cmd, gather->count * sizeof *gather->items, &instances);
+    if (!memory)
+        return;
+    memcpy(memory, gather->items, gather->count * sizeof *gather->items);
+    const struct wd_binding bindings[] = {
+        draw->uniforms,
+        WD_BIND_BUFFER(&forest->trees),
+        WD_BIND_BUFFER(&forest->models),
+        {.buffer = &forest->sprays.vertices,
+         .offset = (VkDeviceSize)range->first_vertex * sizeof(struct wd_tree_vertex),
+         .size = (VkDeviceSize)range->vertex_count * sizeof(struct wd_tree_vertex)},
+        instances,
+        WD_BIND_IMAGE(&forest->looks, forest->look_sampler),
+        WD_BIND_IMAGE(&forest->look_details, forest->look_sampler),
+        {.buffer = &forest->sprays.leaves,
+         .offset = (VkDeviceSize)range->first_leaf * sizeof(struct wd_tree_leaf),
+         .size = (VkDeviceSize)range->leaf_count * sizeof(struct wd_tree_leaf)}};
+    const struct wd_tree_push push = {.variants = forest->variants, .level = WD_LEVEL_MESH};
+    wd_cmd_bind(draw->cmd, &draw->pipelines->spray, bindings);
+    wd_cmd_push(draw->cmd, &draw->pipelines->spray, &push, sizeof push);
+    wd_cmd_bind_indices(draw->cmd, &forest->sprays.indices);
+    wd_cmd_draw_indexed(draw->cmd,
+                        &(VkDrawIndexedIndirectCommand){range->index_count, (uint32_t)gather->count,
+                                                        range->first_index, 0, 0});
+    draw->stats->draw_calls++;
+    draw->stats->triangles += (uint64_t)range->index_count / 3 * gather->count;
+}
+
+void wd_spray_draw(const struct wd_tree_draw *draw, const struct wd_selection *selection)
+{
+    struct gather gather = {0};
+    for (size_t i = 0; i < selection->batch_count; i++) {
+        const struct wd_mesh_batch *batch = &selection->batches[i];
+        const struct wd_spray_range *range = &draw->forest->sprays.ranges[batch->model];
+        if (batch->level != WD_LEVEL_MESH || !range->leaf_count)
+            continue;
+        gather.count = 0;
+        for (uint32_t k = 0; k < batch->count; k++)
+            gather_tree(&gather, draw, batch->model, selection->meshes[batch->first + k].tree);
+        if (gather.count)
+            draw_range(draw, range, &gather);
+    }
+    free(gather.items);
+}
