@@ -20,7 +20,7 @@ static float fin_reach_m(const struct wd_tree_form *form, int fin, float z_m, fl
                  (0.6f + 0.6f * wd_hash_unit(wd_hash1(key)));
     float h = wd_clampf(z_m / top, 0, 1), slope = (1 - h) * (1 - h) * (1 - 0.35f * h);
     *share = 1 - h * h * h;
-    return radius_m + fmaxf(most - radius_m, 0) * slope;
+    return radius_m + wd_maxf(most - radius_m, 0) * slope;
 }
 
 void wd_buttress_outline(const struct wd_tree_form *form, float z_m, float radius_m, int sides,

@@ -24,7 +24,7 @@ void wd_tree_density_init(struct wd_tree_density *density, struct wd_vec3 low_m,
 {
     float extent[3] = {high_m.x - low_m.x, high_m.y - low_m.y, high_m.z - low_m.z};
     for (int axis = 0; axis < 3; axis++)
-        cell_m = fmaxf(cell_m, extent[axis] / (MAX_SIDE - 4));
+        cell_m = wd_maxf(cell_m, extent[axis] / (MAX_SIDE - 4));
     *density = (struct wd_tree_density){.cell_m = cell_m};
     density->origin_m = wd_v3_sub(low_m, WD_V3(cell_m, cell_m, cell_m));
     for (int axis = 0; axis < 3; axis++)
@@ -108,25 +108,31 @@ float wd_tree_density_sky(const struct wd_tree_density *density, struct wd_vec3 
     return sample(density, density->sky, p, 1);
 }
 
-static void blur_axis(struct wd_tree_density *density, int axis, float *old)
+/* Along one axis: `lines` runs of `inner` neighbours in memory, `count` steps of `inner` each. */
+static void blur_axis(float *area, const float *old, size_t lines, size_t count, size_t inner)
 {
-    size_t stride[3] = {1, (size_t)density->size[0],
-                        (size_t)density->size[0] * (size_t)density->size[1]};
-    size_t count = cell_count(density), step = stride[axis];
-    memcpy(old, density->area, count * sizeof *old);
-    for (size_t i = 0; i < count; i++) {
-        size_t at = i / step % (size_t)density->size[axis];
-        float before = at > 0 ? old[i - step] : 0;
-        float after = at + 1 < (size_t)density->size[axis] ? old[i + step] : 0;
-        density->area[i] = 0.25f * before + 0.5f * old[i] + 0.25f * after;
-    }
+    for (size_t line = 0; line < lines; line++)
+        for (size_t at = 0; at < count; at++) {
+            size_t first = (line * count + at) * inner;
+            const float *here = old + first;
+            const float *before = at > 0 ? here - inner : NULL;
+            const float *after = at + 1 < count ? here + inner : NULL;
+            for (size_t i = 0; i < inner; i++)
+                area[first + i] = 0.5f * here[i] + 0.25f * (before ? before[i] : 0) +
+                                  0.25f * (after ? after[i] : 0);
+        }
 }
 
 void wd_tree_density_blur(struct wd_tree_density *density)
 {
-    float *old = wd_alloc_array(cell_count(density), sizeof *old);
-    for (int axis = 0; axis < 3; axis++)
-        blur_axis(density, axis, old);
+    size_t x = (size_t)density->size[0], y = (size_t)density->size[1];
+    size_t z = (size_t)density->size[2], count = x * y * z;
+    float *old = wd_alloc_array(count, sizeof *old);
+    const size_t shapes[3][3] = {{y * z, x, 1}, {z, y, x}, {1, z, x * y}};
+    for (int axis = 0; axis < 3; axis++) {
+        memcpy(old, density->area, count * sizeof *old);
+        blur_axis(density->area, old, shapes[axis][0], shapes[axis][1], shapes[axis][2]);
+    }
     free(old);
 }
 
@@ -142,21 +148,31 @@ static void fill_transmission(const struct wd_tree_density *density, float lengt
 
 /* Light that reaches a cell along one direction is what leaves the cell before it, times what that
  * cell lets through; half of the cell's own leaves shade its middle. */
+static void sweep_row(float *sky, float *light, const float *half, const float *from, int size,
+                      int step, float weight)
+{
+    for (int x = 0; x < size; x++) {
+        bool inside = from && x + step >= 0 && x + step < size;
+        float in = (inside ? from[x + step] : 1) * half[x];
+        sky[x] += weight * in;
+        light[x] = in * half[x];
+    }
+}
+
+/* Rows take their light from a layer above, which is done before them. */
 static void sweep(struct wd_tree_density *density, float *light, const float *half,
                   const int toward[3], float weight)
 {
     const int *size = density->size;
     for (int z = size[2] - 1; z >= 0; z--)
-        for (int y = 0; y < size[1]; y++)
-            for (int x = 0; x < size[0]; x++) {
-                int nx = x + toward[0], ny = y + toward[1], nz = z + toward[2];
-                size_t i = cell_index(density, x, y, z);
-                float in = 1;
-                if (nx >= 0 && ny >= 0 && nx < size[0] && ny < size[1] && nz < size[2])
-                    in = light[cell_index(density, nx, ny, nz)];
-                density->sky[i] += weight * in * half[i];
-                light[i] = in * half[i] * half[i];
-            }
+        for (int y = 0; y < size[1]; y++) {
+            int ny = y + toward[1], nz = z + toward[2];
+            bool inside = ny >= 0 && ny < size[1] && nz < size[2];
+            size_t row = cell_index(density, 0, y, z);
+            const float *from = inside ? &light[cell_index(density, 0, ny, nz)] : NULL;
+            sweep_row(&density->sky[row], &light[row], &half[row], from, size[0], toward[0],
+                      weight);
+        }
 }
 
 /* Directions of one steepness: up; 45 degrees; 19 degrees over the horizon. */
@@ -186,10 +202,20 @@ void wd_tree_density_light(struct wd_tree_density *density)
 
 struct wd_vec3 wd_tree_density_outward(const struct wd_tree_density *density, struct wd_vec3 p)
 {
-    float d = density->cell_m, slope[3];
-    struct wd_vec3 steps[3] = {WD_V3(d, 0, 0), WD_V3(0, d, 0), WD_V3(0, 0, d)};
-    for (int axis = 0; axis < 3; axis++)
-        slope[axis] = wd_tree_density_at(density, wd_v3_sub(p, steps[axis])) -
-                      wd_tree_density_at(density, wd_v3_add(p, steps[axis]));
+    int cell[3];
+    float share[3], slope[3] = {0};
+    if (!locate(density, p, cell, share))
+        return WD_V3(0, 0, 0);
+    for (int corner = 0; corner < 8; corner++) {
+        float value = density->area[corner_index(density, cell, corner)], side[3], weight[3];
+        for (int axis = 0; axis < 3; axis++) {
+            bool far = corner >> axis & 1;
+            weight[axis] = far ? share[axis] : 1 - share[axis];
+            side[axis] = far ? -value : value;
+        }
+        slope[0] += side[0] * weight[1] * weight[2];
+        slope[1] += side[1] * weight[0] * weight[2];
+        slope[2] += side[2] * weight[0] * weight[1];
+    }
     return wd_v3_unit_or(WD_V3(slope[0], slope[1], slope[2]), WD_V3(0, 0, 0));
 }

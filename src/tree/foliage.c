@@ -250,7 +250,7 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
 static void lift_leaf(struct wd_leaf *leaf)
 {
     float edge = 0.5f * leaf->size_m * (1 - fabsf(leaf->normal.z)); /* it stands on its side */
-    leaf->position_m.z = fmaxf(leaf->position_m.z, 0.01f + edge);
+    leaf->position_m.z = wd_maxf(leaf->position_m.z, 0.01f + edge);
     float room = 0.03f - leaf->position_m.z;
     if (leaf->axis.z * leaf->size_m >= room)
         return;
@@ -277,7 +277,7 @@ static void scale_leaves(struct wd_foliage *foliage, const struct wd_species *sp
 static void init_crown(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
                        const struct wd_tree_form *form)
 {
-    float cell = fmaxf(0.09f * form->crown_radius_m, 0.012f * form->height_m);
+    float cell = wd_maxf(0.09f * form->crown_radius_m, 0.012f * form->height_m);
     bool fronds = wd_species_has_fronds(form->species);
     float around = fronds ? form->crown_radius_m : 4 * cell;
     struct wd_vec3 low = WD_V3(0, 0, form->crown_base_m), high = WD_V3(0, 0, form->height_m);
@@ -286,14 +286,14 @@ static void init_crown(struct wd_foliage *foliage, const struct wd_skeleton *ske
         for (size_t i = 0; i < branch->node_count; i++) {
             struct wd_vec3 p = skeleton->nodes[branch->first_node + i].position_m;
             if (branch->order == WD_TRUNK)
-                p.z = fmaxf(p.z, form->crown_base_m);
-            low = WD_V3(fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z));
-            high = WD_V3(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
+                p.z = wd_maxf(p.z, form->crown_base_m);
+            low = WD_V3(wd_minf(low.x, p.x), wd_minf(low.y, p.y), wd_minf(low.z, p.z));
+            high = WD_V3(wd_maxf(high.x, p.x), wd_maxf(high.y, p.y), wd_maxf(high.z, p.z));
         }
     }
     low = wd_v3_sub(low, WD_V3(around, around, fronds ? around : 3 * cell));
     high = wd_v3_add(high, WD_V3(around, around, 4 * cell));
-    low.z = fmaxf(low.z, -cell);
+    low.z = wd_maxf(low.z, -cell);
     wd_tree_density_init(&foliage->crown, low, high, cell);
 }
 

@@ -24,7 +24,8 @@ static struct frond palm_frond(const struct wd_tree_form *form, float age, int n
                                struct wd_random *random)
 {
     /* a young palm's oldest fronds cannot hang: the ground is too near */
-    float full_m = 0.01f * form->species->leaf.length_cm * wd_mixf(0.62f, 1, fminf(form->scale, 1));
+    float full_m = 0.01f * form->species->leaf.length_cm *
+                   wd_mixf(0.62f, 1, wd_minf(form->scale, 1));
     float room = wd_clampf(form->crown_base_m / full_m - 0.4f, 0, 1);
     struct frond frond = {.azimuth_rad = 2.3999632f * (float)n + 0.15f * wd_random_signed(random)};
     frond.rise_rad = radians(wd_mixf(80, wd_mixf(36, -42, room), age) +
@@ -60,7 +61,7 @@ static struct frond grass_blade(const struct wd_tree_form *form, float age,
                              9 * wd_random_signed(random));
     frond.size_m = 0.01f * species->leaf.length_cm * form->scale *
                    wd_random_range(random, 0.45f, 1.05f);
-    frond.out_m = out * fmaxf(0.5f * form->dbh_m, form->scale * species->stems.spread_m);
+    frond.out_m = out * wd_maxf(0.5f * form->dbh_m, form->scale * species->stems.spread_m);
     return frond;
 }
 
@@ -139,7 +140,7 @@ void wd_fronds_place(struct wd_foliage *foliage, const struct wd_skeleton *skele
     const struct wd_species *species = form->species;
     double count = (double)species->leaf.count * (double)form->detail;
     if (species->form == WD_FORM_PALM)
-        count = (double)species->leaf.count * (double)wd_mixf(0.5f, 1, fminf(form->scale, 1));
+        count = (double)species->leaf.count * (double)wd_mixf(0.5f, 1, wd_minf(form->scale, 1));
     foliage->count = count < 3 && species->leaf.count > 0 ? 3 : (size_t)count;
     foliage->leaves = wd_alloc_array(foliage->count + 1, sizeof *foliage->leaves);
     for (size_t i = 0; i < foliage->count; i++)

@@ -42,21 +42,24 @@ void wd_tree_mesh_add_triangle(struct wd_tree_mesh *mesh, uint32_t a, uint32_t b
 
 void wd_tree_mesh_update_bounds(struct wd_tree_mesh *mesh)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        float low = INFINITY, high = -INFINITY;
-        for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-            low = fminf(low, mesh->vertices[i].position_m[axis]);
-            high = fmaxf(high, mesh->vertices[i].position_m[axis]);
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            float p = mesh->vertices[i].position_m[axis];
+            low[axis] = p < low[axis] ? p : low[axis];
+            high[axis] = p > high[axis] ? p : high[axis];
         }
-        mesh->min_m[axis] = mesh->vertex_count ? low : 0;
-        mesh->max_m[axis] = mesh->vertex_count ? high : 0;
+    for (int axis = 0; axis < 3; axis++) {
+        mesh->min_m[axis] = mesh->vertex_count ? low[axis] : 0;
+        mesh->max_m[axis] = mesh->vertex_count ? high[axis] : 0;
     }
 }
 
 static uint32_t pack_snorm16(float value)
 {
-    float scaled = floorf(fminf(fmaxf(value, -1), 1) * 32767 + 0.5f);
-    return (uint32_t)(int32_t)scaled & 0xffffu;
+    float clamped = value < -1 ? -1 : value > 1 ? 1 : value;
+    int32_t scaled = (int32_t)(clamped * 32767 + 32768.5f) - 32768; /* to nearest */
+    return (uint32_t)scaled & 0xffffu;
 }
 
 uint32_t wd_pack_normal(const float normal[3])

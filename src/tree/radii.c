@@ -26,14 +26,14 @@ static void set_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     const struct wd_branch *trunk = &skeleton->branches[0];
     float leader = form->species->apical_dominance, all = skeleton->nodes[0].load;
     float whole = form->height_m / form->species->decay.broken_at; /* before it broke */
-    float base = 0.5f * form->dbh_m, above = fmaxf(whole - 1.3f, 0.3f * whole);
+    float base = 0.5f * form->dbh_m, above = wd_maxf(whole - 1.3f, 0.3f * whole);
     for (size_t i = 0; i < trunk->node_count; i++) {
         struct wd_skeleton_node *node = &skeleton->nodes[trunk->first_node + i];
         float height = wd_clampf((whole - node->position_m.z) / above, 0, 1.1f);
         float clear = 1 - 0.16f * wd_clampf(node->position_m.z / form->crown_base_m, 0, 1);
         float carried = clear * sqrtf(node->load / all);
         float taper = (float)wd_dpow((double)height, 0.85);
-        node->radius_m = fmaxf(base * (leader > 0.85f ? taper : carried), TIP_RADIUS_M);
+        node->radius_m = wd_maxf(base * (leader > 0.85f ? taper : carried), TIP_RADIUS_M);
     }
 }
 
@@ -45,7 +45,7 @@ static void set_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *fo
     bool stool = form->species->form == WD_FORM_SHRUB || form->species->form == WD_FORM_BRAMBLE;
     float base = 0.5f * form->dbh_m, tip = 0.75f, highest = 0;
     for (size_t i = 0; i < stem->node_count; i++)
-        highest = fmaxf(highest, nodes[i].position_m.z);
+        highest = wd_maxf(highest, nodes[i].position_m.z);
     if (stool) {
         base *= wd_clampf(highest / form->height_m, 0.3f, 1) *
                 (0.8f + 0.2f * wd_hash_unit(stem->key));
@@ -53,7 +53,7 @@ static void set_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *fo
     }
     for (size_t i = 0; i < stem->node_count; i++) {
         float share = (float)i / (float)(stem->node_count - 1);
-        nodes[i].radius_m = fmaxf(base * wd_mixf(1, tip, share), fminf(0.3f * base, TIP_RADIUS_M));
+        nodes[i].radius_m = wd_maxf(base * wd_mixf(1, tip, share), wd_minf(0.3f * base, TIP_RADIUS_M));
     }
 }
 
@@ -95,7 +95,7 @@ static void set_branch(struct wd_skeleton *skeleton, const struct wd_tree_form *
     for (size_t i = 0; i < branch->node_count; i++) {
         float tip = 1 - 0.35f * (float)i / (float)branch->node_count;
         float radius = base * sqrtf(nodes[i].load / foot->load) * shrink * tip;
-        nodes[i].radius_m = wd_clampf(radius, fminf(TIP_RADIUS_M, 0.9f * joint), joint);
+        nodes[i].radius_m = wd_clampf(radius, wd_minf(TIP_RADIUS_M, 0.9f * joint), joint);
     }
 }
 

@@ -72,14 +72,14 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     struct wd_branch *branch = wd_skeleton_add_branch(skeleton, stem);
     struct wd_vec3 p = stem->start, d = stem->direction, drift = WD_V3(0, 0, 0);
     float step = stem->length_m / (float)stem->steps;
-    float ground = fminf(0.35f, 0.06f * form->height_m);
+    float ground = wd_minf(0.35f, 0.06f * form->height_m);
     bool hanging = hangs(&form->species->orders[stem->order]);
     wd_skeleton_add_node(skeleton, p, d, stem->along_m);
     for (int i = 1; i <= stem->steps; i++) {
         float t = ((float)i - 0.5f) / (float)stem->steps;
         drift = wd_v3_mad(wd_v3_scale(drift, 0.5f), wd_random_vec3(&random), 1);
         float bend = wd_mixf(stem->upturn, stem->tip_upturn, wd_smoothf(0.3f, 0.9f, t));
-        d = wd_v3_unit(wd_v3_mad(d, drift, fminf(stem->wander * step, 0.35f)));
+        d = wd_v3_unit(wd_v3_mad(d, drift, wd_minf(stem->wander * step, 0.35f)));
         d = bend_up(d, wd_clampf(bend * step / form->spread, -0.8f, 0.8f));
         struct wd_vec3 next = wd_v3_mad(p, d, step);
         if (next.z < ground && d.z < 0) {
@@ -90,7 +90,7 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
         }
         if (!hanging && wd_tree_envelope_share(form, next) > 1.04f) {
             struct wd_vec3 out = wd_v3_unit_or(WD_V3(p.x, p.y, 0), WD_V3(0, 0, 1));
-            d = wd_v3_unit(wd_v3_mad(d, out, -0.6f * fmaxf(wd_v3_dot(d, out), 0)));
+            d = wd_v3_unit(wd_v3_mad(d, out, -0.6f * wd_maxf(wd_v3_dot(d, out), 0)));
             next = wd_v3_mad(p, d, 0.6f * step);
         }
         branch->length_m += wd_v3_length(wd_v3_sub(next, p));
@@ -221,7 +221,7 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
             joint.around_rad = around + (float)i * (float)(2 * WD_PI) / (float)whorl;
             joint.length_m = 1.6f * form->crown_radius_m * species->orders[0].length_ratio;
             if (end < crown)
-                joint.length_m = fmaxf(joint.length_m, joint.height * (crown - z));
+                joint.length_m = wd_maxf(joint.length_m, joint.height * (crown - z));
             joint.length_m *= wd_random_range(&random, 0.85f, 1.0f);
             joint.key = wd_hash3(form->key, 0x11b, (uint32_t)(index * 16 + i));
             if (still_there(form, joint.key))
@@ -306,7 +306,7 @@ bool wd_skeleton_grow(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     float reach = 1.3f * form->crown_radius_m;
     wd_tree_density_init(&skeleton->crowd, WD_V3(-reach, -reach, 0),
                          WD_V3(reach, reach, 1.1f * form->height_m),
-                         fmaxf(0.12f * form->crown_radius_m, 0.05f));
+                         wd_maxf(0.12f * form->crown_radius_m, 0.05f));
     wd_skeleton_grow_stems(skeleton, form);
     if (!grow_branches(skeleton, form)) {
         wd_skeleton_finish(skeleton);

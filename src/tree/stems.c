@@ -30,8 +30,8 @@ static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *
         d = wd_v3_mad(d, drift, bend);
         d = wd_v3_add(d, WD_V3(-0.03f * p.x * step, -0.03f * p.y * step, 0.10f * step));
         d = wd_v3_unit(d);
-        p = wd_v3_mad(p, d, step / fmaxf(d.z, 0.5f));
-        branch->length_m += step / fmaxf(d.z, 0.5f);
+        p = wd_v3_mad(p, d, step / wd_maxf(d.z, 0.5f));
+        branch->length_m += step / wd_maxf(d.z, 0.5f);
         wd_skeleton_add_node(skeleton, p, d, branch->length_m);
     }
     branch->node_count = skeleton->node_count - branch->first_node;
@@ -74,7 +74,7 @@ static float trace_lean(const struct lean *lean, const struct wd_tree_form *form
         directions[i] = lean_direction(angle, turn);
         struct wd_vec3 middle = wd_v3_unit(wd_v3_add(directions[i - 1], directions[i]));
         points[i] = wd_v3_add(points[i - 1], middle);
-        highest = fmaxf(highest, points[i].z);
+        highest = wd_maxf(highest, points[i].z);
     }
     return highest;
 }
@@ -87,8 +87,8 @@ static void grow_leaning(struct wd_skeleton *skeleton, const struct wd_tree_form
     struct wd_vec3 points[PALM_STEPS + 1], directions[PALM_STEPS + 1];
     struct wd_stem stem = {.order = WD_TRUNK, .parent = -1, .key = key};
     struct wd_branch *branch = wd_skeleton_add_branch(skeleton, &stem);
-    float scale = lean->top_m / fmaxf(trace_lean(lean, form, key, points, directions), 0.5f);
-    scale = fminf(scale, MAX_REACH * form->height_m / (float)lean->steps);
+    float scale = lean->top_m / wd_maxf(trace_lean(lean, form, key, points, directions), 0.5f);
+    scale = wd_minf(scale, MAX_REACH * form->height_m / (float)lean->steps);
     for (int i = 0; i <= lean->steps; i++) {
         struct wd_vec3 p = wd_v3_mad(lean->foot, points[i], scale), d = directions[i];
         if (i > 1 && p.z < 0.03f) {

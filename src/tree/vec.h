@@ -7,6 +7,17 @@
 #include "base/dmath.h"
 #include "shared/vec.h"
 
+/* fmaxf and fminf for numbers: calls of the library cost more than what they do. */
+static inline float wd_maxf(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static inline float wd_minf(float a, float b)
+{
+    return a < b ? a : b;
+}
+
 /* a + b s */
 static inline struct wd_vec3 wd_v3_mad(struct wd_vec3 a, struct wd_vec3 b, float s)
 {

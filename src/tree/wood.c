@@ -3,7 +3,7 @@
 #include "tree/buttress.h"
 #include "tree/look.h"
 
-enum { MAX_RINGS = 48 };
+enum { MAX_RINGS = 48, MAX_SIDES = 64 };
 
 struct ring {
     struct wd_vec3 center_m, direction;
@@ -39,7 +39,7 @@ static int branch_rings(const struct wd_skeleton *skeleton, const struct wd_bran
 {
     int count = gather_rings(skeleton, branch, node_step, rings);
     float joint = skeleton->nodes[branch->parent_node].radius_m;
-    rings[0].radius_m = fminf(1.25f * rings[0].radius_m, 0.95f * joint);
+    rings[0].radius_m = wd_minf(1.25f * rings[0].radius_m, 0.95f * joint);
     return count;
 }
 
@@ -55,19 +55,19 @@ static int trunk_rings(const struct wd_skeleton *skeleton, const struct wd_branc
     float below = -wd_clampf(0.75f * dbh, 0.02f, 0.3f);
     for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
         float z = heights[i] < 0 ? below : heights[i] * dbh;
-        float share = wd_clampf(z / fmaxf(nodes[1].center_m.z, 0.01f), -1, 1);
+        float share = wd_clampf(z / wd_maxf(nodes[1].center_m.z, 0.01f), -1, 1);
         struct ring ring = nodes[0];
         ring.center_m = wd_v3_mix(nodes[0].center_m, nodes[1].center_m, share);
-        ring.radius_m = wd_mixf(nodes[0].radius_m, nodes[1].radius_m, fmaxf(share, 0));
+        ring.radius_m = wd_mixf(nodes[0].radius_m, nodes[1].radius_m, wd_maxf(share, 0));
         ring.along_m = z;
-        ring.direction = wd_v3_unit(wd_v3_mix(WD_V3(0, 0, 1), ring.direction, fmaxf(share, 0)));
+        ring.direction = wd_v3_unit(wd_v3_mix(WD_V3(0, 0, 1), ring.direction, wd_maxf(share, 0)));
         if (count == 0 || z < 0.95f * nodes[1].center_m.z)
             rings[count++] = ring;
     }
     for (int i = 1; i < node_count; i++)
         rings[count++] = nodes[i];
     for (int i = 0; i < count; i++) {
-        float above = fmaxf(rings[i].center_m.z, -0.1f * dbh);
+        float above = wd_maxf(rings[i].center_m.z, -0.1f * dbh);
         double fall = wd_dexp(-(double)above / (0.75 * (double)dbh));
         rings[i].flare = (form->species->root_flare - 1) * (float)fall;
     }
@@ -81,6 +81,7 @@ struct tube {
     const struct wd_bark_tint *bark;
     int sides;
     bool trunk, fins; /* fins: buttresses shape its rings */
+    float circle[MAX_SIDES][2];
 };
 
 static uint32_t ring_tint(const struct tube *tube, const struct ring *ring)
@@ -109,8 +110,8 @@ static void ring_place(const struct tube *tube, const struct ring *ring, int i, 
     if (tube->fins) {
         wd_buttress_outline(tube->form, ring->center_m.z, ring->radius_m, tube->sides, i, place);
     } else {
-        place[0] = (float)wd_dcos(2 * WD_PI * (double)turn);
-        place[1] = (float)wd_dsin(2 * WD_PI * (double)turn);
+        place[0] = tube->circle[i][0];
+        place[1] = tube->circle[i][1];
     }
     place[0] *= radius;
     place[1] *= radius;
@@ -143,12 +144,13 @@ static uint32_t add_ring(const struct tube *tube, const struct ring *ring, struc
     uint32_t first = tube->mesh->vertex_count, tint = ring_tint(tube, ring);
     for (int i = 0; i <= tube->sides; i++) {
         float place[2];
-        ring_place(tube, ring, i % tube->sides, place);
-        struct wd_vec3 out = ring_normal(tube, ring, i % tube->sides, place, side, over);
+        int at = i < tube->sides ? i : 0;
+        ring_place(tube, ring, at, place);
+        struct wd_vec3 out = ring_normal(tube, ring, at, place, side, over);
         struct wd_vec3 p = wd_v3_mad(ring->center_m, side, place[0]);
         p = wd_v3_mad(p, over, place[1]);
         if (ring->jag_m > 0)
-            p = wd_v3_mad(p, ring->direction, splinter_m(tube, ring, i % tube->sides));
+            p = wd_v3_mad(p, ring->direction, splinter_m(tube, ring, at));
         float normal[3] = {out.x, out.y, out.z};
         struct wd_tree_vertex vertex = {
             .position_m = {p.x, p.y, p.z},
@@ -232,21 +234,33 @@ static int branch_sides(const struct wd_skeleton *skeleton, const struct wd_bran
     return branch->order == WD_TRUNK ? wd_buttress_sides(species, sides) : sides;
 }
 
+static void set_circle(struct tube *tube, int sides)
+{
+    tube->sides = sides;
+    for (int i = 0; i < sides; i++) {
+        double angle = 2 * WD_PI * (double)i / (double)sides;
+        tube->circle[i][0] = (float)wd_dcos(angle);
+        tube->circle[i][1] = (float)wd_dsin(angle);
+    }
+}
+
 void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                   const struct wd_tree_form *form, const struct wd_tree_density *crown,
                   const struct wd_wood_style *style)
 {
     struct wd_bark_tint bark = wd_bark_tint_of(form->species);
+    struct tube tube = {.mesh = mesh, .form = form, .crown = crown, .bark = &bark};
     for (size_t b = 0; b < skeleton->branch_count; b++) {
         const struct wd_branch *branch = &skeleton->branches[b];
         if (!is_drawn(skeleton, branch, style))
             continue;
         struct ring rings[MAX_RINGS + 8];
         bool trunk = branch->order == WD_TRUNK;
-        struct tube tube = {.mesh = mesh, .form = form, .crown = crown, .bark = &bark,
-                            .sides = branch_sides(skeleton, branch, form->species, style),
-                            .trunk = trunk};
-        tube.fins = trunk && tube.sides > style->most_sides;
+        int sides = branch_sides(skeleton, branch, form->species, style);
+        if (sides != tube.sides)
+            set_circle(&tube, sides);
+        tube.trunk = trunk;
+        tube.fins = trunk && sides > style->most_sides;
         int count = trunk ? trunk_rings(skeleton, branch, form, style->node_step, rings)
                           : branch_rings(skeleton, branch, style->node_step, rings);
         if (form->species->form == WD_FORM_SNAG)
