@@ -9,11 +9,11 @@
 
 enum {
     CELL_PX = 230,
-    TEXT_PX = 42, /* below each cell */
+    TEXT_PX = 60, /* below each cell */
     HEAD_PX = 30,
     GAP_PX = 6,
     AGES = 6,
-    FORMS = 3,
+    FORMS = 4,
     COLUMNS = AGES + FORMS,
     MAX_SPECIES = 64,
     SAMPLES = 8,
@@ -31,9 +31,11 @@ static const struct column {
 static const struct form {
     const char *title;
     enum wd_specimen_form form;
-} forms[FORMS] = {{"full", WD_SPECIMEN_FULL},
-                  {"reduced", WD_SPECIMEN_REDUCED},
-                  {"cards", WD_SPECIMEN_CARDS}};
+    const char *method; /* NULL: as asked for */
+} forms[FORMS] = {{"full", WD_SPECIMEN_FULL, NULL},
+                  {"reduced", WD_SPECIMEN_REDUCED, NULL},
+                  {"cards", WD_SPECIMEN_CARDS, NULL},
+                  {"points (continuum)", WD_SPECIMEN_AS_SEEN, "continuum"}};
 
 struct sheet {
     struct cli_session *session;
@@ -65,7 +67,7 @@ static uint32_t cell_y(uint32_t row)
 }
 
 static enum wd_result draw_cell(struct sheet *sheet, const struct wd_specimen *specimen,
-                                enum wd_specimen_form form, uint32_t row, uint32_t column,
+                                const struct form *form, uint32_t row, uint32_t column,
                                 struct wd_picture *cell)
 {
     const struct cli_specimen_view view = {
@@ -73,8 +75,8 @@ static enum wd_result draw_cell(struct sheet *sheet, const struct wd_specimen *s
         .height = CELL_PX,
         .samples = SAMPLES,
         .layers = WD_LAYER_DISPLAY | WD_LAYER_COLOR | WD_LAYER_TREE_ID,
-        .form = form,
-        .method = sheet->session->options->method,
+        .form = form->form,
+        .method = form->method ? form->method : sheet->session->options->method,
     };
     struct cli_session *session = sheet->session;
     uint32_t total = sheet->species_count * COLUMNS;
@@ -96,7 +98,9 @@ static void label(struct sheet *sheet, uint32_t row, uint32_t column, uint32_t l
 
 /* --- a row ------------------------------------------------------------------------------- */
 
-static double typical_height(struct sheet *sheet, const char *source, enum wd_result *result)
+/* `*ages`: whether it is grown; a model has but one age. */
+static double typical_height(struct sheet *sheet, const char *source, bool *ages,
+                             enum wd_result *result)
 {
     struct wd_specimen *specimen;
     struct wd_specimen_info info = {0};
@@ -105,6 +109,7 @@ static double typical_height(struct sheet *sheet, const char *source, enum wd_re
     if (*result == WD_OK)
         wd_specimen_get_info(specimen, &info);
     wd_specimen_destroy(&specimen);
+    *ages = info.age_years > 0;
     return info.height_m;
 }
 
@@ -126,9 +131,10 @@ static enum wd_result draw_age(struct sheet *sheet, uint32_t row, uint32_t index
     if (result != WD_OK)
         return result;
     wd_specimen_get_info(specimen, &info);
-    result = draw_cell(sheet, specimen, WD_SPECIMEN_FULL, row, index, &cell);
-    snprintf(text, sizeof text, index == 0 ? "%.18s" : "%.0s", info.name);
-    label(sheet, row, index, 1, text);
+    result = draw_cell(sheet, specimen, &forms[0], row, index, &cell);
+    snprintf(text, sizeof text, "%.18s", info.name);
+    if (index == 0 || info.age_years == 0)
+        label(sheet, row, index, 1, text);
     int used = snprintf(text, sizeof text, "%.*f m", info.height_m < 10 ? 1 : 0, info.height_m);
     if (info.age_years > 0)
         snprintf(text + used, sizeof text - (size_t)used, ", %.0f years", info.age_years);
@@ -163,16 +169,21 @@ static void label_form(struct sheet *sheet, uint32_t row, uint32_t index,
                        const struct tally *full)
 {
     struct wd_specimen_level level;
-    char text[64] = "crossed billboards";
-    if (wd_specimen_get_level(specimen, index, &level))
+    char text[64] = "";
+    if (forms[index].form == WD_SPECIMEN_CARDS)
+        snprintf(text, sizeof text, "crossed billboards");
+    else if (!forms[index].method && wd_specimen_get_level(specimen, index, &level))
         snprintf(text, sizeof text, "%u triangles", level.wood_triangles + level.leaf_triangles);
     label(sheet, row, AGES + index, 0, text);
     snprintf(text, sizeof text, "%ux%u px", CELL_PX, CELL_PX);
     if (index > 0 && full->pixels > 0)
-        snprintf(text, sizeof text, "cover%+.1f%% light%+.1f%%",
-                 100 * (tally->pixels / full->pixels - 1),
-                 100 * (tally->radiance / full->radiance - 1));
+        snprintf(text, sizeof text, "cover %+.1f%%", 100 * (tally->pixels / full->pixels - 1));
     label(sheet, row, AGES + index, 1, text);
+    if (index > 0 && full->radiance > 0) {
+        snprintf(text, sizeof text, "light %+.1f%%",
+                 100 * (tally->radiance / full->radiance - 1));
+        label(sheet, row, AGES + index, 2, text);
+    }
 }
 
 static enum wd_result draw_forms(struct sheet *sheet, uint32_t row)
@@ -184,7 +195,7 @@ static enum wd_result draw_forms(struct sheet *sheet, uint32_t row)
     enum wd_result result = wd_specimen_create(&specimen, &params);
     for (uint32_t i = 0; i < FORMS && result == WD_OK; i++) {
         struct wd_picture cell = {0};
-        result = draw_cell(sheet, specimen, forms[i].form, row, AGES + i, &cell);
+        result = draw_cell(sheet, specimen, &forms[i], row, AGES + i, &cell);
         if (result == WD_OK) {
             struct tally tally = tally_of(&cell);
             if (i == 0)
@@ -200,9 +211,11 @@ static enum wd_result draw_forms(struct sheet *sheet, uint32_t row)
 static enum wd_result draw_row(struct sheet *sheet, uint32_t row)
 {
     enum wd_result result;
-    double height_m = typical_height(sheet, sheet->species[row], &result);
+    bool ages;
+    double height_m = typical_height(sheet, sheet->species[row], &ages, &result);
     for (uint32_t i = 0; i < AGES && result == WD_OK; i++)
-        result = draw_age(sheet, row, i, height_m);
+        if (ages || columns[i].openness >= 1)
+            result = draw_age(sheet, row, i, height_m);
     return result == WD_OK ? draw_forms(sheet, row) : result;
 }
 

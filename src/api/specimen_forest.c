@@ -121,7 +121,7 @@ static struct wd_tree *make_trees(const struct wd_specimen *const *specimens, ui
             .y_mm = GROUND_M / 2 * 1000,
             .kind = i,
             .size = whole_cm((double)model->height_m) |
-                    whole_cm(2 * (double)model->crown_radius_m) << 16,
+                    whole_cm(fmax(2 * (double)model->crown_radius_m, 0.1)) << 16,
             .look = 128u << 16,
             .random = 0x80000000u,
         };

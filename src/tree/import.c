@@ -13,7 +13,8 @@
 enum {
     MOST_TRIANGLES = 600000, /* of the full mesh */
     REDUCED_WOOD_TRIANGLES = 1600,
-    REDUCED_LEAF_TRIANGLES = 5200,
+    REDUCED_LEAF_TRIANGLES = 5200,  /* at least */
+    REDUCED_MOST_TRIANGLES = 30000,
 };
 
 /* --- axes and units ---------------------------------------------------------------------- */
@@ -165,6 +166,16 @@ static void build_full(struct wd_import_work *work, const struct frame *frame)
     wd_import_index(mesh, vertices, indices, at);
 }
 
+/* A fifth of the leaves, within bounds: fewer would have to be enlarged too much. */
+static void reduce(struct wd_tree_model *model)
+{
+    const struct wd_tree_mesh *full = &model->full;
+    size_t leaves = (full->index_count - full->wood_index_count) / 3, target = leaves / 5;
+    target = target < REDUCED_LEAF_TRIANGLES ? REDUCED_LEAF_TRIANGLES : target;
+    target = target > REDUCED_MOST_TRIANGLES ? REDUCED_MOST_TRIANGLES : target;
+    wd_tree_mesh_reduce_import(&model->reduced, full, REDUCED_WOOD_TRIANGLES, target);
+}
+
 /* --- the whole --------------------------------------------------------------------------- */
 
 static void report(const struct wd_import_work *work)
@@ -200,8 +211,7 @@ static bool import_file(struct wd_tree_import *import, const struct wd_species *
     if (ok) {
         build_full(&work, &frame);
         wd_import_shade(&import->model.full);
-        wd_tree_mesh_reduce_import(&import->model.reduced, &import->model.full,
-                                   REDUCED_WOOD_TRIANGLES, REDUCED_LEAF_TRIANGLES);
+        reduce(&import->model);
         wd_import_measure(&import->model);
         report(&work);
     }

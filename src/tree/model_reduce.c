@@ -9,6 +9,14 @@
 #include "shared/hash.h"
 #include "tree/vec.h"
 
+/* Larger leaves read as balloons. */
+#define MOST_GROWTH 3.0f
+
+enum {
+    FEW_PIECES = 64,           /* solid foliage */
+    MOST_PIECE_TRIANGLES = 12, /* on the average, of a leaf that is kept or dropped whole */
+};
+
 /* --- simplifying ------------------------------------------------------------------------- */
 
 /* Keeps to the shape if that gets near the target, else to the count. */
@@ -174,6 +182,7 @@ static void copy_simplified(struct copier *copier, const uint32_t *indices, size
     free(kept);
 }
 
+/* Enough of the pieces, in their random order, for about `triangles`. */
 static void copy_pieces(struct copier *copier, const struct pieces *pieces,
                         const uint32_t *indices, size_t triangles)
 {
@@ -183,14 +192,42 @@ static void copy_pieces(struct copier *copier, const struct pieces *pieces,
         used += pieces->items[kept].count;
         area += pieces->items[kept++].area_m2;
     }
-    const float most = 3; /* larger ones read as balloons */
-    float growth = fminf(sqrtf(pieces->area_m2 / fmaxf(area, 1e-20f)), most);
+    float growth = fminf(sqrtf(pieces->area_m2 / fmaxf(area, 1e-20f)), MOST_GROWTH);
     for (size_t i = 0; i < kept; i++) {
         const struct piece *piece = &pieces->items[i];
         for (uint32_t t = 0; t < piece->count; t++)
             copy_triangle(copier, indices + 3 * (size_t)pieces->order[piece->first + t],
                           piece->middle_m, growth);
     }
+}
+
+/* A random triangle of each part of the list, enlarged: for pieces of many triangles, of which too
+ * few whole ones would be left to show the crown's shape. */
+static void copy_triangles(struct copier *copier, const uint32_t *indices, size_t count,
+                           size_t triangles)
+{
+    size_t all = count / 3;
+    struct piece chosen = {0}, whole = {0};
+    uint32_t *picks = wd_alloc_array(triangles + 1, sizeof *picks);
+    for (size_t i = 0; i < triangles; i++) {
+        size_t first = i * all / triangles, end = (i + 1) * all / triangles;
+        size_t pick = first + wd_hash1((uint32_t)i) % (end > first ? end - first : 1);
+        picks[i] = (uint32_t)pick;
+        add_triangle(&chosen, copier->from, indices + 3 * pick);
+    }
+    for (size_t i = 0; i < all; i++)
+        add_triangle(&whole, copier->from, indices + 3 * i);
+    float growth = fminf(sqrtf(whole.area_m2 / fmaxf(chosen.area_m2, 1e-20f)), MOST_GROWTH);
+    for (size_t i = 0; i < triangles; i++) {
+        const uint32_t *corner = indices + 3 * (size_t)picks[i];
+        struct piece own = {0};
+        add_triangle(&own, copier->from, corner);
+        for (int k = 0; k < 3; k++)
+            copier->copy_of[corner[k]] = 0; /* grown about its own middle: shared with none */
+        copy_triangle(copier, corner,
+                      wd_v3_scale(own.middle_m, 1 / fmaxf(own.area_m2, 1e-20f)), growth);
+    }
+    free(picks);
 }
 
 void wd_tree_mesh_reduce_import(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full,
@@ -206,8 +243,11 @@ void wd_tree_mesh_reduce_import(struct wd_tree_mesh *reduced, const struct wd_tr
     if (leaf_count) {
         struct pieces pieces;
         find_pieces(&pieces, full, leaves, leaf_count);
-        if (pieces.count * 100 < leaf_triangles)
+        bool coarse = pieces.triangles > MOST_PIECE_TRIANGLES * pieces.count;
+        if (pieces.triangles <= leaf_triangles || (pieces.count < FEW_PIECES && coarse))
             copy_simplified(&copier, leaves, leaf_count, leaf_triangles);
+        else if (coarse)
+            copy_triangles(&copier, leaves, leaf_count, leaf_triangles);
         else
             copy_pieces(&copier, &pieces, leaves, leaf_triangles);
         free(pieces.items);
