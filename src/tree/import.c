@@ -199,6 +199,23 @@ static void report(const struct wd_import_work *work)
                 work->degenerate);
 }
 
+/* glTF extensions for pictures of other kinds leave materials without any that can be found. */
+static void warn_of_pictures(const struct wd_import_work *work)
+{
+    enum { ENOUGH = 1 << 20 };
+    static const char *const unread[] = {"EXT_texture_webp", "KHR_texture_basisu"};
+    FILE *stream = fopen(work->species->model.file, "rb");
+    char *head = wd_alloc(ENOUGH);
+    size_t size = stream ? fread(head, 1, ENOUGH, stream) : 0;
+    for (size_t i = 0; i < sizeof unread / sizeof *unread; i++)
+        if (memmem(head, size, unread[i], strlen(unread[i])))
+            wd_warn(work->log, "%s: its textures come by %s, which is not read: materials' colours "
+                    "stand in", work->species->model.file, unread[i]);
+    free(head);
+    if (stream)
+        fclose(stream);
+}
+
 static bool import_file(struct wd_tree_import *import, const struct wd_species *species,
                         const struct wd_log *log)
 {
@@ -213,6 +230,7 @@ static bool import_file(struct wd_tree_import *import, const struct wd_species *
         wd_import_shade(&import->model.full);
         reduce(&import->model);
         wd_import_measure(&import->model);
+        warn_of_pictures(&work);
         report(&work);
     }
     free(work.corners);

@@ -23,7 +23,6 @@ struct wd_file_material {
     char texture[512];    /* file beside the model, "*N": embedded image N, or "" */
     char cutout[512];     /* a texture of opacity apart, or "" */
     uint8_t two_sided, blended; /* blended: the file says that alpha counts */
-    uint8_t absent;       /* a texture of a kind that was not read */
 };
 
 struct wd_file_image {

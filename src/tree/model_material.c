@@ -181,13 +181,14 @@ static void mean_color(const struct wd_model_materials *materials,
                    (material->picture >= 0 ? materials->pictures[material->picture].mean[k] : 1);
 }
 
+/* Not what is white, blue or violet: petals keep their colour. */
 static void darken_leaf(struct wd_model_materials *materials, struct wd_model_material *material,
                         float most)
 {
     float color[3];
     mean_color(materials, material, color);
     float luminance = 0.2126f * color[0] + 0.7152f * color[1] + 0.0722f * color[2];
-    for (int k = 0; k < 3 && luminance > most; k++)
+    for (int k = 0; k < 3 && luminance > most && color[1] > 1.3f * color[2]; k++)
         material->color[k] *= most / luminance;
 }
 

@@ -1,0 +1,82 @@
+#!/bin/sh
+# Single trees and scenes as pictures and as files for other programs.
+set -u
+. "$(dirname "$0")/lib.sh"
+mkdir "$scratch/cache" "$scratch/out"
+XDG_CACHE_HOME=$scratch/cache
+export XDG_CACHE_HOME
+out=$scratch/out
+cd "$root" || exit 1
+small="--size 96x96 --samples 1 --gpu software"
+sound() { python3 "$root/tests/cli/glb_check.py" "$@"; }
+
+# shellcheck disable=SC2086  # $small is many words
+{
+    expect 0 'oak .*24.*80 years; triangles' grow oak --age 80 --open 1 --seed 3 -o "$out/oak.glb"
+    expect 0 'oak.obj: ' grow oak --height 5 --detail 0.2 -o "$out/oak.obj"
+    expect 0 'oak.png: ' grow oak --height 5 -o "$out/oak.png" $small --gpu-validate
+    expect 0 . grow oak --height 5 --season autumn -o "$out/autumn.png" $small
+    expect 0 . grow oak --height 5 --form cards -o "$out/cards.png" $small
+    expect 0 . grow oak --height 5 --camera-distance 3 -o "$out/near.png" $small
+    expect 0 . grow "$out/oak.obj" --height 9 -o "$out/model.png" $small
+    expect 0 'oak .*9.0 m high' grow "$out/oak.glb" --height 9 -o "$out/again.glb"
+    expect 0 . grow birch --height 4 --detail 0.2 --variants 3 -o "$out/three.glb"
+    expect 0 . grow oak --height 5 -o "$out/layers.exr" $small
+    expect 0 'tiny.glb: ' export "$tiny" -o "$out/tiny.glb"
+    expect 0 . check "$out/oak.glb" "$out/oak.obj"
+}
+check 'oak.glb is sound' sound "$out/oak.glb" roots=1 levels=1
+check 'a model written again is sound' sound "$out/again.glb" roots=1 levels=1
+check 'three variants are sound' sound "$out/three.glb" roots=3 levels=3
+trees=$("$weald" info "$tiny" --json | jq .tree_count)
+check 'a scene is sound' sound "$out/tiny.glb" "instances=$trees"
+for other in autumn cards near model; do
+    check "$other changes the picture" sh -c "! cmp -s '$out/oak.png' '$out/$other.png'"
+done
+"$weald" grow oak --age 80 --open 1 --seed 3 -o "$out/same.glb" -q
+check 'the same tree, the same bytes' cmp "$out/oak.glb" "$out/same.glb"
+for file in oak.mtl oak-oak-wood.png oak-oak-leaf.png; do
+    check "$file lies beside oak.obj" test -s "$out/$file"
+done
+
+# The Khronos validator, where it can be had.
+if command -v node >/dev/null 2>&1 && command -v npm >/dev/null 2>&1 &&
+    timeout 60 npm install --silent --prefix "$scratch/npm" gltf-validator@2.0.0-dev.3.10 \
+        >/dev/null 2>&1; then
+    for name in oak again three tiny; do
+        check "the Khronos validator finds no error in $name.glb" node -e "
+            const validator = require('$scratch/npm/node_modules/gltf-validator');
+            const bytes = new Uint8Array(require('fs').readFileSync('$out/$name.glb'));
+            validator.validateBytes(bytes).then(report => {
+                console.log(report.issues);
+                process.exit(report.issues.numErrors ? 1 : 0);
+            });"
+    done
+else
+    echo "skip the Khronos validator: there is no npm, or it has no gltf-validator"
+fi
+
+# What cannot be.
+expect 2 'no output named' grow oak
+expect 2 'must end in .glb, .obj, .png or .exr' grow oak -o "$out/a.fbx"
+expect 2 'no species named' grow -o "$out/a.png"
+expect 2 'a sheet is a .png' grow --sheet oak -o "$out/a.glb"
+expect 2 'goes with one species' grow oak birch --variants 2 -o "$out/a.glb"
+expect 2 'must end in .glb' export "$tiny" -o "$out/a.obj"
+expect 1 'did you mean "oak"\?' grow oka -o "$out/a.glb"
+expect 1 'there is no season "sommer"' grow oak --season sommer -o "$out/a.glb"
+expect 1 'exclude each other' grow oak --season summer --month 3 -o "$out/a.glb"
+expect 1 'allows' grow oak --height 100 -o "$out/a.glb"
+expect 1 'allowed is one of the two' grow oak --height 10 --age 50 -o "$out/a.glb"
+expect 1 'there is no form "flat"' grow oak --form flat -o "$out/a.png"
+expect 1 'no such file' grow none.obj -o "$out/a.glb"
+expect 1 'directory does not exist' grow oak -o "$out/none/a.glb"
+expect 1 'at most 10 are written' export "$tiny" --max-trees 10 -o "$out/a.glb"
+head -c 30000 "$out/oak.glb" >"$out/cut.glb"
+expect 1 'cut.glb: ' grow "$out/cut.glb" -o "$out/a.glb"
+expect 1 'cut.glb: ' check "$out/cut.glb"
+check 'a failed command leaves nothing' sh -c "! ls '$out' | grep -E '^a\\.|weald-'"
+
+expect 0 'sheet.png: ' grow --sheet "$out/again.glb" -o "$out/sheet.png" --gpu software
+check 'a sheet is no small picture' test "$(wc -c <"$out/sheet.png")" -gt 20000
+finish

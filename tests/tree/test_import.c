@@ -1,0 +1,382 @@
+#include "tree_test.h"
+
+#include <dirent.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "tree/export.h"
+#include "tree/import.h"
+
+static char folder[] = "/tmp/weald-import-XXXXXX";
+
+static char *path_of(const char *name)
+{
+    return wd_format("%s/%s", folder, name);
+}
+
+static void write_file(const char *name, const void *bytes, size_t size)
+{
+    char *path = path_of(name);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    fclose(file);
+    free(path);
+}
+
+static void write_text(const char *name, const char *text)
+{
+    write_file(name, text, strlen(text));
+}
+
+/* All messages, one after the other. */
+struct record {
+    struct wd_log log;
+    char text[8192];
+};
+
+static void keep(void *user, enum wd_log_level level, const char *message)
+{
+    struct record *record = user;
+    size_t used = strlen(record->text);
+    (void)level;
+    snprintf(record->text + used, sizeof record->text - used, "%s\n", message);
+}
+
+struct result {
+    struct wd_arena arena;
+    struct wd_species species;
+    struct wd_tree_import import;
+    struct record record;
+    bool ok;
+};
+
+/* Imports a file of the folder: a model, or a species file that names one. */
+static struct result *import(const char *name)
+{
+    struct result *result = calloc(1, sizeof *result);
+    char *path = path_of(name);
+    result->record.log = (struct wd_log){keep, &result->record};
+    result->ok =
+        wd_species_load(&result->species, path, &result->arena, &result->record.log) &&
+        wd_tree_import(&result->import, &result->species, &result->record.log);
+    free(path);
+    return result;
+}
+
+static void drop(struct result *result)
+{
+    wd_tree_import_finish(&result->import);
+    wd_arena_finish(&result->arena);
+    free(result);
+}
+
+static void expect_message(const struct result *result, const char *part)
+{
+    if (!strstr(result->record.text, part))
+        fail_msg("no \"%s\" in:\n%s", part, result->record.text);
+}
+
+static void expect_refusal(const char *name, const char *part)
+{
+    struct result *result = import(name);
+    assert_false(result->ok);
+    expect_message(result, part);
+    expect_message(result, name);
+    drop(result);
+}
+
+/* A trunk of 20 x 300 x 20 about x = 500, and a leaf beside its top that hangs to -10. */
+#define TRUNK                                                                                      \
+    "v 490 0 -10\nv 510 0 -10\nv 510 0 10\nv 490 0 10\n"                                           \
+    "v 490 300 -10\nv 510 300 -10\nv 510 300 10\nv 490 300 10\n"                                   \
+    "usemtl Bark\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+#define LEAF "v 510 310 0\nv 600 300 0\nv 600 -10 0\nv 510 300 0\nusemtl Blatt\nf 9 10 11 12\n"
+#define LIBRARY "newmtl Bark\nKd 0.3 0.2 0.1\nnewmtl Blatt\nKd 0.1 0.4 0.1\n"
+
+static void a_tree_stands_on_its_foot_in_metres(void **state)
+{
+    (void)state;
+    write_text("tree.mtl", LIBRARY);
+    write_text("tree.obj", "mtllib tree.mtl\no tree\n" TRUNK LEAF);
+    struct result *result = import("tree.obj");
+    assert_true(result->ok);
+    expect_message(result, "1 unit = 0.01 m");
+    const struct wd_tree_model *model = &result->import.model;
+    assert_int_equal(model->full.wood_index_count / 3, 8);
+    assert_int_equal(test_leaf_triangles(&model->full), 2);
+    assert_float_equal(model->height_m, 3.1f, 1e-4);
+    assert_float_equal(model->full.min_m[0], -0.1f, 1e-4);
+    assert_float_equal(model->full.max_m[0], 1.0f, 1e-4);
+    assert_float_equal(model->full.min_m[2], -0.1f, 1e-4); /* the leaf hangs below the foot */
+    assert_float_equal(model->dbh_m, 0.24f, 0.05);
+    for (uint32_t i = 0; i < model->full.index_count; i++) {
+        uint32_t kind = model->full.vertices[model->full.indices[i]].kind;
+        assert_int_equal((kind & WD_VERTEX_LEAF) != 0, i >= model->full.wood_index_count);
+    }
+    drop(result);
+}
+
+static void a_species_file_says_height_axis_and_materials(void **state)
+{
+    (void)state;
+    write_text("tree.mtl", LIBRARY);
+    write_text("up.obj", "mtllib tree.mtl\no tree\nv 0 0 0\nv 1 0 0\nv 0 0 5\nusemtl Bark\n"
+                         "f 1 2 3\nv 0 1 5\nusemtl Blatt\nf 2 3 4\n");
+    write_text("up.json", "{\"name\": \"up\", \"model\": {\"file\": \"up.obj\", \"height_m\": 10,"
+                          " \"up\": \"z\", \"leaves\": [\"Bark\"], \"wood\": [\"Blatt\"]}}");
+    struct result *result = import("up.json");
+    assert_true(result->ok);
+    assert_float_equal(result->import.model.height_m, 10, 1e-4);
+    assert_int_equal(test_leaf_triangles(&result->import.model.full), 1);
+    expect_message(result, "leaves (Bark)");
+    drop(result);
+    write_text("bad.json", "{\"name\": \"up\", \"model\": {\"file\": \"up.obj\", \"leaves\": "
+                           "[\"Brak\"]}}");
+    result = import("bad.json");
+    assert_false(result->ok);
+    expect_message(result, "no material \"Brak\"");
+    expect_message(result, "Bark, Blatt");
+    drop(result);
+}
+
+static void strays_are_dropped_and_told(void **state)
+{
+    (void)state;
+    write_text("tree.mtl", LIBRARY);
+    write_text("stray.obj", "mtllib tree.mtl\no tree\n" TRUNK LEAF
+                            "f 1 1 2\nf 1 2 2\nl 1 2\nl 3 4\np 5\n");
+    struct result *result = import("stray.obj");
+    assert_true(result->ok);
+    assert_int_equal(result->import.model.full.index_count / 3, 10);
+    expect_message(result, "left out");
+    expect_message(result, "2 lines");
+    drop(result);
+}
+
+static void what_cannot_be_is_told(void **state)
+{
+    (void)state;
+    write_text("far.obj", "o crown\nv 0 0 0\nv 1e30 1 0\nv 0 1 0\nf 1 2 3\n");
+    expect_refusal("far.obj", "mesh crown");
+    write_text("points.obj", "o none\nv 0 0 0\nv 1 0 0\nv 0 1 0\np 1\np 2\n");
+    expect_refusal("points.obj", "no triangles");
+    write_text("flat.obj", "o none\nv 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    expect_refusal("flat.obj", "has an area");
+    write_text("level.obj", "o none\nv 0 0 -1\nv 1 0 -1\nv 0 0 1\nf 1 2 3\n");
+    expect_refusal("level.obj", "no height");
+    write_text("range.obj", "o none\nv 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 99999\n");
+    expect_refusal("range.obj", "");
+    write_text("empty.obj", "");
+    expect_refusal("empty.obj", "");
+    write_text("noise.glb", "glTF\2\0\0\0 and then nothing that makes sense");
+    expect_refusal("noise.glb", "");
+    struct result *result = import("missing.obj");
+    assert_false(result->ok);
+    expect_message(result, "no such file");
+    drop(result);
+}
+
+static void a_missing_texture_is_a_warning(void **state)
+{
+    (void)state;
+    write_text("lost.mtl", "newmtl Bark\nmap_Kd no-such.png\nnewmtl Blatt\nmap_Kd broken.jpg\n");
+    write_text("broken.jpg", "\xff\xd8 this is no JPEG");
+    write_text("lost.obj", "mtllib lost.mtl\no tree\n" TRUNK LEAF);
+    struct result *result = import("lost.obj");
+    assert_true(result->ok);
+    expect_message(result, "no-such.png");
+    expect_message(result, "broken.jpg");
+    drop(result);
+}
+
+static void holes_of_textures_reach_the_look(void **state)
+{
+    (void)state;
+    enum { SIZE = 32 };
+    struct wd_model_image image = {SIZE, SIZE, wd_alloc(4 * SIZE * SIZE)};
+    for (int i = 0; i < SIZE * SIZE; i++)
+        memcpy(image.rgba + 4 * i, (uint8_t[4]){30, 120, 20, i % SIZE < SIZE / 2 ? 255 : 0}, 4);
+    size_t size;
+    uint8_t *png = wd_model_image_encode(&image, &size);
+    write_file("half.png", png, size);
+    write_text("half.mtl", "newmtl Bark\nKd 0.3 0.2 0.1\nnewmtl Karte\nmap_Kd half.png\n"
+                           "map_d half.png\n");
+    write_text("half.obj", "mtllib half.mtl\no tree\nv 0 0 0\nv 1 0 0\nv 1 9 0\nv 0 9 0\n"
+                           "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl Karte\nf 1/1 2/2 3/3 4/4\n");
+    struct result *result = import("half.obj");
+    assert_true(result->ok);
+    assert_int_equal(result->import.model.full.wood_index_count, 0);
+    uint8_t albedo[4 * 64 * 64], detail[4 * 64 * 64];
+    const struct wd_look_map map = {64, albedo, detail};
+    wd_tree_import_look(&result->import, &map, WD_LOOK_LEAF);
+    int holes = 0;
+    for (int i = 0; i < 64 * 64; i++)
+        holes += albedo[4 * i + 3] < 128;
+    assert_in_range(holes, 64 * 64 * 2 / 5, 64 * 64 * 3 / 5);
+    drop(result);
+    free(png);
+    wd_model_image_finish(&image);
+}
+
+static void many_triangles_are_reduced_by_count(void **state)
+{
+    (void)state;
+    enum { LEAVES = 20000 };
+    char *text = wd_alloc(LEAVES * 120 + 4096), *end = text;
+    end += sprintf(end, "mtllib tree.mtl\no tree\n" TRUNK "usemtl Blatt\n");
+    for (int i = 0; i < LEAVES; i++) {
+        int x = 300 + i % 400, y = 300 + i / 400 * 10, z = i * 7919 % 400 - 200;
+        end += sprintf(end, "v %d %d %d\nv %d.5 %d %d\nv %d %d.5 %d\nf -3 -2 -1\n", x, y, z, x, y,
+                       z, x, y, z);
+    }
+    write_text("tree.mtl", LIBRARY);
+    write_text("many.obj", text);
+    free(text);
+    struct result *result = import("many.obj");
+    assert_true(result->ok);
+    const struct wd_tree_model *model = &result->import.model;
+    assert_int_equal(test_leaf_triangles(&model->full), LEAVES);
+    uint32_t kept = test_leaf_triangles(&model->reduced);
+    assert_in_range(kept, 5000, 6000);
+    double full = test_leaf_area(&model->full, 0, LEAVES);
+    assert_float_equal(test_leaf_area(&model->reduced, 0, kept) / full, 1, 0.05);
+    drop(result);
+}
+
+/* --- files of our own, whole and damaged -------------------------------------------------- */
+
+static struct wd_tree_model export_oak(const char *name)
+{
+    struct wd_arena arena = {0};
+    struct wd_species species = test_species(&arena, "oak");
+    struct wd_tree_model model;
+    const struct wd_grow_params params = {.seed = 3, .height_m = 4, .detail = 0.2f};
+    assert_true(wd_tree_grow(&model, &species, &params, NULL));
+    const struct wd_export_tree tree = {
+        .name = "oak", .species = &species, .levels = {&model.full, &model.reduced},
+        .level_count = 2};
+    const struct wd_export what = {.trees = &tree, .tree_count = 1};
+    char *path = path_of(name);
+    bool glb = strstr(name, ".glb") != NULL;
+    assert_true(glb ? wd_export_glb(&what, path, NULL) : wd_export_obj(&what, path, NULL));
+    free(path);
+    wd_arena_finish(&arena);
+    return model;
+}
+
+static void exported_trees_come_back(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"oak.glb", "oak.obj"};
+    for (int i = 0; i < 2; i++) {
+        struct wd_tree_model model = export_oak(names[i]);
+        struct result *result = import(names[i]);
+        assert_true(result->ok);
+        const struct wd_tree_mesh *mesh = &result->import.model.full;
+        assert_int_equal(mesh->wood_index_count, model.full.wood_index_count);
+        assert_in_range(mesh->index_count, model.full.index_count * 98 / 100,
+                        model.full.index_count);
+        assert_float_equal(result->import.model.height_m, model.height_m, 0.05); /* the flare ends below ground */
+        drop(result);
+        wd_tree_model_finish(&model);
+    }
+}
+
+static size_t read_whole(const char *name, char *bytes, size_t most)
+{
+    char *path = path_of(name);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, most, file);
+    fclose(file);
+    free(path);
+    return size;
+}
+
+/* The first bytes of the binary chunk are the first vertex's position. */
+static void a_position_that_is_no_number_is_an_error(void **state)
+{
+    (void)state;
+    enum { MOST = 8 << 20, HEADER = 20, CHUNK_HEADER = 8 };
+    struct wd_tree_model model = export_oak("number.glb");
+    wd_tree_model_finish(&model);
+    char *bytes = malloc(MOST);
+    size_t size = read_whole("number.glb", bytes, MOST);
+    uint32_t json_size;
+    const float none = NAN;
+    memcpy(&json_size, bytes + 12, sizeof json_size);
+    memcpy(bytes + HEADER + json_size + CHUNK_HEADER, &none, sizeof none);
+    write_file("nan.glb", bytes, size);
+    expect_refusal("nan.glb", "mesh oak LOD0");
+    free(bytes);
+}
+
+static void damaged_files_end_in_a_message_or_a_tree(void **state)
+{
+    (void)state;
+    enum { CASES = 40, MOST = 8 << 20 };
+    struct wd_tree_model model = export_oak("whole.glb");
+    wd_tree_model_finish(&model);
+    char *bytes = malloc(MOST);
+    size_t size = read_whole("whole.glb", bytes, MOST);
+    uint32_t random = 1;
+    int refused = 0;
+    for (int i = 0; i < CASES; i++) {
+        char *damaged = malloc(size);
+        size_t length = size;
+        memcpy(damaged, bytes, size);
+        if (i % 2 == 0) /* cut */
+            length = size * (size_t)(i + 1) / (CASES + 2);
+        for (int k = 0; k < 12 && i % 2; k++) { /* flipped, half of it in the JSON */
+            random = random * 1664525u + 1013904223u;
+            damaged[(k % 2 ? 20 + random % 4000 : random % size)] ^= (char)(1 << random % 7);
+        }
+        write_file("damaged.glb", damaged, length);
+        struct result *result = import("damaged.glb");
+        refused += !result->ok;
+        if (!result->ok)
+            expect_message(result, "damaged.glb");
+        drop(result);
+        free(damaged);
+    }
+    free(bytes);
+    assert_in_range(refused, CASES / 2, CASES);
+}
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) == NULL;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    DIR *list = opendir(folder);
+    for (struct dirent *entry; list && (entry = readdir(list));) {
+        char *path = path_of(entry->d_name);
+        if (entry->d_name[0] != '.')
+            unlink(path);
+        free(path);
+    }
+    closedir(list);
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_tree_stands_on_its_foot_in_metres),
+        cmocka_unit_test(a_species_file_says_height_axis_and_materials),
+        cmocka_unit_test(strays_are_dropped_and_told),
+        cmocka_unit_test(what_cannot_be_is_told),
+        cmocka_unit_test(a_missing_texture_is_a_warning),
+        cmocka_unit_test(holes_of_textures_reach_the_look),
+        cmocka_unit_test(many_triangles_are_reduced_by_count),
+        cmocka_unit_test(exported_trees_come_back),
+        cmocka_unit_test(a_position_that_is_no_number_is_an_error),
+        cmocka_unit_test(damaged_files_end_in_a_message_or_a_tree),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
