@@ -43,9 +43,9 @@ struct wd_tree_model {
     bool borrowed;        /* the meshes are those of species->imported, which keeps them */
 };
 
-/* Grows `*model`, or borrows a species' imported one as it is; the same parameters give the same bytes on any machine. For another season than
- * summer pass what wd_species_in_month made. False, with {0}, for parameters outside the species'
- * range (logged). */
+/* Grows `*model`, or borrows a species' imported one as it is; the same parameters give the same
+ * bytes on any machine. For another season than summer pass what wd_species_in_month made. False,
+ * with {0}, for parameters outside the species' range (logged). */
 bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
                   const struct wd_grow_params *params, const struct wd_log *log);
 void wd_tree_model_finish(struct wd_tree_model *model);
