@@ -224,6 +224,8 @@ static void order_leaves(struct wd_foliage *foliage, uint32_t key)
 static float leaf_area_m2(const struct wd_tree_form *form)
 {
     float projection = (float)WD_PI * form->crown_radius_m * form->crown_radius_m;
+    if (form->clip)
+        projection = form->clip->area_m2;
     return 1.05f * projection * form->species->leaf.area_index;
 }
 
@@ -319,9 +321,11 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
         weight += (double)carriers.items[i].weight;
         int of = (int)((double)wanted * weight / (double)carriers.weight - given);
         given += of;
-        for (int n = 0; n < of && foliage->count < wanted; n++)
-            place_leaf(&foliage->leaves[foliage->count++], foliage, skeleton, form,
-                       &carriers.items[i], n, of);
+        for (int n = 0; n < of && foliage->count < wanted; n++) {
+            struct wd_leaf *leaf = &foliage->leaves[foliage->count];
+            place_leaf(leaf, foliage, skeleton, form, &carriers.items[i], n, of);
+            foliage->count += !wd_tree_is_cut(form, leaf->position_m);
+        }
     }
     free(carriers.items);
     scale_leaves(foliage, form->species, area);

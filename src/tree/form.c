@@ -28,6 +28,21 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
     };
 }
 
+void wd_tree_form_clip(struct wd_tree_form *form, const struct wd_clip_grid *clip)
+{
+    float reach = 0;
+    for (int axis = 0; axis < 2; axis++)
+        reach = wd_maxf(reach, wd_maxf(-clip->min_m[axis], clip->max_m[axis]));
+    form->clip = clip;
+    form->crown_radius_m = reach;
+    form->crown_base_m = wd_maxf(clip->min_m[2], 0.05f * form->height_m);
+}
+
+bool wd_tree_is_cut(const struct wd_tree_form *form, struct wd_vec3 p)
+{
+    return form->clip && p.z > form->clip->min_m[2] && !wd_clip_inside(form->clip, p);
+}
+
 /* The four given radii joined by straight lines for a conifer; for a broadleaf their squares are,
  * which rounds the top like a dome. */
 static float profile(const struct wd_species *species, float t)
@@ -60,6 +75,8 @@ float wd_tree_envelope_m(const struct wd_tree_form *form, struct wd_vec3 p)
 float wd_tree_envelope_share(const struct wd_tree_form *form, struct wd_vec3 p)
 {
     float t = crown_share(form, p.z), beyond = 0;
+    if (form->clip)
+        return wd_clip_inside(form->clip, p) ? 0.5f : 2;
     if (t > 1)
         beyond = (t - 1) * 8;
     if (t < 0)

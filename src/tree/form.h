@@ -3,6 +3,7 @@
 #define WD_TREE_FORM_H
 
 #include "scene/species.h"
+#include "tree/clip.h"
 #include "tree/grow.h"
 #include "tree/random.h"
 
@@ -18,11 +19,18 @@ struct wd_tree_form {
     float crown_radius_m; /* of the envelope at its widest */
     float spread;         /* size of the crown over that of a typical forest tree */
     float lobe_m;         /* size of the envelope's bulges */
+    const struct wd_clip_grid *clip; /* NULL, or the envelope instead of the crown's shape */
 };
 
 /* `params` as wd_grow_params_resolve left them. */
 struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
                                     const struct wd_grow_params *params);
+
+/* Makes the clip volume the envelope of the crown; it must outlive the form. */
+void wd_tree_form_clip(struct wd_tree_form *form, const struct wd_clip_grid *clip);
+
+/* Whether a clip volume ends below or beside p; never under its bottom. */
+bool wd_tree_is_cut(const struct wd_tree_form *form, struct wd_vec3 p);
 
 /* Radius of the crown's envelope at height z in the direction of p from the axis, with bulges;
  * 0 above and below the crown. */

@@ -96,7 +96,7 @@ static void finish_model(struct wd_tree_model *model, const struct wd_foliage *f
                          const struct wd_tree_form *form)
 {
     wd_tree_mesh_update_bounds(&model->full);
-    float factor = form->height_m / model->full.max_m[2];
+    float factor = form->clip ? 1 : form->height_m / model->full.max_m[2];
     scale_mesh(&model->full, factor);
     scale_mesh(&model->reduced, factor);
     wd_tree_mesh_fit_coverage(&model->reduced, &model->full);
@@ -125,6 +125,11 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     if (!wd_grow_params_resolve(&resolved, species, log))
         return false;
     struct wd_tree_form form = wd_tree_form_of(species, &resolved);
+    struct wd_clip_grid clip;
+    if (params->clip && !wd_clip_grid_init(&clip, params->clip, log))
+        return false;
+    if (params->clip)
+        wd_tree_form_clip(&form, &clip);
     struct wd_skeleton skeleton;
     struct wd_foliage foliage;
     if (!wd_skeleton_grow(&skeleton, &form, log))

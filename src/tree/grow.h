@@ -6,6 +6,15 @@
 #include "scene/species.h"
 #include "tree/mesh.h"
 
+/* What a hedge is cut to, in metres from its foot: a box, or the inside of a closed mesh. The foot
+ * should lie under it: one plant fills about as far as it is high. */
+struct wd_clip_volume {
+    float min_m[3], max_m[3];    /* the box; not read where there are triangles */
+    const float *positions_m;    /* three a vertex */
+    const uint32_t *indices;     /* three a triangle, either way round */
+    uint32_t vertex_count, triangle_count;
+};
+
 /* Zeroes are a typical tree. The size is given by height, by stem diameter, by both (an inventory's
  * tree), or by age; the rest follows from the species' allometry and site curve. An age together
  * with a diameter gives the height; together with a height it is refused. */
@@ -17,6 +26,8 @@ struct wd_grow_params {
     float openness;    /* 0 forest-grown (narrow, high crown) .. 1 open-grown (wide, low crown) */
     float detail;      /* leaves and twigs of the full mesh relative to the species' own number;
                           0 means 1 */
+    const struct wd_clip_volume *clip; /* NULL, or what the plant is cut to: its top gives the
+                                          height, so no size may be given */
 };
 
 /* Checks the parameters (errors are logged) and fills in the zeroes among height_m, dbh_m,

@@ -57,6 +57,14 @@ static bool resolve_dbh(struct wd_grow_params *params, const struct wd_species *
     return true;
 }
 
+static float clip_top_m(const struct wd_clip_volume *clip)
+{
+    float top = clip->triangle_count ? -INFINITY : clip->max_m[2];
+    for (uint32_t i = 0; clip->triangle_count && i < clip->vertex_count; i++)
+        top = fmaxf(top, clip->positions_m[3 * i + 2]);
+    return top;
+}
+
 bool wd_grow_params_resolve(struct wd_grow_params *params, const struct wd_species *species,
                             const struct wd_log *log)
 {
@@ -65,6 +73,11 @@ bool wd_grow_params_resolve(struct wd_grow_params *params, const struct wd_speci
     if (!(params->detail >= 0 && params->detail <= 8))
         return wd_error(log, "cannot grow %s with detail %g; allowed is 0 (meaning 1) to 8",
                         species->name, (double)params->detail);
+    if (params->clip && (params->height_m != 0 || params->dbh_m != 0 || params->age_years != 0))
+        return wd_error(log, "cannot grow %s to a clip volume and to a size; allowed is one of the "
+                             "two", species->name);
+    if (params->clip)
+        params->height_m = clip_top_m(params->clip);
     if (!resolve_height(params, species, log) || !resolve_dbh(params, species, log))
         return false;
     if (params->age_years == 0)

@@ -88,7 +88,11 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
             d = wd_v3_unit(WD_V3(d.x, d.y, 0.1f));
             next = wd_v3_mad(p, d, step);
         }
-        if (!hanging && wd_tree_envelope_share(form, next) > 1.04f) {
+        if (wd_tree_is_cut(form, next)) {
+            if (i > 1)
+                break;
+            next = wd_v3_mad(p, d, 0.2f * step);
+        } else if (!hanging && wd_tree_envelope_share(form, next) > 1.04f) {
             struct wd_vec3 out = wd_v3_unit_or(WD_V3(p.x, p.y, 0), WD_V3(0, 0, 1));
             d = wd_v3_unit(wd_v3_mad(d, out, -0.6f * wd_maxf(wd_v3_dot(d, out), 0)));
             next = wd_v3_mad(p, d, 0.6f * step);
@@ -193,7 +197,10 @@ static float spacing_m(const struct wd_tree_form *form, int order)
     /* a year's growth is long in young trees too: they have fewer branches, not smaller gaps */
     double power = form->spread < 1 ? 0.5 : order == 0 ? 0.8 : 1.0;
     double squeeze = wd_dpow((double)form->spread, power);
-    return form->species->orders[order].spacing_m * (float)squeeze;
+    float spacing = form->species->orders[order].spacing_m * (float)squeeze;
+    if (form->clip) /* cut shoots branch again: a hedge is as dense as its light allows */
+        spacing = wd_minf(spacing, (order == 0 ? 0.05f : 0.07f) * form->crown_radius_m + 0.03f);
+    return spacing;
 }
 
 static bool still_there(const struct wd_tree_form *form, uint32_t key)

@@ -31,6 +31,8 @@ static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *
         d = wd_v3_add(d, WD_V3(-0.03f * p.x * step, -0.03f * p.y * step, 0.10f * step));
         d = wd_v3_unit(d);
         p = wd_v3_mad(p, d, step / wd_maxf(d.z, 0.5f));
+        if (i > 2 && wd_tree_is_cut(form, p))
+            break;
         branch->length_m += step / wd_maxf(d.z, 0.5f);
         wd_skeleton_add_node(skeleton, p, d, branch->length_m);
     }
@@ -89,15 +91,19 @@ static void grow_leaning(struct wd_skeleton *skeleton, const struct wd_tree_form
     struct wd_branch *branch = wd_skeleton_add_branch(skeleton, &stem);
     float scale = lean->top_m / wd_maxf(trace_lean(lean, form, key, points, directions), 0.5f);
     scale = wd_minf(scale, MAX_REACH * form->height_m / (float)lean->steps);
+    int last = 0;
     for (int i = 0; i <= lean->steps; i++) {
         struct wd_vec3 p = wd_v3_mad(lean->foot, points[i], scale), d = directions[i];
+        if (i > 2 && wd_tree_is_cut(form, p))
+            break;
+        last = i;
         if (i > 1 && p.z < 0.03f) {
             p.z = 0.03f;
             d = wd_v3_unit(WD_V3(d.x, d.y, 0));
         }
         wd_skeleton_add_node(skeleton, p, d, scale * (float)i);
     }
-    branch->length_m = scale * (float)lean->steps;
+    branch->length_m = scale * (float)last;
     branch->node_count = skeleton->node_count - branch->first_node;
 }
 

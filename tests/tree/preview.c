@@ -1,7 +1,8 @@
 /* tree-preview SPECIES.json OUT.png [key=value ...]: a grown tree as full and reduced mesh, near,
  * at 100 m and at 500 m (as on a screen of 1080 lines with 60 degrees), beside a 2 m bar.
  * Keys: seed, height, openness, detail, elevation (degrees), near (pixels a metre of the large
- * picture), rise (metres of the tree below the large picture's lower edge). */
+ * picture), rise (metres of the tree below the large picture's lower edge), hedge (height of a box
+ * to clip to). */
 #include <math.h>
 #include <spng.h>
 #include <stdio.h>
@@ -17,7 +18,8 @@ enum { SAMPLES = 2, TEXTURE = 512 };
 
 struct options {
     struct wd_grow_params params;
-    float elevation_deg, near, rise;
+    float elevation_deg, near, rise, hedge_m;
+    struct wd_clip_volume clip;
 };
 
 static bool read_option(struct options *options, const char *text)
@@ -27,7 +29,8 @@ static bool read_option(struct options *options, const char *text)
         float *value;
     } keys[] = {{"height=", &options->params.height_m}, {"openness=", &options->params.openness},
                 {"detail=", &options->params.detail}, {"elevation=", &options->elevation_deg},
-                {"near=", &options->near}, {"rise=", &options->rise}};
+                {"near=", &options->near}, {"rise=", &options->rise},
+                {"hedge=", &options->hedge_m}};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
         if (!strncmp(text, keys[i].name, strlen(keys[i].name))) {
             *keys[i].value = strtof(text + strlen(keys[i].name), NULL);
@@ -153,9 +156,13 @@ int main(int argc, char **argv)
             argc = 0;
     if (argc < 3) {
         fprintf(stderr, "usage: tree-preview SPECIES.json OUT.png [seed=N] [height=M] "
-                        "[openness=0..1] [detail=X] [elevation=DEG] [near=PX_PER_M] [rise=M]\n");
+                        "[openness=0..1] [detail=X] [elevation=DEG] [near=PX_PER_M] [rise=M] [hedge=M]\n");
         return 2;
     }
+    float half = 0.4f * options.hedge_m;
+    options.clip = (struct wd_clip_volume){.min_m = {-half, -half, 0.03f},
+                                           .max_m = {half, half, options.hedge_m}};
+    options.params.clip = half > 0 ? &options.clip : NULL;
     struct wd_arena arena = {0};
     struct wd_species species;
     struct wd_tree_model model = {0};
