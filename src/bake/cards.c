@@ -131,15 +131,6 @@ bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct 
 
 /* --- cache ------------------------------------------------------------------------------- */
 
-uint64_t wd_model_key(const struct wd_tree_mesh *mesh, const uint8_t *looks, size_t look_bytes)
-{
-    uint64_t key = wd_cache_key(wd_cache_code_key(), mesh->vertices,
-                                mesh->vertex_count * sizeof *mesh->vertices);
-    key = wd_cache_key(key, mesh->indices, mesh->index_count * sizeof *mesh->indices);
-    key = wd_cache_key(key, &mesh->wood_index_count, sizeof mesh->wood_index_count);
-    return wd_cache_key(key, looks, look_bytes);
-}
-
 static uint64_t cards_key(uint64_t model_key, enum wd_bake_parts parts)
 {
     const uint32_t form[] = {WD_CARD_WIDTH, WD_CARD_HEIGHT, WD_CARD_MIPS, WD_CARDS,

@@ -38,10 +38,7 @@ void wd_cards_finish(struct wd_cards *cards); /* accepts {0} */
 bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct wd_bake_mesh *mesh,
                    const struct wd_card_extent *extent, enum wd_bake_parts parts);
 
-/* What names a model's look: its full mesh and its textures. */
-uint64_t wd_model_key(const struct wd_tree_mesh *mesh, const uint8_t *looks, size_t look_bytes);
-
-/* From the cache, and into it. */
+/* From the cache, and into it; `model_key` names mesh and looks. */
 bool wd_cards_load(struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t model_key,
                    enum wd_bake_parts parts);
 void wd_cards_store(const struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t model_key,

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bake/growth_cache.h"
 #include "base/clock.h"
 #include "base/jobs.h"
 #include "base/memory.h"
@@ -29,15 +30,22 @@ struct preparation {
 static void grow_model(void *user, size_t index)
 {
     struct preparation *work = user;
-    if (!wd_variant_grow(&work->grown[index], work->params->scene, (uint32_t)index,
-                         work->params->log))
+    struct wd_forest_device *forest = work->forest;
+    if (!wd_growth_get(&work->grown[index], &forest->model_keys[index], &forest->cache,
+                       work->params->scene, (uint32_t)index, work->params->log))
         atomic_store(&work->failed, true);
 }
 
 static void make_look(void *user, size_t index)
 {
     struct preparation *work = user;
-    wd_look_generate(&work->params->scene->species[index], work->looks + index * WD_LOOK_BYTES);
+    const struct wd_species *species = &work->params->scene->species[index];
+    uint8_t *looks = work->looks + index * WD_LOOK_BYTES;
+    struct wd_bake_cache *cache = &work->forest->cache;
+    if (wd_looks_load(looks, WD_LOOK_BYTES, cache, species))
+        return;
+    wd_look_generate(species, looks);
+    wd_looks_store(looks, WD_LOOK_BYTES, cache, species);
 }
 
 /* --- uploading --------------------------------------------------------------------------- */
@@ -142,8 +150,8 @@ static void describe_content(struct preparation *work, uint32_t index)
     model->top_m = extent.top_m;
     model->card_layer = WD_CARDS * index;
     forest->model_keys[index] =
-        wd_model_key(mesh, work->looks + index / forest->variants * WD_LOOK_BYTES,
-                     WD_LOOK_HALF_BYTES);
+        wd_cache_key(forest->model_keys[index],
+                     work->looks + index / forest->variants * WD_LOOK_BYTES, WD_LOOK_HALF_BYTES);
 }
 
 /* --- the whole --------------------------------------------------------------------------- */

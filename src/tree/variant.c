@@ -14,19 +14,23 @@ static float variant_height(const struct wd_species *species, uint32_t variant, 
     return low + (high - low) * share;
 }
 
+struct wd_grow_params wd_variant_params(const struct wd_scene *scene, uint32_t index)
+{
+    uint32_t variants = (uint32_t)scene->variants, variant = index % variants;
+    if (scene->individuals)
+        return scene->individuals[index];
+    return (struct wd_grow_params){
+        .seed = variant + 1,
+        .height_m = variant_height(&scene->species[index / variants], variant, variants),
+        .openness = 0.35f,
+    };
+}
+
 bool wd_variant_grow(struct wd_tree_model *model, const struct wd_scene *scene, uint32_t index,
                      const struct wd_log *log)
 {
-    uint32_t variants = (uint32_t)scene->variants, variant = index % variants;
-    const struct wd_species *species = &scene->species[index / variants];
-    if (scene->individuals)
-        return wd_tree_grow(model, species, &scene->individuals[index], log);
-    const struct wd_grow_params params = {
-        .seed = variant + 1,
-        .height_m = variant_height(species, variant, variants),
-        .openness = 0.35f,
-    };
-    return wd_tree_grow(model, species, &params, log);
+    const struct wd_grow_params params = wd_variant_params(scene, index);
+    return wd_tree_grow(model, &scene->species[index / (uint32_t)scene->variants], &params, log);
 }
 
 void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, uint32_t index,

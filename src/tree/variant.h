@@ -7,6 +7,9 @@
 #include "shared/forest.h"
 #include "tree/grow.h"
 
+/* How individual `index` of the scene is grown. */
+struct wd_grow_params wd_variant_params(const struct wd_scene *scene, uint32_t index);
+
 /* Grows individual `index` of the scene; false, logged, where its species file does not allow it. */
 bool wd_variant_grow(struct wd_tree_model *model, const struct wd_scene *scene, uint32_t index,
                      const struct wd_log *log);

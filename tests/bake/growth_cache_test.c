@@ -1,0 +1,167 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/memory.h"
+#include "bake/growth_cache.h"
+
+struct fixture {
+    char directory[64];
+    struct wd_bake_cache cache;
+    struct wd_scene scene;
+};
+
+static int setup(void **state)
+{
+    const struct wd_scene_params params = {0};
+    struct fixture *f = *state = wd_alloc(sizeof *f);
+    strcpy(f->directory, "/tmp/weald-test-XXXXXX");
+    f->cache.directory = f->directory;
+    return mkdtemp(f->directory) &&
+                   wd_scene_load_with(&f->scene, "tests/api/small.json", &params, NULL)
+               ? 0
+               : -1;
+}
+
+static char *file_of(const struct fixture *f, const char *kind, uint64_t key)
+{
+    return wd_format("%s/%s-%016llx.bin", f->directory, kind, (unsigned long long)key);
+}
+
+static void drop(const struct fixture *f, const char *kind, uint64_t key)
+{
+    char *path = file_of(f, kind, key);
+    unlink(path);
+    free(path);
+}
+
+static int teardown(void **state)
+{
+    struct fixture *f = *state;
+    int result = rmdir(f->directory); /* tests remove their files */
+    wd_scene_finish(&f->scene);
+    free(f);
+    return result;
+}
+
+static void assert_same_mesh(const struct wd_tree_mesh *a, const struct wd_tree_mesh *b)
+{
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    assert_int_equal(a->index_count, b->index_count);
+    assert_int_equal(a->wood_index_count, b->wood_index_count);
+    assert_memory_equal(a->vertices, b->vertices, a->vertex_count * sizeof *a->vertices);
+    assert_memory_equal(a->indices, b->indices, a->index_count * sizeof *a->indices);
+    assert_memory_equal(a->min_m, b->min_m, sizeof a->min_m);
+    assert_memory_equal(a->max_m, b->max_m, sizeof a->max_m);
+}
+
+static void assert_same_model(const struct wd_tree_model *a, const struct wd_tree_model *b)
+{
+    assert_same_mesh(&a->full, &b->full);
+    assert_same_mesh(&a->reduced, &b->reduced);
+    assert_true(a->height_m == b->height_m && a->crown_radius_m == b->crown_radius_m);
+    assert_true(a->crown_base_m == b->crown_base_m && a->dbh_m == b->dbh_m);
+    assert_true(a->age_years == b->age_years && a->leaf_area_m2 == b->leaf_area_m2);
+}
+
+static void a_kept_tree_is_the_grown_tree(void **state)
+{
+    struct fixture *f = *state;
+    struct wd_tree_model grown, first, kept;
+    uint64_t key, again;
+    assert_true(wd_variant_grow(&grown, &f->scene, 1, NULL));
+    assert_true(wd_growth_get(&first, &key, &f->cache, &f->scene, 1, NULL));
+    char *path = file_of(f, "growth", key);
+    assert_int_equal(access(path, R_OK), 0);
+    assert_true(wd_growth_get(&kept, &again, &f->cache, &f->scene, 1, NULL));
+    assert_true(key == again);
+    assert_same_model(&grown, &first);
+    assert_same_model(&grown, &kept);
+    wd_tree_model_finish(&grown);
+    wd_tree_model_finish(&first);
+    wd_tree_model_finish(&kept);
+    drop(f, "growth", key);
+    free(path);
+}
+
+static void a_damaged_file_grows_the_tree_again(void **state)
+{
+    static const long sizes[] = {0, 10, 40, 200, 5000};
+    struct fixture *f = *state;
+    struct wd_tree_model first, kept;
+    uint64_t key;
+    assert_true(wd_growth_get(&first, &key, &f->cache, &f->scene, 0, NULL));
+    char *path = file_of(f, "growth", key);
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        assert_int_equal(truncate(path, sizes[i]), 0);
+        assert_true(wd_growth_get(&kept, &key, &f->cache, &f->scene, 0, NULL));
+        assert_same_model(&first, &kept);
+        wd_tree_model_finish(&kept);
+    }
+    /* a file that is whole and checks, but holds something else */
+    static const uint8_t nonsense[400] = {1, 2, 3};
+    wd_cache_store(&f->cache, "growth", key, nonsense, sizeof nonsense);
+    assert_true(wd_growth_get(&kept, &key, &f->cache, &f->scene, 0, NULL));
+    assert_same_model(&first, &kept);
+    wd_tree_model_finish(&kept);
+    wd_tree_model_finish(&first);
+    drop(f, "growth", key);
+    free(path);
+}
+
+static void keys_follow_what_growth_sees(void **state)
+{
+    struct fixture *f = *state;
+    struct wd_species *species = &f->scene.species[0];
+    struct wd_species other = *species;
+    assert_true(wd_species_key(species) == wd_species_key(&other));
+    other.name = "another word for the same";
+    assert_true(wd_species_key(species) == wd_species_key(&other));
+    other.leaf.length_cm += 0.5f;
+    assert_true(wd_species_key(species) != wd_species_key(&other));
+    other = *species;
+    struct wd_branch_order orders[8];
+    memcpy(orders, species->orders, species->order_count * sizeof *orders);
+    other.orders = orders;
+    assert_true(wd_species_key(species) == wd_species_key(&other));
+    orders[0].wander += 0.01f;
+    assert_true(wd_species_key(species) != wd_species_key(&other));
+    other = *species;
+    other.model.file = "tree.obj";
+    assert_true(wd_species_key(&other) == 0);
+}
+
+static void looks_are_kept_by_species(void **state)
+{
+    struct fixture *f = *state;
+    uint8_t looks[1000], loaded[1000];
+    for (size_t i = 0; i < sizeof looks; i++)
+        looks[i] = (uint8_t)(i * 7);
+    assert_false(wd_looks_load(loaded, sizeof loaded, &f->cache, &f->scene.species[0]));
+    wd_looks_store(looks, sizeof looks, &f->cache, &f->scene.species[0]);
+    assert_true(wd_looks_load(loaded, sizeof loaded, &f->cache, &f->scene.species[0]));
+    assert_memory_equal(looks, loaded, sizeof looks);
+    assert_false(wd_looks_load(loaded, sizeof loaded, &f->cache, &f->scene.species[1]));
+    assert_false(wd_looks_load(loaded, 999, &f->cache, &f->scene.species[0]));
+    drop(f, "looks", wd_species_key(&f->scene.species[0]));
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(a_kept_tree_is_the_grown_tree),
+        TEST(a_damaged_file_grows_the_tree_again),
+        TEST(keys_follow_what_growth_sees),
+        TEST(looks_are_kept_by_species),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
