@@ -15,8 +15,7 @@ layout(scalar, set = 0, binding = 9) readonly buffer Near { vec2 near_m[]; };
 layout(scalar, push_constant) uniform Push { wd_patch_push push; };
 
 #include "lib/tree.glsl"
-
-#include "lib/card_flat.glsl"
+#include "lib/billboard.glsl"
 
 /* as tree_card.vert */
 layout(location = 0) out vec2 out_uv;
@@ -44,14 +43,6 @@ float shown(wd_tree tree, float distance_m)
     return push.whole_fades != 0u ? floor(show) : show;
 }
 
-/* Which of the upright cards was rendered from nearest to that side (unit, the tree's own frame). */
-uint nearest_card(vec2 toward)
-{
-    vec3 facing = abs(vec3(toward.y, 0.86602540378 * toward.x - 0.5 * toward.y,
-                           0.86602540378 * toward.x + 0.5 * toward.y));
-    return facing.x >= facing.y && facing.x >= facing.z ? 0u : facing.y >= facing.z ? 1u : 2u;
-}
-
 void main()
 {
     gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
@@ -68,43 +59,14 @@ void main()
     tree_pose pose = tree_pose_of(tree, model);
     vec2 side = vec2(float(gl_VertexIndex & 1), float((gl_VertexIndex >> 1) & 1)) * 2.0 - 1.0;
     vec3 toward = -normalize(foot + vec3(0.0, 0.0, 0.5 * WD_TREE_HEIGHT_M(tree)));
-    float level = max(length(toward.xy), 1e-3);
-    vec2 across = vec2(-toward.y, toward.x) / level;
-    vec3 up = vec3(-toward.xy * (toward.z / level), level);
+    wd_billboard board = billboard_corner(model, pose, toward, side, false);
+    vec3 offset = board.offset
+                  + tree_sway(tree, model.flexibility, max(board.offset.z, 0.0), frame.time_s);
 
-    bool from_above = toward.z > 0.8;
-    vec2 own_toward = vec2(dot(toward.xy, pose.turn),
-                           dot(toward.xy, vec2(-pose.turn.y, pose.turn.x))) * pose.mirror / level;
-    uint card = from_above ? WD_CARD_SIDES : nearest_card(own_toward);
-    float angle = 1.0471975512 * float(card);
-    vec2 axis = tree_turn(pose, vec2(cos(angle), sin(angle)));
-    vec3 normal = from_above ? vec3(0.0, 0.0, 1.0)
-                             : vec3(vec2(axis.y, -axis.x) * pose.mirror.x, 0.0);
-    float mirror = dot(axis, across) < 0.0 && !from_above ? -1.0 : 1.0;
-
-    /* as tall as stem and crown's depth together look from there */
-    float middle_m = 0.5 * (model.top_m + model.bottom_m) * pose.up;
-    float tall_m = 0.5 * (model.top_m - model.bottom_m) * pose.up * level
-                   + model.half_depth_m * pose.across * abs(toward.z) * 0.8;
-    vec3 offset = vec3(across * (side.x * model.half_width_m * pose.across), middle_m)
-                  - up * (side.y * tall_m);
-    offset += tree_sway(tree, model.flexibility, max(offset.z, 0.0), frame.time_s);
-
-    card_flat constants;
-    constants.turn = pose.turn;
-    constants.tint = tree_tint(tree);
-    constants.show = show;
-    constants.normal = normal;
-    constants.behind = dot(normal, toward) < 0.0;
-    constants.mirror = pose.mirror.x;
-    constants.ratio = pose.up / pose.across;
-    constants.layer = model.card_layer + card;
     float tall_px = WD_TREE_HEIGHT_M(tree) * push.pixels_per_radian / distance_m;
-    constants.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, 8.0);
-    constants.random = tree.random ^ (card * 0x9e3779b9u);
-    constants.surface = uint(index) + 1u;
-    wd_card_flat packed = card_pack(constants);
-    out_uv = vec2(side.x * mirror, side.y) * 0.5 + 0.5;
+    wd_card_flat packed =
+        billboard_flat(board, model, pose, tree, show, tall_px, uint(index) + 1u);
+    out_uv = board.uv;
     out_card = uvec4(packed.turn, packed.tint_show, packed.normal, packed.ratio_flags);
     out_more = uvec3(packed.layer_lod, packed.random, packed.surface);
     gl_Position = frame.clip_from_rel * vec4(foot + offset, 1.0);

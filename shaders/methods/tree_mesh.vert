@@ -17,62 +17,27 @@ layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
-
-layout(location = 0) out vec3 out_normal;
-layout(location = 1) out vec3 out_uv; /* z: layer of the look */
-layout(location = 2) out vec4 out_tint;
-layout(location = 3) flat out uvec3 out_flat; /* surface, material (+ 4: mirrored), random of the
-                                                 triangle */
-layout(location = 4) flat out float out_show;
-layout(location = 5) out vec4 out_place; /* camera-relative; a: share that moss covers */
+#include "lib/tree_mesh.glsl"
 
 /* Whether this vertex' leaf is drawn as a twig. */
-bool is_spray(wd_tree_vertex v, wd_tree tree, tree_pose pose)
+bool is_spray(wd_tree_vertex v, wd_tree tree)
 {
     uint name = v.kind >> WD_VERTEX_LEAF_SHIFT;
     if (DETAIL == 0u || push.spray_reach == 0.0 || name == 0u)
         return false;
-    vec3 at = tree_foot_rel(tree) + tree_offset(pose, leaves[name - 1u].position_m);
+    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                            + WD_TREE_VARIANT(tree) % push.variants];
+    vec3 at = tree_foot_rel(tree)
+              + tree_offset(tree_pose_of(tree, model), leaves[name - 1u].position_m);
     return wd_hash_unit(wd_hash2(leaves[name - 1u].random, tree.random))
            < wd_spray_share(length(at), push.spray_reach);
-}
-
-/* Moss keeps to the foot of the stem, to the side away from the midday sun and to what faces up. */
-float moss_share(vec3 normal, float height_m)
-{
-    float shade = 0.35 + 0.65 * smoothstep(-0.4, 0.9, normal.y + 0.8 * max(normal.z, 0.0));
-    return shade * (exp(-height_m * 0.9) + 0.12 * smoothstep(0.3, 0.9, normal.z));
 }
 
 void main()
 {
     wd_instance instance = instances[gl_InstanceIndex];
-    wd_tree tree = trees[instance.tree];
-    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
-                            + WD_TREE_VARIANT(tree) % push.variants];
     wd_tree_vertex v = vertices[gl_VertexIndex];
-    tree_pose pose = tree_pose_of(tree, model);
-    vec3 offset = tree_offset(pose, v.position_m);
-    vec3 normal = tree_normal(pose, tree_vertex_normal(v));
-    bool leaf = (v.kind & WD_VERTEX_LEAF) != 0u;
-
-    offset += tree_sway(tree, model.flexibility, offset.z, frame.time_s);
-    if (leaf && frame.wind_speed_mps > 0.0) {
-        float phase = fract(dot(floor(v.position_m * 4.0), vec3(0.137, 0.311, 0.173)));
-        offset += normal * wd_wind_flutter(tree_wind(), float(v.kind & 0xffu) * (1.0 / 255.0),
-                                           phase, frame.time_s);
-    }
-    vec3 rel = tree_foot_rel(tree) + offset;
-    out_normal = normal;
-    out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + wd_vertex_layer(v.kind)));
-    out_tint = unpackUnorm4x8(v.tint);
-    if (leaf)
-        out_tint.rgb *= tree_tint(tree);
-    out_flat = uvec3(instance.tree + 1u, (leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
-                         | (pose.mirror.x < 0.0 ? 4u : 0u),
-                     wd_hash2(uint(gl_VertexIndex), tree.random));
-    out_show = is_spray(v, tree, pose) ? 0.0 : instance.show;
-    out_place = vec4(rel, leaf ? 0.0 : model.moss * moss_share(normal, offset.z));
-    gl_Position = SHADOW != 0u ? shadow_clip(push.cascade, rel)
-                               : frame.clip_from_rel * vec4(rel, 1.0);
+    if (is_spray(v, trees[instance.tree]))
+        instance.show = 0.0;
+    tree_mesh_vertex(instance, v);
 }

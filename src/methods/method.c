@@ -12,6 +12,7 @@ static const struct wd_method *const methods[] = {
     &wd_method_grid,
     &wd_method_lod,
     &wd_method_patch,
+    &wd_method_dissolve,
     &wd_method_continuum,
 };
 
@@ -27,6 +28,22 @@ const struct wd_method *wd_method_find(const char *name)
             return methods[i];
     }
     return NULL;
+}
+
+void *wd_method_borrow(const struct wd_method *method, struct wd_gpu *gpu)
+{
+    void *state = wd_alloc(method->state_size);
+    if (method->init && !method->init(state, gpu))
+        wd_method_give_back(method, &state, gpu);
+    return state;
+}
+
+void wd_method_give_back(const struct wd_method *method, void **state, struct wd_gpu *gpu)
+{
+    if (*state && method->finish)
+        method->finish(*state, gpu);
+    free(*state);
+    *state = NULL;
 }
 
 /* --- states ------------------------------------------------------------------------------ */

@@ -32,15 +32,20 @@ struct wd_method {
 };
 
 extern const struct wd_method wd_method_separate; /* every tree by itself (row G9) */
-extern const struct wd_method wd_method_octree;   /* static geometry in octree order (row G5); its
-                                                     state is a struct wd_selection */
+extern const struct wd_method wd_method_octree;   /* static geometry in octree order (row G5) */
 extern const struct wd_method wd_method_grid;     /* cells of a fixed grid (row G9) */
 extern const struct wd_method wd_method_continuum; /* cost by pixels: splats in compute */
 extern const struct wd_method wd_method_lod;      /* levels by distances of the user's (row O1) */
 extern const struct wd_method wd_method_patch;    /* blended back to front (rows I1-I9) */
+extern const struct wd_method wd_method_dissolve; /* leaf and branch levels (rows W4-W7) */
 
 /* The method of that name, or NULL. Names are in wd_scene_method_names, scene/methods.h. */
 const struct wd_method *wd_method_find(const char *name);
+
+/* The state of a method for another that leaves a part of its views to it: one that keeps nothing of
+ * a forest. NULL when it could not be made. */
+void *wd_method_borrow(const struct wd_method *method, struct wd_gpu *gpu);
+void wd_method_give_back(const struct wd_method *method, void **state, struct wd_gpu *gpu);
 
 /* What one renderer keeps of the methods it has used. {0} is valid and holds none. */
 enum { WD_METHODS_MAX = 16 };

@@ -86,8 +86,8 @@ static bool patch_init(void *state, struct wd_gpu *gpu)
         .fragment = SPIRV(tree_card_frag),
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT}};
-    patch->shadows = wd_alloc(wd_method_octree.state_size);
-    return wd_method_octree.init(patch->shadows, gpu) && init_pipeline(&patch->blend, gpu, &blend) &&
+    patch->shadows = wd_method_borrow(&wd_method_octree, gpu);
+    return patch->shadows && init_pipeline(&patch->blend, gpu, &blend) &&
            init_pipeline(&patch->layers, gpu, &layers);
 }
 
@@ -96,8 +96,7 @@ static void patch_finish(void *state, struct wd_gpu *gpu)
     struct patch_state *patch = state;
     wd_pipeline_finish(&patch->blend, gpu);
     wd_pipeline_finish(&patch->layers, gpu);
-    wd_method_octree.finish(patch->shadows, gpu);
-    free(patch->shadows);
+    wd_method_give_back(&wd_method_octree, &patch->shadows, gpu);
 }
 
 /* --- the forest -------------------------------------------------------------------------- */

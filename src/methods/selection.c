@@ -102,8 +102,8 @@ void wd_selection_add_range(struct wd_selection *selection, const struct wd_rang
         *wd_push(selection->ranges, selection->range_count, selection->range_capacity) = *range;
 }
 
-static void add_mesh(struct wd_selection *selection, uint32_t model, uint32_t level, uint32_t tree,
-                     float show)
+void wd_selection_add_mesh(struct wd_selection *selection, uint32_t model, uint32_t level,
+                           uint32_t tree, float show)
 {
     selection->mesh_keys = wd_grow(selection->mesh_keys, selection->mesh_count,
                                    &selection->key_capacity, sizeof *selection->mesh_keys);
@@ -123,17 +123,29 @@ static enum wd_side tree_side(const struct wd_view *view, const struct wd_tree *
     return wd_frustum_box(&view->frustum, min, max);
 }
 
+static void foot_of(const struct wd_view *view, const struct wd_tree *tree, float foot[3])
+{
+    const int32_t place_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
+    for (int k = 0; k < 3; k++)
+        foot[k] = (float)(place_mm[k] * 0.001 - view->eye_m[k]);
+}
+
+bool wd_tree_in_view(const struct wd_view *view, const struct wd_tree *tree)
+{
+    float foot[3];
+    foot_of(view, tree, foot);
+    return tree_side(view, tree, foot) != WD_OUTSIDE;
+}
+
 void wd_selection_add_tree(struct wd_selection *selection, const struct wd_forest_device *forest,
                            const struct wd_view *view, const struct wd_level_rule *rule,
                            uint32_t index)
 {
     const struct wd_tree *tree = &forest->world->trees[index];
-    const int32_t place_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
     float foot[3], distance_squared = 0.0f;
-    for (int k = 0; k < 3; k++) {
-        foot[k] = (float)(place_mm[k] * 0.001 - view->eye_m[k]);
+    foot_of(view, tree, foot);
+    for (int k = 0; k < 3; k++)
         distance_squared += foot[k] * foot[k];
-    }
     if (tree_side(view, tree, foot) == WD_OUTSIDE)
         return;
     float distance_m = sqrtf(distance_squared), height_m = 0.01f * (float)(tree->size & 0xffffu);
@@ -148,7 +160,7 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
     uint32_t model = wd_forest_model_of(forest, tree);
     for (uint32_t level = WD_LEVEL_MESH; level <= WD_LEVEL_REDUCED; level++) {
         if (levels.show[level] * fade > 0.0f)
-            add_mesh(selection, model, level, index, levels.show[level] * fade);
+            wd_selection_add_mesh(selection, model, level, index, levels.show[level] * fade);
     }
     /* the card's shader applies the fade itself: ranges need it too */
     if (levels.show[WD_LEVEL_CARD] * fade > 0.0f)

@@ -62,6 +62,11 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
                            const struct wd_view *view, const struct wd_level_rule *rule,
                            uint32_t tree);
 
+/* Adds one tree at a mesh level, wholly or in part. */
+void wd_selection_add_mesh(struct wd_selection *selection, uint32_t model, uint32_t level,
+                           uint32_t tree, float show);
+bool wd_tree_in_view(const struct wd_view *view, const struct wd_tree *tree);
+
 /* Orders the meshes by model and level and fills `batches`. */
 void wd_selection_sort(struct wd_selection *selection, uint32_t model_count);
 

@@ -202,9 +202,10 @@ static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selecti
         const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
         bind_mesh(draw, batch, instances);
         draw->stats->trees[batch->level] += batch->count;
-        if (grouping == WD_DRAW_GROUPED) {
-            draw_indexed(draw, range->index_count, batch->count, range->first_index, 0,
-                         batch->first);
+        if (grouping != WD_DRAW_SINGLE) {
+            uint32_t indices =
+                grouping == WD_DRAW_WOOD ? range->wood_index_count : range->index_count;
+            draw_indexed(draw, indices, batch->count, range->first_index, 0, batch->first);
             continue;
         }
         for (uint32_t k = 0; k < batch->count; k++)
@@ -271,6 +272,12 @@ static void draw_cards(const struct wd_tree_draw *draw, const struct wd_selectio
         bind_cards(draw, pipeline, instances);
         draw_card_range(draw, pipeline, &list, grouping == WD_DRAW_GROUPED ? WD_CARD_BATCH : 1);
     }
+}
+
+void wd_tree_draw_wood(const struct wd_tree_draw *draw, struct wd_selection *selection)
+{
+    wd_selection_sort(selection, draw->forest->model_count);
+    draw_meshes(draw, selection, WD_DRAW_WOOD);
 }
 
 void wd_tree_draw_selection(const struct wd_tree_draw *draw, struct wd_selection *selection,

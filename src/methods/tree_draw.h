@@ -37,11 +37,15 @@ struct wd_tree_draw {
 enum wd_draw_grouping {
     WD_DRAW_GROUPED, /* one instanced draw a model and level, one draw for all listed cards */
     WD_DRAW_SINGLE,  /* one draw a tree */
+    WD_DRAW_WOOD,    /* grouped, meshes without their leaves */
 };
 
 /* Draws ranges of trees as cards: of octree order, or of a list of struct wd_instance. */
 void wd_tree_draw_card_ranges(const struct wd_tree_draw *draw, const struct wd_range *ranges,
                               size_t count, const struct wd_buffer *list);
+
+/* The meshes of a selection without their leaves. Sorts it. */
+void wd_tree_draw_wood(const struct wd_tree_draw *draw, struct wd_selection *selection);
 
 /* Records all of a selection, inside an open rendering. Buffers of the forest are in use for
  * reading by graphics. Sorts the selection. */

@@ -76,6 +76,28 @@ static const struct wd_key patch_keys[] = {
 };
 static const struct wd_keys patch_table = TABLE(patch);
 
+static const struct wd_key dissolve_keys[] = {
+    {"billboard_m", WD_KEY_DOUBLE, OPTION(dissolve, billboard_m), 0, 1e6, "60",
+     "Trees dissolve into billboards from this horizontal distance on, in metres.", .row = "W6"},
+    {"overlap_m", WD_KEY_DOUBLE, OPTION(dissolve, overlap_m), 0, 1e5, "10",
+     "Over this span they do, in metres.", .row = "W6"},
+    {"leaves_begin_m", WD_KEY_DOUBLE, OPTION(dissolve, leaves_begin_m), 0, 1e6, "10",
+     "Leaves begin to thin out at this distance, in metres.", .row = "W5"},
+    {"leaves_end_m", WD_KEY_DOUBLE, OPTION(dissolve, leaves_end_m), 0, 1e6, "50",
+     "Fewest leaves from this distance on, in metres.", .row = "W5"},
+    {"least_leaves", WD_KEY_DOUBLE, OPTION(dissolve, least_leaves), 0.01, 1, "0.25",
+     "Share of the leaves that is never removed.", .row = "W5"},
+    {"keep_area", WD_KEY_BOOL, OPTION(dissolve, keep_area), .fallback = "true", .row = "W5",
+     .doc = "Leaves that stay grow, so that the crown keeps its leaf area."},
+    {"branches_m", WD_KEY_DOUBLE, OPTION(dissolve, branches_m), 0, 1e6, "25",
+     "Branches are reduced, the thinnest dropped, beyond this distance, in metres.", .row = "W4"},
+    {"faithful", WD_KEY_BOOL, OPTION(dissolve, faithful), .fallback = "false",
+     .doc = "Bare crowns, every side of a tree the same picture, billboards from above, both levels "
+            "at once while dissolving.", .row = "W6"},
+    {0},
+};
+static const struct wd_keys dissolve_table = TABLE(dissolve);
+
 #define METHOD(method, rows, summary)                                                              \
     {#method, WD_KEY_OBJECT, offsetof(struct wd_method_options, method), .table = &method##_table, \
      .doc = summary, .row = rows}
@@ -86,6 +108,7 @@ static const struct wd_key method_keys[] = {
     METHOD(grid, "G9", "Billboards by cells of a fixed grid, meshes near: the other baseline."),
     METHOD(lod, "O1", "Meshes of several levels by distances that the user sets, then billboards."),
     METHOD(patch, "I1-I9", "Billboards of patches, blended back to front in an order by arithmetic."),
+    METHOD(dissolve, "W4-W7", "Leaves and branches that thin out, billboards of one view each far."),
     METHOD(continuum, "continuum", "Splats whose number follows the pixels they cover, in compute."),
     {0},
 };
@@ -97,6 +120,7 @@ const char *const wd_scene_method_names[] = {
     "grid",
     "lod",
     "patch",
+    "dissolve",
     "continuum",
     NULL,
 };

@@ -35,6 +35,13 @@ struct wd_patch_options {
     bool faithful;
 };
 
+struct wd_dissolve_options {
+    double billboard_m, overlap_m;       /* horizontal distance */
+    double leaves_begin_m, leaves_end_m, least_leaves;
+    double branches_m;
+    bool keep_area, faithful;
+};
+
 /* By method; methods without options have no member. */
 struct wd_method_options {
     struct wd_octree_options octree;
@@ -42,6 +49,7 @@ struct wd_method_options {
     struct wd_continuum_options continuum;
     struct wd_lod_options lod;
     struct wd_patch_options patch;
+    struct wd_dissolve_options dissolve;
 };
 
 /* One key a method, in the order of wd_scene_method_names; `table` holds its options. */

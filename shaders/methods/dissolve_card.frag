@@ -1,0 +1,50 @@
+#version 460
+/* Branches and leaves of a one-view billboard: whichever stands in front of the other comes first.
+ * What shows is decided by noise, as for cards, so that a tree can dissolve. */
+#include "shared/frame.h"
+#include "shared/dissolve.h"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(set = 0, binding = 4) uniform sampler2DArray leaf_albedo;
+layout(set = 0, binding = 5) uniform sampler2DArray leaf_normal;
+layout(set = 0, binding = 6) uniform sampler2DArray leaf_depth;
+layout(set = 0, binding = 7) uniform sampler2DArray wood_albedo;
+layout(set = 0, binding = 8) uniform sampler2DArray wood_normal;
+layout(set = 0, binding = 9) uniform sampler2DArray wood_depth;
+
+#include "lib/tree.glsl"
+#include "lib/card.glsl"
+#include "lib/card_flat.glsl"
+
+layout(location = 0) in vec2 in_uv;
+layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
+layout(location = 2) flat in uvec3 in_more; /* layer_lod, random, surface */
+
+layout(location = 0) out vec4 out_albedo;
+layout(location = 1) out vec4 out_normal;
+layout(location = 2) out uint out_surface;
+
+void main()
+{
+    float lod = card_lod(in_more.x);
+    vec3 uv = vec3(in_uv, card_layer(in_more.x));
+    vec4 leaf = textureLod(leaf_albedo, uv, lod), wood = textureLod(wood_albedo, uv, lod);
+    vec4 tint_show = unpackUnorm4x8(in_card.y);
+    float leaf_share = card_opacity(leaf.a, lod) * tint_show.a;
+    float wood_share = card_opacity(wood.a, lod) * tint_show.a;
+    bool wood_first = textureLod(wood_depth, uv, lod).r > textureLod(leaf_depth, uv, lod).r;
+    float first = wood_first ? wood_share : leaf_share;
+    float second = wood_first ? leaf_share : wood_share;
+    float noise = card_noise(in_uv, lod, in_more.y, frame.sample_index);
+    if (noise >= first + (1.0 - first) * second)
+        discard;
+    bool is_wood = wood_first == (noise < first);
+    vec4 packed = is_wood ? textureLod(wood_normal, uv, lod) : textureLod(leaf_normal, uv, lod);
+    vec3 albedo = is_wood ? wood.rgb : leaf.rgb * tint_show.rgb * 2.0;
+    if (frame.view_mode == WD_MODE_LOD)
+        albedo = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * packed.a);
+    out_albedo = vec4(albedo, packed.a);
+    out_normal = vec4(card_world_normal(packed.xyz, in_card) * 0.5 + 0.5,
+                      float(WD_MATERIAL_CARD) / 3.0);
+    out_surface = in_more.z;
+}

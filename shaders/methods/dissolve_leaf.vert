@@ -1,0 +1,34 @@
+#version 460
+/* Leaves of a tree, thinned: of the leaves in progressive order those beyond the kept share are
+ * left out, the others grow so that the crown's leaf area stays. */
+#include "shared/frame.h"
+#include "shared/dissolve.h"
+#include "shared/hash.h"
+
+layout(constant_id = 0) const uint SHADOW = 0u;
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_tree_vertex vertices[]; };
+layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_leafy_instance instances[]; };
+layout(scalar, set = 0, binding = 7) readonly buffer Places { wd_leaf_place places[]; };
+layout(scalar, push_constant) uniform Push { wd_leafy_push leafy; };
+
+#include "lib/tree.glsl"
+#include "lib/tree_vertex.glsl"
+#define push leafy.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
+#include "lib/tree_mesh.glsl"
+
+void main()
+{
+    wd_leafy_instance instance = instances[gl_InstanceIndex];
+    wd_tree_vertex v = vertices[gl_VertexIndex];
+    wd_leaf_place place = places[leafy.first_place + gl_VertexIndex];
+    if (place.rank >= instance.kept) {
+        gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
+        return;
+    }
+    v.position_m = place.center_m + (v.position_m - place.center_m) * instance.scale;
+    tree_mesh_vertex(wd_instance(instance.tree, instance.show), v);
+}
