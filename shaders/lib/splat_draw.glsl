@@ -50,8 +50,10 @@ void main()
         if (depth <= 0.0)
             continue;
         vec3 normal = splat_normal(splat);
-        float facing = abs(dot(normal, tree.toward)) * inversesqrt(dot(normal, normal));
-        float radius = tree.radius * inverse * sqrt(facing);
+        float facing = dot(normal, tree.toward) * inversesqrt(dot(normal, normal));
+        bool wood = (splat.z_normal & WD_SPLAT_Z_WOOD) != 0u;
+        float radius = (wood ? tree.wood_radius : tree.radius) * inverse
+                       * sqrt(wood ? max(facing, 0.0) : abs(facing));
         vec2 at = (clip.xy * inverse * 0.5 + 0.5) * size;
         draw_disc(at, radius, floatBitsToUint(depth), group * WD_ITEM_SPLATS + i + 1u);
     }

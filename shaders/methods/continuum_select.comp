@@ -106,7 +106,9 @@ void main()
     splats.per_stratum = min(uint(ceil(wanted / float(WD_SPLAT_STRATA))), WD_STRATUM_SPLATS);
     uint count = splats.per_stratum * WD_SPLAT_STRATA;
     float area_m2 = splat_model.area_m2 * pose.across * mix(pose.across, pose.up, 0.5);
-    splats.radius = sqrt(area_m2 / (3.14159265 * float(count))) * view.pixels;
+    float each_m = sqrt(area_m2 / (3.14159265 * float(count))) * view.pixels;
+    splats.radius = each_m * sqrt(wd_point_gain(splat_model.leaf, float(count), toward.z));
+    splats.wood_radius = each_m * sqrt(wd_point_gain(splat_model.wood, float(count), toward.z));
     splats.toward = model_direction(pose, toward);
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;

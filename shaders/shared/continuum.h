@@ -8,7 +8,7 @@
 #ifndef WD_SHARED_CONTINUUM_H
 #define WD_SHARED_CONTINUUM_H
 
-#include "shared/types.h"
+#include "shared/tree.h"
 
 /* Splats a model, in strata of equal count from the crown's top to the foot. */
 #define WD_SPLATS 16384u
@@ -21,8 +21,9 @@
 /* A splat: its place in the model's box (unorm 16) and its normal (octahedral, snorm 8). */
 struct wd_splat {
     uint32_t xy;       /* x in the low half */
-    uint32_t z_normal; /* z in the low half, normal above */
+    uint32_t z_normal; /* z in the low half, its last bit: wood; normal above */
 };
+#define WD_SPLAT_Z_WOOD 1u
 WD_STATIC_ASSERT_SIZE(wd_splat, 8);
 
 /* What a splat looks like: RGB albedo (square roots of it) and, in A, 7 bits of sky openness under one bit
@@ -33,6 +34,7 @@ struct wd_splat_model {
     WD_VEC3(min_m);
     WD_VEC3(extent_m);
     float area_m2;                        /* of the surface that the splats stand for */
+    WD_GAINS_STRUCT wood, leaf;           /* what keeps the mesh's coverage */
     float strata_top_m[WD_SPLAT_STRATA];  /* height below which a stratum's splats lie */
 };
 
@@ -75,7 +77,8 @@ struct wd_splat_tree {
     WD_VEC4(clip_x); WD_VEC4(clip_y); WD_VEC4(clip_w); /* clip_w: w, or z of a cascade */
     WD_VEC3(sway);
     WD_VEC3(toward);       /* unit, to the eye, in the model's axes */
-    float radius;          /* of a disc in pixels at w = 1 */
+    float radius;          /* of a leaf's disc in pixels at w = 1, facing the viewer */
+    float wood_radius;
     uint32_t tree;         /* in octree order */
     uint32_t first_splat;  /* of the model */
     uint32_t offset;       /* of the window in each stratum */

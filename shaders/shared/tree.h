@@ -94,10 +94,31 @@ WD_STATIC_ASSERT_SIZE(wd_tree_point, 24);
 #define WD_POINT_LEAF 0x100u
 #define WD_POINT_ONE_SIDED 0x200u
 
-/* Radii of points drawn as discs: pi r^2 = gain * (area of all points) / count, where the gain is
- * calibrated for counts WD_POINT_LEAST << k, k = 0 .. WD_POINT_GAINS - 1; linear in log2(count)
- * between them. */
+/* Points drawn as discs: pi r^2 = gain * facing * (area of all points) / count, where facing is the
+ * cosine between normal and view: its size for leaves, 0 for one-sided points seen from behind.
+ * Gains are calibrated for counts WD_POINT_LEAST << k, seen level and from straight above. */
 #define WD_POINT_LEAST 32
 #define WD_POINT_GAINS 10
+struct wd_point_gains {
+    float level[WD_POINT_GAINS], above[WD_POINT_GAINS];
+};
+#ifdef __STDC_VERSION__
+#define WD_GAINS_STRUCT struct wd_point_gains
+#else
+#define WD_GAINS_STRUCT wd_point_gains
+#endif
+
+/* Gain for `count` points seen from elevation asin(sine). */
+WD_FUNC float wd_point_gain(WD_GAINS_STRUCT gains, float count, float sine)
+{
+    float at = count / WD_FLOAT(WD_POINT_LEAST);
+    int k = 0;
+    for (; k < WD_POINT_GAINS - 2 && at > 2.0f; k++)
+        at *= 0.5f;
+    float part = at < 1.0f ? 0.0f : (at > 2.0f ? 1.0f : at - 1.0f);
+    float level = gains.level[k] + (gains.level[k + 1] - gains.level[k]) * part;
+    float above = gains.above[k] + (gains.above[k + 1] - gains.above[k]) * part;
+    return level + (above - level) * sine * sine;
+}
 
 #endif

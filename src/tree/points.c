@@ -4,45 +4,8 @@
 
 #include "base/color.h"
 #include "base/memory.h"
-#include "tree/grow.h"
 #include "tree/progressive.h"
 #include "tree/random.h"
-
-enum { LOOK_SIZE = 64 };
-
-static void mean_color(const uint8_t *rgba, uint32_t size, float mean[3])
-{
-    double sum[3] = {0}, linear[256];
-    size_t texels = (size_t)size * size;
-    for (int i = 0; i < 256; i++)
-        linear[i] = (double)wd_srgb_decode((uint8_t)i);
-    for (size_t i = 0; i < texels; i++)
-        for (int k = 0; k < 3; k++)
-            sum[k] += linear[rgba[4 * i + (size_t)k]];
-    for (int k = 0; k < 3; k++)
-        mean[k] = (float)(sum[k] / (double)texels);
-}
-
-struct wd_point_look wd_point_look_of(const uint8_t *bark, const uint8_t *leaf, uint32_t size)
-{
-    struct wd_point_look look;
-    mean_color(bark, size, look.bark);
-    mean_color(leaf, size, look.leaf);
-    return look;
-}
-
-struct wd_point_look wd_point_look_of_species(const struct wd_species *species)
-{
-    uint8_t *bark = wd_alloc(4 * LOOK_SIZE * LOOK_SIZE), *leaf = wd_alloc(4 * LOOK_SIZE * LOOK_SIZE);
-    wd_species_bark_texture(species, LOOK_SIZE, bark);
-    wd_species_leaf_texture(species, LOOK_SIZE, leaf);
-    struct wd_point_look look = wd_point_look_of(bark, leaf, LOOK_SIZE);
-    free(bark);
-    free(leaf);
-    return look;
-}
-
-/* --- sampling ---------------------------------------------------------------------------- */
 
 /* Triangles of wood, then of leaves, each along its own curve, with the area up to each. */
 struct surface {
@@ -129,7 +92,7 @@ static uint32_t pack_albedo(const float rgb[3], float sky)
 
 /* Sums of a triangle's vertices by weight. */
 struct blend {
-    float position_m[3], normal[3], tint[4], flexibility;
+    float position_m[3], normal[3], tint[4], uv[2], flexibility;
 };
 
 static struct blend blend_corners(const struct wd_tree_mesh *mesh, size_t triangle,
@@ -138,8 +101,11 @@ static struct blend blend_corners(const struct wd_tree_mesh *mesh, size_t triang
     struct blend blend = {0};
     for (size_t k = 0; k < 3; k++) {
         const struct wd_tree_vertex *vertex = &mesh->vertices[mesh->indices[3 * triangle + k]];
-        float normal[3];
+        float normal[3], uv[2];
         wd_unpack_normal(vertex->normal, normal);
+        wd_unpack_uv(vertex->uv, uv);
+        blend.uv[0] += weight[k] * uv[0];
+        blend.uv[1] += weight[k] * uv[1];
         for (int i = 0; i < 3; i++) {
             blend.position_m[i] += weight[k] * vertex->position_m[i];
             blend.normal[i] += weight[k] * normal[i];
@@ -149,6 +115,14 @@ static struct blend blend_corners(const struct wd_tree_mesh *mesh, size_t triang
         blend.flexibility += weight[k] * (float)(vertex->kind & 255);
     }
     return blend;
+}
+
+static const uint8_t *texel(const struct wd_point_look *look, uint32_t layer, const float uv[2])
+{
+    float size = (float)look->size;
+    uint32_t x = (uint32_t)((uv[0] - floorf(uv[0])) * size) % look->size;
+    uint32_t y = (uint32_t)((uv[1] - floorf(uv[1])) * size) % look->size;
+    return look->rgba + 4 * (((size_t)layer * look->size + y) * look->size + x);
 }
 
 static void sample_point(struct wd_tree_point *point, const struct surface *surface,
@@ -166,10 +140,13 @@ static void sample_point(struct wd_tree_point *point, const struct surface *surf
     struct wd_vec3 n = wd_v3_unit(WD_V3(blend.normal[0], blend.normal[1], blend.normal[2]));
     const float normal[3] = {n.x, n.y, n.z};
     bool wood = place < surface->wood_count;
+    uint32_t corner_index = surface->mesh->indices[3 * (size_t)surface->order[place]];
+    uint32_t layer = wd_vertex_layer(surface->mesh->vertices[corner_index].kind);
+    const uint8_t *color = texel(look, layer, blend.uv);
     float albedo[3];
     for (int k = 0; k < 3; k++) {
         point->position_m[k] = blend.position_m[k];
-        albedo[k] = blend.tint[k] * (wood ? look->bark[k] : look->leaf[k]);
+        albedo[k] = blend.tint[k] * wd_srgb_decode(color[k]);
     }
     point->normal = wd_pack_normal(normal);
     point->albedo = pack_albedo(albedo, blend.tint[3]);
@@ -203,20 +180,4 @@ void wd_tree_points_finish(struct wd_tree_points *points)
 {
     free(points->points);
     *points = (struct wd_tree_points){0};
-}
-
-float wd_tree_points_radius_m(const struct wd_tree_points *points, enum wd_point_use use,
-                              size_t count, float sine)
-{
-    int k = 0;
-    float at = (float)(count > WD_POINT_LEAST ? count : WD_POINT_LEAST) / WD_POINT_LEAST;
-    for (; at > 2 && k < WD_POINT_GAINS - 2; k++)
-        at *= 0.5f;
-    float part = fminf((float)wd_dlog((double)at) * 1.44269504f, 1);
-    const float(*gain)[WD_POINT_GAINS] = points->gain[use];
-    float level = wd_mixf(gain[WD_POINTS_LEVEL][k], gain[WD_POINTS_LEVEL][k + 1], part);
-    float above = wd_mixf(gain[WD_POINTS_ABOVE][k], gain[WD_POINTS_ABOVE][k + 1], part);
-    float area = points->leaf_area_m2 + points->wood_area_m2;
-    float each = wd_mixf(level, above, sine * sine) * area / (float)(count ? count : 1);
-    return sqrtf(each / (float)WD_PI);
 }

@@ -1,10 +1,11 @@
 #include "tree_test.h"
 
+#include "tree/look_map.h"
 #include "tree/points.h"
 #include "tree/progressive.h"
 #include "tree/random.h"
 
-enum { POINTS = 8192 };
+enum { POINTS = 8192, LOOK_SIZE = 32 };
 
 struct sampled {
     struct wd_arena arena;
@@ -19,8 +20,16 @@ static void sample_species(struct sampled *sampled, const char *name)
     *sampled = (struct sampled){0};
     sampled->species = test_species(&sampled->arena, name);
     assert_true(wd_tree_grow(&sampled->model, &sampled->species, &params, NULL));
-    const struct wd_point_look look = wd_point_look_of_species(&sampled->species);
+    uint8_t *rgba = malloc((size_t)WD_LOOK_LAYERS * 4 * LOOK_SIZE * LOOK_SIZE);
+    uint8_t detail[4 * LOOK_SIZE * LOOK_SIZE];
+    for (uint32_t layer = 0; layer < WD_LOOK_LAYERS; layer++) {
+        const struct wd_look_map map = {
+            LOOK_SIZE, rgba + (size_t)layer * 4 * LOOK_SIZE * LOOK_SIZE, detail};
+        wd_look_map_fill(&map, &sampled->species, layer);
+    }
+    const struct wd_point_look look = {rgba, LOOK_SIZE};
     assert_true(wd_tree_points_build(&sampled->points, &sampled->model.full, &look, POINTS));
+    free(rgba);
 }
 
 static void sampled_finish(struct sampled *sampled)
@@ -175,23 +184,26 @@ static void windows_keep_the_means(void **state)
 
 /* Share of a square about the tree that discs of the first `count` points cover, seen from a side
  * that was not calibrated, next to the mesh's. */
-static void cover(const struct sampled *sampled, size_t count, double *discs, double *mesh)
+static void cover(const struct sampled *sampled, size_t first, size_t count, double *discs,
+                  double *mesh)
 {
     enum { N = 384 };
     const struct wd_tree_points *points = &sampled->points;
     const struct wd_tree_mesh *full = &sampled->model.full;
-    struct wd_vec3 right = WD_V3(0.6f, -0.8f, 0), toward = WD_V3(0.8f, 0.6f, 0);
+    struct wd_vec3 right = WD_V3(0.28f, -0.96f, 0), toward = WD_V3(0.96f, 0.28f, 0);
     float scale = 0.9f * N / fmaxf(full->max_m[2], full->max_m[0] - full->min_m[0]);
     uint8_t *hit = calloc(2, (size_t)N * N);
-    float radius = scale * wd_tree_points_radius_m(points, WD_POINTS_ALL, count, 0);
-    for (size_t i = 0; i < count; i++) {
+    float each = (points->leaf_area_m2 + points->wood_area_m2) / (float)count / (float)WD_PI;
+    float leaf = scale * sqrtf(each * wd_point_gain(points->leaf, (float)count, 0));
+    float wood = scale * sqrtf(each * wd_point_gain(points->wood, (float)count, 0));
+    for (size_t i = first; i < first + count; i++) {
         const float *p = points->points[i].position_m;
         float n[3], x = 0.5f * N + scale * wd_v3_dot(WD_V3(p[0], p[1], 0), right);
         float y = 0.05f * N + scale * p[2];
         wd_unpack_normal(points->points[i].normal, n);
-        if (points->points[i].kind & WD_POINT_ONE_SIDED &&
-            wd_v3_dot(WD_V3(n[0], n[1], n[2]), toward) <= 0)
-            continue;
+        float facing = wd_v3_dot(WD_V3(n[0], n[1], n[2]), toward);
+        bool one_sided = points->points[i].kind & WD_POINT_ONE_SIDED;
+        float radius = one_sided ? wood * sqrtf(fmaxf(facing, 0)) : leaf * sqrtf(fabsf(facing));
         for (int py = (int)fmaxf(y - radius, 0); py < N && (float)py < y + radius; py++)
             for (int px = (int)fmaxf(x - radius, 0); px < N && (float)px < x + radius; px++) {
                 float dx = (float)px + 0.5f - x, dy = (float)py + 0.5f - y;
@@ -236,9 +248,14 @@ static void discs_cover_what_the_mesh_covers(void **state)
     for (int s = 0; s < MANY_LEAVES; s++) {
         struct sampled sampled;
         sample_species(&sampled, test_species_names[s]);
-        for (size_t count = 64; count <= POINTS; count *= 3) {
-            double discs, mesh;
-            cover(&sampled, count, &discs, &mesh);
+        for (size_t count = 64; count <= POINTS; count *= 4) {
+            double discs = 0, mesh = 0;
+            for (size_t window = 0; window < 4 && (window + 1) * count <= POINTS; window++) {
+                double one, other;
+                cover(&sampled, window * count, count, &one, &other);
+                discs += one;
+                mesh += other;
+            }
             if (fabs(discs / mesh - 1) > (count < 100 ? 0.08 : 0.05))
                 fail_msg("%s, %zu points: %.0f pixels, the mesh covers %.0f",
                          test_species_names[s], count, discs, mesh);
@@ -250,7 +267,8 @@ static void discs_cover_what_the_mesh_covers(void **state)
 static void broken_meshes_give_none_or_few(void **state)
 {
     (void)state;
-    const struct wd_point_look look = {{0.1f, 0.1f, 0.1f}, {0.1f, 0.1f, 0.1f}};
+    static const uint8_t rgba[4 * WD_LOOK_LAYERS];
+    const struct wd_point_look look = {rgba, 1};
     struct wd_tree_points points;
     struct wd_tree_mesh mesh = {0};
     assert_false(wd_tree_points_build(&points, &mesh, &look, 100));
