@@ -47,9 +47,14 @@ bake_look bake_look_of(wd_tree_vertex a, wd_tree_vertex b, wd_tree_vertex c, flo
     look.from = unpackHalf2x16(a.uv);
     look.to_b = unpackHalf2x16(b.uv) - look.from;
     look.to_c = unpackHalf2x16(c.uv) - look.from;
-    look.layer = float(push.look_layer + wd_vertex_layer(a.kind));
+    float turn = look.to_b.x * look.to_c.y - look.to_b.y * look.to_c.x;
+    uint layer = wd_vertex_layer(a.kind);
+    /* y runs down: a sheet whose texture runs as it was drawn shows its upper side */
+    if (layer == WD_LOOK_LEAF && turn * area > 0.0)
+        layer = WD_LOOK_LEAF_BACK;
+    look.layer = float(push.look_layer + layer);
     vec2 size = vec2(textureSize(looks, 0).xy);
-    float texels = abs(look.to_b.x * look.to_c.y - look.to_b.y * look.to_c.x) * size.x * size.y;
+    float texels = abs(turn) * size.x * size.y;
     look.lod = 0.5 * log2(max(texels / abs(area), 1.0));
     return look;
 }

@@ -39,10 +39,10 @@ vec2 leaf_blade(vec3 normal, vec3 eye)
 
 /* What a leaf's wax mirrors of the sun, relative to a lit wall: Blinn and Phong's lobe with the
  * normal reflection of wax (0.04), as wide as GGX of this roughness. Far off, leaves of every
- * direction share a pixel and the lobe widens. */
+ * direction share a pixel and the lobe widens; no leaf is flat enough for less than 0.42. */
 float leaf_gloss(wd_pixel pixel, float roughness, float near)
 {
-    float wide = max(mix(0.8, roughness, near), 0.2);
+    float wide = max(mix(0.8, roughness, near), 0.42);
     wide *= wide;
     float power = max(2.0 / (wide * wide) - 2.0, 1.0);
     float shine = abs(dot(pixel.normal, normalize(frame.sun_direction - pixel.direction)));

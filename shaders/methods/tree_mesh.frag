@@ -32,17 +32,22 @@ struct wd_surface {
     float openness;
 };
 
+/* Where the look of this side is: leaves have another below. */
+vec3 seen_side()
+{
+    bool leaf = (uint(in_uv.z + 0.5) & (WD_LOOK_LAYERS - 1u)) == WD_LOOK_LEAF;
+    bool back = leaf && !look_upper(in_uv.xy, (in_flat.y & 4u) != 0u);
+    return vec3(in_uv.xy, in_uv.z + (back ? float(WD_LOOK_LEAF_BACK - WD_LOOK_LEAF) : 0.0));
+}
+
 /* A leaf as the sheet that it is: its lower side, its veins, and where the sun shines through, what
  * comes through. */
-void detail_leaf(inout wd_surface leaf, vec4 look, float near)
+void detail_leaf(inout wd_surface leaf, float near)
 {
-    vec3 uv = in_uv, face = look_face(in_place.xyz);
-    bool flower = (uint(in_uv.z + 0.5) & (WD_LOOK_LAYERS - 1u)) == WD_LOOK_FLOWER;
-    if (!flower && !look_upper(in_uv.xy, (in_flat.y & 4u) != 0u))
-        uv.z += float(WD_LOOK_LEAF_BACK - WD_LOOK_LEAF);
-    wd_relief relief = look_relief(look_details, look_frame(face, in_place.xyz, in_uv.xy), uv);
+    vec3 face = look_face(in_place.xyz);
+    wd_relief relief =
+        look_relief(look_details, look_frame(face, in_place.xyz, in_uv.xy), seen_side());
     float lit = dot(face, frame.sun_direction);
-    leaf.albedo = texture(looks, uv).rgb * in_tint.rgb;
     float through = mix(1.0, 2.0 * relief.rest, near * smoothstep(0.05, -0.05, lit));
     leaf.albedo *= through;
     vec3 own = dot(relief.normal, in_normal) < 0.0 ? -relief.normal : relief.normal;
@@ -66,7 +71,7 @@ void main()
     float noise = wd_hash_unit(in_flat.z);
     if (noise >= in_show)
         discard;
-    vec4 look = texture(looks, in_uv);
+    vec4 look = texture(looks, seen_side());
     if (look.a < WD_LOOK_CUT)
         discard;
     uint material = in_flat.y & 3u;
@@ -74,7 +79,7 @@ void main()
     if (DETAIL != 0u) {
         float near = 1.0 - smoothstep(RELIEF_WHOLE_M, RELIEF_NONE_M, length(in_place.xyz));
         if (material == WD_MATERIAL_LEAF)
-            detail_leaf(surface, look, near);
+            detail_leaf(surface, near);
         else
             detail_wood(surface, near);
     }

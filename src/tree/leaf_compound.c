@@ -55,8 +55,8 @@ static void add_pinna(struct wd_leaf_template *leaf, const struct wd_blade_place
 {
     for (int i = 0; i < 2 * PINNULES; i++) {
         float t = ((float)(i / 2) + 0.3f) / PINNULES, side = i & 1 ? -1.0f : 1.0f;
-        float reach = place->width * (0.55f - 0.42f * t);
-        float foot = place->length / PINNULES * 0.92f;
+        float reach = place->width * (0.68f - 0.38f * t);
+        float foot = place->length / PINNULES * 1.1f;
         struct wd_vec3 p = wd_v3_mad(place->foot, place->along, t * place->length);
         p = wd_v3_mad(p, place->above, -0.08f * t * t * place->length);
         struct wd_vec3 out = wd_v3_mad(wd_v3_scale(place->across, side), place->along, 0.35f);

@@ -84,6 +84,8 @@ static void add_flower(struct wd_tree_mesh *mesh, const struct wd_leaf *leaf,
     brush.along = wd_v3_square(leaf->axis, brush.above);
     brush.across = wd_v3_cross(brush.along, brush.above);
     brush.size_m = 0.01f * species->flower.size_cm * wd_random_range(&random, 0.75f, 1.1f);
+    if (species->leaf.shape == WD_LEAF_BLADE) /* a plume grows with its tuft */
+        brush.size_m *= fminf(leaf->size_m / (0.01f * species->leaf.length_cm), 1);
     brush.position_m = wd_v3_mad(leaf->position_m, leaf->shading, 0.3f * leaf->size_m);
     brush.own = 0.6f;
     brush.tint = wd_pack_tint(white, leaf->sky);
@@ -172,20 +174,25 @@ void wd_foliage_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage
     wd_leaf_template_finish(&leaf);
     add_leaves(mesh, foliage, species, outlined ? WD_LEAF_AS_BLADE : WD_LEAF_AS_KITE);
     if (species->flower.count > 0) {
-        wd_flower_template_init(&flower, species);
+        wd_flower_template_init(&flower, species, WD_LEAF_AS_BLADE);
         add_flowers(mesh, foliage, species, &flower);
         wd_leaf_template_finish(&flower);
     }
 }
 
-/* Fronds keep their shape with a quarter of the leaflets, each four times as wide. */
+/* Feathers keep their shape with a quarter of the leaflets, each four times as wide; a fern's pinnae
+ * become single leaflets. */
 static struct wd_species coarser_fronds(const struct wd_species *species)
 {
     struct wd_species coarse = *species;
+    if (species->leaf.compound == WD_COMPOUND_BIPINNATE) {
+        coarse.leaf.compound = WD_COMPOUND_PINNATE;
+        coarse.leaf.shape = WD_LEAF_LANCEOLATE;
+        return coarse;
+    }
     int64_t leaflets = species->leaf.leaflets / 4 > 6 ? species->leaf.leaflets / 4 : 6;
     coarse.leaf.leaflet_width_cm *= (float)species->leaf.leaflets / (float)leaflets;
     coarse.leaf.leaflets = leaflets;
-    coarse.leaf.compound = WD_COMPOUND_PINNATE;
     return coarse;
 }
 
@@ -238,10 +245,8 @@ void wd_foliage_mesh_reduced(struct wd_tree_mesh *mesh, const struct wd_foliage 
         add_kites(mesh, foliage, species, count < foliage->count ? count : foliage->count);
     }
     if (species->flower.count > 0) {
-        struct wd_species plain = *species;
         struct wd_leaf_template flower;
-        plain.flower.petals = species->flower.petals > 3 ? 3 : species->flower.petals;
-        wd_flower_template_init(&flower, &plain);
+        wd_flower_template_init(&flower, species, WD_LEAF_AS_KITE);
         add_flowers(mesh, foliage, species, &flower);
         wd_leaf_template_finish(&flower);
     }

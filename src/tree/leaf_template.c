@@ -82,7 +82,7 @@ void wd_leaf_template_init(struct wd_leaf_template *leaf, const struct wd_specie
 }
 
 /* Petals in rings, the inner ones smaller and steeper. */
-static void add_petals(struct wd_leaf_template *flower, int petals)
+static void add_petals(struct wd_leaf_template *flower, int petals, enum wd_leaf_form form)
 {
     static const struct wd_leaf_outline petal = {0, {{0.62f, 0.3f}, {1, 0.68f}, {0.6f, 0.96f}}, 3,
                                                  0.2f, -0.18f, WD_VEINS_PARALLEL, 0, 0};
@@ -96,31 +96,40 @@ static void add_petals(struct wd_leaf_template *flower, int petals)
         struct wd_blade_place place = wd_blade_place(WD_V3(0, 0, 0.02f * (float)ring), along,
                                                      WD_V3(0, 0, 1), length,
                                                      length * (each > 5 ? 0.85f : 1.0f));
-        wd_leaf_add_blade(flower, &petal, &place);
+        if (form == WD_LEAF_AS_KITE)
+            wd_leaf_add_kite(flower, &petal, &place);
+        else
+            wd_leaf_add_blade(flower, &petal, &place);
     }
 }
 
-/* Florets in a spiral around an upright axis, a cone in all. */
-static void add_panicle(struct wd_leaf_template *flower)
+/* Florets in a spiral around an upright axis, a cone in all; of grass on a stalk. */
+static void add_panicle(struct wd_leaf_template *flower, float stalk, int florets)
 {
-    enum { FLORETS = 26 };
-    for (int i = 0; i < FLORETS; i++) {
-        float t = (float)i / FLORETS, angle = (float)i * 2.3999632f, radius = 0.3f * (1 - 0.8f * t);
+    float larger = sqrtf(26 / (float)florets);
+    if (stalk > 0)
+        wd_leaf_add_stalk(flower, WD_V3(0, 0, 0), WD_V3(0, 0, stalk + 0.6f), WD_V3(1, 0, 0), 0.03f);
+    for (int i = 0; i < florets; i++) {
+        float t = (float)i / (float)florets, angle = (float)i * 2.3999632f, radius = 0.3f * (1 - 0.8f * t);
         struct wd_vec3 out = wd_v3_turn(WD_V3(1, 0, 0), WD_V3(0, 1, 0), angle);
-        struct wd_vec3 p = wd_v3_add(wd_v3_scale(out, 0.4f * radius), WD_V3(0, 0, 0.1f + 0.85f * t));
+        struct wd_vec3 p = wd_v3_add(wd_v3_scale(out, 0.4f * radius), WD_V3(0, 0, stalk + 0.1f + 0.85f * t));
         struct wd_vec3 d = wd_v3_unit(wd_v3_add(out, WD_V3(0, 0, 0.5f)));
-        wd_leaf_add_needle(flower, p, d, wd_v3_cross(d, out), 0.7f * radius + 0.06f,
-                           0.35f * radius + 0.05f);
+        wd_leaf_add_needle(flower, p, d, wd_v3_cross(d, out), larger * (0.7f * radius + 0.06f),
+                           larger * (0.35f * radius + 0.05f));
     }
 }
 
-void wd_flower_template_init(struct wd_leaf_template *flower, const struct wd_species *species)
+void wd_flower_template_init(struct wd_leaf_template *flower, const struct wd_species *species,
+                             enum wd_leaf_form form)
 {
+    bool grass = species->leaf.shape == WD_LEAF_BLADE &&
+                 species->leaf.compound == WD_COMPOUND_SIMPLE;
     *flower = (struct wd_leaf_template){0};
     if (species->flower.petals > 0)
-        add_petals(flower, (int)species->flower.petals);
+        add_petals(flower, (int)species->flower.petals, form);
     else
-        add_panicle(flower);
+        add_panicle(flower, grass ? 0.5f * species->leaf.length_cm / species->flower.size_cm : 0,
+                    form == WD_LEAF_AS_KITE ? 6 : 26);
     for (size_t i = 0; i < flower->corner_count; i++)
         flower->corners[i].kind |= WD_VERTEX_FLOWER;
 }

@@ -32,8 +32,9 @@ enum wd_leaf_form {
 enum { WD_LEAF_VARIANTS = 4 };
 void wd_leaf_template_init(struct wd_leaf_template *leaf, const struct wd_species *species,
                            enum wd_leaf_form form, uint32_t variant);
-/* A flower (of petals) or panicle of unit size that faces z. */
-void wd_flower_template_init(struct wd_leaf_template *flower, const struct wd_species *species);
+/* A flower (of petals) or panicle of unit size that faces z; a kite of it has a few large parts. */
+void wd_flower_template_init(struct wd_leaf_template *flower, const struct wd_species *species,
+                             enum wd_leaf_form form);
 void wd_leaf_template_finish(struct wd_leaf_template *leaf);
 
 float wd_leaf_template_area(const struct wd_leaf_template *leaf);
