@@ -59,11 +59,13 @@ struct wd_place_layer {
 };
 
 /* One species of a layer in the table. */
-#define WD_PLACE_PICK_WORDS 4u
+#define WD_PLACE_PICK_WORDS 6u
 #define WD_PICK_THRESHOLD 0u /* picked where the hash is below; not read of the last species */
 #define WD_PICK_SPECIES 1u
 #define WD_PICK_CROWN 2u     /* where its crown table begins: crown diameter in quarters of a cm */
 #define WD_PICK_CROWN_SIZE 3u
+#define WD_PICK_LOW_CM 4u    /* heights that its variants stand for, from the first variant's */
+#define WD_PICK_SPAN_CM 5u   /* to the last one's; 0: all for any height */
 #define WD_CROWN_STEP_CM 32u /* tree height from one entry of a crown table to the next */
 
 #endif

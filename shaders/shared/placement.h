@@ -255,6 +255,21 @@ WD_FUNC uint32_t wd_place_height_cm(WD_PLACE_IN uint32_t tree_key)
     return WD_LAYER(height_min_cm) + WD_MULTIPLY_HIGH(random, WD_LAYER(height_span_cm));
 }
 
+/* The variant whose height is nearest, or by chance one beside it: variants stand for equal parts
+ * of [low, low + span] in turn. At most 65535 cm and 256 variants. */
+WD_FUNC uint32_t wd_place_variant(uint32_t random, uint32_t variants, uint32_t height_cm,
+                                  uint32_t low_cm, uint32_t span_cm)
+{
+    if (span_cm == 0u)
+        return WD_MULTIPLY_HIGH(random, variants);
+    uint32_t above_cm = height_cm < low_cm ? 0u : height_cm - low_cm;
+    if (above_cm > span_cm)
+        above_cm = span_cm;
+    uint32_t place = above_cm * variants * 128u / span_cm + (random >> 24); /* a variant is 128 */
+    uint32_t variant = place < 128u ? 0u : (place - 128u) / 128u;
+    return variant < variants ? variant : variants - 1u;
+}
+
 /* The tree of that key and height; its id is 0 yet. */
 WD_FUNC WD_STRUCT wd_tree wd_place_grow(WD_PLACE_IN uint32_t tree_key, int32_t x_mm, int32_t y_mm,
                                         int32_t z_mm, uint32_t height_cm)
@@ -263,7 +278,9 @@ WD_FUNC WD_STRUCT wd_tree wd_place_grow(WD_PLACE_IN uint32_t tree_key, int32_t x
     uint32_t pick = wd_place_pick(WD_PLACE_PASS tree_key);
     uint32_t aspect = WD_LAYER(aspect_min) + WD_MULTIPLY_HIGH(wd_hash2(tree_key, WD_FOR_ASPECT),
                                                               WD_LAYER(aspect_span));
-    uint32_t variant = WD_MULTIPLY_HIGH(wd_hash2(tree_key, WD_FOR_VARIANT), WD_LAYER(variants));
+    uint32_t variant = wd_place_variant(wd_hash2(tree_key, WD_FOR_VARIANT), WD_LAYER(variants),
+                                        height_cm, WD_TABLE_AT(pick + WD_PICK_LOW_CM),
+                                        WD_TABLE_AT(pick + WD_PICK_SPAN_CM));
     tree.x_mm = x_mm;
     tree.y_mm = y_mm;
     tree.z_mm = z_mm;

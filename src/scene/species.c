@@ -100,3 +100,12 @@ double wd_species_crown_of_height_m(const struct wd_species *species, double hei
     double sure_m = sure_height_m(species, height_m);
     return wd_species_crown_m(species, wd_species_dbh_cm(species, sure_m)) * height_m / sure_m;
 }
+
+void wd_species_variant_range_m(const struct wd_species *species, float range_m[2])
+{
+    float low = 0.45f * species->typical_height_m, high = 1.1f * species->typical_height_m;
+    range_m[0] = low > species->height_range_m[0] ? low : species->height_range_m[0];
+    range_m[1] = high < species->height_range_m[1] ? high : species->height_range_m[1];
+    if (range_m[1] < range_m[0])
+        range_m[1] = range_m[0];
+}

@@ -196,6 +196,10 @@ double wd_species_stem_of_height_cm(const struct wd_species *species, double hei
  * the greatest height (where any diameter fits) crowns scale with height. */
 double wd_species_crown_of_height_m(const struct wd_species *species, double height_m);
 
+/* Heights that a species' variants stand for, in equal parts: from half grown to tall, so that
+ * young trees are not scaled down old ones. The range is empty where the species' own is. */
+void wd_species_variant_range_m(const struct wd_species *species, float range_m[2]);
+
 double wd_species_height_at_age_m(const struct wd_species *species, double age_years);
 /* The inverse, by bisection; clamped to 0.01 .. span_years. */
 double wd_species_age_years(const struct wd_species *species, double height_m);

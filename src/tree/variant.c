@@ -4,14 +4,12 @@
 
 #include "tree/look.h"
 
-/* Variants spread over the heights that the species reaches, so that young trees are not scaled
- * down old ones: variant v stands for the middle of its part of the range. */
+/* The middle of its part of the range. */
 static float variant_height(const struct wd_species *species, uint32_t variant, uint32_t variants)
 {
-    float share = ((float)variant + 0.5f) / (float)variants;
-    float low = fmaxf(species->height_range_m[0], 0.45f * species->typical_height_m);
-    float high = fminf(species->height_range_m[1], 1.1f * species->typical_height_m);
-    return low + (high - low) * share;
+    float share = ((float)variant + 0.5f) / (float)variants, range_m[2];
+    wd_species_variant_range_m(species, range_m);
+    return range_m[0] + (range_m[1] - range_m[0]) * share;
 }
 
 struct wd_grow_params wd_variant_params(const struct wd_scene *scene, uint32_t index)

@@ -126,7 +126,10 @@ static void plant_tree(struct planting *planting, size_t index, const double at_
     struct wd_ground_place place = wd_ground_locate(&planting->ground, tree.x_mm, tree.y_mm);
     uint32_t height_cm = height_cm_of(planting->inventory, from, species, key);
     tree.z_mm = wd_ground_mm(wd_ground_height(&planting->ground, place));
-    tree.kind = from->species | WD_MULTIPLY_HIGH(wd_hash2(key, WD_FOR_VARIANT), variants) << 16;
+    uint32_t range_cm[2];
+    wd_variant_range_cm(species, range_cm);
+    tree.kind = from->species | wd_place_variant(wd_hash2(key, WD_FOR_VARIANT), variants,
+                                                 height_cm, range_cm[0], range_cm[1]) << 16;
     tree.size = height_cm | crown_cm_of(from, species, height_cm) << 16;
     tree.look = wd_place_look(key, 64);
     tree.random = wd_hash2(key, WD_FOR_OWN);

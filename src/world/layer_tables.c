@@ -53,6 +53,14 @@ double wd_crown_cm(const struct wd_species *species, double height_cm)
     return fmin(fmax(crown_m * 100.0, 1.0), 65535.0);
 }
 
+void wd_variant_range_cm(const struct wd_species *species, uint32_t range_cm[2])
+{
+    float range_m[2];
+    wd_species_variant_range_m(species, range_m);
+    range_cm[0] = (uint32_t)((double)range_m[0] * 100.0 + 0.5);
+    range_cm[1] = (uint32_t)(((double)range_m[1] - (double)range_m[0]) * 100.0 + 0.5);
+}
+
 static void push_crowns(struct wd_placement *placement, const struct wd_species *species,
                         uint32_t max_cm)
 {
@@ -126,6 +134,10 @@ bool wd_layer_tables_init(struct wd_placement *placement, const struct wd_placem
         push(placement, picks[i].species);
         push(placement, first_crown + (uint32_t)i * crown_size);
         push(placement, crown_size);
+        uint32_t range_cm[2];
+        wd_variant_range_cm(&scene->species[picks[i].species], range_cm);
+        push(placement, range_cm[0]);
+        push(placement, range_cm[1]);
     }
     for (size_t i = 0; i < count; i++)
         push_crowns(placement, &scene->species[picks[i].species], max_cm);

@@ -58,6 +58,9 @@ bool wd_layer_map_load(struct wd_placement *placement, const struct wd_placement
 bool wd_layer_tables_init(struct wd_placement *placement, const struct wd_placement_params *params);
 bool wd_too_many_trees(const struct wd_placement_params *params, const char *what);
 
+/* Heights that a species' variants stand for: where they begin, and how far they reach. */
+void wd_variant_range_cm(const struct wd_species *species, uint32_t range_cm[2]);
+
 /* Crown diameter in cm of a tree of that height by its species' allometry. */
 double wd_crown_cm(const struct wd_species *species, double height_cm);
 

@@ -417,6 +417,27 @@ static void test_too_many(void **state)
     stage_close(&stage);
 }
 
+/* A tree is drawn by a variant about as high as itself; any of them where heights say nothing. */
+static void variants_stand_for_heights(void **state)
+{
+    (void)state;
+    uint32_t seen[8] = {0};
+    for (uint32_t i = 0; i < 4000; i++) {
+        uint32_t random = wd_hash1(i);
+        assert_int_equal(wd_place_variant(random, 8, 0, 1000, 800), 0);
+        assert_true(wd_place_variant(random, 8, 65535, 1000, 800) >= 6);
+        assert_int_equal(wd_place_variant(random, 1, 1400, 1000, 800), 0);
+        uint32_t near = wd_place_variant(random, 8, 1450, 1000, 800); /* the middle of the fifth */
+        assert_true(near >= 3 && near <= 5);
+        seen[near]++;
+    }
+    assert_true(seen[3] > 800 && seen[4] > 1800 && seen[5] > 800);
+    for (uint32_t i = 0; i < 4000; i++)
+        seen[wd_place_variant(wd_hash1(i), 8, 1450, 1000, 0)]++;
+    for (int i = 0; i < 8; i++)
+        assert_true(seen[i] > 350);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -438,6 +459,7 @@ int main(void)
         cmocka_unit_test(test_not_in_holes),
         cmocka_unit_test(test_on_the_ground),
         cmocka_unit_test(test_too_many),
+        cmocka_unit_test(variants_stand_for_heights),
     };
     return cmocka_run_group_tests_name("placement", tests, NULL, NULL);
 }

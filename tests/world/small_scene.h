@@ -31,6 +31,7 @@ static inline void small_scene_init(struct small_scene *small)
         small->files[i] = (struct wd_string_pair){names[i], "none"};
         small->species[i] = (struct wd_species){.name = names[i], .latin = latin[i],
                                                 .typical_height_m = 20.0f,
+                                                .height_range_m = {1.0f, 40.0f},
                                                 .allometry = allometry[i]};
     }
     small->scene = (struct wd_scene){
