@@ -114,6 +114,14 @@ struct wd_scene_path {
     size_t key_count;
 };
 
+/* A moment and a place on earth. */
+struct wd_scene_time {
+    const char *date;        /* "YYYY-MM-DD", or NULL: summer. Says the season */
+    const char *clock;       /* "HH:MM[:SS]", or NULL: the sun stands where "sun" says */
+    double utc_offset_h;     /* of the clock; NaN: the zone of the longitude */
+    double latitude_deg, longitude_deg; /* north, east; NaN: not given */
+};
+
 struct wd_grow_params;
 struct wd_scene {
     const char *path;        /* of the file */
@@ -131,6 +139,7 @@ struct wd_scene {
     size_t layer_count;
     struct wd_scene_inventory *inventories;
     size_t inventory_count;
+    struct wd_scene_time time;
     struct {
         double azimuth_deg;  /* clockwise from north */
         double elevation_deg;
@@ -139,6 +148,7 @@ struct wd_scene {
     } sun;
     struct {
         double turbidity;    /* 1.8 clear .. 10 hazy */
+        double cover;        /* of clouds: 0 clear .. 1 overcast */
         double strength;
     } sky;
     struct {
@@ -162,6 +172,7 @@ struct wd_scene {
         double rock_slope_deg;
         double snow_line_m;  /* above the world's zero; 0: none */
         double tree_line_m;  /* 0: none */
+        double snow;         /* share of level ground and of upper sides under fresh snow */
     } ground;
     struct wd_scene_camera *cameras;
     size_t camera_count;

@@ -214,6 +214,7 @@ bool wd_scene_check(void *object, const struct wd_keys_place *place)
     if (scene->camera_count == 0)
         add_automatic_camera(scene, arena);
     ok = wd_scene_load_species(scene, place) && ok;
+    ok = ok && wd_scene_apply_time(scene, place);
     const struct wd_scene_params *params = wd_keys_user(place);
     bool bare = scene->layer_count == 0 && scene->inventory_count == 0;
     if (ok && bare && !(params && params->planted))

@@ -12,6 +12,10 @@ bool wd_scene_check_layer(void *object, const struct wd_keys_place *place);
 bool wd_scene_check_inventory(void *object, const struct wd_keys_place *place);
 bool wd_scene_check_camera(void *object, const struct wd_keys_place *place);
 bool wd_scene_check_path(void *object, const struct wd_keys_place *place);
+bool wd_scene_check_time(void *object, const struct wd_keys_place *place);
+
+/* Sets the sun and the season of the loaded species from date, clock and place. */
+bool wd_scene_apply_time(struct wd_scene *scene, const struct wd_keys_place *place);
 
 /* Puts the data directory of wd_scene_params, which is the place's user, for ${data}. `*file` may
  * be NULL. */

@@ -47,11 +47,32 @@ static const struct wd_key terrain_keys[] = {
 static const struct wd_keys terrain_table = {
     "terrain", terrain_keys, sizeof(struct wd_scene_terrain), wd_scene_check_terrain};
 
+#define TIME(member) offsetof(struct wd_scene_time, member)
+static const struct wd_key time_keys[] = {
+    {"date", WD_KEY_STRING, TIME(date),
+     .doc = "Day as \"YYYY-MM-DD\": the season that leaves show; summer where absent."},
+    {"clock", WD_KEY_STRING, TIME(clock),
+     .doc = "Time of day as \"HH:MM\" or \"HH:MM:SS\": where the sun stands then. Needs date, "
+            "latitude_deg and longitude_deg."},
+    {"utc_offset_h", WD_KEY_DOUBLE, TIME(utc_offset_h), -14, 14,
+     .doc = "What the clock is ahead of universal time, in hours; by default that of the "
+            "longitude's zone, without summer time.", .flags = WD_KEY_NAN_IF_ABSENT},
+    {"latitude_deg", WD_KEY_DOUBLE, TIME(latitude_deg), -90, 90, .doc = "North, in degrees.",
+     .flags = WD_KEY_NAN_IF_ABSENT},
+    {"longitude_deg", WD_KEY_DOUBLE, TIME(longitude_deg), -180, 180, .doc = "East, in degrees.",
+     .flags = WD_KEY_NAN_IF_ABSENT},
+    {0},
+};
+static const struct wd_keys time_table = {"time", time_keys, sizeof(struct wd_scene_time),
+                                          wd_scene_check_time};
+
 static const struct wd_key sun_keys[] = {
-    {"azimuth_deg", WD_KEY_DOUBLE, IN(sun, azimuth_deg), -360, 360, "150",
-     "Where the sun stands, clockwise from north, in degrees."},
-    {"elevation_deg", WD_KEY_DOUBLE, IN(sun, elevation_deg), -90, 90, "35",
-     "Height of the sun above the horizon in degrees."},
+    {"azimuth_deg", WD_KEY_DOUBLE, IN(sun, azimuth_deg), -360, 360,
+     .doc = "Where the sun stands, clockwise from north, in degrees; 150 where neither it nor a "
+            "clock is given.", .flags = WD_KEY_NAN_IF_ABSENT},
+    {"elevation_deg", WD_KEY_DOUBLE, IN(sun, elevation_deg), -90, 90,
+     .doc = "Height of the sun above the horizon in degrees; 35 where neither it nor a clock is "
+            "given.", .flags = WD_KEY_NAN_IF_ABSENT},
     {"angular_diameter_deg", WD_KEY_DOUBLE, IN(sun, angular_diameter_deg), 0, 20, "0.53",
      "Width of the sun's disc in degrees; softens shadows."},
     {"strength", WD_KEY_DOUBLE, IN(sun, strength), 0, 1000, "1", "1: the sun of a clear day."},
@@ -61,6 +82,7 @@ static const struct wd_keys sun_table = GROUP("sun", sun_keys, sun);
 
 static const struct wd_key sky_keys[] = {
     {"turbidity", WD_KEY_DOUBLE, IN(sky, turbidity), 1.5, 20, "2.5", "1.8 clear to 10 hazy."},
+    {"cover", WD_KEY_DOUBLE, IN(sky, cover), 0, 1, "0", "Clouds: 0 clear, 1 overcast."},
     {"strength", WD_KEY_DOUBLE, IN(sky, strength), 0, 1000, "1", "Factor on the sky's light."},
     {0},
 };
@@ -115,6 +137,8 @@ static const struct wd_key ground_keys[] = {
      "Snow lies above this height over the world's zero, in metres; 0: nowhere."},
     {"tree_line_m", WD_KEY_DOUBLE, IN(ground, tree_line_m), -12000, 12000, "0",
      "Grass thins above this height over the world's zero, in metres; 0: nowhere."},
+    {"snow", WD_KEY_DOUBLE, IN(ground, snow), 0, 1, "0",
+     "Share of level ground and of the upper sides of trees that lies under fresh snow."},
     {0},
 };
 static const struct wd_keys ground_table = GROUP("ground", ground_keys, ground);
@@ -156,6 +180,8 @@ static const struct wd_key scene_keys[] = {
      .count_offset = SCENE(layer_count), .doc = "Trees placed by rule."},
     {"inventories", WD_KEY_LIST, SCENE(inventories), .table = &wd_scene_inventory_keys,
      .count_offset = SCENE(inventory_count), .doc = "Trees from tables."},
+    {"time", WD_KEY_OBJECT, SCENE(time), .table = &time_table,
+     .doc = "Date, time of day and place: season and sun."},
     {"sun", WD_KEY_OBJECT, SCENE(sun), .table = &sun_table, .doc = "Sun."},
     {"sky", WD_KEY_OBJECT, SCENE(sky), .table = &sky_table, .doc = "Sky."},
     {"fog", WD_KEY_OBJECT, SCENE(fog), .table = &fog_table, .doc = "Haze."},
