@@ -1,5 +1,6 @@
 /* What the G-buffer says of a pixel. Expects `frame` and the four images. */
 #include "lib/pixel.glsl"
+#include "shared/snow.h"
 
 wd_pixel gbuffer_pixel(ivec2 at, float depth)
 {
@@ -15,5 +16,7 @@ wd_pixel gbuffer_pixel(ivec2 at, float depth)
     pixel.normal = normalize(normal.xyz * 2.0 - 1.0 + vec3(0.0, 0.0, 1e-6));
     pixel.material = uint(normal.w * 3.0 + 0.5);
     pixel.surface = texelFetch(gbuffer_surface, at, 0).x;
+    if (frame.snow > 0.0 && pixel.surface != 0u && frame.view_mode != WD_MODE_LOD)
+        pixel.albedo = wd_snow_on(pixel.albedo, pixel.normal, pixel.openness);
     return pixel;
 }

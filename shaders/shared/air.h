@@ -17,7 +17,8 @@ WD_FUNC WD_VECTOR wd_sky_toward(WD_FRAME_IN WD_VECTOR direction)
         WD_V3(wd_sky_radiance(wd_sky_band_of(0, turbidity), v, s, air, haze, sun.z),
               wd_sky_radiance(wd_sky_band_of(1, turbidity), v, s, air, haze, sun.z),
               wd_sky_radiance(wd_sky_band_of(2, turbidity), v, s, air, haze, sun.z));
-    return wd_v3_scale(radiance, WD_FRAME(sky_strength));
+    return wd_v3_add(wd_v3_scale(radiance, WD_FRAME(sky_strength)),
+                     wd_v3_scale(WD_FRAME_V3(sky_cloud), wd_cloud_gradient(direction.z)));
 }
 
 /* The sky at the horizon below or above a direction: what haze fades into. `glow` is a factor on

@@ -54,6 +54,8 @@ struct wd_frame_uniforms {
     float near_m;
     WD_VEC3(sky_horizon);            /* radiance there without the glow */
     float fog_per_m;                 /* extinction at full density */
+    WD_VEC3(sky_cloud);              /* radiance of clouds at the zenith, as mixed into the sky */
+    float snow;                      /* share of upper sides under snow, 0..1 */
     float fog_height_m;
     float fog_base_m;                /* above the world's zero */
     float wind_speed_mps, wind_gust;

@@ -4,6 +4,7 @@
 #define WD_SHARED_GROUND_COVER_H
 
 #include "shared/noise.h"
+#include "shared/snow.h"
 
 struct wd_ground_look {
     WD_VECTOR albedo;
@@ -89,11 +90,14 @@ WD_FUNC WD_VECTOR wd_floor_albedo(WD_FRAME_IN WD_STRUCT wd_ground_noise n)
     return wd_v3_scale(wd_v3_mix(bare, green, 0.7f * moss), WD_MAX(1.0f + 0.8f * n.fine, 0.2f));
 }
 
-/* 0 below the snow line, 1 above; lower where it is level, none on walls. */
+/* 0 below the snow line, 1 above; lower where it is level, none on walls. Fresh snow lies below the
+ * line, too. */
 WD_FUNC float wd_snow_share(WD_FRAME_IN float height_m, float steep, WD_STRUCT wd_ground_noise n)
 {
     float line = WD_FRAME(snow_line_m) + 120.0f * n.broad + 40.0f * n.middle;
     float lies = WD_SMOOTH(-40.0f, 60.0f, height_m - line - 160.0f * (steep - 0.4f));
+    float fresh = 1.6f * WD_FRAME(snow) - 0.45f + 0.5f * n.middle + 0.4f * n.small_ + 0.25f * n.fine;
+    lies = WD_MAX(lies, WD_FRAME(snow) > 0.0f ? WD_SMOOTH(0.0f, 0.5f, fresh) : 0.0f);
     return lies * (1.0f - WD_SMOOTH(0.9f, 1.4f, steep + 0.3f * n.small_ + 0.2f * n.middle));
 }
 
@@ -125,7 +129,7 @@ WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float steep, floa
     albedo = wd_v3_mix(albedo, wd_v3_scale(WD_FRAME_V3(soil), 1.25f), 0.8f * beach);
     float wet = 1.0f - WD_SMOOTH(0.0f, 0.35f, above_water_m);
     albedo = wd_v3_scale(albedo, 1.0f - 0.45f * wet);
-    return wd_v3_mix(albedo, WD_V3(0.83f, 0.86f, 0.90f),
+    return wd_v3_mix(albedo, WD_SNOW_ALBEDO,
                      wd_snow_share(WD_FRAME_PASS height_m, steep, n));
 }
 

@@ -87,6 +87,21 @@ WD_FUNC float wd_sky_radiance(WD_STRUCT wd_sky_band band, float v, float s, floa
     return (WD_SUN_OUTSIDE * phase * once + again) * above * wd_twilight(sun_rise);
 }
 
+/* An overcast sky is three times as bright overhead as at the horizon (Moon and Spencer 1942):
+ * radiance over that of the zenith. Its irradiance on level ground is 7 pi / 9 of the zenith's
+ * radiance. */
+WD_FUNC float wd_cloud_gradient(float rise)
+{
+    return (1.0f + 2.0f * (rise > 0.0f ? rise : 0.0f)) / 3.0f;
+}
+
+/* Share of a clear day's light, sun and sky on level ground, that a sky with this cover of clouds
+ * lets through (Kasten and Czeplak 1980). */
+WD_FUNC float wd_cloud_through(float cover)
+{
+    return 1.0f - 0.75f * WD_EXP2(3.4f * WD_LOG2(cover > 1e-3f ? cover : 1e-3f));
+}
+
 /* Share of the sun's light that comes straight through. */
 WD_FUNC float wd_sun_through(WD_STRUCT wd_sky_band band, float s)
 {

@@ -2,6 +2,7 @@
 
 #include "base/color.h"
 #include "shared/ground_cover.h"
+#include "shared/snow.h"
 #include "tree/vec.h"
 
 static const float COARSE_FOOTPRINT_M = 0.4f;
@@ -63,6 +64,15 @@ static struct wd_vec3 vertex_tint(const struct corners *corners)
     return sum;
 }
 
+/* Openness to the sky, which vertices carry beside their tint. */
+static float vertex_openness(const struct corners *corners)
+{
+    float sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum += (float)(corners->vertex[k]->tint >> 24) * corners->share[k];
+    return sum / 255;
+}
+
 /* A sheet's upper side has its texture as it was drawn; the lower side has a texture of its own. */
 static void leaf_surface(struct wd_surface *surface, const struct wd_trace_model *model,
                          const struct wd_trace_hit *hit, struct wd_vec3 eye,
@@ -112,6 +122,9 @@ static void tree_surface(struct wd_surface *surface, const struct wd_trace_scene
     if (leaf)
         look = wd_v3_mul(look, wd_tree_tint(*tree));
     surface->albedo = wd_v3_clamp(look, 0, 1);
+    if (wd_v3_dot(surface->outward, eye) > 0)
+        surface->albedo = wd_snow_on(scene->frame, surface->albedo, surface->outward,
+                                     vertex_openness(&corners));
     if (leaf)
         surface->transmittance = leaf_transmittance(surface, model, &texel);
     surface->coat_alpha = model->model.roughness * model->model.roughness;

@@ -72,6 +72,25 @@ static void set_horizon(struct wd_frame_uniforms *uniforms, const struct sky *sk
     uniforms->sky_glow[channel] = (with - without) * strength;
 }
 
+/* Clouds take the place of sun and sky, and send back what is left of a clear day's light. */
+static void add_clouds(struct wd_frame_uniforms *uniforms, float cover)
+{
+    const float zenith_per_irradiance = 9.0f / (7.0f * 180.0f * DEGREE);
+    for (int channel = 0; channel < 3; channel++) {
+        float sun = uniforms->sun_irradiance[channel] * fmaxf(uniforms->sun_direction[2], 0);
+        float sky = uniforms->sky_irradiance[channel];
+        float left = (sun + sky) * wd_cloud_through(cover);
+        float clouds = fmaxf(left - (1 - cover) * (sun + sky), 0);
+        uniforms->sky_cloud[channel] = clouds * zenith_per_irradiance;
+        uniforms->sun_irradiance[channel] *= 1 - cover;
+        uniforms->sky_irradiance[channel] = (1 - cover) * sky + clouds;
+        uniforms->sky_glow[channel] *= 1 - cover;
+        uniforms->sky_horizon[channel] = (1 - cover) * uniforms->sky_horizon[channel] +
+                                         uniforms->sky_cloud[channel] * wd_cloud_gradient(0);
+    }
+    uniforms->sky_strength *= 1 - cover;
+}
+
 void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene)
 {
     float elevation_deg = (float)scene->sun.elevation_deg;
@@ -99,4 +118,6 @@ void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scen
         uniforms->sky_irradiance[channel] = irradiance_of(&sky) * uniforms->sky_strength;
         set_horizon(uniforms, &sky, channel, uniforms->sky_strength);
     }
+    if (scene->sky.cover > 0)
+        add_clouds(uniforms, (float)scene->sky.cover);
 }

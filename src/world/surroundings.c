@@ -35,6 +35,7 @@ static void fill_ground(struct wd_frame_uniforms *uniforms, const struct wd_scen
         scene->ground.snow_line_m > 0.0 ? (float)scene->ground.snow_line_m : 1e9f;
     uniforms->tree_line_m =
         scene->ground.tree_line_m > 0.0 ? (float)scene->ground.tree_line_m : 1e9f;
+    uniforms->snow = (float)scene->ground.snow;
     uniforms->terrain_cell_m = (float)terrain->cell_m;
     uniforms->terrain_width = terrain->width;
     uniforms->terrain_height = terrain->height;
