@@ -29,7 +29,8 @@ static void set_sun(struct wd_scene *scene, struct wd_moment moment)
     const struct wd_scene_time *time = &scene->time;
     double offset = isnan(time->utc_offset_h) ? floor(time->longitude_deg / 15 + 0.5)
                                               : time->utc_offset_h;
-    wd_clock_parse(&moment.hours, time->clock);
+    if (!wd_clock_parse(&moment.hours, time->clock))
+        return;
     moment.hours -= offset;
     wd_sun_position(&moment, time->latitude_deg, time->longitude_deg, &scene->sun.azimuth_deg,
                     &scene->sun.elevation_deg);
@@ -61,10 +62,9 @@ bool wd_scene_apply_time(struct wd_scene *scene, const struct wd_keys_place *pla
         scene->sun.azimuth_deg = DEFAULT_AZIMUTH_DEG;
     if (isnan(scene->sun.elevation_deg))
         scene->sun.elevation_deg = DEFAULT_ELEVATION_DEG;
-    if (!scene->time.date)
-        return true;
-    wd_date_parse(&moment, scene->time.date);
-    if (scene->time.clock)
+    if (!scene->time.date || !wd_date_parse(&moment, scene->time.date))
+        return true; /* a wrong one has been reported */
+    if (scene->time.clock && !isnan(scene->time.latitude_deg + scene->time.longitude_deg))
         set_sun(scene, moment);
     return set_season(scene, &moment, wd_keys_log(place));
 }

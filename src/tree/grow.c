@@ -56,20 +56,31 @@ static void scale_mesh(struct wd_tree_mesh *mesh, float factor)
     wd_tree_mesh_update_bounds(mesh);
 }
 
-/* Mean over sixteen sectors of how far leaves reach out. */
-static float crown_radius_m(const struct wd_foliage *foliage)
+enum { SECTORS = 16 };
+
+static void add_reach(float reach_m[SECTORS], struct wd_vec3 p)
 {
-    enum { SECTORS = 16 };
-    float reach[SECTORS] = {0}, sum = 0;
+    double turn = wd_datan2((double)p.y, (double)p.x) / (2 * WD_PI) + 0.5;
+    int sector = (int)(turn * SECTORS) % SECTORS;
+    reach_m[sector] = fmaxf(reach_m[sector], sqrtf(p.x * p.x + p.y * p.y));
+}
+
+/* Mean over sixteen sectors of how far leaves and, where these have fallen, branches reach out. */
+static float crown_radius_m(const struct wd_foliage *foliage, const struct wd_skeleton *skeleton)
+{
+    float reach_m[SECTORS] = {0}, sum = 0;
     for (size_t i = 0; i < foliage->count; i++) {
         const struct wd_leaf *leaf = &foliage->leaves[i];
-        struct wd_vec3 p = wd_v3_mad(leaf->position_m, leaf->axis, leaf->size_m);
-        double turn = wd_datan2((double)p.y, (double)p.x) / (2 * WD_PI) + 0.5;
-        int sector = (int)(turn * SECTORS) % SECTORS;
-        reach[sector] = fmaxf(reach[sector], sqrtf(p.x * p.x + p.y * p.y));
+        add_reach(reach_m, wd_v3_mad(leaf->position_m, leaf->axis, leaf->size_m));
+    }
+    for (size_t i = 0; i < skeleton->branch_count; i++) {
+        const struct wd_branch *branch = &skeleton->branches[i];
+        if (branch->node_count)
+            add_reach(reach_m,
+                      skeleton->nodes[branch->first_node + branch->node_count - 1].position_m);
     }
     for (int i = 0; i < SECTORS; i++)
-        sum += reach[i];
+        sum += reach_m[i];
     return sum / SECTORS;
 }
 
@@ -92,8 +103,8 @@ static void build_spray(struct wd_tree_model *model, const struct wd_foliage *fo
 }
 
 /* The mesh is brought to exactly the asked height: growth itself ends near it. */
-static void finish_model(struct wd_tree_model *model, const struct wd_foliage *foliage,
-                         const struct wd_tree_form *form)
+static void finish_model(struct wd_tree_model *model, const struct wd_skeleton *skeleton,
+                         const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
     wd_tree_mesh_update_bounds(&model->full);
     float factor = form->clip ? 1 : form->height_m / model->full.max_m[2];
@@ -106,7 +117,7 @@ static void finish_model(struct wd_tree_model *model, const struct wd_foliage *f
             model->leaves[i].position_m[axis] *= factor;
     }
     model->height_m = form->height_m;
-    model->crown_radius_m = factor * crown_radius_m(foliage);
+    model->crown_radius_m = factor * crown_radius_m(foliage, skeleton);
     model->crown_base_m = factor * form->crown_base_m;
     model->dbh_m = factor * form->dbh_m;
     model->leaf_area_m2 = factor * factor * foliage->area_m2;
@@ -138,7 +149,7 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     build_full(&model->full, &skeleton, &foliage, &form);
     build_reduced(&model->reduced, &skeleton, &foliage, &form);
     build_spray(model, &foliage, form.species);
-    finish_model(model, &foliage, &form);
+    finish_model(model, &skeleton, &foliage, &form);
     model->age_years = resolved.age_years;
     wd_foliage_finish(&foliage);
     wd_skeleton_finish(&skeleton);

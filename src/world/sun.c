@@ -72,18 +72,23 @@ static void set_horizon(struct wd_frame_uniforms *uniforms, const struct sky *sk
     uniforms->sky_glow[channel] = (with - without) * strength;
 }
 
-/* Clouds take the place of sun and sky, and send back what is left of a clear day's light. */
+/* Clouds take the place of sun and sky, and send back what is left of a clear day's light, mixed to
+ * some 6800 K. */
 static void add_clouds(struct wd_frame_uniforms *uniforms, float cover)
 {
+    static const float tint[3] = {0.96f, 1.0f, 1.06f}, weight[3] = {0.2126f, 0.7152f, 0.0722f};
     const float zenith_per_irradiance = 9.0f / (7.0f * 180.0f * DEGREE);
+    float clear = 0;
+    for (int channel = 0; channel < 3; channel++)
+        clear += weight[channel] * (uniforms->sky_irradiance[channel] +
+                                    uniforms->sun_irradiance[channel] *
+                                        fmaxf(uniforms->sun_direction[2], 0));
+    float clouds = clear * fmaxf(wd_cloud_through(cover) - (1 - cover), 0);
     for (int channel = 0; channel < 3; channel++) {
-        float sun = uniforms->sun_irradiance[channel] * fmaxf(uniforms->sun_direction[2], 0);
-        float sky = uniforms->sky_irradiance[channel];
-        float left = (sun + sky) * wd_cloud_through(cover);
-        float clouds = fmaxf(left - (1 - cover) * (sun + sky), 0);
-        uniforms->sky_cloud[channel] = clouds * zenith_per_irradiance;
+        float own = clouds * tint[channel];
+        uniforms->sky_cloud[channel] = own * zenith_per_irradiance;
         uniforms->sun_irradiance[channel] *= 1 - cover;
-        uniforms->sky_irradiance[channel] = (1 - cover) * sky + clouds;
+        uniforms->sky_irradiance[channel] = (1 - cover) * uniforms->sky_irradiance[channel] + own;
         uniforms->sky_glow[channel] *= 1 - cover;
         uniforms->sky_horizon[channel] = (1 - cover) * uniforms->sky_horizon[channel] +
                                          uniforms->sky_cloud[channel] * wd_cloud_gradient(0);

@@ -58,6 +58,14 @@ change raster '.terrain = {"kind": "raster", "file": "nowhere.tif"}'
 expect 1 'nowhere.tif' info "$scratch/raster.json"
 expect 1 'nowhere.tif' render "$scratch/raster.json" -o "$scratch/out.png" --gpu software
 check 'raster: no picture' test ! -e "$scratch/out.png"
+change date '.time = {"date": "2026-02-30"}'
+bad date 'date.*2026-02-30.*YYYY-MM-DD'
+change placeless '.time = {"date": "2026-02-20", "clock": "12:00"}'
+bad placeless 'clock.*latitude_deg'
+change suns '.time = {"date": "2026-02-20", "clock": "12:00", "latitude_deg": 47, "longitude_deg": 8} | .sun = {"azimuth_deg": 100}'
+bad suns 'sun.*clock'
+change wind '.wind = {"speed_mps": -1}'
+bad wind 'speed_mps.*-1'
 sed 's/"seed": 7/"seed": NaN/' "$scratch/plain.json" >"$scratch/nan.json"
 bad nan 'nan.json:[0-9]+'
 sed 's/"relief_m": 6/"relief_m": 1e999/' "$scratch/plain.json" >"$scratch/infinite.json"
