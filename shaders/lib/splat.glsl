@@ -22,3 +22,10 @@ vec3 splat_normal(wd_splat splat)
     n.xy -= sign(n.xy) * below;
     return n;
 }
+
+/* Clip coordinates x, y and w (z of a cascade) of a place in the model's box. */
+vec3 splat_clip(wd_splat_tree tree, vec3 p)
+{
+    return vec3(dot(tree.clip_x.xyz, p) + tree.clip_x.w, dot(tree.clip_y.xyz, p) + tree.clip_y.w,
+                dot(tree.clip_w.xyz, p) + tree.clip_w.w) + tree.sway * (p.z * p.z);
+}

@@ -14,17 +14,24 @@ layout(scalar, set = 0, binding = 4) readonly buffer Splats { wd_splat splats[];
 
 #include "lib/splat.glsl"
 
+/* All pixels whose middles lie in a square as large as the disc: small ones look alike, and one loop
+ * of few steps costs half of what rows of a disc cost where lanes run in step. */
 void draw_disc(vec2 center, float radius, uint depth_bits, uint id)
 {
-    int low = max(int(ceil(center.y - radius - 0.5)), 0);
-    int high = min(int(floor(center.y + radius - 0.5)), int(view.height) - 1);
-    for (int y = low; y <= high; y++) {
-        float dy = float(y) + 0.5 - center.y;
-        float half_width = sqrt(max(radius * radius - dy * dy, 0.0));
-        int begin = max(int(ceil(center.x - half_width - 0.5)), 0);
-        int end = min(int(floor(center.x + half_width - 0.5)), int(view.width) - 1);
-        for (int x = begin; x <= end; x++)
-            SPLAT(uint(y) * view.width + uint(x), depth_bits, id);
+    float half_side = radius * 0.886227;
+    ivec2 low = max(ivec2(ceil(center - half_side - 0.5)), ivec2(0));
+    ivec2 high = min(ivec2(floor(center + half_side - 0.5)), ivec2(view.width, view.height) - 1);
+    ivec2 size = high - low + 1;
+    if (size.x <= 0)
+        return;
+    uint at = uint(low.y) * view.width + uint(low.x), column = 0u;
+    for (int left = size.x * size.y; left > 0; left--) {
+        SPLAT(at, depth_bits, id);
+        at++;
+        if (++column == uint(size.x)) {
+            column = 0u;
+            at += view.width - uint(size.x);
+        }
     }
 }
 
@@ -37,11 +44,8 @@ void main()
     wd_splat_tree tree = splat_trees[item.tree];
     vec2 size = vec2(view.width, view.height);
     for (uint i = gl_LocalInvocationID.x; i < item.count; i += gl_WorkGroupSize.x) {
-        wd_splat splat = splats[splat_index(tree, item.first + i)];
-        vec3 p = splat_place(splat);
-        vec3 clip = vec3(dot(tree.clip_x.xyz, p) + tree.clip_x.w,
-                         dot(tree.clip_y.xyz, p) + tree.clip_y.w,
-                         dot(tree.clip_w.xyz, p) + tree.clip_w.w) + tree.sway * (p.z * p.z);
+        wd_splat disc = splats[splat_index(tree, item.first + i)];
+        vec3 clip = splat_clip(tree, splat_place(disc));
         float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
         if (w < view.near_m)
             continue;
@@ -49,11 +53,11 @@ void main()
         float depth = ORTHOGRAPHIC != 0u ? clip.z : view.near_m * inverse;
         if (depth <= 0.0)
             continue;
-        vec3 normal = splat_normal(splat);
+        bool wood = item.first + i >= tree.per_stratum * WD_LEAF_STRATA;
+        vec3 normal = splat_normal(disc);
         float facing = dot(normal, tree.toward) * inversesqrt(dot(normal, normal));
-        bool wood = (splat.z_normal & WD_SPLAT_Z_WOOD) != 0u;
-        float radius = (wood ? tree.wood_radius : tree.radius) * inverse
-                       * sqrt(wood ? max(facing, 0.0) : abs(facing));
+        float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0))
+                             : tree.radius * sqrt(abs(facing))) * inverse;
         vec2 at = (clip.xy * inverse * 0.5 + 0.5) * size;
         draw_disc(at, radius, floatBitsToUint(depth), group * WD_ITEM_SPLATS + i + 1u);
     }

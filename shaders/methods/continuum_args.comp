@@ -11,7 +11,12 @@ layout(scalar, set = 0, binding = 2) writeonly buffer Groups { wd_splat_groups g
 void main()
 {
     uint clusters = counts.clusters, items = min(counts.items, view.item_capacity);
+    uint wood_items = min(counts.wood_items, view.item_capacity);
     counts.items = items;
+    counts.wood_items = wood_items;
+    groups.wood[0] = min(wood_items, 32768u);
+    groups.wood[1] = (wood_items + 32767u) / 32768u;
+    groups.wood[2] = 1u;
     groups.select[0] = min(clusters, 32768u);
     groups.select[1] = (clusters + 32767u) / 32768u;
     groups.select[2] = 1u;

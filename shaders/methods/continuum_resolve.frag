@@ -12,6 +12,9 @@ layout(scalar, set = 0, binding = 4) readonly buffer Splats { wd_splat splats[];
 layout(scalar, set = 0, binding = 5) readonly buffer Looks { uint looks[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer Trees { wd_tree trees[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer Models { wd_model models[]; };
+layout(scalar, set = 0, binding = 8) readonly buffer WoodItems { wd_splat_item wood_items[]; };
+layout(scalar, set = 0, binding = 9) readonly buffer Wood { wd_splat_wood wood[]; };
+layout(set = 0, binding = 10) uniform sampler2DArray bark;
 layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
 #include "lib/tree.glsl"
@@ -21,31 +24,105 @@ layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_surface;
 
+/* What is seen, in the model's axes. */
+struct wd_seen {
+    uint tree; /* wd_splat_tree */
+    vec3 albedo, normal;
+    float openness;
+    bool wood;
+};
+
+vec3 look_albedo(uint look)
+{
+    vec3 root = unpackUnorm4x8(look).rgb;
+    return root * root;
+}
+
+wd_seen seen_splat(uint id)
+{
+    wd_splat_item item = items[id / WD_ITEM_SPLATS];
+    uint index = splat_index(splat_trees[item.tree], item.first + id % WD_ITEM_SPLATS);
+    wd_seen seen;
+    seen.tree = item.tree;
+    seen.normal = splat_normal(splats[index]);
+    seen.albedo = look_albedo(looks[index]);
+    seen.openness = float(looks[index] >> 24 & 0x7fu) * (1.0 / 127.0);
+    seen.wood = (looks[index] & WD_SPLAT_WOOD) != 0u;
+    return seen;
+}
+
+/* Perspective-correct shares of the corners at the pixel's middle, and pixels the triangle covers. */
+vec4 corner_shares(wd_splat_tree tree, wd_splat_wood triangle)
+{
+    vec2 size = vec2(frame.width, frame.height), at[3];
+    vec3 w;
+    for (uint k = 0u; k < 3u; k++) {
+        vec3 clip = splat_clip(tree, splat_place(triangle.corners[k]));
+        at[k] = (clip.xy / clip.z * 0.5 + 0.5) * size;
+        w[k] = clip.z;
+    }
+    vec2 u = at[1] - at[0], v = at[2] - at[0], p = gl_FragCoord.xy - at[0];
+    float area = u.x * v.y - u.y * v.x;
+    vec3 share = vec3(0.0, p.x * v.y - p.y * v.x, u.x * p.y - u.y * p.x) / area;
+    share.x = 1.0 - share.y - share.z;
+    share = max(share, 0.0) / w;
+    return vec4(share / (share.x + share.y + share.z), abs(area));
+}
+
+wd_seen seen_wood(uint id)
+{
+    wd_splat_item item = wood_items[id / WD_ITEM_SPLATS];
+    wd_splat_tree tree = splat_trees[item.tree];
+    wd_splat_wood triangle = wood[tree.first_wood + item.first + id % WD_ITEM_SPLATS];
+    vec4 share = corner_shares(tree, triangle);
+    vec2 uv[3];
+    wd_seen seen;
+    seen.tree = item.tree;
+    seen.normal = seen.albedo = vec3(0.0);
+    seen.openness = 0.0;
+    for (uint k = 0u; k < 3u; k++) {
+        seen.albedo += share[k] * look_albedo(triangle.tints[k]);
+        seen.openness += share[k] * float(triangle.tints[k] >> 24 & 0x7fu) * (1.0 / 127.0);
+        seen.normal += share[k] * normalize(splat_normal(triangle.corners[k]));
+        uv[k] = unpackHalf2x16(triangle.uvs[k]);
+    }
+    vec2 u = uv[1] - uv[0], v = uv[2] - uv[0];
+    float texels = abs(u.x * v.y - u.y * v.x) * float(textureSize(bark, 0).x)
+                   * float(textureSize(bark, 0).y);
+    float lod = 0.5 * log2(max(texels / max(share.w, 1e-6), 1.0));
+    vec2 at = share.x * uv[0] + share.y * uv[1] + share.z * uv[2];
+    wd_tree own = trees[tree.tree];
+    uint layer = models[WD_TREE_SPECIES(own) * push.variants
+                        + WD_TREE_VARIANT(own) % push.variants].look_layer;
+    seen.albedo *= textureLod(bark, vec3(at, float(layer)), lod).rgb;
+    seen.wood = true;
+    return seen;
+}
+
 void main()
 {
     uvec2 at = uvec2(gl_FragCoord.xy);
-    uvec2 seen = pixels[at.y * frame.width + at.x];
-    if (seen.x == 0u)
+    uvec2 pixel = pixels[at.y * frame.width + at.x];
+    if (pixel.x == 0u)
         discard;
-    gl_FragDepth = uintBitsToFloat(seen.y);
-    uint id = seen.x - 1u;
-    wd_splat_item item = items[id / WD_ITEM_SPLATS];
-    wd_splat_tree splat_tree = splat_trees[item.tree];
-    uint index = splat_index(splat_tree, item.first + id % WD_ITEM_SPLATS);
-    wd_tree tree = trees[splat_tree.tree];
+    gl_FragDepth = uintBitsToFloat(pixel.y);
+    wd_seen seen;
+    if ((pixel.x & WD_ID_WOOD) != 0u)
+        seen = seen_wood((pixel.x & ~WD_ID_WOOD) - 1u);
+    else
+        seen = seen_splat(pixel.x - 1u);
+    uint index = splat_trees[seen.tree].tree;
+    wd_tree tree = trees[index];
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];
-    uint look = looks[index];
-    bool wood = (look & WD_SPLAT_WOOD) != 0u;
-    vec3 albedo = unpackUnorm4x8(look).rgb;
-    albedo *= albedo;
-    if (!wood)
-        albedo *= tree_tint(tree);
-    float openness = float(look >> 24 & 0x7fu) * (1.0 / 127.0);
+    if (!seen.wood)
+        seen.albedo *= tree_tint(tree);
     if (frame.view_mode == WD_MODE_LOD)
-        albedo = vec3(0.1, 0.6, 0.15) * (0.3 + 0.7 * openness);
-    vec3 normal = tree_normal(tree_pose_of(tree, model), splat_normal(splats[index]));
-    out_albedo = vec4(albedo, openness);
-    out_normal = vec4(normal * 0.5 + 0.5, float(wood ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF) / 3.0);
-    out_surface = splat_tree.tree + 1u;
+        seen.albedo = (seen.wood ? vec3(0.5, 0.3, 0.1) : vec3(0.1, 0.6, 0.15))
+                      * (0.3 + 0.7 * seen.openness);
+    vec3 normal = tree_normal(tree_pose_of(tree, model), seen.normal);
+    out_albedo = vec4(seen.albedo, seen.openness);
+    out_normal = vec4(normal * 0.5 + 0.5,
+                      float(seen.wood ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF) / 3.0);
+    out_surface = index + 1u;
 }

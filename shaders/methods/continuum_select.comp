@@ -19,7 +19,12 @@ layout(scalar, set = 0, binding = 7) readonly buffer SplatModels { wd_splat_mode
 layout(scalar, set = 0, binding = 8) writeonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
 layout(scalar, set = 0, binding = 9) writeonly buffer Items { wd_splat_item items[]; };
 
+layout(scalar, set = 0, binding = 10) writeonly buffer WoodItems { wd_splat_item wood_items[]; };
+layout(scalar, set = 0, binding = 11) readonly buffer Pyramid { float pyramid[]; };
+
 #include "lib/frustum.glsl"
+#include "lib/pyramid.glsl"
+#include "lib/occlusion.glsl"
 #include "lib/tree.glsl"
 
 /* Reach of crowns that lean and sway, as octree's selection has it. */
@@ -68,14 +73,73 @@ void fill_rows(inout wd_splat_tree splats, tree_pose pose, wd_splat_model model,
     splats.clip_w = vec4(along_x.z, along_y.z, along_z.z, start.z);
 }
 
-void add_items(uint slot, uint count)
+/* How many strata, from the top, show anything past what the frame before saw. */
+uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, wd_splat_model model,
+                 uint strata)
 {
-    uint items_wanted = (count + WD_ITEM_SPLATS - 1u) / WD_ITEM_SPLATS;
-    uint first = atomicAdd(counts.items, items_wanted);
-    for (uint i = 0u; i < items_wanted && first + i < view.item_capacity; i++) {
-        uint begin = i * WD_ITEM_SPLATS;
-        items[first + i] = wd_splat_item(slot, begin, min(count - begin, WD_ITEM_SPLATS));
+    float height_m = WD_TREE_HEIGHT_M(tree) * 1.02;
+    vec2 wide = max(-model.min_m.xy, model.min_m.xy + model.extent_m.xy);
+    float reach_m = length(wide) * pose.across + 0.1;
+    vec4 low = view.history_from_rel * vec4(foot, 1.0);
+    vec4 high = view.history_from_rel * vec4(foot + vec3(0.0, 0.0, height_m), 1.0);
+    float nearest_m = min(low.w, high.w) - reach_m;
+    if (nearest_m < 1.0)
+        return strata;
+    vec2 size = vec2(view.width, view.height);
+    vec2 bottom = (low.xy / low.w * 0.5 + 0.5) * size, top = (high.xy / high.w * 0.5 + 0.5) * size;
+    float reach_px = reach_m * view.pixels / nearest_m + 1.0;
+    vec2 around = vec2(reach_px, reach_px * abs(toward.z) + 1.0);
+    wd_screen_box box = clamp_screen_box(min(bottom, top) - around, max(bottom, top) + around,
+                                         nearest_m);
+    if (!box.known)
+        return strata;
+    float lowest = lowest_seen(box);
+    strata = lowest < 0.0 ? 0u : strata;
+    while (strata > 1u) {
+        float share = model.strata_top_m[strata - 1u] * pose.up / height_m;
+        if (mix(bottom.y, top.y, share) - around.y <= lowest)
+            break;
+        strata--;
     }
+    return strata;
+}
+
+uint item_count(uint count)
+{
+    return (count + WD_ITEM_SPLATS - 1u) / WD_ITEM_SPLATS;
+}
+
+wd_splat_item item_at(uint slot, uint count, uint i)
+{
+    uint begin = i * WD_ITEM_SPLATS;
+    return wd_splat_item(slot, begin, min(count - begin, WD_ITEM_SPLATS));
+}
+
+void add_splats(uint slot, uint count)
+{
+    uint wanted = item_count(count), first = atomicAdd(counts.items, wanted);
+    for (uint i = 0u; i < wanted && first + i < view.item_capacity; i++)
+        items[first + i] = item_at(slot, count, i);
+}
+
+void add_wood(uint slot, uint count)
+{
+    uint wanted = item_count(count), first = atomicAdd(counts.wood_items, wanted);
+    for (uint i = 0u; i < wanted && first + i < view.item_capacity; i++)
+        wood_items[first + i] = item_at(slot, count, i);
+}
+
+/* Radius in metres of discs that face the viewer, `count` for an area of which `share` is theirs. */
+float disc_radius(wd_point_gains gains, float area_m2, float share_m2, float count, float sine)
+{
+    float equal = count * area_m2 / max(share_m2, 1e-6); /* points of the whole tree */
+    return sqrt(wd_point_gain(gains, equal, sine) * share_m2 / (3.14159265 * count));
+}
+
+/* Triangles of wood for a tree that tall: few of the largest while it is small. */
+uint wood_triangles(uint model, float tall_px)
+{
+    return min(uint(tall_px * tall_px * 0.02 + tall_px), splat_models[model].wood_count);
 }
 
 void main()
@@ -100,19 +164,30 @@ void main()
     float distance_m = view.orthographic != 0u ? 1.0 : max(length(middle), 0.1);
     vec3 toward = view.orthographic != 0u ? frame.sun_direction : -normalize(middle);
 
-    float wanted = max(view.density * covered_px(tree, toward, view.pixels / distance_m),
+    float pixels_per_m = view.pixels / distance_m;
+    float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m;
+    bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(tree.random));
+    uint strata = wood ? WD_LEAF_STRATA : WD_SPLAT_STRATA;
+    if (view.has_history != 0u)
+        strata = seen_strata(tree, foot, toward, pose, splat_model, strata);
+    if (strata == 0u)
+        return;
+
+    float wanted = max(view.density * covered_px(tree, toward, pixels_per_m),
                        float(view.min_splats));
     wd_splat_tree splats;
     splats.per_stratum = min(uint(ceil(wanted / float(WD_SPLAT_STRATA))), WD_STRATUM_SPLATS);
-    uint count = splats.per_stratum * WD_SPLAT_STRATA;
-    float area_m2 = splat_model.area_m2 * pose.across * mix(pose.across, pose.up, 0.5);
-    float each_m = sqrt(area_m2 / (3.14159265 * float(count))) * view.pixels;
-    splats.radius = each_m * sqrt(wd_point_gain(splat_model.leaf, float(count), toward.z));
-    splats.wood_radius = each_m * sqrt(wd_point_gain(splat_model.wood, float(count), toward.z));
+    float size = sqrt(pose.across * mix(pose.across, pose.up, 0.5)) * view.pixels;
+    float area_m2 = splat_model.leaf_area_m2 + splat_model.wood_area_m2;
+    splats.radius = size * disc_radius(splat_model.leaf, area_m2, splat_model.leaf_area_m2,
+                                       float(splats.per_stratum * WD_LEAF_STRATA), toward.z);
+    splats.wood_radius = size * disc_radius(splat_model.wood, area_m2, splat_model.wood_area_m2,
+                                            float(splats.per_stratum), toward.z);
     splats.toward = model_direction(pose, toward);
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
-    splats.offset = wd_hash_mix(tree.random) + view.window * splats.per_stratum;
+    splats.first_wood = splat_model.wood_first;
+    splats.offset = wd_hash_mix(tree.random) + frame.sample_index * splats.per_stratum;
     fill_rows(splats, pose, splat_model, foot);
     vec3 sway = tree_sway(tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
     splats.sway = clip_of(view.clip_from_rel * vec4(sway, 0.0));
@@ -121,5 +196,7 @@ void main()
     if (slot >= view.tree_capacity)
         return;
     splat_trees[slot] = splats;
-    add_items(slot, count);
+    add_splats(slot, splats.per_stratum * strata);
+    if (wood)
+        add_wood(slot, wood_triangles(model_index, tall_px));
 }

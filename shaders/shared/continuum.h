@@ -10,32 +10,49 @@
 
 #include "shared/tree.h"
 
-/* Splats a model, in strata of equal count from the crown's top to the foot. */
-#define WD_SPLATS 16384u
+/* Splats a model, in strata of equal count: those of leaves from the crown's top down, then one of
+ * wood. */
+#define WD_SPLATS 65536u
 #define WD_SPLAT_STRATA 8u
 #define WD_STRATUM_SPLATS (WD_SPLATS / WD_SPLAT_STRATA)
-/* Splats of one item, a workgroup's work. An id in the visibility buffer is
- * item * WD_ITEM_SPLATS + splat of the item + 1. */
+#define WD_LEAF_STRATA (WD_SPLAT_STRATA - 1u)
+/* Splats or triangles of one item, a workgroup's work. An id in the visibility buffer is
+ * item * WD_ITEM_SPLATS + splat of the item + 1, with the highest bit for triangles of wood. */
 #define WD_ITEM_SPLATS 512u
+#define WD_ID_WOOD 0x80000000u
 
 /* A splat: its place in the model's box (unorm 16) and its normal (octahedral, snorm 8). */
 struct wd_splat {
     uint32_t xy;       /* x in the low half */
-    uint32_t z_normal; /* z in the low half, its last bit: wood; normal above */
+    uint32_t z_normal; /* z in the low half, normal above */
 };
-#define WD_SPLAT_Z_WOOD 1u
 WD_STATIC_ASSERT_SIZE(wd_splat, 8);
 
-/* What a splat looks like: RGB albedo (square roots of it) and, in A, 7 bits of sky openness under one bit
- * that says wood. */
+/* What a splat looks like: RGB square roots of its albedo and, in A, 7 bits of sky openness under
+ * one bit that says wood. */
 #define WD_SPLAT_WOOD 0x80000000u
+
+#ifdef __STDC_VERSION__
+#define WD_SPLAT_STRUCT struct wd_splat
+#else
+#define WD_SPLAT_STRUCT wd_splat
+#endif
+
+/* A triangle of bark. */
+struct wd_splat_wood {
+    WD_SPLAT_STRUCT corners[3];
+    uint32_t uvs[3];   /* two half floats */
+    uint32_t tints[3]; /* as a splat's look; RGB are factors of the bark's texture */
+};
+WD_STATIC_ASSERT_SIZE(wd_splat_wood, 48);
 
 struct wd_splat_model {
     WD_VEC3(min_m);
     WD_VEC3(extent_m);
-    float area_m2;                        /* of the surface that the splats stand for */
-    WD_GAINS_STRUCT wood, leaf;           /* what keeps the mesh's coverage */
+    float leaf_area_m2, wood_area_m2;     /* of the surface that the splats stand for */
     float strata_top_m[WD_SPLAT_STRATA];  /* height below which a stratum's splats lie */
+    WD_GAINS_STRUCT wood, leaf;           /* what keeps the mesh's coverage */
+    uint32_t wood_first, wood_count;      /* triangles, large ones first */
 };
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
@@ -46,8 +63,13 @@ struct wd_cluster {
 };
 WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
 
-/* One view of a frame. */
+/* Levels of the depth pyramid. A texel of level l holds the farthest depth of a square of 2^(l + 1)
+ * pixels; rows of a level follow each other, levels begin at pyramid_first. */
+#define WD_PYRAMID_LEVELS 7
+
 #define WD_SPLAT_PLANES 12
+
+/* One view of a frame. */
 struct wd_splat_view {
     WD_MAT4(clip_from_rel);
     WD_VEC4(planes[WD_SPLAT_PLANES]); /* see struct wd_frustum */
@@ -57,18 +79,23 @@ struct wd_splat_view {
     float near_m;
     uint32_t width, height;
     float density;           /* splats a pixel that a tree covers */
-    uint32_t min_splats;     /* of a tree, a multiple of WD_SPLAT_STRATA */
-    uint32_t window;         /* counts samples and frames: which splats are taken */
+    uint32_t min_splats;     /* of a tree */
+    float wood_px;           /* trees taller than about this have triangles of wood */
     uint32_t cluster_count, variants;
     uint32_t tree_capacity, item_capacity;
+    /* What the frame before saw, to leave out what it hid. 0: nothing is known. */
+    uint32_t has_history;
+    uint32_t still;              /* the camera has not moved since */
+    WD_MAT4(history_from_rel);   /* clip coordinates then of what is at rel now */
+    uint32_t pyramid_first[WD_PYRAMID_LEVELS];
 };
 
 struct wd_splat_counts {
-    uint32_t clusters, trees, items;
+    uint32_t clusters, trees, items, wood_items;
 };
 /* Indirect dispatches that follow from them. */
 struct wd_splat_groups {
-    uint32_t select[3], splat[3];
+    uint32_t select[3], splat[3], wood[3];
 };
 
 /* A visible tree, ready to be splatted. Rows give clip coordinates of a place in the model's box,
@@ -77,17 +104,17 @@ struct wd_splat_tree {
     WD_VEC4(clip_x); WD_VEC4(clip_y); WD_VEC4(clip_w); /* clip_w: w, or z of a cascade */
     WD_VEC3(sway);
     WD_VEC3(toward);       /* unit, to the eye, in the model's axes */
-    float radius;          /* of a leaf's disc in pixels at w = 1, facing the viewer */
-    float wood_radius;
+    float radius, wood_radius; /* of a disc of leaves and of wood in pixels at w = 1 */
     uint32_t tree;         /* in octree order */
     uint32_t first_splat;  /* of the model */
     uint32_t offset;       /* of the window in each stratum */
     uint32_t per_stratum;  /* splats of the window */
+    uint32_t first_wood;   /* triangle of the model */
 };
 
 struct wd_splat_item {
     uint32_t tree; /* index of a wd_splat_tree */
-    uint32_t first, count;
+    uint32_t first, count; /* splats of its window, or triangles of its wood */
 };
 
 #endif

@@ -6,21 +6,9 @@
 
 #include "base/color.h"
 #include "base/memory.h"
-#include "tree/points.h"
 
-static uint32_t pack_normal8(const float normal[3])
-{
-    float sum = fabsf(normal[0]) + fabsf(normal[1]) + fabsf(normal[2]) + 1e-12f;
-    float x = normal[0] / sum, y = normal[1] / sum;
-    if (normal[2] < 0.0f) {
-        float folded = (1.0f - fabsf(y)) * (x >= 0.0f ? 1.0f : -1.0f);
-        y = (1.0f - fabsf(x)) * (y >= 0.0f ? 1.0f : -1.0f);
-        x = folded;
-    }
-    uint32_t a = (uint32_t)(int32_t)lrintf(x * 127.0f) & 255u;
-    uint32_t b = (uint32_t)(int32_t)lrintf(y * 127.0f) & 255u;
-    return a | b << 8;
-}
+/* Points to choose from: some kind may be rare. */
+enum { POINTS = 3 * (int)WD_SPLATS / 2 };
 
 static uint32_t unorm16(float value, float min, float extent)
 {
@@ -28,87 +16,200 @@ static uint32_t unorm16(float value, float min, float extent)
     return (uint32_t)(fminf(fmaxf(share, 0.0f), 1.0f) * 65535.0f + 0.5f);
 }
 
-/* Albedo (as square roots) and openness. */
-static uint32_t pack_look(const struct wd_tree_point *point)
+static uint32_t snorm8(float value)
 {
-    uint32_t openness = point->albedo >> 25;
-    uint32_t packed = openness << 24 | (point->kind & WD_POINT_LEAF ? 0 : WD_SPLAT_WOOD);
-    for (int k = 0; k < 3; k++) {
-        float albedo = wd_srgb_decode((uint8_t)(point->albedo >> (8 * k)));
-        packed |= (uint32_t)wd_unorm_encode(sqrtf(albedo)) << (8 * k);
-    }
+    return (uint32_t)(int32_t)lrintf(value * 127.0f) & 255u;
+}
+
+/* From 16 bits each to 8 (wd_pack_normal's octahedron). */
+static uint32_t normal8(uint32_t packed)
+{
+    float x = (float)(int16_t)(packed & 0xffffu) / 32767.0f;
+    float y = (float)(int16_t)(packed >> 16) / 32767.0f;
+    return snorm8(x) | snorm8(y) << 8;
+}
+
+static struct wd_splat splat_at(const struct wd_splat_model *model, const float position_m[3],
+                                uint32_t normal)
+{
+    uint32_t axes[3];
+    for (int k = 0; k < 3; k++)
+        axes[k] = unorm16(position_m[k], model->min_m[k], model->extent_m[k]);
+    return (struct wd_splat){axes[0] | axes[1] << 16, axes[2] | normal8(normal) << 16};
+}
+
+/* Square roots of a linear colour in bytes, openness and kind above. */
+static uint32_t pack_look(const float color[3], float openness, bool wood)
+{
+    uint32_t packed = (uint32_t)(openness * 127.0f + 0.5f) << 24 | (wood ? WD_SPLAT_WOOD : 0);
+    for (int k = 0; k < 3; k++)
+        packed |= (uint32_t)wd_unorm_encode(sqrtf(color[k])) << (8 * k);
     return packed;
 }
 
-static struct wd_splat pack_splat(const struct wd_tree_point *point,
-                                  const struct wd_splat_model *model)
+static uint32_t point_look(const struct wd_tree_point *point)
 {
-    uint32_t axes[3];
-    float normal[3];
+    float color[3];
     for (int k = 0; k < 3; k++)
-        axes[k] = unorm16(point->position_m[k], model->min_m[k], model->extent_m[k]);
-    uint32_t wood = point->kind & WD_POINT_LEAF ? 0 : WD_SPLAT_Z_WOOD;
-    wd_unpack_normal(point->normal, normal);
-    return (struct wd_splat){axes[0] | axes[1] << 16,
-                             (axes[2] & ~WD_SPLAT_Z_WOOD) | wood | pack_normal8(normal) << 16};
+        color[k] = wd_srgb_decode((uint8_t)(point->albedo >> (8 * k)));
+    return pack_look(color, (float)(point->albedo >> 24) / 255.0f, !(point->kind & WD_POINT_LEAF));
 }
 
-static int by_height(const void *a, const void *b)
+/* --- discs ------------------------------------------------------------------------------- */
+
+static int descending(const void *a, const void *b)
 {
     float x = *(const float *)a, y = *(const float *)b;
     return x < y ? 1 : x > y ? -1 : 0;
 }
 
-/* Strata of equal count, keeping the order within each. */
-static void divide(struct wd_splats *splats, const struct wd_tree_point *places)
+/* Heights that part the points of one kind into `strata` of equal count; tops[0] is the highest. */
+static void find_tops(const struct wd_tree_points *points, uint32_t leaf, uint32_t strata,
+                      float *tops)
 {
-    float *heights = wd_alloc_array(WD_SPLATS, sizeof *heights);
-    uint32_t used[WD_SPLAT_STRATA] = {0};
-    for (uint32_t i = 0; i < WD_SPLATS; i++)
-        heights[i] = places[i].position_m[2];
-    qsort(heights, WD_SPLATS, sizeof *heights, by_height);
-    for (uint32_t s = 0; s < WD_SPLAT_STRATA; s++)
-        splats->model.strata_top_m[s] = heights[s * WD_STRATUM_SPLATS];
-    for (uint32_t i = 0; i < WD_SPLATS; i++) {
-        uint32_t s = WD_SPLAT_STRATA - 1;
-        while (s > 0 && (places[i].position_m[2] > splats->model.strata_top_m[s] ||
-                         used[s] == WD_STRATUM_SPLATS))
-            s--;
-        while (used[s] == WD_STRATUM_SPLATS)
-            s++;
-        uint32_t at = s * WD_STRATUM_SPLATS + used[s]++;
-        splats->splats[at] = pack_splat(&places[i], &splats->model);
-        splats->looks[at] = pack_look(&places[i]);
+    float *heights = wd_alloc_array(points->count, sizeof *heights);
+    size_t count = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        if ((points->points[i].kind & WD_POINT_LEAF) == leaf)
+            heights[count++] = points->points[i].position_m[2];
     }
+    qsort(heights, count, sizeof *heights, descending);
+    for (uint32_t s = 0; s < strata; s++)
+        tops[s] = count ? heights[s * count / strata] : 0.0f;
     free(heights);
 }
 
-void wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
-                    const uint8_t *looks, uint32_t size)
+/* Fills one stratum with the points of its kind between the heights, in their order and round
+ * again. False where there are none. */
+static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *points,
+                         uint32_t leaf, uint32_t stratum, float top, float bottom)
 {
-    const struct wd_tree_mesh *mesh = &model->full;
-    const struct wd_point_look look = {looks, size};
-    struct wd_tree_points points;
-    *splats = (struct wd_splats){
-        .splats = wd_alloc_array(WD_SPLATS, sizeof *splats->splats),
-        .looks = wd_alloc_array(WD_SPLATS, sizeof *splats->looks),
-    };
+    struct wd_splat *to = splats->splats + stratum * WD_STRATUM_SPLATS;
+    uint32_t *looks = splats->looks + stratum * WD_STRATUM_SPLATS, used = 0;
+    for (size_t i = 0; i < points->count && used < WD_STRATUM_SPLATS; i++) {
+        const struct wd_tree_point *point = &points->points[i];
+        if ((point->kind & WD_POINT_LEAF) != leaf || point->position_m[2] > top ||
+            point->position_m[2] <= bottom)
+            continue;
+        to[used] = splat_at(&splats->model, point->position_m, point->normal);
+        looks[used++] = point_look(point);
+    }
+    for (uint32_t i = used; used && i < WD_STRATUM_SPLATS; i++) {
+        to[i] = to[i - used];
+        looks[i] = looks[i - used];
+    }
+    return used > 0;
+}
+
+static void fill_strata(struct wd_splats *splats, const struct wd_tree_points *points)
+{
+    struct wd_splat_model *model = &splats->model;
+    const uint32_t last = WD_SPLAT_STRATA - 1;
+    uint32_t kind = points->leaf_area_m2 > 0.0f ? WD_POINT_LEAF : 0;
+    find_tops(points, kind, last, model->strata_top_m);
+    for (uint32_t s = 0; s < last; s++) {
+        float top = s ? model->strata_top_m[s] : INFINITY;
+        float bottom = s + 1 < last ? model->strata_top_m[s + 1] : -INFINITY;
+        if (!fill_stratum(splats, points, kind, s, top, bottom))
+            fill_stratum(splats, points, kind, s, INFINITY, -INFINITY);
+    }
+    if (!fill_stratum(splats, points, 0, last, INFINITY, -INFINITY))
+        fill_stratum(splats, points, kind, last, INFINITY, -INFINITY);
+    /* of the wood, the part under the crown's thick is what is seen */
+    float tops[4];
+    find_tops(points, points->wood_area_m2 > 0.0f ? 0 : kind, 4, tops);
+    model->strata_top_m[last] = tops[1];
+}
+
+/* --- wood -------------------------------------------------------------------------------- */
+
+struct sized {
+    float area;
+    uint32_t triangle;
+};
+
+static int larger_first(const void *a, const void *b)
+{
+    const struct sized *one = a, *other = b;
+    if (one->area != other->area)
+        return one->area < other->area ? 1 : -1;
+    return one->triangle < other->triangle ? -1 : 1;
+}
+
+static float triangle_area(const struct wd_tree_mesh *mesh, const uint32_t *corners)
+{
+    float side[2][3];
     for (int k = 0; k < 3; k++) {
-        splats->model.min_m[k] = mesh->min_m[k];
-        splats->model.extent_m[k] = fmaxf(mesh->max_m[k] - mesh->min_m[k], 1e-3f);
+        float origin = mesh->vertices[corners[0]].position_m[k];
+        side[0][k] = mesh->vertices[corners[1]].position_m[k] - origin;
+        side[1][k] = mesh->vertices[corners[2]].position_m[k] - origin;
     }
-    if (wd_tree_points_build(&points, mesh, &look, WD_SPLATS)) {
-        splats->model.area_m2 = points.leaf_area_m2 + points.wood_area_m2;
-        splats->model.wood = points.wood;
-        splats->model.leaf = points.leaf;
-        divide(splats, points.points);
+    float x = side[0][1] * side[1][2] - side[0][2] * side[1][1];
+    float y = side[0][2] * side[1][0] - side[0][0] * side[1][2];
+    float z = side[0][0] * side[1][1] - side[0][1] * side[1][0];
+    return 0.5f * sqrtf(x * x + y * y + z * z);
+}
+
+static struct wd_splat_wood wood_triangle(const struct wd_splat_model *model,
+                                          const struct wd_tree_mesh *mesh, const uint32_t *corners)
+{
+    struct wd_splat_wood wood = {0};
+    for (int i = 0; i < 3; i++) {
+        float tint[4];
+        const struct wd_tree_vertex *v = &mesh->vertices[corners[i]];
+        wood.corners[i] = splat_at(model, v->position_m, v->normal);
+        wood.uvs[i] = v->uv;
+        for (int k = 0; k < 4; k++)
+            tint[k] = (float)(v->tint >> (8 * k) & 255u) / 255.0f;
+        wood.tints[i] = pack_look(tint, tint[3], true);
     }
+    return wood;
+}
+
+static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh)
+{
+    uint32_t count = mesh->wood_index_count / 3;
+    struct sized *order = wd_alloc_array(count, sizeof *order);
+    for (uint32_t i = 0; i < count; i++)
+        order[i] = (struct sized){triangle_area(mesh, mesh->indices + 3 * i), i};
+    qsort(order, count, sizeof *order, larger_first);
+    splats->wood = wd_alloc_array(count, sizeof *splats->wood);
+    splats->model.wood_count = count;
+    for (uint32_t i = 0; i < count; i++)
+        splats->wood[i] =
+            wood_triangle(&splats->model, mesh, mesh->indices + 3 * order[i].triangle);
+    free(order);
+}
+
+/* --- the whole --------------------------------------------------------------------------- */
+
+bool wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
+                    const struct wd_point_look *look, const struct wd_log *log)
+{
+    struct wd_tree_points points;
+    *splats = (struct wd_splats){0};
+    if (!wd_tree_points_build(&points, &model->full, look, POINTS))
+        return wd_error(log, "a tree of %.1f m has no surface to draw", (double)model->height_m);
+    splats->splats = wd_alloc_array(WD_SPLATS, sizeof *splats->splats);
+    splats->looks = wd_alloc_array(WD_SPLATS, sizeof *splats->looks);
+    splats->model.leaf_area_m2 = points.leaf_area_m2;
+    splats->model.wood_area_m2 = points.wood_area_m2;
+    for (int k = 0; k < 3; k++) {
+        splats->model.min_m[k] = model->full.min_m[k];
+        splats->model.extent_m[k] = fmaxf(model->full.max_m[k] - model->full.min_m[k], 1e-3f);
+    }
+    splats->model.wood = points.wood;
+    splats->model.leaf = points.leaf;
+    fill_strata(splats, &points);
+    make_wood(splats, &model->reduced);
     wd_tree_points_finish(&points);
+    return true;
 }
 
 void wd_splats_finish(struct wd_splats *splats)
 {
     free(splats->splats);
     free(splats->looks);
+    free(splats->wood);
     *splats = (struct wd_splats){0};
 }

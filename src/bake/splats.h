@@ -1,22 +1,22 @@
-/* splats.h: a tree's surface as discs of equal area, in progressive order. */
+/* splats.h: a tree as discs and, of its wood, as triangles, both in an order that any part of suits. */
 #ifndef WD_BAKE_SPLATS_H
 #define WD_BAKE_SPLATS_H
 
 #include "shared/continuum.h"
 #include "tree/grow.h"
+#include "tree/points.h"
 
-/* WD_SPLATS discs, stratum after stratum from the top of the crown down. Within a stratum any run of
- * them, taken round its end, is a fair sample by area: they keep the order of struct
- * wd_tree_points. */
 struct wd_splats {
-    struct wd_splat *splats;
-    uint32_t *looks; /* parallel; see WD_SPLAT_WOOD */
-    struct wd_splat_model model;
+    struct wd_splat *splats; /* WD_SPLATS: strata of leaves from the top down, then wood */
+    uint32_t *looks;         /* parallel; see WD_SPLAT_WOOD */
+    struct wd_splat_wood *wood; /* model.wood_count triangles, large ones first */
+    struct wd_splat_model model; /* model.wood_first is 0 */
 };
 
-/* Samples the full mesh of `model`. `looks`: its look textures as in struct wd_point_look. Deterministic. */
-void wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
-                    const uint8_t *looks, uint32_t size);
+/* Makes them of the model's points and the wood of its reduced mesh. Where leaves or wood are
+ * missing their strata hold what there is. False, logged, for a tree without surface. */
+bool wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
+                    const struct wd_point_look *look, const struct wd_log *log);
 void wd_splats_finish(struct wd_splats *splats); /* accepts {0} */
 
 #endif

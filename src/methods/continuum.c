@@ -16,6 +16,9 @@ static const uint32_t cull_comp[] =
 static const uint32_t args_comp[] =
 #include "continuum_args.comp.inc"
     ;
+static const uint32_t pyramid_comp[] =
+#include "continuum_pyramid.comp.inc"
+    ;
 static const uint32_t select_comp[] =
 #include "continuum_select.comp.inc"
     ;
@@ -24,6 +27,12 @@ static const uint32_t splat_comp[] =
     ;
 static const uint32_t splat_twice_comp[] =
 #include "continuum_splat_twice.comp.inc"
+    ;
+static const uint32_t wood_comp[] =
+#include "continuum_wood.comp.inc"
+    ;
+static const uint32_t wood_twice_comp[] =
+#include "continuum_wood_twice.comp.inc"
     ;
 static const uint32_t resolve_vert[] =
 #include "whole_target.vert.inc"
@@ -43,15 +52,25 @@ static const uint32_t resolve_shadow_frag[] =
 /* Visible trees and items of one view: hard caps, whatever the world holds. */
 enum { MAX_TREES = 1 << 19, MAX_ITEMS = 1 << 20 };
 
+/* What is rasterised. */
+enum { SHAPE_SPLATS, SHAPE_WOOD, SHAPES };
+
 struct continuum {
     struct wd_gpu *gpu;
     struct wd_pipeline cull, args, choose;
-    struct wd_pipeline splat[2][2]; /* [WD_PASS_*][1: ids of the second pass] */
+    struct wd_pipeline draw[SHAPES][2][2]; /* [][WD_PASS_*][1: ids of the second pass] */
     struct wd_pipeline resolve[2];  /* [WD_PASS_*] */
+    struct wd_pipeline pyramid[WD_PYRAMID_LEVELS - 1];
+    VkSampler nearest;
     struct wd_continuum_forest forest;
-    struct wd_buffer visible, counts, groups, trees, items, pixels;
+    struct wd_buffer visible, counts, groups, trees, items, wood_items, pixels;
     uint32_t tree_capacity, item_capacity;
-    uint32_t window;
+    struct history {
+        struct wd_buffer pyramid; /* float[], of the camera's newest frame */
+        uint32_t width, height;   /* 0: there is none */
+        double eye_m[3];
+        float clip_from_rel[4][4];
+    } history;
     struct wd_binding view; /* struct wd_splat_view of the view being drawn */
 };
 
@@ -59,23 +78,22 @@ struct continuum {
 
 #define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
 
-static bool init_splat(struct continuum *c, struct wd_gpu *gpu)
+static bool init_draws(struct continuum *c, struct wd_gpu *gpu)
 {
+    const struct wd_spirv shaders[SHAPES][2] = {
+        {SPIRV(splat_twice_comp), SPIRV(splat_comp)}, {SPIRV(wood_twice_comp), SPIRV(wood_comp)}};
     bool once = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS;
-    for (uint32_t pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
-        for (uint32_t ids = 0; ids < (once ? 1 : 2); ids++) {
-            /* llvmpipe's subgroups are 8 wide; a wider group only idles on small trees */
-            const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW, ids};
-            struct wd_compute_params params = {
-                .shader = SPIRV(splat_comp),
-                .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
-                .constants = {once ? 2 : 3, constants},
-            };
-            if (!once)
-                params.shader = (struct wd_spirv)SPIRV(splat_twice_comp);
-            if (!wd_pipeline_init_compute(&c->splat[pass][ids], gpu, &params))
-                return false;
-        }
+    for (uint32_t i = 0; i < SHAPES * 2 * 2; i++) {
+        uint32_t kind = i / 4, pass = i / 2 % 2, ids = i % 2;
+        /* llvmpipe's subgroups are 8 wide; a wider group only idles on small trees */
+        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW, ids};
+        const struct wd_compute_params params = {
+            .shader = shaders[kind][once],
+            .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
+            .constants = {once ? 2 : 3, constants},
+        };
+        if ((!once || !ids) && !wd_pipeline_init_compute(&c->draw[kind][pass][ids], gpu, &params))
+            return false;
     }
     return true;
 }
@@ -85,7 +103,8 @@ static bool init_resolve(struct continuum *c, struct wd_gpu *gpu)
     struct wd_graphics_params params = {
         .vertex = SPIRV(resolve_vert),
         .fragment = SPIRV(resolve_frag),
-        .bindings = {8, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
+        .bindings = {11, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+                          BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .push_size = sizeof(struct wd_tree_push),
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
@@ -101,33 +120,54 @@ static bool init_resolve(struct continuum *c, struct wd_gpu *gpu)
     return wd_pipeline_init_graphics(&c->resolve[WD_PASS_SHADOW], gpu, &params);
 }
 
+static bool init_pyramid(struct continuum *c, struct wd_gpu *gpu)
+{
+    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
+        const uint32_t constants[] = {i ? i + 1 : 0};
+        const struct wd_compute_params params = {
+            .shader = SPIRV(pyramid_comp),
+            .bindings = {4, {BUFFER, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
+            .constants = {1, constants},
+        };
+        if (!wd_pipeline_init_compute(&c->pyramid[i], gpu, &params))
+            return false;
+    }
+    return wd_sampler_init(&c->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP);
+}
+
 static bool continuum_init(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
     c->gpu = gpu;
     const struct wd_compute_params cull = {
-        .shader = SPIRV(cull_comp), .bindings = {5, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
+        .shader = SPIRV(cull_comp), .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
     const struct wd_compute_params args = {.shader = SPIRV(args_comp),
                                            .bindings = {3, {BUFFER, BUFFER, BUFFER}}};
     const struct wd_compute_params choose = {
         .shader = SPIRV(select_comp),
-        .bindings = {10, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
-                          BUFFER}}};
+        .bindings = {12, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+                          BUFFER, BUFFER, BUFFER}}};
     return wd_pipeline_init_compute(&c->cull, gpu, &cull) &&
            wd_pipeline_init_compute(&c->args, gpu, &args) &&
-           wd_pipeline_init_compute(&c->choose, gpu, &choose) && init_splat(c, gpu) &&
-           init_resolve(c, gpu);
+           wd_pipeline_init_compute(&c->choose, gpu, &choose) && init_draws(c, gpu) &&
+           init_resolve(c, gpu) && init_pyramid(c, gpu);
 }
 
 static void continuum_finish(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
     struct wd_pipeline *pipelines[] = {
-        &c->cull,        &c->args,        &c->choose,      &c->splat[0][0], &c->splat[0][1],
-        &c->splat[1][0], &c->splat[1][1], &c->resolve[0], &c->resolve[1]};
+        &c->cull, &c->args, &c->choose, &c->resolve[0], &c->resolve[1]};
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         wd_pipeline_finish(pipelines[i], gpu);
+    for (uint32_t i = 0; i < SHAPES * 2 * 2; i++)
+        wd_pipeline_finish(&c->draw[i / 4][i / 2 % 2][i % 2], gpu);
+    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++)
+        wd_pipeline_finish(&c->pyramid[i], gpu);
+    if (c->nearest)
+        vkDestroySampler(gpu->device, c->nearest, NULL);
     wd_buffer_finish(&c->pixels, gpu);
+    wd_buffer_finish(&c->history.pyramid, gpu);
 }
 
 /* --- forest ------------------------------------------------------------------------------ */
@@ -157,16 +197,20 @@ static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_fore
            make_work(&c->trees, gpu, "splat trees",
                      c->tree_capacity * sizeof(struct wd_splat_tree)) &&
            make_work(&c->items, gpu, "splat items",
+                     c->item_capacity * sizeof(struct wd_splat_item)) &&
+           make_work(&c->wood_items, gpu, "wood items",
                      c->item_capacity * sizeof(struct wd_splat_item));
 }
 
 static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
-    struct wd_buffer *buffers[] = {&c->visible, &c->counts, &c->groups, &c->trees, &c->items};
+    struct wd_buffer *buffers[] = {&c->visible, &c->counts, &c->groups,
+                                   &c->trees,   &c->items,  &c->wood_items};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
     wd_continuum_forest_finish(&c->forest, gpu);
+    c->history.width = c->history.height = 0;
 }
 
 /* --- one view ---------------------------------------------------------------------------- */
@@ -181,6 +225,48 @@ static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_
 }
 
 _Static_assert((int)WD_SPLAT_PLANES == (int)WD_FRUSTUM_PLANES, "planes are copied whole");
+
+static uint32_t pyramid_offsets(uint32_t first[WD_PYRAMID_LEVELS], uint32_t width, uint32_t height)
+{
+    uint32_t total = 0;
+    for (uint32_t level = 0; level < WD_PYRAMID_LEVELS; level++) {
+        uint32_t texel = 2u << level;
+        first[level] = total;
+        total += (width + texel - 1) / texel * ((height + texel - 1) / texel);
+    }
+    return total;
+}
+
+static bool fit_pyramid(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
+{
+    uint32_t first[WD_PYRAMID_LEVELS];
+    VkDeviceSize size = pyramid_offsets(first, view->width, view->height) * sizeof(float);
+    if (c->history.pyramid.size >= size)
+        return true;
+    wd_cmd_defer_buffer(cmd, &c->history.pyramid);
+    return make_work(&c->history.pyramid, cmd->gpu, "depth pyramid", size);
+}
+
+/* Beyond this, margins do not make up for what the camera has uncovered since. */
+static const double HISTORY_REACH_M = 2.0;
+
+static void set_history(const struct continuum *c, struct wd_splat_view *values,
+                        const struct wd_view *view)
+{
+    const struct history *history = &c->history;
+    float shift[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    double squared = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double moved = view->eye_m[k] - history->eye_m[k];
+        shift[3][k] = (float)moved;
+        squared += moved * moved;
+    }
+    pyramid_offsets(values->pyramid_first, view->width, view->height);
+    wd_matrix_multiply(values->history_from_rel, (float(*)[4])history->clip_from_rel, shift);
+    values->has_history = history->width == view->width && history->height == view->height &&
+                          squared < HISTORY_REACH_M * HISTORY_REACH_M;
+    values->still = squared == 0.0;
+}
 
 static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
 {
@@ -199,7 +285,7 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
         .height = view->height,
         .density = (float)options->density,
         .min_splats = (uint32_t)options->min_splats,
-        .window = c->window,
+        .wood_px = (float)options->wood_px,
         .cluster_count = c->forest.cluster_count,
         .variants = draw->forest->variants,
         .tree_capacity = c->tree_capacity,
@@ -207,6 +293,8 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
     };
     memcpy(values->clip_from_rel, view->clip_from_rel, sizeof values->clip_from_rel);
     memcpy(values->planes, view->frustum.planes, sizeof values->planes);
+    if (!shadow)
+        set_history(c, values, view);
     if (shadow) {
         float squared = 0.0f;
         for (int k = 0; k < 3; k++)
@@ -229,12 +317,14 @@ static void record_args(struct continuum *c, struct wd_cmd *cmd)
 static void record_cull(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
+    wd_cmd_use_buffer(cmd, &c->history.pyramid, WD_USE_COMPUTE_READ);
     wd_cmd_fill_buffer(cmd, &c->counts, 0);
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->visible, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {draw->uniforms, c->view,
                                           WD_BIND_BUFFER(&c->forest.clusters),
-                                          WD_BIND_BUFFER(&c->counts), WD_BIND_BUFFER(&c->visible)};
+                                          WD_BIND_BUFFER(&c->counts), WD_BIND_BUFFER(&c->visible),
+                                          WD_BIND_BUFFER(&c->history.pyramid)};
     wd_cmd_bind(cmd, &c->cull, bindings);
     wd_cmd_dispatch_1d(cmd, (c->forest.cluster_count + 63) / 64);
     record_args(c, cmd);
@@ -247,6 +337,7 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw)
     wd_cmd_use_buffer(cmd, &c->visible, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->trees, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->items, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_buffer(cmd, &c->wood_items, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {draw->uniforms,
                                           c->view,
                                           WD_BIND_BUFFER(&c->forest.clusters),
@@ -256,30 +347,64 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_BUFFER(&draw->forest->models),
                                           WD_BIND_BUFFER(&c->forest.models),
                                           WD_BIND_BUFFER(&c->trees),
-                                          WD_BIND_BUFFER(&c->items)};
+                                          WD_BIND_BUFFER(&c->items),
+                                          WD_BIND_BUFFER(&c->wood_items),
+                                          WD_BIND_BUFFER(&c->history.pyramid)};
     wd_cmd_bind(cmd, &c->choose, bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
     record_args(c, cmd);
 }
 
-static void record_splats(struct continuum *c, const struct wd_tree_draw *draw)
+static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
+    const struct wd_buffer *items[] = {&c->items, &c->wood_items};
+    const struct wd_buffer *shapes[] = {&c->forest.splats, &c->forest.wood};
+    const VkDeviceSize groups[] = {offsetof(struct wd_splat_groups, splat),
+                                   offsetof(struct wd_splat_groups, wood)};
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->trees, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->items, WD_USE_COMPUTE_READ);
-    const struct wd_binding bindings[] = {c->view,
-                                          WD_BIND_BUFFER(&c->counts),
-                                          WD_BIND_BUFFER(&c->trees),
-                                          WD_BIND_BUFFER(&c->items),
-                                          WD_BIND_BUFFER(&c->forest.splats),
-                                          WD_BIND_BUFFER(&c->pixels)};
+    wd_cmd_use_buffer(cmd, &c->wood_items, WD_USE_COMPUTE_READ);
     wd_cmd_fill_buffer(cmd, &c->pixels, 0);
-    for (uint32_t ids = 0; ids < 2 && c->splat[draw->pass][ids].pipeline; ids++) {
+    for (uint32_t i = 0; i < 2 * SHAPES; i++) {
+        uint32_t ids = i / SHAPES, kind = i % SHAPES;
+        const struct wd_pipeline *pipeline = &c->draw[kind][draw->pass][ids];
+        const struct wd_binding bindings[] = {c->view,
+                                              WD_BIND_BUFFER(&c->counts),
+                                              WD_BIND_BUFFER(&c->trees),
+                                              WD_BIND_BUFFER(items[kind]),
+                                              WD_BIND_BUFFER(shapes[kind]),
+                                              WD_BIND_BUFFER(&c->pixels)};
+        if (!pipeline->pipeline)
+            continue;
         wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
-        wd_cmd_bind(cmd, &c->splat[draw->pass][ids], bindings);
-        wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, splat));
+        wd_cmd_bind(cmd, pipeline, bindings);
+        wd_cmd_dispatch_indirect(cmd, &c->groups, groups[kind]);
     }
+}
+
+/* Keeps what this frame sees for the next one. */
+static void record_pyramid(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    struct wd_cmd *cmd = draw->cmd;
+    const struct wd_view *view = draw->view;
+    wd_cmd_use_image(cmd, &draw->targets->depth, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_READ);
+    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
+                                          WD_BIND_IMAGE(&draw->targets->depth, c->nearest),
+                                          WD_BIND_BUFFER(&c->history.pyramid)};
+    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
+        uint32_t texels = 8 * (4u << i); /* pixels of a workgroup */
+        wd_cmd_use_buffer(cmd, &c->history.pyramid, WD_USE_COMPUTE_WRITE);
+        wd_cmd_bind(cmd, &c->pyramid[i], bindings);
+        wd_cmd_dispatch(cmd, (view->width + texels - 1) / texels,
+                        (view->height + texels - 1) / texels, 1);
+    }
+    c->history.width = view->width;
+    c->history.height = view->height;
+    memcpy(c->history.eye_m, view->eye_m, sizeof c->history.eye_m);
+    memcpy(c->history.clip_from_rel, view->clip_from_rel, sizeof c->history.clip_from_rel);
 }
 
 static void continuum_select(void *state, const struct wd_tree_draw *draw)
@@ -287,7 +412,7 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     struct continuum *c = state;
     struct wd_cmd *cmd = draw->cmd;
     upload_view(c, draw);
-    if (!fit_pixels(c, cmd, draw->view))
+    if (!fit_pixels(c, cmd, draw->view) || !fit_pyramid(c, cmd, draw->view))
         cmd->failed = true;
     if (cmd->failed)
         return;
@@ -296,13 +421,17 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     record_select(c, draw);
     wd_cmd_scope_end(cmd);
     wd_cmd_scope_begin(cmd, "splat");
-    record_splats(c, draw);
+    record_draws(c, draw);
     wd_cmd_scope_end(cmd);
+    if (draw->pass == WD_PASS_CAMERA) {
+        wd_cmd_scope_begin(cmd, "pyramid");
+        record_pyramid(c, draw);
+        wd_cmd_scope_end(cmd);
+    }
     wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_GRAPHICS_READ);
     wd_cmd_use_buffer(cmd, &c->trees, WD_USE_GRAPHICS_READ);
     wd_cmd_use_buffer(cmd, &c->items, WD_USE_GRAPHICS_READ);
-    if (draw->pass == WD_PASS_CAMERA)
-        c->window++;
+    wd_cmd_use_buffer(cmd, &c->wood_items, WD_USE_GRAPHICS_READ);
 }
 
 static void continuum_draw(void *state, const struct wd_tree_draw *draw)
@@ -319,7 +448,11 @@ static void continuum_draw(void *state, const struct wd_tree_draw *draw)
                                         WD_BIND_BUFFER(&c->forest.splats),
                                         WD_BIND_BUFFER(&c->forest.looks),
                                         WD_BIND_BUFFER(&draw->forest->trees),
-                                        WD_BIND_BUFFER(&draw->forest->models)};
+                                        WD_BIND_BUFFER(&draw->forest->models),
+                                        WD_BIND_BUFFER(&c->wood_items),
+                                        WD_BIND_BUFFER(&c->forest.wood),
+                                        WD_BIND_IMAGE(&draw->forest->looks,
+                                                      draw->forest->look_sampler)};
     const struct wd_binding shadow[] = {c->view, WD_BIND_BUFFER(&c->pixels)};
     wd_cmd_bind(cmd, pipeline, draw->pass == WD_PASS_CAMERA ? camera : shadow);
     if (draw->pass == WD_PASS_CAMERA) {

@@ -98,8 +98,10 @@ static void sample_model(void *user, size_t index)
         atomic_store(&work->failed, true);
         return;
     }
-    wd_splats_init(&work->splats[index], &model,
-                   work->looks + index / work->forest->variants * WD_LOOK_BYTES, WD_LOOK_SIZE);
+    const struct wd_point_look look = {
+        work->looks + index / work->forest->variants * WD_LOOK_BYTES, WD_LOOK_SIZE};
+    if (!wd_splats_init(&work->splats[index], &model, &look, work->log))
+        atomic_store(&work->failed, true);
     wd_tree_model_finish(&model);
 }
 
@@ -114,20 +116,30 @@ static bool make_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu, const char
 static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
                           const struct wd_splats *splats, uint32_t models)
 {
-    size_t count = (size_t)models * WD_SPLATS;
+    size_t count = (size_t)models * WD_SPLATS, triangles = 0;
+    for (size_t i = 0; i < models; i++)
+        triangles += splats[i].model.wood_count;
+    /* never empty: a buffer must hold something */
+    struct wd_splat_wood *wood = wd_alloc_array(triangles + 1, sizeof *wood);
+    triangles = 0;
     struct wd_splat *all = wd_alloc_array(count, sizeof *all);
     uint32_t *looks = wd_alloc_array(count, sizeof *looks);
     struct wd_splat_model *headers = wd_alloc_array(models, sizeof *headers);
     for (size_t i = 0; i < models; i++) {
         memcpy(all + i * WD_SPLATS, splats[i].splats, WD_SPLATS * sizeof *all);
         memcpy(looks + i * WD_SPLATS, splats[i].looks, WD_SPLATS * sizeof *looks);
+        memcpy(wood + triangles, splats[i].wood, splats[i].model.wood_count * sizeof *wood);
         headers[i] = splats[i].model;
+        headers[i].wood_first = (uint32_t)triangles;
+        triangles += splats[i].model.wood_count;
     }
     bool ok = make_buffer(&own->splats, gpu, "splats", all, count * sizeof *all) &&
               make_buffer(&own->looks, gpu, "splat looks", looks, count * sizeof *looks) &&
+              make_buffer(&own->wood, gpu, "splat wood", wood, (triangles + 1) * sizeof *wood) &&
               make_buffer(&own->models, gpu, "splat models", headers, models * sizeof *headers);
     free(all);
     free(looks);
+    free(wood);
     free(headers);
     return ok;
 }
@@ -172,7 +184,7 @@ bool wd_continuum_forest_init(struct wd_continuum_forest *own, struct wd_gpu *gp
 
 void wd_continuum_forest_finish(struct wd_continuum_forest *own, struct wd_gpu *gpu)
 {
-    struct wd_buffer *buffers[] = {&own->clusters, &own->splats, &own->looks, &own->models};
+    struct wd_buffer *buffers[] = {&own->clusters, &own->splats, &own->looks, &own->wood, &own->models};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
     *own = (struct wd_continuum_forest){0};

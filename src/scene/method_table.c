@@ -37,6 +37,9 @@ static const struct wd_key continuum_keys[] = {
      "Splats for each pixel that a crown covers.", .row = "continuum"},
     {"min_splats", WD_KEY_INTEGER, OPTION(continuum, min_splats), 8, 1024, "32",
      "Splats of a tree, however small it is on screen.", .row = "continuum"},
+    {"wood_px", WD_KEY_DOUBLE, OPTION(continuum, wood_px), 1, 1e6, "32",
+     "Trees taller than this many pixels have their stem and boughs drawn as triangles.",
+     .row = "continuum"},
     {0},
 };
 static const struct wd_keys continuum_table = TABLE(continuum);

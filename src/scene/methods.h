@@ -18,6 +18,7 @@ struct wd_grid_options {
 struct wd_continuum_options {
     double density;     /* splats a pixel that a crown covers */
     int64_t min_splats; /* of a tree */
+    double wood_px;     /* trees taller than this have wood of triangles */
 };
 
 struct wd_lod_options {

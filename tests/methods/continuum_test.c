@@ -85,6 +85,28 @@ static void two_passes_give_the_picture_of_one(void **state)
     frame_test_finish(&twice);
 }
 
+/* From the second frame on, what the frame before hid is left out; nothing of the picture is. */
+static void nothing_seen_is_left_out(void **state)
+{
+    (void)state;
+    struct frame_test test;
+    frame_test_init(&test, root, 0);
+    for (uint32_t camera = OVER; camera < CAMERAS; camera++) {
+        struct frame_picture whole, culled;
+        frame_test_draw(&test, "continuum", camera, &whole);
+        frame_test_draw(&test, "continuum", camera, &culled);
+        size_t other = 0;
+        for (size_t i = 0; i < pixels_of(&whole); i++) {
+            other += whole.surface[i] != culled.surface[i] || whole.depth[i] != culled.depth[i];
+        }
+        print_message("%zu of %zu pixels differ\n", other, pixels_of(&whole));
+        assert_in_range(other, 0, pixels_of(&whole) / 10000);
+        frame_picture_finish(&whole);
+        frame_picture_finish(&culled);
+    }
+    frame_test_finish(&test);
+}
+
 static size_t count_trees(const struct frame_picture *picture, uint32_t *pixels_of_tree)
 {
     size_t covered = 0;
@@ -129,6 +151,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_tree_is_in_one_cluster_and_its_bounds),
         cmocka_unit_test(two_passes_give_the_picture_of_one),
+        cmocka_unit_test(nothing_seen_is_left_out),
         cmocka_unit_test(large_trees_have_the_ids_of_octree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,42 @@
+/* What the frame before hid. Expects `view`, `pyramid` and lib/pyramid.glsl. */
+
+/* A rectangle of pixels of that frame and the nearest depth in it. */
+struct wd_screen_box {
+    vec2 low, high;
+    float depth;
+    bool known; /* the frame before saw all of it */
+};
+
+wd_screen_box clamp_screen_box(vec2 low, vec2 high, float nearest_m)
+{
+    vec2 size = vec2(view.width, view.height);
+    wd_screen_box box;
+    box.depth = view.near_m / nearest_m;
+    box.low = clamp(low, vec2(0.0), size - 1.0);
+    box.high = clamp(high, vec2(0.0), size - 1.0);
+    bool inside = all(greaterThanEqual(low, vec2(-1.0))) && all(lessThanEqual(high, size));
+    box.known = view.still != 0u || inside;
+    return box;
+}
+
+/* Level at which the box is at most `texels` wide, give or take the one it begins in. */
+uint box_level(float width_px, float texels)
+{
+    float level = ceil(log2(max(width_px / texels, 2.0))) - 1.0;
+    return min(uint(level), WD_PYRAMID_LEVELS - 1u);
+}
+
+/* Bottom edge, in pixels, of the lowest row of texels that leaves something of the box to be seen;
+ * negative: nothing. */
+float lowest_seen(wd_screen_box box)
+{
+    uint level = box_level(box.high.x - box.low.x, 2.0);
+    uvec2 low = uvec2(box.low) >> (level + 1u), high = uvec2(box.high) >> (level + 1u);
+    for (uint y = high.y + 1u; y-- > low.y;) {
+        for (uint x = low.x; x <= high.x; x++) {
+            if (pyramid_at(level, uvec2(x, y)) < box.depth)
+                return float((y + 1u) << (level + 1u));
+        }
+    }
+    return -1.0;
+}

@@ -1,0 +1,12 @@
+/* The depth pyramid. Expects `view` (wd_splat_view) and `pyramid` (float[]). */
+
+uvec2 pyramid_size(uint level)
+{
+    uint texel = 2u << level;
+    return (uvec2(view.width, view.height) + texel - 1u) >> (level + 1u);
+}
+
+float pyramid_at(uint level, uvec2 at)
+{
+    return pyramid[view.pyramid_first[level] + at.y * pyramid_size(level).x + at.x];
+}

@@ -1,0 +1,67 @@
+/* Triangles of wood into the visibility buffer, a thread a triangle. Expects SPLAT(pixel,
+ * depth_bits, id) as lib/splat_draw.glsl does. */
+#include "shared/continuum.h"
+
+layout(local_size_x_id = 0) in;
+layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
+
+layout(scalar, set = 0, binding = 0) readonly buffer View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
+layout(scalar, set = 0, binding = 2) readonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer Items { wd_splat_item items[]; };
+layout(scalar, set = 0, binding = 4) readonly buffer Wood { wd_splat_wood wood[]; };
+
+#include "lib/splat.glsl"
+
+/* Pixels whose middles lie in the triangle; depth is linear on screen. */
+void draw_triangle(vec3 a, vec3 b, vec3 c, uint id)
+{
+    vec2 size = vec2(view.width, view.height);
+    vec2 low = max(ceil(min(min(a.xy, b.xy), c.xy) - 0.5), vec2(0.0));
+    vec2 high = min(floor(max(max(a.xy, b.xy), c.xy) - 0.5), size - 1.0);
+    vec2 u = b.xy - a.xy, v = c.xy - a.xy;
+    float area = u.x * v.y - u.y * v.x;
+    if (low.x > high.x || low.y > high.y || area == 0.0)
+        return;
+    vec3 share_x = vec3(0.0, v.y, -u.y) / area, share_y = vec3(0.0, -v.x, u.x) / area;
+    share_x.x = -share_x.y - share_x.z;
+    share_y.x = -share_y.y - share_y.z;
+    vec2 from = low + 0.5 - a.xy;
+    vec3 row = vec3(1.0, 0.0, 0.0) + share_x * from.x + share_y * from.y;
+    vec3 depths = vec3(a.z, b.z, c.z), share = row;
+    ivec2 begin = ivec2(low), end = ivec2(high), at = begin;
+    while (at.y <= end.y) {
+        if (all(greaterThanEqual(share, vec3(0.0))))
+            SPLAT(uint(at.y) * view.width + uint(at.x), floatBitsToUint(dot(share, depths)), id);
+        share += share_x;
+        if (++at.x > end.x) {
+            at = ivec2(begin.x, at.y + 1);
+            row += share_y;
+            share = row;
+        }
+    }
+}
+
+void main()
+{
+    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (group >= counts.wood_items)
+        return;
+    wd_splat_item item = items[group];
+    wd_splat_tree tree = splat_trees[item.tree];
+    vec2 size = vec2(view.width, view.height);
+    for (uint i = gl_LocalInvocationID.x; i < item.count; i += gl_WorkGroupSize.x) {
+        wd_splat_wood triangle = wood[tree.first_wood + item.first + i];
+        vec3 at[3];
+        float nearest = 1e9;
+        for (uint k = 0u; k < 3u; k++) {
+            vec3 clip = splat_clip(tree, splat_place(triangle.corners[k]));
+            float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
+            float depth = ORTHOGRAPHIC != 0u ? clip.z : view.near_m / w;
+            at[k] = vec3((clip.xy / w * 0.5 + 0.5) * size, depth);
+            nearest = min(nearest, clip.z);
+        }
+        if (nearest > (ORTHOGRAPHIC != 0u ? 0.0 : view.near_m))
+            draw_triangle(at[0], at[1], at[2], WD_ID_WOOD | (group * WD_ITEM_SPLATS + i + 1u));
+    }
+}
