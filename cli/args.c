@@ -48,7 +48,7 @@ static const struct cli_option option_table[] = {
     {"path", 0, "NAME", CLI_KIND_TEXT, AT(path), 0, 0, PICTURE_COMMANDS,
      "a camera path of the scene"},
     {"size", 0, "WxH", CLI_KIND_SIZE, AT(size_px), 1, CLI_MAX_SIZE_PX, PICTURE_COMMANDS | CLI_GROW,
-     "pixels, 1 to 16384 each way (default: the scene's; of single trees 900x900)"},
+     "pixels, 1 to 16384 each way (default: the scene's; of single trees 900x900; of a sheet's cells 230x230)"},
     {"samples", 0, "N", CLI_KIND_WHOLE, AT(samples), 1, 65536,
      CLI_RENDER | CLI_GROW,
      "pictures averaged into one (default: the scene's; of single trees 16)"},

@@ -8,9 +8,9 @@
 #include "grow.h"
 
 enum {
-    CELL_PX = 230,
-    TEXT_PX = 60, /* below each cell */
-    HEAD_PX = 30,
+    DEFAULT_CELL_PX = 230,
+    LETTER_PX = 9, /* a line, before scaling */
+    LINES = 3,     /* below each cell */
     GAP_PX = 6,
     AGES = 6,
     FORMS = 4,
@@ -43,6 +43,8 @@ struct sheet {
     struct wd_picture picture;
     const char *species[MAX_SPECIES];
     uint32_t species_count;
+    uint32_t cell_px;    /* a side */
+    uint32_t text_scale;
     uint32_t cells_done;
     char *names; /* owns the default list */
 };
@@ -56,14 +58,15 @@ static void paste(struct sheet *sheet, const struct wd_picture *cell, uint32_t x
                cell->display + (size_t)4 * row * cell->width, (size_t)4 * cell->width);
 }
 
-static uint32_t cell_x(uint32_t column)
+static uint32_t cell_x(const struct sheet *sheet, uint32_t column)
 {
-    return GAP_PX + column * (CELL_PX + GAP_PX) + (column >= AGES ? 2 * GAP_PX : 0);
+    return GAP_PX + column * (sheet->cell_px + GAP_PX) + (column >= AGES ? 2 * GAP_PX : 0);
 }
 
-static uint32_t cell_y(uint32_t row)
+static uint32_t cell_y(const struct sheet *sheet, uint32_t row)
 {
-    return HEAD_PX + row * (CELL_PX + TEXT_PX + GAP_PX);
+    uint32_t line_px = LETTER_PX * sheet->text_scale;
+    return line_px + 2 * GAP_PX + row * (sheet->cell_px + LINES * line_px + 2 * GAP_PX);
 }
 
 static enum wd_result draw_cell(struct sheet *sheet, const struct wd_specimen *specimen,
@@ -71,8 +74,8 @@ static enum wd_result draw_cell(struct sheet *sheet, const struct wd_specimen *s
                                 struct wd_picture *cell)
 {
     const struct cli_specimen_view view = {
-        .width = CELL_PX,
-        .height = CELL_PX,
+        .width = sheet->cell_px,
+        .height = sheet->cell_px,
         .samples = SAMPLES,
         .layers = WD_LAYER_DISPLAY | WD_LAYER_COLOR | WD_LAYER_TREE_ID,
         .form = form->form,
@@ -85,15 +88,16 @@ static enum wd_result draw_cell(struct sheet *sheet, const struct wd_specimen *s
     enum wd_result result =
         cli_specimens_picture(session, sheet->renderer, &specimen, 1, &view, cell);
     if (result == WD_OK)
-        paste(sheet, cell, cell_x(column), cell_y(row));
+        paste(sheet, cell, cell_x(sheet, column), cell_y(sheet, row));
     return result;
 }
 
 static void label(struct sheet *sheet, uint32_t row, uint32_t column, uint32_t line,
                   const char *text)
 {
-    cli_sheet_text(&sheet->picture, cell_x(column) + 3, cell_y(row) + CELL_PX + 5 + 18 * line, 2,
-                   text);
+    uint32_t below = sheet->cell_px + GAP_PX + LETTER_PX * sheet->text_scale * line;
+    cli_sheet_text(&sheet->picture, cell_x(sheet, column) + 3, cell_y(sheet, row) + below,
+                   sheet->text_scale, text);
 }
 
 /* --- a row ------------------------------------------------------------------------------- */
@@ -175,7 +179,7 @@ static void label_form(struct sheet *sheet, uint32_t row, uint32_t index,
     else if (!forms[index].method && wd_specimen_get_level(specimen, index, &level))
         snprintf(text, sizeof text, "%u triangles", level.wood_triangles + level.leaf_triangles);
     label(sheet, row, AGES + index, 0, text);
-    snprintf(text, sizeof text, "%ux%u px", CELL_PX, CELL_PX);
+    snprintf(text, sizeof text, "%ux%u px", sheet->cell_px, sheet->cell_px);
     if (index > 0 && full->pixels > 0)
         snprintf(text, sizeof text, "cover %+.1f%%", 100 * (tally->pixels / full->pixels - 1));
     label(sheet, row, AGES + index, 1, text);
@@ -239,22 +243,30 @@ static bool choose_species(struct sheet *sheet)
 static bool make_paper(struct sheet *sheet)
 {
     struct wd_picture *picture = &sheet->picture;
-    picture->width = cell_x(COLUMNS);
-    picture->height = cell_y(sheet->species_count);
+    picture->width = cell_x(sheet, COLUMNS);
+    picture->height = cell_y(sheet, sheet->species_count);
     size_t bytes = (size_t)4 * picture->width * picture->height;
     picture->display = malloc(bytes);
     if (!picture->display)
         return cli_fail(sheet->session, "out of memory");
     memset(picture->display, 240, bytes);
     for (uint32_t i = 0; i < COLUMNS; i++)
-        cli_sheet_text(picture, cell_x(i) + 3, 8, 2,
+        cli_sheet_text(picture, cell_x(sheet, i) + 3, GAP_PX, sheet->text_scale,
                        i < AGES ? columns[i].title : forms[i - AGES].title);
     return true;
 }
 
 enum wd_result cli_sheet(struct cli_session *session)
 {
-    struct sheet sheet = {.session = session};
+    uint32_t size_px = session->options->size_px[0];
+    struct sheet sheet = {.session = session, .cell_px = size_px ? size_px : DEFAULT_CELL_PX};
+    enum { LEAST_CELL_PX = 64, MOST_CELL_PX = 1024, LARGE_CELL_PX = 200 };
+    if (sheet.cell_px < LEAST_CELL_PX || sheet.cell_px > MOST_CELL_PX) {
+        cli_fail(session, "cells of a sheet are %d to %d pixels wide", LEAST_CELL_PX,
+                 MOST_CELL_PX);
+        return WD_ERROR_INPUT;
+    }
+    sheet.text_scale = sheet.cell_px >= LARGE_CELL_PX ? 2 : 1;
     enum wd_result result = WD_ERROR_INPUT;
     if (choose_species(&sheet) && make_paper(&sheet))
         result = cli_renderer_open(session, &sheet.renderer);
