@@ -263,6 +263,10 @@ void wd_tree_import_look(const struct wd_tree_import *import, const struct wd_lo
     bool bark = layer == WD_LOOK_BARK;
     const uint8_t smooth[4] = {128, 128, bark ? 217 : 153, bark ? 255 : 128};
     wd_look_sheet_draw(&import->looks[!bark], import->materials.pictures, map->size, map->albedo);
+    const struct wd_tree_mesh *mesh = &import->model.full;
+    if (!import->looks[!bark].tiled)
+        wd_import_fill(map->albedo, map->size, mesh, bark ? 0 : mesh->wood_index_count,
+                       bark ? mesh->wood_index_count : mesh->index_count);
     for (size_t i = 0; i < (size_t)map->size * map->size; i++)
         memcpy(map->detail + 4 * i, smooth, sizeof smooth);
 }

@@ -35,6 +35,10 @@ void wd_import_index(struct wd_tree_mesh *mesh, struct wd_tree_vertex *corners, 
 /* Gives every vertex its openness to the sky through the model's own leaves. */
 void wd_import_shade(struct wd_tree_mesh *mesh);
 
+/* Colours the texels that no triangle of indices [begin, end) uses like those around them. */
+void wd_import_fill(uint8_t *rgba, uint32_t size, const struct wd_tree_mesh *mesh, uint32_t begin,
+                    uint32_t end);
+
 /* Fills the figures of a model from its full mesh. */
 void wd_import_measure(struct wd_tree_model *model);
 

@@ -25,6 +25,14 @@ sound() { python3 "$root/tests/cli/glb_check.py" "$@"; }
     expect 0 'tiny.glb: ' export "$tiny" -o "$out/tiny.glb"
     expect 0 . check "$out/oak.glb" "$out/oak.obj"
 }
+cat >"$out/planted.json" <<EOF
+{"terrain": {"kind": "flat", "size_m": [40, 40]}, "variants": 2,
+ "species": {"mine": "oak.obj"},
+ "layers": [{"species": {"mine": 1}, "spacing_m": 8, "height_m": [4, 7]}]}
+EOF
+# shellcheck disable=SC2086  # $small is many words
+expect 0 'planted.png: ' render "$out/planted.json" -o "$out/planted.png" $small --gpu-validate
+expect 0 '"name": "mine"' info "$out/planted.json" --json
 check 'oak.glb is sound' sound "$out/oak.glb" roots=1 levels=1
 check 'a model written again is sound' sound "$out/again.glb" roots=1 levels=1
 check 'three variants are sound' sound "$out/three.glb" roots=3 levels=3
