@@ -8,6 +8,8 @@
 #include "tree/look.h"
 #include "tree/progressive.h"
 
+enum { MAX_LEAVES = 200000 };
+
 /* A piece of a twig that bears leaves. */
 struct carrier {
     size_t branch;
@@ -245,7 +247,7 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
     double most = (double)(area_m2 / wd_leaf_unit_area(species)) / (real_m * real_m);
     if (count > most)
         count = most;
-    return count < 40 ? 40 : (size_t)count;
+    return count < 40 ? 40 : count > MAX_LEAVES ? MAX_LEAVES : (size_t)count;
 }
 
 /* Sprays that would hang into the ground lie on it. */

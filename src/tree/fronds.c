@@ -9,6 +9,8 @@ bool wd_species_has_fronds(const struct wd_species *species)
            species->form == WD_FORM_GRASS;
 }
 
+enum { MAX_FRONDS = 600 };
+
 struct frond {
     float azimuth_rad, rise_rad; /* over the horizon */
     float size_m, out_m;         /* length; distance of its foot from the stem's axis */
@@ -141,6 +143,7 @@ void wd_fronds_place(struct wd_foliage *foliage, const struct wd_skeleton *skele
     double count = (double)species->leaf.count * (double)form->detail;
     if (species->form == WD_FORM_PALM)
         count = (double)species->leaf.count * (double)wd_mixf(0.5f, 1, wd_minf(form->scale, 1));
+    count = count > MAX_FRONDS ? MAX_FRONDS : count;
     foliage->count = count < 3 && species->leaf.count > 0 ? 3 : (size_t)count;
     foliage->leaves = wd_alloc_array(foliage->count + 1, sizeof *foliage->leaves);
     for (size_t i = 0; i < foliage->count; i++)

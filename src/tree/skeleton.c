@@ -219,7 +219,7 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
     for (float z = 0.1f * spacing; z < 0.98f * end; index++) {
         float around = (float)index * 2.3999632f + wd_random_unit(&random), t = z / end;
         for (int i = 0; i < whorl; i++) {
-            if (skeleton->branch_count >= WD_MAX_BRANCHES)
+            if (skeleton->branch_count >= WD_MAX_BRANCHES || index >= WD_MAX_BRANCHES)
                 return false;
             float lift = whorl > 1 ? 0.12f * spacing * wd_random_signed(&random) : 0;
             float share = (form->crown_base_m + z + lift) / top;
@@ -255,7 +255,7 @@ static bool grow_along(struct wd_skeleton *skeleton, const struct wd_tree_form *
     if (stool)
         limb = 1.6f * form->crown_radius_m;
     for (float at = start * parent.length_m; at < 0.99f * parent.length_m; index++) {
-        if (skeleton->branch_count >= WD_MAX_BRANCHES)
+        if (skeleton->branch_count >= WD_MAX_BRANCHES || index >= WD_MAX_BRANCHES)
             return false;
         float share = at / parent.length_m, z = skeleton->nodes[parent.first_node].position_m.z;
         struct joint joint = {.parent = parent_index, .share = share};

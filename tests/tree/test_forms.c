@@ -1,0 +1,130 @@
+#include "tree_test.h"
+
+#include "raster.h"
+
+enum { VARIANTS = 20, SIDE = 56 };
+
+static void draw(const struct wd_tree_model *model, const struct wd_species *species,
+                 unsigned char covered[SIDE * SIDE])
+{
+    uint8_t texel[4] = {128, 128, 128, 255};
+    struct wd_raster_looks looks = {1, texel, texel, species};
+    float reach = fmaxf(model->full.max_m[0] - model->full.min_m[0],
+                        model->full.max_m[2] - model->full.min_m[2]);
+    float middle = 0.5f * (model->full.max_m[0] + model->full.min_m[0]);
+    float scale = 0.9f * SIDE / reach;
+    struct wd_raster_view view = {0.5f * SIDE - middle * scale, 0.95f * SIDE, scale, 0, 0.02f};
+    struct wd_raster raster;
+    wd_raster_init(&raster, SIDE, SIDE);
+    wd_raster_tree(&raster, &model->full, &looks, &view);
+    memcpy(covered, raster.covered, SIDE * SIDE);
+    wd_raster_finish(&raster);
+}
+
+/* Share of the pixels of either silhouette that the other one lacks. */
+static double difference(const unsigned char *a, const unsigned char *b)
+{
+    int either = 0, one = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        either += a[i] || b[i];
+        one += !a[i] != !b[i];
+    }
+    return (double)one / (double)(either > 0 ? either : 1);
+}
+
+/* Twenty individuals of one size: no two look alike from the same side. */
+static void variants_look_different(void **state)
+{
+    (void)state;
+    static unsigned char covered[VARIANTS][SIDE * SIDE];
+    struct wd_arena arena = {0};
+    for (int s = 0; s < SPECIES_COUNT; s++) {
+        struct wd_species species = test_species(&arena, test_species_names[s]);
+        for (uint32_t v = 0; v < VARIANTS; v++) {
+            struct wd_grow_params params = {.seed = v + 1, .detail = 0.4f, .openness = 0.35f};
+            struct wd_tree_model model;
+            assert_true(wd_tree_grow(&model, &species, &params, NULL));
+            draw(&model, &species, covered[v]);
+            wd_tree_model_finish(&model);
+        }
+        double least = 1;
+        for (int a = 0; a < VARIANTS; a++)
+            for (int b = 0; b < a; b++)
+                least = fmin(least, difference(covered[a], covered[b]));
+        print_message("%s: silhouettes differ by %.0f%% or more\n", test_species_names[s],
+                      100 * least);
+        assert_true(least > 0.12);
+    }
+    wd_arena_finish(&arena);
+}
+
+/* Crowns are as wide as the allometry that the file cites. */
+static void crowns_follow_the_allometry(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"oak", "beech", "birch", "spruce", "pine", "maple",
+                                        "larch", "angelique"};
+    struct wd_arena arena = {0};
+    for (size_t s = 0; s < sizeof names / sizeof *names; s++) {
+        struct wd_species species = test_species(&arena, names[s]);
+        double sum = 0, wanted = 0.5 * wd_species_crown_of_height_m(
+                                           &species, (double)species.typical_height_m);
+        for (uint32_t seed = 1; seed <= 6; seed++) {
+            struct wd_grow_params params = {.seed = seed, .detail = 0.3f};
+            struct wd_tree_model model;
+            assert_true(wd_tree_grow(&model, &species, &params, NULL));
+            sum += (double)model.crown_radius_m / 6;
+            wd_tree_model_finish(&model);
+        }
+        print_message("%s: crown radius %.2f m, by allometry %.2f m\n", names[s], sum, wanted);
+        assert_float_equal(sum / wanted, 1, 0.25);
+    }
+    wd_arena_finish(&arena);
+}
+
+static void grow_absurd(struct wd_species *species, float detail)
+{
+    struct test_log log;
+    struct wd_tree_model model;
+    struct wd_grow_params params = {.seed = 1, .detail = detail};
+    test_log_init(&log);
+    bool ok = wd_tree_grow(&model, species, &params, &log.log);
+    assert_true(ok || log.count == 1);
+    if (ok)
+        assert_true(model.full.index_count / 3 < 8000000);
+    wd_tree_model_finish(&model);
+}
+
+/* Numbers that the schema lets through make a bounded tree or one error, and never a hang. */
+static void absurd_species_are_bounded(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    for (int i = 0; i < 7; i++) {
+        struct wd_species species = test_species(&arena, i & 1 ? "snag" : "oak");
+        if (i < 2)
+            species.orders[0].spacing_m = species.orders[1].spacing_m = 1e-30f;
+        if (i == 1 || i == 3)
+            species.decay.limbs = 0;
+        if (i == 2 || i == 3)
+            species.orders[1].spacing_m = species.orders[0].length_ratio = 1e-20f;
+        if (i == 4)
+            species.leaf.count = 2000000, species.leaf.length_cm = 1e-6f;
+        if (i == 5)
+            species.allometry.crown_b = 1e-9, species.allometry.crown_a = 0;
+        if (i == 6)
+            species.orders[0].length_ratio = 4, species.orders[1].length_ratio = 4;
+        grow_absurd(&species, 0);
+    }
+    wd_arena_finish(&arena);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(variants_look_different),
+        cmocka_unit_test(crowns_follow_the_allometry),
+        cmocka_unit_test(absurd_species_are_bounded),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
