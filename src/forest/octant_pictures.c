@@ -215,9 +215,11 @@ static void record(struct wd_octant_pictures *p, struct wd_cmd *cmd)
         WD_BIND_IMAGE(&forest->card_albedo, forest->card_sampler),
         WD_BIND_IMAGE(&forest->card_normal, forest->card_sampler),
         WD_BIND_IMAGE(&p->card_depth, forest->card_sampler)};
+    /* whole tiles: the atlas may have room for a part of one more */
+    uint32_t side = p->columns * p->cells * p->pixels;
     const struct wd_rendering rendering = {
-        .width = ATLAS_PIXELS,
-        .height = ATLAS_PIXELS,
+        .width = side,
+        .height = side,
         .color_count = 2,
         .color = {{.image = &p->albedo, .load = WD_LOAD_CLEAR},
                   {.image = &p->normal, .load = WD_LOAD_CLEAR}},
