@@ -13,6 +13,7 @@ static const struct wd_method *const methods[] = {
     &wd_method_lod,
     &wd_method_patch,
     &wd_method_dissolve,
+    &wd_method_impostor,
     &wd_method_continuum,
 };
 

@@ -38,6 +38,7 @@ extern const struct wd_method wd_method_continuum; /* cost by pixels: splats in 
 extern const struct wd_method wd_method_lod;      /* levels by distances of the user's (row O1) */
 extern const struct wd_method wd_method_patch;    /* blended back to front (rows I1-I9) */
 extern const struct wd_method wd_method_dissolve; /* leaf and branch levels (rows W4-W7) */
+extern const struct wd_method wd_method_impostor; /* six colours an octant (rows G2-G4) */
 
 /* The method of that name, or NULL. Names are in wd_scene_method_names, scene/methods.h. */
 const struct wd_method *wd_method_find(const char *name);

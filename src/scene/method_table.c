@@ -101,6 +101,29 @@ static const struct wd_key dissolve_keys[] = {
 };
 static const struct wd_keys dissolve_table = TABLE(dissolve);
 
+static const char *const impostor_shapes[] = {"sprite", "cube", NULL};
+static const struct wd_key impostor_keys[] = {
+    {"shape", WD_KEY_ENUM, OPTION(impostor, shape), .fallback = "\"sprite\"",
+     .choices = impostor_shapes, .row = "G3",
+     .doc = "A sprite that faces the eye, or a cube of six colours."},
+    {"area_px", WD_KEY_DOUBLE, OPTION(impostor, area_px), 0, 1e6, "36",
+     "An impostor stands for an octant, a cluster's cell for what is in it, where it covers fewer "
+     "pixels than this.", .row = "G3"},
+    {"cluster_size", WD_KEY_INTEGER, OPTION(impostor, cluster_size), 1, 32, "12",
+     "Impostors of a cluster along a side; 1: no clusters.", .row = "G4"},
+    {"cluster_trees", WD_KEY_INTEGER, OPTION(impostor, cluster_trees), 1, 1e6, "512",
+     "Octants with at least as many trees, and fewer than 64 times as many, have a cluster.",
+     .row = "G4"},
+    {"least_alpha", WD_KEY_DOUBLE, OPTION(impostor, least_alpha), 0, 1, "0.02",
+     "Cells of a cluster that cover less than this share of every side are dropped.",
+     .row = "G4"},
+    {"faithful", WD_KEY_BOOL, OPTION(impostor, faithful), .fallback = "false",
+     .doc = "An octant's side is the plain mean of its children's: the far ones do not show through "
+            "the near ones, and crowns thin out.", .row = "G2"},
+    {0},
+};
+static const struct wd_keys impostor_table = TABLE(impostor);
+
 #define METHOD(method, rows, summary)                                                              \
     {#method, WD_KEY_OBJECT, offsetof(struct wd_method_options, method), .table = &method##_table, \
      .doc = summary, .row = rows}
@@ -112,6 +135,7 @@ static const struct wd_key method_keys[] = {
     METHOD(lod, "O1", "Meshes of several levels by distances that the user sets, then billboards."),
     METHOD(patch, "I1-I9", "Billboards of patches, blended back to front in an order by arithmetic."),
     METHOD(dissolve, "W4-W7", "Leaves and branches that thin out, billboards of one view each far."),
+    METHOD(impostor, "G2-G4", "Far octants as sprites, cubes or clusters of six colours."),
     METHOD(continuum, "continuum", "Splats whose number follows the pixels they cover, in compute."),
     {0},
 };
@@ -124,6 +148,7 @@ const char *const wd_scene_method_names[] = {
     "lod",
     "patch",
     "dissolve",
+    "impostor",
     "continuum",
     NULL,
 };

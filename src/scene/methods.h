@@ -43,6 +43,16 @@ struct wd_dissolve_options {
     bool keep_area, faithful;
 };
 
+enum wd_impostor_shape { WD_IMPOSTOR_SPRITE, WD_IMPOSTOR_CUBE };
+struct wd_impostor_options {
+    int shape;             /* enum wd_impostor_shape */
+    double area_px;
+    int64_t cluster_size;  /* 1: no clusters */
+    int64_t cluster_trees; /* of the smallest octant with a cluster */
+    double least_alpha;
+    bool faithful;
+};
+
 /* By method; methods without options have no member. */
 struct wd_method_options {
     struct wd_octree_options octree;
@@ -51,6 +61,7 @@ struct wd_method_options {
     struct wd_lod_options lod;
     struct wd_patch_options patch;
     struct wd_dissolve_options dissolve;
+    struct wd_impostor_options impostor;
 };
 
 /* One key a method, in the order of wd_scene_method_names; `table` holds its options. */

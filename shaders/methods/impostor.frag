@@ -1,0 +1,32 @@
+#version 460
+/* One colour; noise decides what of it covers, and which of its trees a pixel shows. */
+#include "shared/frame.h"
+#include "shared/hash.h"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+
+layout(location = 0) in vec2 in_uv;
+layout(location = 1) flat in vec4 in_color;
+layout(location = 2) flat in vec4 in_normal;
+layout(location = 3) flat in vec4 in_cells;
+layout(location = 4) flat in uvec4 in_flat;
+
+layout(location = 0) out vec4 out_albedo;
+layout(location = 1) out vec4 out_normal;
+layout(location = 2) out uint out_surface;
+
+void main()
+{
+    uvec2 cell = uvec2(in_uv * in_cells.xy);
+    uint noise = wd_hash_mix((cell.x | (cell.y << 16)) ^ in_flat.z
+                             ^ frame.sample_index * 0x9e3779b9u);
+    if (wd_hash_unit(noise) >= in_color.a)
+        discard;
+    uint tree = in_flat.x + wd_hash1(noise) % max(in_flat.y, 1u);
+    vec3 albedo = in_color.rgb;
+    if (frame.view_mode == WD_MODE_LOD)
+        albedo = vec3(0.5, 0.05, 0.6) * (0.3 + 0.7 * in_normal.a);
+    out_albedo = vec4(albedo, in_normal.a);
+    out_normal = vec4(in_normal.xyz * 0.5 + 0.5, float(WD_MATERIAL_CARD) / 3.0);
+    out_surface = tree + 1u;
+}

@@ -1,0 +1,103 @@
+#version 460
+/* An octant, or a cell of a cluster, as a sprite whose colour lies between those of the three sides
+ * that face the eye, or as these three sides themselves. */
+#include "shared/frame.h"
+#include "shared/forest.h"
+#include "shared/impostor.h"
+#include "shared/hash.h"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 1) readonly buffer Impostors { wd_impostor impostors[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer List { uint list[]; };
+layout(scalar, push_constant) uniform Push { wd_impostor_push push; };
+
+layout(location = 0) out vec2 out_uv;
+layout(location = 1) flat out vec4 out_color;  /* linear; a: coverage */
+layout(location = 2) flat out vec4 out_normal; /* a: sky openness */
+layout(location = 3) flat out vec4 out_cells;  /* of noise across and down; w: unused */
+layout(location = 4) flat out uvec4 out_flat;  /* first tree, trees, random */
+
+vec3 linear_of(vec3 c)
+{
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(vec3(0.04045), c));
+}
+
+struct side_look {
+    vec4 color, normal;
+};
+
+side_look side_of(wd_octant_look look, uint axis, float toward)
+{
+    uint side = axis * 2u + (toward > 0.0 ? 0u : 1u);
+    vec4 color = unpackUnorm4x8(look.color[side]), normal = unpackUnorm4x8(look.normal[side]);
+    return side_look(vec4(linear_of(color.rgb), color.a), vec4(normal.xyz * 2.0 - 1.0, normal.a));
+}
+
+/* Each side counts by the area that it shows: what the eye sees is then covered as much as by the
+ * sides together. `area` is the sprite's over a side's. */
+side_look mixed_sides(wd_octant_look look, vec3 toward, float area)
+{
+    side_look sum = side_look(vec4(0.0), vec4(0.0));
+    float covered = 0.0;
+    for (uint axis = 0u; axis < 3u; axis++) {
+        side_look side = side_of(look, axis, toward[axis]);
+        float weight = abs(toward[axis]) * side.color.a;
+        sum.color.rgb += weight * side.color.rgb;
+        sum.normal += weight * side.normal;
+        covered += weight;
+    }
+    sum.color.rgb /= max(covered, 1e-6);
+    sum.normal /= max(covered, 1e-6);
+    sum.color.a = clamp(covered / area, 0.0, 1.0);
+    return sum;
+}
+
+/* Noise as fine as the picture's pixels, in whole powers of two so that it keeps still. */
+float noise_cells(float length_m, float distance_m)
+{
+    return exp2(max(floor(log2(length_m * push.pixels_per_radian / distance_m)), 0.0));
+}
+
+void main()
+{
+    uint vertices = push.cubes != 0u ? WD_CUBE_VERTICES : WD_SPRITE_VERTICES;
+    uint slot = uint(gl_VertexIndex) / vertices, vertex = uint(gl_VertexIndex) - slot * vertices;
+    uint index = push.listed != 0u ? list[slot] : push.first + slot;
+    wd_impostor impostor = impostors[index];
+    float half_m = 0.5 * impostor.size_m;
+    vec3 eye_m = vec3(frame.camera_mm[0], frame.camera_mm[1], frame.camera_mm[2]) * 0.001
+                 + frame.camera_frac_m;
+    vec3 center = impostor.min_m + half_m - eye_m;
+    float distance_m = max(length(center), 0.1);
+    vec3 toward = -center / distance_m;
+    vec2 side = vec2(float(vertex & 1u), float((vertex >> 1) & 1u)) * 2.0 - 1.0;
+    vec3 rel;
+    side_look look;
+    vec2 extent_m;
+    if (push.cubes != 0u) {
+        uint axis = vertex / 4u, next = (axis + 1u) % 3u, last = (axis + 2u) % 3u;
+        vec3 corner;
+        corner[axis] = toward[axis] > 0.0 ? 1.0 : -1.0;
+        corner[next] = side.x;
+        corner[last] = side.y;
+        rel = center + corner * half_m;
+        look = side_of(impostor.look, axis, toward[axis]);
+        extent_m = vec2(impostor.size_m);
+    } else {
+        float level = max(length(toward.xy), 1e-4);
+        vec3 right = vec3(-toward.y, toward.x, 0.0) / level;
+        vec3 up = vec3(-toward.xy * (toward.z / level), level);
+        vec2 reach = vec2(dot(abs(right), vec3(1.0)), dot(abs(up), vec3(1.0)));
+        rel = center + half_m * (right * (side.x * reach.x) - up * (side.y * reach.y));
+        look = mixed_sides(impostor.look, toward, reach.x * reach.y);
+        extent_m = impostor.size_m * reach;
+    }
+    out_uv = side * 0.5 + 0.5;
+    out_color = look.color;
+    out_normal = vec4(normalize(look.normal.xyz + vec3(0.0, 0.0, 1e-4)), look.normal.a);
+    out_cells = vec4(noise_cells(extent_m.x, distance_m), noise_cells(extent_m.y, distance_m), 0.0,
+                     0.0);
+    out_flat = uvec4(impostor.first_tree, impostor.tree_count, wd_hash2(index, vertex / 4u), 0u);
+    gl_Position = look.color.a > 0.0 ? frame.clip_from_rel * vec4(rel, 1.0)
+                                     : vec4(0.0, 0.0, 0.0, 1.0);
+}

@@ -1,0 +1,32 @@
+/* impostor.h: octants and cells of clusters as sprites and cubes of six colours (rows G2 to G4). */
+#ifndef WD_SHARED_IMPOSTOR_H
+#define WD_SHARED_IMPOSTOR_H
+
+#include "shared/octant.h"
+#include "shared/types.h"
+
+#ifdef __STDC_VERSION__
+#define WD_OCTANT_LOOK struct wd_octant_look
+#else
+#define WD_OCTANT_LOOK wd_octant_look
+#endif
+
+#define WD_SPRITE_VERTICES 4 /* one quad that faces the eye */
+#define WD_CUBE_VERTICES 12  /* the three sides that do */
+
+struct wd_impostor {
+    WD_VEC3(min_m); /* least corner of the cube, local frame */
+    float size_m;
+    uint32_t first_tree, tree_count; /* octree order: the trees it stands for */
+    WD_OCTANT_LOOK look;
+};
+WD_STATIC_ASSERT_SIZE(wd_impostor, 72);
+
+struct wd_impostor_push {
+    uint32_t first;  /* impostor of vertex 0, where they are not listed */
+    uint32_t listed; /* 1: the list says which */
+    uint32_t cubes;  /* 1: cubes, 0: sprites */
+    float pixels_per_radian;
+};
+
+#endif

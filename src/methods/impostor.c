@@ -1,0 +1,367 @@
+/* Octant impostors (Guerrero 2006, section 2; rows G2 to G4): far off, an octant is a sprite or a
+ * cube of six colours within its tight cube, or a cluster of such cells in one draw; nearer come
+ * billboards, nearest meshes. An octant is replaced when it, or a cell of its cluster, covers less
+ * of the screen than a threshold. */
+#include "methods/method.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "forest/octant_colors.h"
+#include "methods/cells.h"
+#include "shared/impostor.h"
+
+static const uint32_t impostor_vert[] =
+#include "impostor.vert.inc"
+    ;
+static const uint32_t impostor_frag[] =
+#include "impostor.frag.inc"
+    ;
+
+#define SPIRV(words)                                                                               \
+    {                                                                                              \
+        words, sizeof words, #words                                                                \
+    }
+
+/* Octants with this many times the trees of the smallest cluster have none any more: their cells
+ * would be larger than groups of trees. */
+enum { CLUSTER_SPAN = 64, NO_CLUSTER = UINT32_MAX };
+
+/* One draw: a cluster's cells, or those octants that are one impostor each. */
+struct cluster_range {
+    uint32_t first, count; /* impostors */
+};
+
+struct impostors {
+    struct wd_pipeline pipeline;
+    struct wd_buffer table;      /* struct wd_impostor[]: octants, then cells of clusters */
+    struct cluster_range *clusters; /* by chosen octant */
+    uint32_t *cluster_of;        /* by octant: into clusters, or NO_CLUSTER */
+    struct wd_selection selection;
+    uint32_t *singles;           /* octants drawn as one impostor */
+    size_t single_count, single_capacity;
+    struct cluster_range *drawn; /* clusters drawn */
+    size_t drawn_count, drawn_capacity;
+    void *shadows; /* state of `octree`, which draws them */
+};
+
+static bool impostor_init(void *state, struct wd_gpu *gpu)
+{
+    struct impostors *impostors = state;
+    const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    const struct wd_graphics_params params = {
+        .vertex = SPIRV(impostor_vert),
+        .fragment = SPIRV(impostor_frag),
+        .bindings = {3, {buffer, buffer, buffer}},
+        .push_size = sizeof(struct wd_impostor_push),
+        .color_count = 3,
+        .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
+        .depth_format = WD_DEPTH_FORMAT,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+    };
+    impostors->shadows = wd_method_borrow(&wd_method_octree, gpu);
+    return impostors->shadows && wd_pipeline_init_graphics(&impostors->pipeline, gpu, &params);
+}
+
+static void impostor_finish(void *state, struct wd_gpu *gpu)
+{
+    struct impostors *impostors = state;
+    wd_pipeline_finish(&impostors->pipeline, gpu);
+    wd_method_give_back(&wd_method_octree, &impostors->shadows, gpu);
+}
+
+/* --- the forest -------------------------------------------------------------------------- */
+
+/* Octants that get a cluster, in the octree's order. */
+static uint32_t choose_clusters(struct impostors *impostors, const struct wd_octree *octree,
+                                const struct wd_impostor_options *options, uint32_t *chosen)
+{
+    uint32_t count = 0, least = (uint32_t)options->cluster_trees;
+    impostors->cluster_of = wd_alloc_array(octree->count, sizeof *impostors->cluster_of);
+    for (uint32_t i = 0; i < octree->count; i++) {
+        uint32_t trees = octree->octants[i].end - octree->octants[i].begin;
+        bool has = options->cluster_size > 1 && trees >= least && trees / CLUSTER_SPAN < least;
+        impostors->cluster_of[i] = has ? count : NO_CLUSTER;
+        if (has)
+            chosen[count++] = i;
+    }
+    return count;
+}
+
+/* The tree whose foot is nearest to a place: that a cell of a cluster is of. */
+static uint32_t nearest_tree(const struct wd_cells *cells, const struct wd_world *world, double x_m,
+                             double y_m)
+{
+    int column = (int)floor((x_m - cells->min_m[0]) / cells->cell_m);
+    int row = (int)floor((y_m - cells->min_m[1]) / cells->cell_m);
+    uint32_t nearest = 0;
+    double least = INFINITY;
+    for (int reach = 0; reach < 64 && least == INFINITY; reach++) {
+        for (int j = row - reach; j <= row + reach; j++) {
+            for (int i = column - reach; i <= column + reach; i++) {
+                if (i < 0 || j < 0 || i >= (int)cells->columns || j >= (int)cells->rows)
+                    continue;
+                size_t cell = (size_t)j * cells->columns + (size_t)i;
+                for (uint32_t k = cells->first[cell]; k < cells->first[cell + 1]; k++) {
+                    const struct wd_tree *tree = &world->trees[cells->trees[k]];
+                    double x = tree->x_mm * 0.001 - x_m, y = tree->y_mm * 0.001 - y_m;
+                    if (x * x + y * y < least) {
+                        least = x * x + y * y;
+                        nearest = cells->trees[k];
+                    }
+                }
+            }
+        }
+    }
+    return nearest;
+}
+
+static void fill_octants(struct wd_impostor *table, const struct wd_octree *octree,
+                         const struct wd_octant_colors *colors)
+{
+    for (uint32_t i = 0; i < octree->count; i++) {
+        const struct wd_octant *octant = &octree->octants[i];
+        table[i] = (struct wd_impostor){
+            .min_m = {octant->cube_min_m[0], octant->cube_min_m[1], octant->cube_min_m[2]},
+            .size_m = octant->cube_size_m,
+            .first_tree = octant->begin,
+            .tree_count = octant->end - octant->begin,
+            .look = colors->looks[i],
+        };
+    }
+}
+
+static void fill_clusters(struct impostors *impostors, struct wd_impostor *table, uint32_t first,
+                          const struct wd_world *world, const uint32_t *chosen,
+                          const struct wd_octant_clusters *clusters)
+{
+    struct wd_cells cells;
+    wd_cells_init(&cells, world, wd_cells_size(world, 1.0));
+    impostors->clusters = wd_alloc_array(clusters->octant_count, sizeof *impostors->clusters);
+    for (uint32_t i = 0; i < clusters->octant_count; i++) {
+        const struct wd_octant *octant = &world->octree.octants[chosen[i]];
+        float size_m = octant->cube_size_m / (float)clusters->cluster_size;
+        uint32_t begin = clusters->first_cell[i], end = clusters->first_cell[i + 1];
+        impostors->clusters[i] = (struct cluster_range){first + begin, end - begin};
+        for (uint32_t k = begin; k < end; k++) {
+            const struct wd_cluster_cell *cell = &clusters->cells[k];
+            struct wd_impostor *impostor = &table[first + k];
+            *impostor =
+                (struct wd_impostor){.size_m = size_m, .tree_count = 1, .look = cell->look};
+            for (int axis = 0; axis < 3; axis++)
+                impostor->min_m[axis] =
+                    octant->cube_min_m[axis] + size_m * (float)((cell->at >> 8 * axis) & 0xffu);
+            impostor->first_tree = nearest_tree(&cells, world, impostor->min_m[0] + 0.5 * size_m,
+                                                impostor->min_m[1] + 0.5 * size_m);
+        }
+    }
+    wd_cells_finish(&cells);
+}
+
+static bool upload_table(struct impostors *impostors, struct wd_gpu *gpu,
+                         const struct wd_impostor *table, size_t count)
+{
+    const struct wd_buffer_params params = {"impostors", count * sizeof *table,
+                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, WD_MEMORY_DEVICE};
+    uint32_t limit = gpu->properties.limits.maxStorageBufferRange;
+    if (params.size > limit)
+        return wd_error(gpu->log, "impostors: %zu MB are more than the %u MB that %s can bind at "
+                                  "once: use smaller clusters or more trees a cluster",
+                        (size_t)params.size >> 20, limit >> 20, gpu->properties.deviceName);
+    return wd_buffer_init(&impostors->table, gpu, &params) &&
+           wd_buffer_upload(gpu, &impostors->table, 0, table, params.size);
+}
+
+static bool impostor_use_forest(void *state, struct wd_gpu *gpu, struct wd_forest_device *forest)
+{
+    struct impostors *impostors = state;
+    const struct wd_octree *octree = &forest->world->octree;
+    const struct wd_impostor_options *options = &forest->scene->methods.impostor;
+    const struct wd_octant_bake_params params = {
+        .cluster_size = (uint32_t)options->cluster_size,
+        .least_alpha = (float)options->least_alpha,
+        .average = options->faithful ? WD_OCTANT_PLAIN : WD_OCTANT_LAYERED,
+        .log = gpu->log,
+    };
+    struct wd_octant_colors colors = {0};
+    struct wd_octant_clusters clusters = {0};
+    if (!octree->count)
+        return true;
+    uint32_t *chosen = wd_alloc_array(octree->count, sizeof *chosen);
+    uint32_t count = choose_clusters(impostors, octree, options, chosen);
+    bool ok = wd_octant_colors_bake(&colors, gpu, forest, &params) &&
+              (!count || wd_octant_clusters_bake(&clusters, gpu, forest, chosen, count, &params));
+    if (ok) {
+        size_t total = (size_t)octree->count + clusters.cell_count;
+        struct wd_impostor *table = wd_alloc_array(total, sizeof *table);
+        fill_octants(table, octree, &colors);
+        if (count)
+            fill_clusters(impostors, table, octree->count, forest->world, chosen, &clusters);
+        ok = upload_table(impostors, gpu, table, total);
+        free(table);
+    }
+    wd_octant_clusters_finish(&clusters);
+    wd_octant_colors_finish(&colors);
+    free(chosen);
+    return ok;
+}
+
+static void impostor_drop_forest(void *state, struct wd_gpu *gpu)
+{
+    struct impostors *impostors = state;
+    wd_buffer_finish(&impostors->table, gpu);
+    wd_selection_finish(&impostors->selection);
+    free(impostors->clusters);
+    free(impostors->cluster_of);
+    free(impostors->singles);
+    free(impostors->drawn);
+    struct wd_pipeline pipeline = impostors->pipeline;
+    void *shadows = impostors->shadows;
+    *impostors = (struct impostors){.pipeline = pipeline, .shadows = shadows};
+}
+
+/* --- choosing ---------------------------------------------------------------------------- */
+
+struct visit {
+    struct impostors *impostors;
+    const struct wd_tree_draw *draw;
+    struct wd_level_rule rule;
+    float cards_m;         /* only billboards beyond */
+    float area_px, cell_area_px;
+};
+
+static bool replace(const struct visit *v, uint32_t index, float distance_m)
+{
+    struct impostors *impostors = v->impostors;
+    const struct wd_octant *octant = &v->draw->forest->world->octree.octants[index];
+    float side_px = octant->cube_size_m / distance_m * v->draw->view->pixels_per_radian;
+    uint32_t cluster = impostors->cluster_of[index];
+    if (distance_m < v->cards_m)
+        return false;
+    if (cluster != NO_CLUSTER && side_px * side_px < v->cell_area_px) {
+        *wd_push(impostors->drawn, impostors->drawn_count, impostors->drawn_capacity) =
+            impostors->clusters[cluster];
+        return true;
+    }
+    if (side_px * side_px >= v->area_px)
+        return false;
+    *wd_push(impostors->singles, impostors->single_count, impostors->single_capacity) = index;
+    return true;
+}
+
+static void visit(const struct visit *v, uint32_t index)
+{
+    const struct wd_octant *octants = v->draw->forest->world->octree.octants;
+    const struct wd_octant *octant = &octants[index];
+    const struct wd_view *view = v->draw->view;
+    struct wd_selection *selection = &v->impostors->selection;
+    float min[3], max[3], squared = 0.0f;
+    if (octant->begin == octant->end)
+        return;
+    for (int k = 0; k < 3; k++) {
+        min[k] = (float)((double)octant->min_m[k] - view->eye_m[k]);
+        max[k] = (float)((double)octant->max_m[k] - view->eye_m[k]);
+        float outside = fmaxf(fmaxf(min[k], -max[k]), 0.0f);
+        squared += outside * outside;
+    }
+    float distance_m = sqrtf(squared);
+    if (wd_frustum_box(&view->frustum, min, max) == WD_OUTSIDE || replace(v, index, distance_m))
+        return;
+    if (distance_m < v->cards_m) {
+        for (uint32_t i = octant->begin; i < octant->own_end; i++)
+            wd_selection_add_tree(selection, v->draw->forest, view, &v->rule, i);
+    } else {
+        wd_selection_add_range(selection, &(struct wd_range){octant->begin, octant->own_end,
+                                                             WD_CARD_VERTICES});
+    }
+    uint32_t child = octant->first_child;
+    for (uint32_t i = 0; i < octant->child_count; i++, child = octants[child].next_sibling)
+        visit(v, child);
+}
+
+static void impostor_select(void *state, const struct wd_tree_draw *draw)
+{
+    struct impostors *impostors = state;
+    const struct wd_impostor_options *options = &draw->forest->scene->methods.impostor;
+    if (draw->pass == WD_PASS_SHADOW) {
+        wd_method_octree.select(impostors->shadows, draw);
+        return;
+    }
+    float cells = (float)options->cluster_size;
+    struct visit v = {
+        .impostors = impostors,
+        .draw = draw,
+        .rule = wd_level_rule_of(draw->forest, draw->view, draw->pass),
+        .area_px = (float)options->area_px,
+        .cell_area_px = (float)options->area_px * cells * cells,
+    };
+    v.cards_m = wd_level_card_distance(&v.rule, draw->forest->max_tree_height_m);
+    wd_selection_clear(&impostors->selection);
+    impostors->single_count = impostors->drawn_count = 0;
+    visit(&v, 0);
+    wd_cmd_use_buffer(draw->cmd, &impostors->table, WD_USE_SHADER_READ);
+}
+
+/* --- drawing ----------------------------------------------------------------------------- */
+
+static void draw_impostors(const struct wd_tree_draw *draw, const struct wd_pipeline *pipeline,
+                           struct wd_impostor_push *push, uint32_t first, uint32_t count)
+{
+    uint32_t vertices = push->cubes ? WD_CUBE_VERTICES : WD_SPRITE_VERTICES;
+    uint32_t most = WD_CARD_BATCH * WD_CARD_VERTICES / vertices;
+    for (uint32_t at = 0; at < count; at += most) {
+        uint32_t part = count - at < most ? count - at : most;
+        push->first = first + at;
+        wd_cmd_push(draw->cmd, pipeline, push, sizeof *push);
+        wd_cmd_draw_indexed(
+            draw->cmd,
+            &(VkDrawIndexedIndirectCommand){part * vertices / 4 * 6, 1, 0,
+                                            push->listed ? (int32_t)(at * vertices) : 0, 0});
+        draw->stats->draw_calls++;
+        draw->stats->triangles += (uint64_t)part * vertices / 2;
+    }
+}
+
+static void impostor_draw(void *state, const struct wd_tree_draw *draw)
+{
+    struct impostors *impostors = state;
+    const struct wd_impostor_options *options = &draw->forest->scene->methods.impostor;
+    if (draw->pass == WD_PASS_SHADOW) {
+        wd_method_octree.draw(impostors->shadows, draw);
+        return;
+    }
+    wd_tree_draw_selection(draw, &impostors->selection, WD_DRAW_GROUPED);
+    struct wd_binding list = WD_BIND_BUFFER(&impostors->table);
+    uint32_t *memory = NULL;
+    if (impostors->single_count) {
+        memory = wd_cmd_upload(draw->cmd, impostors->single_count * sizeof *memory, &list);
+        if (!memory)
+            return;
+        memcpy(memory, impostors->singles, impostors->single_count * sizeof *memory);
+    }
+    const struct wd_binding bindings[] = {draw->uniforms, WD_BIND_BUFFER(&impostors->table), list};
+    struct wd_impostor_push push = {
+        .cubes = options->shape == WD_IMPOSTOR_CUBE,
+        .pixels_per_radian = draw->view->pixels_per_radian,
+    };
+    wd_cmd_bind(draw->cmd, &impostors->pipeline, bindings);
+    wd_cmd_bind_indices(draw->cmd, &draw->forest->card_indices);
+    for (size_t i = 0; i < impostors->drawn_count; i++)
+        draw_impostors(draw, &impostors->pipeline, &push, impostors->drawn[i].first,
+                       impostors->drawn[i].count);
+    push.listed = 1;
+    draw_impostors(draw, &impostors->pipeline, &push, 0, (uint32_t)impostors->single_count);
+}
+
+const struct wd_method wd_method_impostor = {
+    .name = "impostor",
+    .state_size = sizeof(struct impostors),
+    .init = impostor_init,
+    .finish = impostor_finish,
+    .use_forest = impostor_use_forest,
+    .drop_forest = impostor_drop_forest,
+    .select = impostor_select,
+    .draw = impostor_draw,
+};
