@@ -40,10 +40,10 @@ float crown_path_m(wd_crown crown, vec3 rel)
 }
 
 /* Share of the sun left after that way: half the leaf area a ray meets stands across it (spherical
- * leaf angles), and a crown holds some 4 m2 of leaves over each m2 of ground, clumped to half. */
+ * leaf angles), and a crown holds some 4 m2 of leaves over each m2 of ground, somewhat clumped. */
 float crown_through(wd_crown crown, float path_m)
 {
-    float per_m = 0.5 * 4.0 * 0.55 / (2.0 * crown.radii_m.z) + 0.06;
+    float per_m = 0.5 * 4.0 * 0.85 / (2.0 * crown.radii_m.z) + 0.06;
     return exp(-per_m * path_m);
 }
 

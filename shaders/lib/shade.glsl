@@ -76,7 +76,9 @@ wd_place ground_place(wd_pixel pixel)
 }
 
 /* Near, the maps hold each leaf and the crown's depth adds little; far, they hold crowns only: the
- * crown is left behind before the map is asked, and depth along the sun does the rest. */
+ * crown is left behind before the map is asked, and depth along the sun does the rest. A crown is no
+ * even cloud: what sees little of the sky sees little of the sun. Both factors are set so that
+ * dense forest from above and from within is as bright as path-traced (docs/reference.md). */
 wd_place leaf_place(wd_pixel pixel, uint cascade)
 {
     wd_tree tree = trees[pixel.surface - 1u];
@@ -90,7 +92,8 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.rel) : pixel.rel;
     float path_m = crown_path_m(crown, place.rel);
-    place.own = mix(crown_through(crown, path_m), 1.0, mapped);
+    float through = crown_through(crown, path_m) * min(pixel.openness * 1.2, 1.0);
+    place.own = mix(through, 1.0, mapped);
     place.ahead_m = mapped > 0.0 ? 0.0 : path_m + frame.cascade_texel_m[min(cascade, 3u)];
     vec3 outward = crown_normal(crown, place.rel);
     float cosine = dot(eye, frame.sun_direction);

@@ -25,7 +25,7 @@ static void test_agreement(void **state)
     assert_true(a.id_pct >= 99.0);
     assert_true(a.normal_deg < 3.0);
     assert_true(a.depth_mm < 20.0);
-    assert_true(fabs(a.albedo_pct) < 5.0);
+    assert_true(fabs(a.albedo_pct) < 8.0);
     assert_true(fabs(a.ground_albedo_pct) < 3.0);
 }
 
