@@ -19,12 +19,12 @@
 
 /* Elevation x azimuth (Sterling and Justin; row R3): `rows` rings from the horizon to the zenith
  * of `columns` views each. Views crowd at the zenith. */
-#define WD_VIEWS_RINGS 0
+#define WD_VIEWS_RINGS 1
 /* Octahedral map of the hemisphere, `rows` x `rows` views (Engelhardt and Dachsbacher 2008). */
-#define WD_VIEWS_OCTAHEDRAL 1
+#define WD_VIEWS_OCTAHEDRAL 2
 /* The zenith, then `rows` rings of 4, 8, 12 ... views down to the horizon: 2 N (N + 1) + 1 views,
  * nearly evenly spread (Bruneton and Neyret 2012). */
-#define WD_VIEWS_EVEN 2
+#define WD_VIEWS_EVEN 0
 
 struct wd_hemisphere {
     uint32_t kind; /* WD_VIEWS_* */

@@ -12,12 +12,12 @@ enum { MAX_ROWS = 64, MAX_COLUMNS = 360, LEAST_TILE = 4 };
 static void fill_in(struct wd_view_set_params *params)
 {
     static const struct wd_hemisphere usual[] = {
-        {WD_VIEWS_RINGS, 10, 30}, {WD_VIEWS_OCTAHEDRAL, 12, 0}, {WD_VIEWS_EVEN, 9, 0}};
+        {WD_VIEWS_EVEN, 9, 0}, {WD_VIEWS_RINGS, 10, 30}, {WD_VIEWS_OCTAHEDRAL, 12, 0}};
     struct wd_hemisphere *h = &params->hemisphere;
-    if (h->rows == 0 && h->kind == 0 && h->columns == 0)
-        *h = usual[WD_VIEWS_EVEN];
-    if (h->rows == 0 && h->kind <= WD_VIEWS_EVEN)
-        *h = usual[h->kind];
+    if (h->kind < sizeof usual / sizeof *usual) {
+        h->rows = h->rows ? h->rows : usual[h->kind].rows;
+        h->columns = h->columns ? h->columns : usual[h->kind].columns;
+    }
     params->size = params->size ? params->size : WD_VIEW_SIZE;
     params->samples = params->samples ? params->samples : 4;
 }
@@ -26,8 +26,8 @@ static bool check(const struct wd_view_set_params *params, const struct wd_log *
 {
     const struct wd_hemisphere *h = &params->hemisphere;
     uint32_t least_rows = h->kind == WD_VIEWS_EVEN ? 1 : 2, size = params->size;
-    if (h->kind > WD_VIEWS_EVEN)
-        return wd_error(log, "view set: layout %u; allowed are 0 rings, 1 octahedral, 2 even",
+    if (h->kind > WD_VIEWS_OCTAHEDRAL)
+        return wd_error(log, "view set: layout %u; allowed are 0 even, 1 rings, 2 octahedral",
                         h->kind);
     if (h->rows < least_rows || h->rows > MAX_ROWS)
         return wd_error(log, "view set: %u rows of views; allowed are %u to %d", h->rows,

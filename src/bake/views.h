@@ -16,7 +16,8 @@ enum {
 
 /* {0} is valid: 181 evenly spread views of 64 x 64 texels, 4 x 4 samples a texel. */
 struct wd_view_set_params {
-    struct wd_hemisphere hemisphere; /* rows 0: WD_VIEWS_EVEN 9, _RINGS 10 x 30, _OCTAHEDRAL 12 */
+    struct wd_hemisphere hemisphere; /* rows, columns 0: WD_VIEWS_EVEN 9, _RINGS 10 x 30,
+                                        _OCTAHEDRAL 12 */
     uint32_t size;    /* texels a side of a view: a power of two, WD_VIEW_SIZE_MIN .. _MAX */
     uint32_t samples; /* a texel, along each side: 1 .. WD_VIEW_SAMPLES_MAX */
     enum wd_bake_parts parts;

@@ -175,7 +175,8 @@ bool wd_view_sets_init(struct wd_view_sets *sets, struct wd_gpu *gpu,
     struct wd_view_set_params views = params->views;
     uint32_t variants = params->variants ? params->variants : forest->variants;
     variants = variants < forest->variants ? variants : forest->variants;
-    *sets = (struct wd_view_sets){.layers = forest->model_count / forest->variants * variants};
+    *sets = (struct wd_view_sets){.variants = variants,
+                                  .layers = forest->model_count / forest->variants * variants};
     bool ok = wd_view_atlas_init(&sets->atlas, &views, gpu, gpu->log);
     for (int k = 0; k < WD_PLANES && ok; k++) {
         uint32_t side = wd_view_layer_size(&sets->atlas, 0);

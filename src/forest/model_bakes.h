@@ -20,8 +20,9 @@ bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
 struct wd_view_sets {
     struct wd_view_atlas atlas;
     struct wd_image planes[WD_PLANES]; /* 2D arrays, one layer a baked model */
-    struct wd_buffer models; /* struct wd_view_model[forest->model_count]: where a variant has no
-                                layer of its own, .layer is that of another of its species */
+    struct wd_buffer models; /* struct wd_view_model[forest->model_count]; a tree of variant v has
+                                the pictures of variant v % variants */
+    uint32_t variants;       /* of each species, that have pictures */
     uint32_t layers, from_cache;
     uint64_t baked_us, bytes;
 };

@@ -14,6 +14,8 @@ static const struct wd_method *const methods[] = {
     &wd_method_patch,
     &wd_method_dissolve,
     &wd_method_impostor,
+    &wd_method_views,
+    &wd_method_zfield,
     &wd_method_continuum,
 };
 

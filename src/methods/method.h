@@ -36,6 +36,8 @@ extern const struct wd_method wd_method_octree;   /* static geometry in octree o
 extern const struct wd_method wd_method_grid;     /* cells of a fixed grid (row G9) */
 extern const struct wd_method wd_method_continuum; /* cost by pixels: splats in compute */
 extern const struct wd_method wd_method_lod;      /* levels by distances of the user's (row O1) */
+extern const struct wd_method wd_method_views;    /* pictures from all around (rows R3, R4, R6) */
+extern const struct wd_method wd_method_zfield;   /* the same with their depths (row R6) */
 extern const struct wd_method wd_method_patch;    /* blended back to front (rows I1-I9) */
 extern const struct wd_method wd_method_dissolve; /* leaf and branch levels (rows W4-W7) */
 extern const struct wd_method wd_method_impostor; /* six colours an octant (rows G2-G4) */

@@ -124,6 +124,56 @@ static const struct wd_key impostor_keys[] = {
 };
 static const struct wd_keys impostor_table = TABLE(impostor);
 
+static const char *const view_layouts[] = {"even", "rings", "octahedral", NULL};
+static const char *const view_blends[] = {"nearest", "three", NULL};
+static const struct wd_key views_keys[] = {
+    {"layout", WD_KEY_ENUM, OPTION(views, layout), .fallback = "\"rings\"",
+     .choices = view_layouts, .row = "R3",
+     .doc = "Where views are taken from: elevation x azimuth as in the paper, an octahedral grid, "
+            "or evenly spread rings (Bruneton and Neyret)."},
+    {"rows", WD_KEY_INTEGER, OPTION(views, rows), 0, 64, "0",
+     "Rings from the horizon to the zenith, or grid points a side; 0: 10 rings, 12 points, or 9 even "
+     "rings.", .row = "R3"},
+    {"columns", WD_KEY_INTEGER, OPTION(views, columns), 0, 360, "0",
+     "Views of a ring; 0: 30, which makes the paper's 300 views.", .row = "R3"},
+    {"size", WD_KEY_INTEGER, OPTION(views, size), 8, 256, "64",
+     "Texels of a view along a side, a power of two.", .row = "R3"},
+    {"samples", WD_KEY_INTEGER, OPTION(views, samples), 1, 8, "4",
+     "Samples of a texel along a side while views are taken.", .row = "R3"},
+    {"variants", WD_KEY_INTEGER, OPTION(views, variants), 0, 64, "1",
+     "Individuals of a species that get pictures; 0: all.", .row = "R6"},
+    {"blend", WD_KEY_ENUM, OPTION(views, blend), .fallback = "\"three\"", .choices = view_blends,
+     .row = "R4", .doc = "The nearest view alone, or three views around blended."},
+    {"near_m", WD_KEY_DOUBLE, OPTION(views, near_m), 0, 1e6, "40",
+     "Meshes nearer than this, in metres.", .row = "R4"},
+    {"faithful", WD_KEY_BOOL, OPTION(views, faithful), .fallback = "false",
+     .doc = "As in the paper: no meshes, the nearest view: trees pop as the eye moves.",
+     .row = "R4"},
+    {0},
+};
+static const struct wd_keys views_table = TABLE(views);
+
+static const struct wd_key zfield_keys[] = {
+    {"rows", WD_KEY_INTEGER, OPTION(zfield, rows), 1, 22, "9",
+     "Rings of views N: 2 N (N + 1) + 1 views are taken, 181 in the paper.", .row = "R6"},
+    {"size", WD_KEY_INTEGER, OPTION(zfield, size), 8, 256, "64",
+     "Texels of a view along a side, a power of two.", .row = "R6"},
+    {"samples", WD_KEY_INTEGER, OPTION(zfield, samples), 1, 8, "4",
+     "Samples of a texel along a side while views are taken.", .row = "R6"},
+    {"variants", WD_KEY_INTEGER, OPTION(zfield, variants), 0, 64, "1",
+     "Individuals of a species that get pictures; 0: all.", .row = "R6"},
+    {"refine", WD_KEY_INTEGER, OPTION(zfield, refine), 0, 8, "1",
+     "Times that depth is looked up again where it was found.", .row = "R6"},
+    {"near_m", WD_KEY_DOUBLE, OPTION(zfield, near_m), 0, 1e6, "40",
+     "Meshes nearer than this, in metres; the paper has none.", .row = "R6"},
+    {"range_m", WD_KEY_DOUBLE, OPTION(zfield, range_m), 0, 1e6, "3000",
+     "No tree is drawn by itself beyond this distance, in metres; 0: all are.", .row = "R6"},
+    {"fade", WD_KEY_DOUBLE, OPTION(zfield, fade), 0, 1, "0.3",
+     "Over this last share of the range trees give way to the canopy's map.", .row = "R6"},
+    {0},
+};
+static const struct wd_keys zfield_table = TABLE(zfield);
+
 #define METHOD(method, rows, summary)                                                              \
     {#method, WD_KEY_OBJECT, offsetof(struct wd_method_options, method), .table = &method##_table, \
      .doc = summary, .row = rows}
@@ -136,6 +186,8 @@ static const struct wd_key method_keys[] = {
     METHOD(patch, "I1-I9", "Billboards of patches, blended back to front in an order by arithmetic."),
     METHOD(dissolve, "W4-W7", "Leaves and branches that thin out, billboards of one view each far."),
     METHOD(impostor, "G2-G4", "Far octants as sprites, cubes or clusters of six colours."),
+    METHOD(views, "R3-R6", "Every tree by pictures from all around it, one quad each."),
+    METHOD(zfield, "R6", "Pictures with depth: trees meet the ground and each other by pixels."),
     METHOD(continuum, "continuum", "Splats whose number follows the pixels they cover, in compute."),
     {0},
 };
@@ -149,6 +201,8 @@ const char *const wd_scene_method_names[] = {
     "patch",
     "dissolve",
     "impostor",
+    "views",
+    "zfield",
     "continuum",
     NULL,
 };

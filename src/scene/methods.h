@@ -53,6 +53,22 @@ struct wd_impostor_options {
     bool faithful;
 };
 
+enum wd_views_blend { WD_VIEWS_NEAREST, WD_VIEWS_THREE };
+struct wd_views_options {
+    int layout;            /* WD_VIEWS_* of shared/hemisphere.h */
+    int64_t rows, columns; /* 0: the layout's own */
+    int64_t size, samples; /* texels of a view, samples a texel's side */
+    int64_t variants;      /* of a species that get pictures; 0: all */
+    int blend;             /* enum wd_views_blend */
+    double near_m;
+    bool faithful;
+};
+
+struct wd_zfield_options {
+    int64_t rows, size, samples, variants, refine;
+    double near_m, range_m, fade;
+};
+
 /* By method; methods without options have no member. */
 struct wd_method_options {
     struct wd_octree_options octree;
@@ -62,6 +78,8 @@ struct wd_method_options {
     struct wd_patch_options patch;
     struct wd_dissolve_options dissolve;
     struct wd_impostor_options impostor;
+    struct wd_views_options views;
+    struct wd_zfield_options zfield;
 };
 
 /* One key a method, in the order of wd_scene_method_names; `table` holds its options. */

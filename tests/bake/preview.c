@@ -20,7 +20,7 @@ struct options {
 
 static void read_options(struct options *options, int count, char **texts)
 {
-    static const char *const kinds[] = {"rings", "octahedral", "even"};
+    static const char *const kinds[] = {"even", "rings", "octahedral"};
     for (int i = 0; i < count; i++) {
         for (uint32_t kind = 0; kind < 3; kind++)
             if (strcmp(texts[i], kinds[kind]) == 0 && i + 1 < count) {

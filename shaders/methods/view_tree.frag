@@ -1,0 +1,2 @@
+#version 460
+#include "lib/view_tree.glsl"
