@@ -8,28 +8,82 @@
 
 static const float NEAR_M = 0.1f;
 
-/* Where sample i lies in its pixel: the R2 sequence (Roberts 2018), which fills the square evenly
- * for any count; a single sample takes the middle. */
-static void sample_offset(uint32_t index, uint32_t count, float offset_px[2])
+/* Height of the film, which together with the field of view gives the focal length. */
+static const double FILM_M = 0.024;
+
+/* What sample i of a picture stands for: a place in the pixel, on the lens and in the time that the
+ * shutter is open, each -0.5..0.5. */
+struct exposure {
+    double pixel[2], lens[2], time;
+};
+
+/* R sequences (Roberts 2018), which fill the square and the cube evenly for any count. The middle
+ * of all comes last, so that the G-buffer is left with it; a single sample takes the middle. */
+static struct exposure exposure_of(uint32_t index, uint32_t count)
 {
-    const double a1 = 0.7548776662466927, a2 = 0.5698402909980532;
-    offset_px[0] = offset_px[1] = 0.0f;
-    if (count < 2)
-        return;
-    offset_px[0] = (float)(fmod(0.5 + a1 * index, 1.0) - 0.5);
-    offset_px[1] = (float)(fmod(0.5 + a2 * index, 1.0) - 0.5);
+    static const double steps[5] = {0.7548776662466927, 0.5698402909980532, 0.8191725133961645,
+                                    0.6710436067037893, 0.5497004779019703};
+    double at[5];
+    for (int k = 0; k < 5; k++)
+        at[k] = fmod(0.5 + steps[k] * (count - 1 - index), 1.0) - 0.5;
+    return (struct exposure){{at[0], at[1]}, {at[2], at[3]}, at[4]};
+}
+
+/* The unit disc from the square (Shirley and Chiu 1997). */
+static void disc_of(const double square[2], double disc[2])
+{
+    double x = 2 * square[0], y = 2 * square[1];
+    bool wide = fabs(x) > fabs(y);
+    double radius = wide ? x : y;
+    double turn = radius == 0.0 ? 0.0 : 0.785398163397448 * (wide ? y / x : 2.0 - x / y);
+    disc[0] = radius * cos(turn);
+    disc[1] = radius * sin(turn);
+}
+
+/* The camera on its way while the shutter is open. */
+static struct wd_camera moving_camera(const struct wd_uniforms_params *params, double time)
+{
+    double share = params->forest->scene->lens.shutter * time;
+    const struct wd_camera *was = &params->previous_camera;
+    struct wd_camera camera = params->camera;
+    for (int k = 0; k < 3; k++)
+        camera.position_m[k] += share * (camera.position_m[k] - was->position_m[k]);
+    camera.yaw_rad += share * remainder(camera.yaw_rad - was->yaw_rad, 6.283185307179586);
+    camera.pitch_rad += share * (camera.pitch_rad - was->pitch_rad);
+    return camera;
+}
+
+/* A place on the lens is an eye beside the middle, whose picture is shifted so that the plane in
+ * focus stays. */
+static void move_on_lens(struct wd_view_params *view, const struct wd_scene *scene,
+                         const double lens[2])
+{
+    double half_height = tan(view->camera.fov_rad * 0.5), disc[2];
+    double right[3], forward[3], up[3];
+    disc_of(lens, disc);
+    double radius_m = 0.5 * (0.5 * FILM_M / half_height) / scene->lens.f_number;
+    double px_per_m = 0.5 * view->height / (half_height * scene->lens.focus_m);
+    wd_camera_axes(&view->camera, right, forward, up);
+    for (int k = 0; k < 3; k++)
+        view->camera.position_m[k] += radius_m * (disc[0] * right[k] + disc[1] * up[k]);
+    view->offset_px[0] += (float)(radius_m * disc[0] * px_per_m);
+    view->offset_px[1] -= (float)(radius_m * disc[1] * px_per_m);
 }
 
 static void fill_camera(struct wd_frame_uniforms *uniforms, struct wd_view *view,
                         const struct wd_uniforms_params *params)
 {
+    const struct wd_scene *scene = params->forest->scene;
     struct wd_view_params camera = {params->camera, params->width, params->height, NEAR_M, {0}};
+    struct exposure exposure = exposure_of(params->sample_index, params->sample_count);
     struct wd_view steady;
     wd_view_init(&steady, &camera);
     memcpy(uniforms->steady_clip_from_rel, steady.clip_from_rel, sizeof steady.clip_from_rel);
-    /* backwards, so that the G-buffer is left with the sample through the pixels' middles */
-    sample_offset(params->sample_count - 1 - params->sample_index, params->sample_count,
-                  camera.offset_px);
+    camera.camera = moving_camera(params, exposure.time);
+    for (int k = 0; k < 2; k++)
+        camera.offset_px[k] = (float)exposure.pixel[k];
+    if (scene->lens.f_number > 0.0)
+        move_on_lens(&camera, scene, exposure.lens);
     wd_view_init(view, &camera);
     memcpy(uniforms->clip_from_rel, view->clip_from_rel, sizeof view->clip_from_rel);
     wd_matrix_invert(uniforms->rel_from_clip, view->clip_from_rel);
@@ -37,6 +91,9 @@ static void fill_camera(struct wd_frame_uniforms *uniforms, struct wd_view *view
     uniforms->near_m = NEAR_M;
     uniforms->width = params->width;
     uniforms->height = params->height;
+    double span_s = params->time_s - params->previous_time_s;
+    uniforms->time_s = (float)(params->time_s + span_s * scene->lens.shutter * exposure.time);
+    uniforms->previous_time_s = (float)params->previous_time_s;
 }
 
 /* The previous camera's matrix for places relative to the present one. */
@@ -51,8 +108,6 @@ static void fill_previous(struct wd_frame_uniforms *uniforms,
     for (int k = 0; k < 3; k++)
         shift[3][k] = (float)(params->camera.position_m[k] - params->previous_camera.position_m[k]);
     wd_matrix_multiply(uniforms->previous_clip_from_rel, previous.clip_from_rel, shift);
-    uniforms->time_s = (float)params->time_s;
-    uniforms->previous_time_s = (float)params->previous_time_s;
 }
 
 void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,

@@ -174,6 +174,12 @@ struct wd_scene {
         double tree_line_m;  /* 0: none */
         double snow;         /* share of level ground and of upper sides under fresh snow */
     } ground;
+    struct {
+        double f_number;     /* 0: a pinhole, all is sharp */
+        double focus_m;      /* distance along the view axis that is sharp */
+        double shutter;      /* share of the time between frames for which it is open */
+        double bloom;        /* share of the light that the lens spreads about */
+    } lens;
     struct wd_scene_camera *cameras;
     size_t camera_count;
     struct wd_scene_path *paths;

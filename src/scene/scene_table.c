@@ -143,6 +143,21 @@ static const struct wd_key ground_keys[] = {
 };
 static const struct wd_keys ground_table = GROUP("ground", ground_keys, ground);
 
+static const struct wd_key lens_keys[] = {
+    {"f_number", WD_KEY_DOUBLE, IN(lens, f_number), 0, 1000, "0",
+     "Focal length over aperture of a lens for film of 36 x 24 mm: depth of field, drawn by the "
+     "picture's samples; 0: all is sharp."},
+    {"focus_m", WD_KEY_DOUBLE, IN(lens, focus_m), 0, 1e6, "20",
+     "Distance along the view axis that is sharp, in metres.", .flags = WD_KEY_EXCLUSIVE_MIN},
+    {"shutter", WD_KEY_DOUBLE, IN(lens, shutter), 0, 1, "0",
+     "Share of the time between a film's frames for which the shutter is open: motion blur, drawn "
+     "by the picture's samples; 0.5 is usual."},
+    {"bloom", WD_KEY_DOUBLE, IN(lens, bloom), 0, 0.5, "0",
+     "Share of the light that the lens spreads about bright places."},
+    {0},
+};
+static const struct wd_keys lens_table = GROUP("lens", lens_keys, lens);
+
 static const struct wd_key quality_keys[] = {
     {"width", WD_KEY_INTEGER, IN(quality, width), 1, 32768, "1280", "Width in pixels."},
     {"height", WD_KEY_INTEGER, IN(quality, height), 1, 32768, "720", "Height in pixels."},
@@ -188,6 +203,7 @@ static const struct wd_key scene_keys[] = {
     {"wind", WD_KEY_OBJECT, SCENE(wind), .table = &wind_table, .doc = "Wind."},
     {"water", WD_KEY_OBJECT, SCENE(water), .table = &water_table, .doc = "Water."},
     {"ground", WD_KEY_OBJECT, SCENE(ground), .table = &ground_table, .doc = "Look of the ground."},
+    {"lens", WD_KEY_OBJECT, SCENE(lens), .table = &lens_table, .doc = "Lens and shutter."},
     {"cameras", WD_KEY_LIST, SCENE(cameras), .table = &wd_scene_camera_keys,
      .count_offset = SCENE(camera_count),
      .doc = "Points of view; without any, one is made that overlooks the scene."},
