@@ -10,7 +10,16 @@ layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms f
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 2, rgba8) uniform writeonly image2D display_image;
 layout(scalar, set = 0, binding = 3) readonly buffer Meter { wd_meter meter; };
+layout(scalar, set = 0, binding = 4) readonly buffer Bloom { vec4 bloom[]; };
 layout(scalar, push_constant) uniform Push { wd_post_push push; };
+
+#include "lib/bloom.glsl"
+
+vec3 spread_light(ivec2 at)
+{
+    wd_bloom_level level = wd_bloom_level(0u, (frame.width + 1u) / 2u, (frame.height + 1u) / 2u);
+    return bloom_linear(level, (vec2(at) + 0.5) * 0.5) / float(WD_BLOOM_LEVELS);
+}
 
 void main()
 {
@@ -20,6 +29,8 @@ void main()
     vec4 sum = imageLoad(radiance_image, at);
     vec3 color = sum.rgb / max(sum.a, 1.0);
     if (frame.view_mode == WD_MODE_LIT) {
+        if (push.bloom > 0.0)
+            color = mix(color, spread_light(at), push.bloom);
         float exposure = frame.exposure > 0.0 ? frame.exposure : meter.exposure;
         color = wd_tone_map(color * (exposure * push.exposure_scale));
     }

@@ -73,6 +73,7 @@ struct wd_meter {
 
 struct wd_post_push {
     float exposure_scale; /* 2^exposure_ev */
+    float bloom;          /* share of the light that the lens spreads */
 };
 
 #endif

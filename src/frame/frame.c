@@ -239,6 +239,7 @@ static void record_display(const struct recording *r)
     const struct wd_post_params post = {
         .targets = &r->frame->targets,
         .uniforms = r->uniforms,
+        .bloom = (float)r->frame->params.forest->scene->lens.bloom,
         .exposure_ev = (float)r->frame->params.forest->scene->quality.exposure_ev,
     };
     wd_cmd_scope_begin(r->cmd, "post");

@@ -43,9 +43,10 @@ static bool init_tonemap(struct wd_post_pass *pass, struct wd_gpu *gpu)
 {
     const struct wd_compute_params params = {
         .shader = SPIRV(tonemap_comp),
-        .bindings = {4,
+        .bindings = {5,
                      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .push_size = sizeof(struct wd_post_push),
     };
     return wd_pipeline_init_compute(&pass->tonemap, gpu, &params);
@@ -54,7 +55,8 @@ static bool init_tonemap(struct wd_post_pass *pass, struct wd_gpu *gpu)
 bool wd_post_pass_init(struct wd_post_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_post_pass){0};
-    bool ok = init_meter(pass, gpu) && init_tonemap(pass, gpu);
+    bool ok = init_meter(pass, gpu) && init_tonemap(pass, gpu) &&
+              wd_bloom_pass_init(&pass->bloom, gpu);
     if (!ok)
         wd_post_pass_finish(pass, gpu);
     return ok;
@@ -65,6 +67,7 @@ void wd_post_pass_finish(struct wd_post_pass *pass, struct wd_gpu *gpu)
     wd_pipeline_finish(&pass->meter, gpu);
     wd_pipeline_finish(&pass->exposure, gpu);
     wd_pipeline_finish(&pass->tonemap, gpu);
+    wd_bloom_pass_finish(&pass->bloom, gpu);
     wd_buffer_finish(&pass->histogram, gpu);
     *pass = (struct wd_post_pass){0};
 }
@@ -92,12 +95,16 @@ void wd_post_pass_record(struct wd_post_pass *pass, struct wd_cmd *cmd,
     struct wd_targets *targets = params->targets;
     wd_cmd_use_image(cmd, &targets->radiance, WD_USE_COMPUTE_WRITE); /* stays a storage image */
     record_meter(pass, cmd, params);
+    if (params->bloom > 0.0f)
+        wd_bloom_pass_record(&pass->bloom, cmd, targets);
     wd_cmd_use_buffer(cmd, &pass->histogram, WD_USE_COMPUTE_READ);
     wd_cmd_discard_image(cmd, &targets->display, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {
         params->uniforms, WD_BIND_STORAGE_IMAGE(&targets->radiance),
-        WD_BIND_STORAGE_IMAGE(&targets->display), WD_BIND_BUFFER(&pass->histogram)};
-    const struct wd_post_push push = {.exposure_scale = exp2f(params->exposure_ev)};
+        WD_BIND_STORAGE_IMAGE(&targets->display), WD_BIND_BUFFER(&pass->histogram),
+        /* without bloom nobody reads the slot; it is filled all the same */
+        WD_BIND_BUFFER(params->bloom > 0.0f ? &pass->bloom.pyramid : &pass->histogram)};
+    const struct wd_post_push push = {exp2f(params->exposure_ev), params->bloom};
     wd_cmd_bind(cmd, &pass->tonemap, bindings);
     wd_cmd_push(cmd, &pass->tonemap, &push, sizeof push);
     wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);

@@ -2,10 +2,11 @@
 #ifndef WD_FRAME_PASSES_POST_H
 #define WD_FRAME_PASSES_POST_H
 
-#include "frame/targets.h"
+#include "frame/passes/bloom.h"
 
 struct wd_post_pass {
     struct wd_pipeline meter, exposure, tonemap;
+    struct wd_bloom_pass bloom;
     struct wd_buffer histogram; /* struct wd_meter */
 };
 
@@ -16,6 +17,7 @@ struct wd_post_params {
     struct wd_targets *targets;
     struct wd_binding uniforms; /* struct wd_frame_uniforms; exposure 0: by metering */
     float exposure_ev;          /* added to either */
+    float bloom;                /* share of the light that the lens spreads */
 };
 /* Turns targets->radiance into targets->display. View modes other than WD_MODE_LIT are encoded
  * without exposure and tone curve. */
