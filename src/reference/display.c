@@ -6,7 +6,7 @@
 #include "shared/hash.h"
 
 /* Every second pixel of every second row. */
-static float meter(const float *color, uint32_t width, uint32_t height)
+float wd_display_exposure(const float *color, uint32_t width, uint32_t height)
 {
     uint32_t bins[WD_METER_BINS] = {0};
     for (uint32_t y = 0; y < height; y += 2)
@@ -15,10 +15,9 @@ static float meter(const float *color, uint32_t width, uint32_t height)
     return wd_exposure_of(bins);
 }
 
-void wd_display_map(const float *color, uint32_t width, uint32_t height, float exposure_ev,
-                    uint8_t *display)
+void wd_display_map_at(const float *color, uint32_t width, uint32_t height, float exposure,
+                       uint8_t *display)
 {
-    float exposure = meter(color, width, height) * exp2f(exposure_ev);
     for (uint32_t y = 0; y < height; y++) {
         for (uint32_t x = 0; x < width; x++) {
             size_t pixel = (size_t)y * width + x;
@@ -34,4 +33,11 @@ void wd_display_map(const float *color, uint32_t width, uint32_t height, float e
             display[4 * pixel + 3] = 255;
         }
     }
+}
+
+void wd_display_map(const float *color, uint32_t width, uint32_t height, float exposure_ev,
+                    uint8_t *display)
+{
+    float exposure = wd_display_exposure(color, width, height) * exp2f(exposure_ev);
+    wd_display_map_at(color, width, height, exposure, display);
 }

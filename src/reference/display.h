@@ -4,7 +4,14 @@
 
 #include <stdint.h>
 
-/* `color`: 3 a pixel; `display`: 4 bytes a pixel. `exposure_ev` is added to what metering asks. */
+/* The exposure that metering asks for. `color`: 3 a pixel. */
+float wd_display_exposure(const float *color, uint32_t width, uint32_t height);
+
+/* `display`: 4 bytes a pixel. */
+void wd_display_map_at(const float *color, uint32_t width, uint32_t height, float exposure,
+                       uint8_t *display);
+
+/* At the metered exposure; `exposure_ev` is added to it. */
 void wd_display_map(const float *color, uint32_t width, uint32_t height, float exposure_ev,
                     uint8_t *display);
 
