@@ -28,7 +28,8 @@ enum cli_command_bit {
     CLI_METHODS = 1 << 7,
     CLI_GROW = 1 << 8,
     CLI_EXPORT = 1 << 9,
-    CLI_EVERY = (1 << 10) - 1,
+    CLI_BENCH = 1 << 10,
+    CLI_EVERY = (1 << 11) - 1,
 };
 
 enum { CLI_MAX_SIZE_PX = 16384, CLI_MAX_WORDS = 32 };
@@ -45,6 +46,7 @@ struct cli_options {
     int operand_count;
     const char *output, *camera, *path, *method, *seed, *data, *gpu;
     const char *screenshots, *report;
+    const char *suite, *metric, *methods;
     uint32_t size_px[2];
     uint32_t samples, frames, threads, bounces;
     uint32_t variants, max_trees, grow_seed;
@@ -53,7 +55,7 @@ struct cli_options {
     const char *season, *form;
     struct cli_words settings, method_options;
     enum wd_view_mode view;
-    bool help, json, quiet, reference, times, gpu_validate, walk, sheet,
+    bool help, json, quiet, quick, reference, times, gpu_validate, walk, sheet,
          faithful;
 };
 
@@ -131,6 +133,7 @@ enum cli_status cli_info(struct cli_session *session);
 enum cli_status cli_check(struct cli_session *session);
 enum cli_status cli_schema(struct cli_session *session);
 enum cli_status cli_devices(struct cli_session *session);
+enum cli_status cli_bench(struct cli_session *session);
 enum cli_status cli_manual(struct cli_session *session);
 enum cli_status cli_methods(struct cli_session *session);
 

@@ -64,6 +64,17 @@ static const struct cli_command commands[] = {
      "  weald schema scene > scene.schema.json\n", cli_schema},
     {"devices", CLI_DEVICES, "", 0, 0, "list the Vulkan devices",
      "Lists the Vulkan devices that --gpu can name.", "  weald devices\n", cli_devices},
+    {"bench", CLI_BENCH, "[SCENE...] --suite NAME -o DIR", 0, 64,
+     "measure methods against each other and the truth",
+     "Draws scenes with every method and measures time, memory, and how far the pictures are from\n"
+     "path-traced ones; prints a table and leaves results.csv, results.json and report.html in DIR.\n"
+     "Stopped, the same command goes on. Suites:\n"
+     "  seeds    the scenes of the seed documents      quality  every camera of two forests\n"
+     "  scale    more and more trees                   popping  slow camera paths",
+     "  weald bench --suite seeds --quick -o out/bench\n"
+     "  weald bench --suite quality --methods octree,lod --metric ssim -o out/bench\n"
+     "  weald bench my-scene.json --suite quality -o out/bench\n",
+     cli_bench},
     {"methods", CLI_METHODS, "[NAME]", 0, 1, "list the methods that draw trees and their options",
      "Lists every method with its options: what they take, their defaults, the row of\n"
      "docs/methods.md that each stands for. With NAME that method alone.",

@@ -1,0 +1,339 @@
+#include "bench.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "args.h"
+
+static const struct bench_effort QUICK = {"quick", 9, 320, 240, 0.6, 2, 16, 128, 96, 6, 12, 128, 96};
+static const struct bench_effort FULL = {"full", 40,  800, 600, 60, 16, 256, 400,
+                                         300,    32, 128, 256, 192};
+
+static const struct bench_suite suites[] = {
+    {"seeds", "the scenes of the seed documents, every method: time, memory, image error",
+     {"guerrero", "rpi", "3dworld", "osg", "intel", "bruneton"},
+     {NULL}, BENCH_FIRST_CAMERA, BENCH_TIME | BENCH_ERROR},
+    {"scale", "one square kilometre with more and more trees: time and memory",
+     {"bench75k"},
+     {"layers.0.spacing_m=10", "layers.0.spacing_m=3.65", "layers.0.spacing_m=1.8"},
+     BENCH_FIRST_CAMERA, BENCH_TIME},
+    {"quality", "every camera of two forests: image error",
+     {"bench75k", "valley"},
+     {NULL}, BENCH_EVERY_CAMERA, BENCH_TIME | BENCH_ERROR},
+    {"popping", "slow camera paths: how much more frames change than the truth does",
+     {"bench75k", "osg"},
+     {NULL}, BENCH_EVERY_CAMERA, BENCH_TIME | BENCH_POPPING},
+};
+enum { SUITES = sizeof suites / sizeof *suites };
+
+/* --- choosing ---------------------------------------------------------------------------------- */
+
+static bool complain_name(struct cli_session *session, const char *what, const char *word,
+                          const char *const *names)
+{
+    char all[512] = "";
+    const char *suggestion = cli_suggest(word, names);
+    for (size_t i = 0; names[i]; i++)
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s", i ? ", " : "", names[i]);
+    return cli_fail(session, "there is no %s \"%s\"%s%s%s; there are %s", what, word,
+                    suggestion ? ", did you mean " : "", suggestion ? suggestion : "",
+                    suggestion ? "?" : "", all);
+}
+
+static bool choose_suite(struct bench *bench)
+{
+    const char *wanted = bench->session->options->suite, *names[SUITES + 1] = {0};
+    for (size_t i = 0; i < SUITES; i++) {
+        names[i] = suites[i].name;
+        if (wanted && strcmp(wanted, suites[i].name) == 0)
+            bench->suite = &suites[i];
+    }
+    if (!wanted)
+        return cli_fail(bench->session, "no suite named: add --suite seeds, scale, quality or "
+                                        "popping");
+    return bench->suite || complain_name(bench->session, "suite", wanted, names);
+}
+
+static bool choose_metric(struct bench *bench)
+{
+    const char *wanted = bench->session->options->metric;
+    const char *const *names = wd_comparison_names();
+    bench->metric = bench->suite->measures & BENCH_POPPING ? BENCH_POPPING_MEAN : BENCH_COMPARISON;
+    if (!wanted)
+        return true;
+    for (uint32_t i = 0; names[i]; i++) {
+        if (strcmp(names[i], wanted) == 0) {
+            bench->metric = BENCH_COMPARISON + i;
+            return true;
+        }
+    }
+    return complain_name(bench->session, "metric", wanted, names);
+}
+
+/* Names divided by commas, or all. */
+static bool choose_methods(struct bench *bench)
+{
+    const char *const *names = wd_method_names();
+    char *list = bench->session->options->methods ? strdup(bench->session->options->methods) : NULL;
+    size_t count = 0;
+    char *rest = NULL;
+    bool ok = true;
+    if (!list)
+        for (; names[count] && count < 31; count++)
+            bench->methods[count] = names[count];
+    for (char *word = list ? strtok_r(list, ",", &rest) : NULL; word && ok && count < 31;
+         word = strtok_r(NULL, ",", &rest)) {
+        size_t i = 0;
+        while (names[i] && strcmp(names[i], word) != 0)
+            i++;
+        if (names[i])
+            bench->methods[count++] = names[i];
+        else
+            ok = complain_name(bench->session, "method", word, names);
+    }
+    if (ok && !count)
+        ok = cli_fail(bench->session, "--methods names none");
+    free(list);
+    return ok;
+}
+
+char *bench_path(const struct bench *bench, const char *format, ...)
+{
+    char name[256], *path = NULL;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(name, sizeof name, format, arguments);
+    va_end(arguments);
+    if (asprintf(&path, "%s/%s", bench->directory, name) < 0)
+        abort();
+    return path;
+}
+
+static bool make_directories(struct bench *bench)
+{
+    static const char *const names[] = {"", "reference", "pictures"};
+    for (size_t i = 0; i < 3; i++) {
+        char *path = bench_path(bench, "%s", names[i]);
+        bool ok = mkdir(path, 0777) == 0 || errno == EEXIST;
+        if (!ok)
+            cli_fail(bench->session, "%s: %s", path, strerror(errno));
+        free(path);
+        if (!ok)
+            return false;
+    }
+    return true;
+}
+
+static bool prepare(struct bench *bench)
+{
+    const struct cli_options *options = bench->session->options;
+    bench->directory = options->output;
+    bench->effort = options->quick ? QUICK : FULL;
+    if (!bench->directory)
+        return cli_fail(bench->session, "no directory named: add -o DIR for results and report");
+    if (!choose_suite(bench) || !choose_metric(bench) || !choose_methods(bench))
+        return false;
+    if (options->size_px[0]) {
+        bench->effort.width = options->size_px[0];
+        bench->effort.height = options->size_px[1];
+    }
+    return true;
+}
+
+/* --- running ----------------------------------------------------------------------------------- */
+
+static bool row_missing(const struct bench *bench, const char *scene, const char *camera)
+{
+    for (size_t i = 0; bench->methods[i]; i++)
+        if (!bench_results_find(bench, scene, camera, bench->methods[i]))
+            return true;
+    return false;
+}
+
+static enum wd_result measure_row(struct bench_stage *stage, const struct wd_camera *camera,
+                                  const char *camera_name, const char *method)
+{
+    struct bench *bench = stage->bench;
+    struct bench_row row = {0};
+    struct wd_forest_info info;
+    wd_forest_get_info(stage->forest, &info);
+    snprintf(row.scene, sizeof row.scene, "%s", stage->scene);
+    snprintf(row.camera, sizeof row.camera, "%s", camera_name);
+    snprintf(row.method, sizeof row.method, "%s", method);
+    for (uint32_t i = 0; i < BENCH_COLUMNS; i++)
+        row.values[i] = NAN;
+    row.values[BENCH_TREES] = (double)info.tree_count;
+    row.values[BENCH_START_S] = stage->start_s;
+    enum wd_result result = bench_measure_time(stage, camera, &row);
+    if (result == WD_OK && bench->suite->measures & BENCH_ERROR)
+        result = bench_measure_error(stage, camera, &row);
+    if (result == WD_OK && bench->suite->measures & BENCH_POPPING)
+        result = bench_measure_popping(stage, camera, &row);
+    if (result == WD_OK && !bench_results_add(bench, &row))
+        result = WD_ERROR_OUTPUT;
+    return result;
+}
+
+static enum wd_result measure_cameras(struct bench_stage *stage)
+{
+    struct bench *bench = stage->bench;
+    enum wd_result result = WD_OK;
+    const char *name;
+    for (uint32_t i = 0; result == WD_OK && (name = wd_forest_camera_name(stage->forest, i)); i++) {
+        struct wd_camera camera;
+        if (i > 0 && bench->suite->cameras == BENCH_FIRST_CAMERA)
+            break;
+        result = wd_forest_get_camera(stage->forest, name, &camera);
+        for (size_t m = 0; result == WD_OK && bench->methods[m]; m++) {
+            if (cli_session_interrupted(bench->session))
+                return WD_ERROR_INTERRUPTED;
+            if (bench_results_find(bench, stage->scene, name, bench->methods[m]))
+                continue;
+            cli_say(bench->session, "%s, %s: %s\n", stage->scene, name, bench->methods[m]);
+            result = measure_row(stage, &camera, name, bench->methods[m]);
+        }
+    }
+    return result;
+}
+
+static bool everything_known(const struct bench *bench, const struct wd_forest *forest,
+                             const char *scene)
+{
+    const char *name;
+    for (uint32_t i = 0; (name = wd_forest_camera_name(forest, i)); i++) {
+        if (row_missing(bench, scene, name))
+            return false;
+        if (bench->suite->cameras == BENCH_FIRST_CAMERA)
+            break;
+    }
+    return true;
+}
+
+static enum wd_result open_renderer(struct bench_stage *stage)
+{
+    struct bench *bench = stage->bench;
+    const struct cli_options *options = bench->session->options;
+    const struct wd_renderer_params params = {
+        .gpu = options->gpu,
+        .validation = options->gpu_validate ? WD_VALIDATION_ON : WD_VALIDATION_OFF,
+        .threads = options->threads,
+        .progress = bench->session->progress,
+        .log = bench->session->log,
+    };
+    double begin_s = cli_seconds();
+    enum wd_result result = wd_renderer_create(&stage->renderer, &params);
+    if (result == WD_OK)
+        result = wd_renderer_set_forest(stage->renderer, stage->forest);
+    stage->start_s += cli_seconds() - begin_s;
+    if (result == WD_OK)
+        snprintf(bench->device, sizeof bench->device, "%s",
+                 wd_renderer_device_name(stage->renderer));
+    return result;
+}
+
+static enum wd_result run_scene(struct bench *bench, const char *path, const char *label,
+                                const char *setting)
+{
+    const char *settings[] = {setting, NULL};
+    struct bench_stage stage = {.bench = bench, .scene = label};
+    const struct wd_forest_params params = {
+        .scene_path = path,
+        .data_dir = bench->session->options->data,
+        .settings = setting ? settings : NULL,
+        .threads = bench->session->options->threads,
+        .progress = bench->session->progress,
+        .log = bench->session->log,
+    };
+    double begin_s = cli_seconds();
+    enum wd_result result = wd_forest_create(&stage.forest, &params);
+    stage.start_s = cli_seconds() - begin_s;
+    if (result == WD_OK && !everything_known(bench, stage.forest, label)) {
+        result = open_renderer(&stage);
+        if (result == WD_OK)
+            result = measure_cameras(&stage);
+    }
+    wd_reference_destroy(&stage.reference);
+    wd_renderer_destroy(&stage.renderer);
+    wd_forest_destroy(&stage.forest);
+    return result;
+}
+
+/* Beside the working directory, or where scenes are installed. */
+static char *scene_path(const char *name)
+{
+    char *path = NULL;
+    struct stat status;
+    if (asprintf(&path, "scenes/%s.json", name) < 0)
+        abort();
+    if (stat(path, &status) == 0)
+        return path;
+    free(path);
+    if (asprintf(&path, "%s/scenes/%s.json", WEALD_DATA_DIR, name) < 0)
+        abort();
+    return path;
+}
+
+static void name_of(const char *path, char name[64])
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(name, 64, "%s", slash ? slash + 1 : path);
+    char *dot = strrchr(name, '.');
+    if (dot)
+        *dot = 0;
+}
+
+/* The scenes of the suite, or those named on the command line. */
+static enum wd_result run_suite(struct bench *bench)
+{
+    const struct cli_options *options = bench->session->options;
+    const struct bench_suite *suite = bench->suite;
+    enum wd_result result = WD_OK;
+    for (int i = 0; result == WD_OK; i++) {
+        if (options->operand_count ? i >= options->operand_count : !suite->scenes[i])
+            break;
+        char *path = options->operand_count ? strdup(options->operands[i])
+                                            : scene_path(suite->scenes[i]);
+        char name[64], label[64];
+        name_of(path, name);
+        for (int s = 0; result == WD_OK && (s == 0 || suite->settings[s]); s++) {
+            const char *setting = options->operand_count ? NULL : suite->settings[s];
+            const char *value = setting ? strchr(setting, '=') + 1 : NULL;
+            snprintf(label, sizeof label, "%.40s%s%s", name, value ? " " : "", value ? value : "");
+            result = run_scene(bench, path, label, setting);
+            if (options->operand_count)
+                break;
+        }
+        free(path);
+    }
+    return result;
+}
+
+enum cli_status cli_bench(struct cli_session *session)
+{
+    struct bench bench = {.session = session};
+    if (!prepare(&bench))
+        return CLI_USAGE;
+    if (!make_directories(&bench) || !bench_results_load(&bench))
+        return CLI_FAILED;
+    if (bench.resumed)
+        cli_say(session, "%s: %zu results are there already\n", bench.directory, bench.resumed);
+    enum wd_result result = run_suite(&bench);
+    if (result == WD_ERROR_INTERRUPTED)
+        cli_say(session, "%s: stopped; the same command goes on from here\n", bench.directory);
+    if (result == WD_OK) {
+        cli_meter_clear(&session->meter);
+        bench_print_table(&bench);
+        if (!bench_write_json(&bench) || !bench_write_html(&bench))
+            result = WD_ERROR_OUTPUT;
+    }
+    if (result == WD_OK)
+        cli_say(session, "%s: results.csv, results.json, report.html, %.1f s\n", bench.directory,
+                cli_seconds() - session->meter.begin_s);
+    free(bench.rows);
+    return cli_session_status(session, result);
+}

@@ -1,0 +1,109 @@
+/* bench.h: `weald bench`: methods measured against each other and against the path tracer. */
+#ifndef CLI_BENCH_H
+#define CLI_BENCH_H
+
+#include "cli.h"
+#include "weald/compare.h"
+#include "weald/reference.h"
+
+/* Columns of the results; a value that was not measured is NaN. */
+enum bench_column {
+    BENCH_TREES,
+    BENCH_START_S, /* from nothing to trees on the device; the same for all methods of a scene */
+    BENCH_FRAME_MS, /* median of one sample, wall clock */
+    BENCH_FRAME_P95_MS,
+    BENCH_FRAME_P99_MS,
+    BENCH_GPU_MS, /* all passes */
+    BENCH_CPU_MS,
+    BENCH_DRAWS,
+    BENCH_TRIANGLES,
+    BENCH_DEVICE_MB,
+    BENCH_HOST_MB, /* peak of the program so far */
+    BENCH_COMPARISON, /* the members of struct wd_comparison */
+    BENCH_POPPING_MEAN = BENCH_COMPARISON + 7, /* frame-to-frame change over the reference's own,
+                                                  of 4 x 4 blocks, in percent of white */
+    BENCH_POPPING_P999,
+    BENCH_POPPING_STEP, /* the largest */
+    BENCH_COLUMNS,
+};
+
+/* Names of the columns, BENCH_COLUMNS of them. */
+const char *bench_column_name(uint32_t column);
+
+struct bench_row {
+    char scene[64], camera[64], method[32];
+    char passes[480]; /* "name=gpu_ms+cpu_ms;..." */
+    double values[BENCH_COLUMNS];
+};
+
+/* How much work a run is. */
+struct bench_effort {
+    const char *name; /* "quick", "full" */
+    uint32_t frames, width, height;                    /* timing */
+    double budget_s;                                   /* frames end after so long, three at least */
+    uint32_t samples, truth_samples, truth_width, truth_height; /* image error */
+    uint32_t steps, step_samples, step_width, step_height;      /* popping */
+};
+
+struct bench_suite {
+    const char *name, *summary;
+    const char *scenes[8];   /* in scenes/, without .json */
+    const char *settings[8]; /* each scene is measured with each; none: as it is */
+    enum bench_cameras { BENCH_FIRST_CAMERA, BENCH_EVERY_CAMERA } cameras;
+    enum bench_measures { BENCH_TIME = 1, BENCH_ERROR = 2, BENCH_POPPING = 4 } measures;
+};
+
+struct bench {
+    struct cli_session *session;
+    const struct bench_suite *suite;
+    struct bench_effort effort;
+    const char *directory;
+    const char *methods[32]; /* ended by NULL */
+    uint32_t metric;         /* the column of errors that plots and the table are about */
+    char device[128];
+    struct bench_row *rows;
+    size_t row_count, row_capacity;
+    size_t resumed;          /* rows taken over from an interrupted run */
+};
+
+/* One scene with its device, while its rows are measured. */
+struct bench_stage {
+    struct bench *bench;
+    const char *scene; /* label in the results */
+    struct wd_forest *forest;
+    struct wd_renderer *renderer;
+    struct wd_reference *reference; /* NULL until a picture of it is needed */
+    double start_s;
+};
+
+/* Rows of results on disk: results.csv, a line as soon as it is measured. */
+bool bench_results_load(struct bench *bench);
+bool bench_results_add(struct bench *bench, const struct bench_row *row);
+const struct bench_row *bench_results_find(const struct bench *bench, const char *scene,
+                                           const char *camera, const char *method);
+
+/* Measures into `*row`. WD_ERROR_INTERRUPTED when asked to stop. */
+enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_camera *camera,
+                                  struct bench_row *row);
+enum wd_result bench_measure_error(struct bench_stage *stage, const struct wd_camera *camera,
+                                   struct bench_row *row);
+enum wd_result bench_measure_popping(struct bench_stage *stage, const struct wd_camera *camera,
+                                     struct bench_row *row);
+
+/* The path-traced picture, from DIRECTORY/reference if it has been traced before. */
+enum wd_result bench_truth(struct bench_stage *stage, const char *name,
+                           const struct wd_reference_picture_params *params,
+                           struct wd_picture *picture);
+
+void bench_print_table(const struct bench *bench);
+bool bench_write_json(const struct bench *bench);
+bool bench_write_html(const struct bench *bench);
+
+/* DIRECTORY/NAME as printf's; free() it. */
+__attribute__((format(printf, 2, 3))) char *bench_path(const struct bench *bench,
+                                                       const char *format, ...);
+/* Words of the machine and device, a line each; free() it. */
+char *bench_machine_text(const struct bench *bench);
+double bench_percentile(double *values, size_t count, double share); /* sorts them */
+
+#endif

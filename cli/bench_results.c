@@ -1,0 +1,260 @@
+/* results.csv is both what a run leaves and what an interrupted one goes on from. Its first line
+ * names the suite, the effort and the sizes; results of others are not mixed in. */
+#include "bench.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *bench_column_name(uint32_t column)
+{
+    static const char *const names[] = {
+        "trees", "start_s", "frame_ms", "frame_p95_ms", "frame_p99_ms", "gpu_ms", "cpu_ms",
+        "draw_calls", "triangles", "device_mb", "host_peak_mb"};
+    static const char *const popping[] = {"popping_mean_pct", "popping_p999_pct",
+                                          "popping_step_pct"};
+    if (column < BENCH_COMPARISON)
+        return names[column];
+    if (column < BENCH_POPPING_MEAN)
+        return wd_comparison_names()[column - BENCH_COMPARISON];
+    return popping[column - BENCH_POPPING_MEAN];
+}
+
+static void print_heads(const struct bench *bench, FILE *to)
+{
+    const struct bench_effort *e = &bench->effort;
+    fprintf(to, "# weald bench %s %s %ux%u %u/%u samples %ux%u %u steps\n", bench->suite->name,
+            e->name, e->width, e->height, e->samples, e->truth_samples, e->truth_width,
+            e->truth_height, e->steps);
+    fprintf(to, "scene,camera,method");
+    for (uint32_t i = 0; i < BENCH_COLUMNS; i++)
+        fprintf(to, ",%s", bench_column_name(i));
+    fprintf(to, ",passes\n");
+}
+
+const struct bench_row *bench_results_find(const struct bench *bench, const char *scene,
+                                           const char *camera, const char *method)
+{
+    for (size_t i = 0; i < bench->row_count; i++) {
+        const struct bench_row *row = &bench->rows[i];
+        if (!strcmp(row->scene, scene) && !strcmp(row->camera, camera) &&
+            !strcmp(row->method, method))
+            return row;
+    }
+    return NULL;
+}
+
+static void keep(struct bench *bench, const struct bench_row *row)
+{
+    if (bench->row_count == bench->row_capacity) {
+        bench->row_capacity = bench->row_capacity ? 2 * bench->row_capacity : 64;
+        bench->rows = realloc(bench->rows, bench->row_capacity * sizeof *bench->rows);
+        if (!bench->rows)
+            abort();
+    }
+    bench->rows[bench->row_count++] = *row;
+}
+
+/* The next of a line's fields, which ends at a comma. */
+static bool take(char **line, char *field, size_t size)
+{
+    char *comma = strchr(*line, ',');
+    if (!comma || (size_t)(comma - *line) >= size)
+        return false;
+    memcpy(field, *line, (size_t)(comma - *line));
+    field[comma - *line] = 0;
+    *line = comma + 1;
+    return true;
+}
+
+static bool parse_row(char *line, struct bench_row *row)
+{
+    char number[64];
+    if (!take(&line, row->scene, sizeof row->scene) ||
+        !take(&line, row->camera, sizeof row->camera) ||
+        !take(&line, row->method, sizeof row->method))
+        return false;
+    for (uint32_t i = 0; i < BENCH_COLUMNS; i++) {
+        if (!take(&line, number, sizeof number))
+            return false;
+        row->values[i] = *number ? strtod(number, NULL) : NAN;
+    }
+    char *end = strchr(line, '\n');
+    if (!end) /* cut off while it was written */
+        return false;
+    *end = 0;
+    snprintf(row->passes, sizeof row->passes, "%s", line);
+    return true;
+}
+
+static void print_row(const struct bench_row *row, FILE *to)
+{
+    fprintf(to, "%s,%s,%s", row->scene, row->camera, row->method);
+    for (uint32_t i = 0; i < BENCH_COLUMNS; i++) {
+        if (isnan(row->values[i]))
+            fprintf(to, ",");
+        else
+            fprintf(to, ",%.6g", row->values[i]);
+    }
+    fprintf(to, ",%s\n", row->passes);
+}
+
+static bool write_all(struct bench *bench, const char *path)
+{
+    FILE *file = fopen(path, "w");
+    if (!file)
+        return cli_fail(bench->session, "%s cannot be written: %s", path, strerror(errno));
+    print_heads(bench, file);
+    for (size_t i = 0; i < bench->row_count; i++)
+        print_row(&bench->rows[i], file);
+    return fclose(file) == 0 || cli_fail(bench->session, "%s: %s", path, strerror(errno));
+}
+
+static bool read_rows(struct bench *bench, FILE *file, const char *path)
+{
+    char line[4096], *heads = NULL;
+    size_t size = 0;
+    FILE *memory = open_memstream(&heads, &size);
+    if (!memory)
+        abort();
+    print_heads(bench, memory);
+    fclose(memory);
+    size_t first = strcspn(heads, "\n");
+    bool same = fgets(line, sizeof line, file) && strcspn(line, "\n") == first &&
+                strncmp(line, heads, first) == 0 && fgets(line, sizeof line, file) &&
+                strcmp(line, heads + first + 1) == 0;
+    free(heads);
+    if (!same)
+        return cli_fail(bench->session,
+                        "%s: holds results of another suite, effort or size; name another "
+                        "directory or remove it",
+                        path);
+    while (fgets(line, sizeof line, file)) {
+        struct bench_row row = {0};
+        if (parse_row(line, &row))
+            keep(bench, &row);
+    }
+    return true;
+}
+
+bool bench_results_load(struct bench *bench)
+{
+    char *path = bench_path(bench, "results.csv");
+    FILE *file = fopen(path, "r");
+    bool ok = !file || read_rows(bench, file, path);
+    if (file)
+        fclose(file);
+    bench->resumed = bench->row_count;
+    ok = ok && write_all(bench, path); /* without a line that was cut off */
+    free(path);
+    return ok;
+}
+
+bool bench_results_add(struct bench *bench, const struct bench_row *row)
+{
+    char *path = bench_path(bench, "results.csv");
+    FILE *file = fopen(path, "a");
+    keep(bench, row);
+    bool ok = file != NULL;
+    if (ok) {
+        print_row(row, file);
+        ok = fclose(file) == 0;
+    }
+    if (!ok)
+        cli_fail(bench->session, "%s cannot be written: %s", path, strerror(errno));
+    free(path);
+    return ok;
+}
+
+/* --- JSON and the table -------------------------------------------------------------------------- */
+
+static void print_json_text(FILE *to, const char *text)
+{
+    fputc('"', to);
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\')
+            fputc('\\', to);
+        if ((unsigned char)*text < 32)
+            fprintf(to, "\\u%04x", *text);
+        else
+            fputc(*text, to);
+    }
+    fputc('"', to);
+}
+
+static void print_json_row(FILE *to, const struct bench_row *row)
+{
+    fprintf(to, "    {\"scene\": ");
+    print_json_text(to, row->scene);
+    fprintf(to, ", \"camera\": ");
+    print_json_text(to, row->camera);
+    fprintf(to, ", \"method\": ");
+    print_json_text(to, row->method);
+    for (uint32_t i = 0; i < BENCH_COLUMNS; i++)
+        if (isfinite(row->values[i]))
+            fprintf(to, ", \"%s\": %.6g", bench_column_name(i), row->values[i]);
+    fprintf(to, ", \"passes\": ");
+    print_json_text(to, row->passes);
+    fputc('}', to);
+}
+
+bool bench_write_json(const struct bench *bench)
+{
+    char *path = bench_path(bench, "results.json"), *machine = bench_machine_text(bench);
+    FILE *file = fopen(path, "w");
+    bool ok = file != NULL;
+    if (ok) {
+        fprintf(file, "{\n  \"suite\": \"%s\", \"effort\": \"%s\",\n  \"machine\": ",
+                bench->suite->name, bench->effort.name);
+        print_json_text(file, machine);
+        fprintf(file, ",\n  \"rows\": [\n");
+        for (size_t i = 0; i < bench->row_count; i++) {
+            print_json_row(file, &bench->rows[i]);
+            fprintf(file, "%s\n", i + 1 < bench->row_count ? "," : "");
+        }
+        fprintf(file, "  ]\n}\n");
+        ok = fclose(file) == 0;
+    }
+    if (!ok)
+        cli_fail(bench->session, "%s cannot be written: %s", path, strerror(errno));
+    free(path);
+    free(machine);
+    return ok;
+}
+
+static void print_cell(double value, const char *format, int width)
+{
+    char text[32] = "-";
+    if (isfinite(value))
+        snprintf(text, sizeof text, format, value);
+    printf(" %*s", width, text);
+}
+
+void bench_print_table(const struct bench *bench)
+{
+    char last[160] = "";
+    for (size_t i = 0; i < bench->row_count; i++) {
+        const struct bench_row *row = &bench->rows[i];
+        char place[160];
+        snprintf(place, sizeof place, "%s, %s", row->scene, row->camera);
+        if (strcmp(place, last) != 0) {
+            printf("%s%s: %.0f trees, ready in %.1f s\n", i ? "\n" : "", place,
+                   row->values[BENCH_TREES], row->values[BENCH_START_S]);
+            printf("%-12s %10s %8s %8s %8s %8s %10s %8s %10s\n", "method", "median ms", "p95",
+                   "GPU", "CPU", "draws", "triangles", "MB", bench_column_name(bench->metric));
+        }
+        snprintf(last, sizeof last, "%s", place);
+        printf("%-12s", row->method);
+        print_cell(row->values[BENCH_FRAME_MS], "%.1f", 10);
+        print_cell(row->values[BENCH_FRAME_P95_MS], "%.1f", 8);
+        print_cell(row->values[BENCH_GPU_MS], "%.1f", 8);
+        print_cell(row->values[BENCH_CPU_MS], "%.1f", 8);
+        print_cell(row->values[BENCH_DRAWS], "%.0f", 8);
+        print_cell(row->values[BENCH_TRIANGLES], "%.0f", 10);
+        print_cell(row->values[BENCH_DEVICE_MB], "%.0f", 8);
+        print_cell(row->values[bench->metric], "%.4f", 10);
+        printf("\n");
+    }
+}

@@ -1,0 +1,57 @@
+#!/bin/sh
+# weald bench: a small suite, its files, going on after an interruption, bad input.
+#   bench.sh PROGRAM ROOT
+set -eu
+. "$(dirname "$0")/lib.sh"
+out=$scratch/bench
+
+expect 2 'no directory named' bench --suite quality
+expect 2 'no suite named' bench -o "$out"
+expect 2 'no suite "qualty", did you mean quality' bench --suite qualty -o "$out"
+expect 2 'no method "octre", did you mean octree' bench --suite quality --methods octre -o "$out"
+expect 2 'no metric "flop", did you mean flip' bench --suite quality --metric flop -o "$out"
+expect 1 'No such file' bench --suite quality -o "$scratch/none/bench"
+expect 1 'No such file|cannot' bench "$scratch/none.json" --suite quality --quick -o "$out"
+rm -rf "$out"
+
+run() {
+    expect 0 "$1" bench "$tiny" --suite quality --quick --methods octree,separate --gpu software \
+        -o "$out"
+}
+run 'results.csv, results.json, report.html'
+check 'a row a method' [ "$(grep -c '^tiny,' "$out/results.csv")" -ge 2 ]
+check 'errors in the rows' jq -e \
+    '[.rows[] | select(.flip > 0 and .flip < 1 and .ssim > 0 and .frame_ms > 0)] | length >= 2' \
+    "$out/results.json"
+check 'the machine in the report' grep -q 'llvmpipe' "$out/report.html"
+
+# an interruption in the middle of a line: what is whole stays, the rest is measured again
+rows=$(grep -c '^tiny,' "$out/results.csv")
+head -n 3 "$out/results.csv" >"$scratch/cut"
+printf 'tiny,cut off' >>"$scratch/cut"
+cp "$scratch/cut" "$out/results.csv"
+run '1 results are there already'
+check 'all rows again' [ "$(grep -c '^tiny,' "$out/results.csv")" -eq "$rows" ]
+expect 1 'another suite' bench "$tiny" --suite scale --quick -o "$out"
+
+# a reference picture of another size is refused
+set -- "$out"/reference/*.exr
+if [ "$weald" ]; then
+    "$weald" render "$tiny" -o "$scratch/other.exr" --size 40x30 --gpu software -q
+    cp "$scratch/other.exr" "$1"
+    head -n 2 "$out/results.csv" >"$scratch/heads"
+    cp "$scratch/heads" "$out/results.csv"
+    expect 1 'same size' bench "$tiny" --suite quality --quick --methods octree --gpu software -o "$out"
+fi
+
+if command -v chromium >/dev/null; then
+    dots=$(timeout 60 chromium --headless --no-sandbox --disable-gpu --dump-dom \
+        "file://$out/report.html" 2>/dev/null | grep -c 'class="method"' || true)
+    check "a dot a method in Chromium ($dots)" [ "$dots" -ge 2 ]
+    timeout 60 chromium --headless --no-sandbox --disable-gpu --window-size=800,600 \
+        "--screenshot=$scratch/report.png" "file://$out/report.html" >"$scratch/output" 2>&1 || true
+    check 'the report can be seen' [ -s "$scratch/report.png" ]
+else
+    echo "skip: no chromium, the report was not opened"
+fi
+finish
