@@ -27,7 +27,7 @@ static const uint32_t impostor_frag[] =
 
 /* Octants with this many times the trees of the smallest cluster have none any more: their cells
  * would be larger than groups of trees. */
-enum { CLUSTER_SPAN = 64, NO_CLUSTER = UINT32_MAX };
+enum { CLUSTER_SPAN = 64, MOST_CLUSTERS = 512, NO_CLUSTER = UINT32_MAX };
 
 /* One draw: a cluster's cells, or those octants that are one impostor each. */
 struct cluster_range {
@@ -74,15 +74,29 @@ static void impostor_finish(void *state, struct wd_gpu *gpu)
 
 /* --- the forest -------------------------------------------------------------------------- */
 
-/* Octants that get a cluster, in the octree's order. */
+static bool has_cluster(const struct wd_octant *octant, uint32_t least)
+{
+    uint32_t trees = octant->end - octant->begin;
+    return trees >= least && trees / CLUSTER_SPAN < least;
+}
+
+/* Octants that get a cluster, in the octree's order. Making one takes some 30 ms of software
+ * rendering: of a large forest only larger octants have them. */
 static uint32_t choose_clusters(struct impostors *impostors, const struct wd_octree *octree,
                                 const struct wd_impostor_options *options, uint32_t *chosen)
 {
-    uint32_t count = 0, least = (uint32_t)options->cluster_trees;
+    uint32_t count, least = (uint32_t)options->cluster_trees;
+    for (;; least *= 2) {
+        count = 0;
+        for (uint32_t i = 0; i < octree->count; i++)
+            count += has_cluster(&octree->octants[i], least);
+        if (count <= MOST_CLUSTERS)
+            break;
+    }
+    count = 0;
     impostors->cluster_of = wd_alloc_array(octree->count, sizeof *impostors->cluster_of);
     for (uint32_t i = 0; i < octree->count; i++) {
-        uint32_t trees = octree->octants[i].end - octree->octants[i].begin;
-        bool has = options->cluster_size > 1 && trees >= least && trees / CLUSTER_SPAN < least;
+        bool has = options->cluster_size > 1 && has_cluster(&octree->octants[i], least);
         impostors->cluster_of[i] = has ? count : NO_CLUSTER;
         if (has)
             chosen[count++] = i;

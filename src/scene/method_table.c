@@ -112,7 +112,8 @@ static const struct wd_key impostor_keys[] = {
     {"cluster_size", WD_KEY_INTEGER, OPTION(impostor, cluster_size), 1, 32, "12",
      "Impostors of a cluster along a side; 1: no clusters.", .row = "G4"},
     {"cluster_trees", WD_KEY_INTEGER, OPTION(impostor, cluster_trees), 1, 1e6, "512",
-     "Octants with at least as many trees, and fewer than 64 times as many, have a cluster.",
+     "Octants with at least as many trees, and fewer than 64 times as many, have a cluster; doubled "
+     "until these are 512 octants at most.",
      .row = "G4"},
     {"least_alpha", WD_KEY_DOUBLE, OPTION(impostor, least_alpha), 0, 1, "0.02",
      "Cells of a cluster that cover less than this share of every side are dropped.",
