@@ -27,6 +27,10 @@ static const struct figure {
     {"bake-100-gpu-mb", bench_bake_memory},
     {"reference-agreement-pct", bench_reference_agreement},
     {"reference-mrays-s", bench_reference_rays},
+    {"mean-colour-error-pct", bench_mean_colour},
+    {"brf-error-pct", bench_reflectance},
+    {"shadow-cost-pct", bench_shadow_cost},
+    {"wind-cost-pct", bench_wind_cost},
 };
 
 static int compare(const void *a, const void *b)

@@ -22,6 +22,10 @@ bool bench_bake_warm(const char *gpu);
 bool bench_bake_memory(const char *gpu);
 bool bench_reference_agreement(const char *gpu);
 bool bench_reference_rays(const char *gpu);
+bool bench_mean_colour(const char *gpu);
+bool bench_reflectance(const char *gpu);
+bool bench_shadow_cost(const char *gpu);
+bool bench_wind_cost(const char *gpu);
 
 /* Sorts and returns the middle one. */
 double bench_median(double *values, size_t count);

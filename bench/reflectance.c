@@ -1,0 +1,95 @@
+/* Reflectance of a closed canopy over view angle in the sun's plane: rasterised and path-traced. */
+#include "figures.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "weald/reference.h"
+
+enum { SIDE = 64, TRACED_SAMPLES = 24, DRAWN_SAMPLES = 8, ANGLES = 11 };
+
+static const double PI = 3.14159265358979323846;
+
+/* From the zenith, degrees; positive toward the sun, which stands at 40: the hotspot. */
+static const double angles_deg[ANGLES] = {-65, -50, -35, -20, -5, 10, 25, 35, 40, 50, 65};
+static const double DISTANCE_M = 250;
+
+/* Looks at the canopy's middle from that angle; the sun stands in the south. */
+static struct wd_camera camera_at(const struct wd_forest *forest, double angle_deg)
+{
+    struct wd_camera camera = {0};
+    double angle = angle_deg * PI / 180;
+    if (wd_forest_get_camera(forest, "over", &camera) != WD_OK)
+        return camera;
+    double ground_m = camera.position_m[2] - 60;
+    camera.position_m[0] = 200;
+    camera.position_m[1] = 200 - DISTANCE_M * sin(angle);
+    camera.position_m[2] = ground_m + 17 + DISTANCE_M * cos(angle);
+    camera.yaw_rad = angle >= 0 ? 0 : PI;
+    camera.pitch_rad = fabs(angle) - PI / 2;
+    camera.fov_rad = 0.16;
+    return camera;
+}
+
+static double luminance(const struct wd_picture *picture)
+{
+    double sum = 0;
+    size_t pixels = (size_t)picture->width * picture->height;
+    for (size_t at = 0; at < pixels; at++)
+        sum += 0.2126 * (double)picture->color[3 * at] +
+               0.7152 * (double)picture->color[3 * at + 1] +
+               0.0722 * (double)picture->color[3 * at + 2];
+    return sum / (double)pixels;
+}
+
+static bool measure_angle(const struct wd_forest *forest, struct wd_renderer *renderer,
+                          struct wd_reference *reference, double angle_deg, double *worst)
+{
+    struct wd_camera camera = camera_at(forest, angle_deg);
+    const struct wd_render_params draw = {.camera = camera,
+                                          .width = SIDE,
+                                          .height = SIDE,
+                                          .samples = DRAWN_SAMPLES,
+                                          .layers = WD_LAYER_COLOR};
+    const struct wd_reference_picture_params trace = {.camera = camera,
+                                                      .width = SIDE,
+                                                      .height = SIDE,
+                                                      .samples = TRACED_SAMPLES,
+                                                      .layers = WD_LAYER_COLOR};
+    struct wd_picture drawn = {0}, traced = {0};
+    bool ok = wd_renderer_render(renderer, &draw, &drawn) == WD_OK &&
+              wd_reference_render(reference, &trace, &traced) == WD_OK;
+    if (ok) {
+        double a = luminance(&drawn), b = luminance(&traced), error = 100 * (a / b - 1);
+        printf("%6.0f %9.5f %9.5f %+7.1f %%\n", angle_deg, a, b, error);
+        *worst = fmax(*worst, fabs(error));
+    }
+    wd_picture_finish(&drawn);
+    wd_picture_finish(&traced);
+    return ok;
+}
+
+bool bench_reflectance(const char *gpu)
+{
+    const struct wd_forest_params forest_params = {.scene_path = "bench/canopy.json"};
+    const struct wd_renderer_params renderer_params = {.gpu = gpu};
+    const struct wd_reference_params reference_params = {0};
+    struct wd_forest *forest = NULL;
+    struct wd_renderer *renderer = NULL;
+    struct wd_reference *reference = NULL;
+    double worst = 0;
+    bool ok = wd_forest_create(&forest, &forest_params) == WD_OK &&
+              wd_renderer_create(&renderer, &renderer_params) == WD_OK &&
+              wd_renderer_set_forest(renderer, forest) == WD_OK &&
+              wd_reference_create(&reference, forest, &reference_params) == WD_OK;
+    if (ok)
+        printf("degrees from the zenith (sun at 40), luminance drawn and traced, drawn over traced\n");
+    for (int i = 0; ok && i < ANGLES; i++)
+        ok = measure_angle(forest, renderer, reference, angles_deg[i], &worst);
+    if (ok)
+        printf("brf-error-pct %.1f %%\n", worst);
+    wd_renderer_destroy(&renderer);
+    wd_reference_destroy(&reference);
+    wd_forest_destroy(&forest);
+    return ok;
+}
