@@ -3,6 +3,7 @@
  * (Sterling and Justin, rows R3, R4, R6; Bruneton and Neyret 2012). DEPTH: the quad holds all that
  * the tree's cylinder shows in perspective; what is seen follows from the pictures' depths. */
 #include "shared/frame.h"
+#include "shared/canopy_map.h"
 #include "shared/view_draw.h"
 
 layout(constant_id = 0) const uint DEPTH = 0u;
@@ -78,7 +79,7 @@ void main()
                       float(push.atlas.mips - 1u));
     float show = instance.show * wd_layer_show(fades[WD_TREE_LAYER(tree)], distance_m);
     if (push.range_m > 0.0)
-        show *= 1.0 - wd_ramp(push.range_m * (1.0 - push.fade), push.range_m, distance_m);
+        show *= wd_canopy_trees(push.range_m, push.fade, distance_m);
     out_model = place;
     out_side = reach;
     out_eye = eye;

@@ -157,7 +157,7 @@ static const struct wd_keys views_table = TABLE(views);
 static const struct wd_key zfield_keys[] = {
     {"rows", WD_KEY_INTEGER, OPTION(zfield, rows), 1, 22, "9",
      "Rings of views N: 2 N (N + 1) + 1 views are taken, 181 in the paper.", .row = "R6"},
-    {"size", WD_KEY_INTEGER, OPTION(zfield, size), 8, 256, "64",
+    {"size", WD_KEY_INTEGER, OPTION(zfield, size), 8, 256, "128",
      "Texels of a view along a side, a power of two.", .row = "R6"},
     {"samples", WD_KEY_INTEGER, OPTION(zfield, samples), 1, 8, "4",
      "Samples of a texel along a side while views are taken.", .row = "R6"},
@@ -171,6 +171,8 @@ static const struct wd_key zfield_keys[] = {
      "No tree is drawn by itself beyond this distance, in metres; 0: all are.", .row = "R6"},
     {"fade", WD_KEY_DOUBLE, OPTION(zfield, fade), 0, 1, "0.3",
      "Over this last share of the range trees give way to the canopy's map.", .row = "R6"},
+    {"canopy_map", WD_KEY_BOOL, OPTION(zfield, canopy_map), .fallback = "true", .row = "R6",
+     .doc = "Ground beyond the range shows the forest that stands on it (shader-maps)."},
     {0},
 };
 static const struct wd_keys zfield_table = TABLE(zfield);

@@ -67,6 +67,7 @@ struct wd_views_options {
 struct wd_zfield_options {
     int64_t rows, size, samples, variants, refine;
     double near_m, range_m, fade;
+    bool canopy_map;
 };
 
 /* By method; methods without options have no member. */
