@@ -1,11 +1,36 @@
 #include "planted.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/memory.h"
 #include "forest/octant_colors.h"
+
+/* Trees are baked once for all tests. */
+static char cache[] = "/tmp/weald-test-XXXXXX";
+
+static int make_cache(void **state)
+{
+    (void)state;
+    return mkdtemp(cache) ? 0 : -1;
+}
+
+static int remove_cache(void **state)
+{
+    (void)state;
+    DIR *folder = opendir(cache);
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        char *path = wd_format("%s/%s", cache, entry->d_name);
+        unlink(path);
+        free(path);
+    }
+    if (folder)
+        closedir(folder);
+    return rmdir(cache);
+}
 
 static double alpha(uint32_t color)
 {
@@ -34,7 +59,7 @@ static void one_trees_octant_shows_the_trees_area(void **state)
     struct planted planted;
     struct wd_octant_colors colors;
     const struct wd_octant_bake_params params = {.pixels = 64};
-    planted_init(&planted, *state, "tests/forest/one.json", NULL);
+    planted_init(&planted, *state, "tests/forest/one.json", cache);
     assert_true(wd_octant_colors_bake(&colors, &planted.test->gpu, &planted.forest, &params));
     assert_int_equal(colors.count, 1);
     assert_int_equal(colors.renders, 6);
@@ -65,7 +90,7 @@ static void sides_face_their_way_and_are_green(void **state)
     struct planted planted;
     struct wd_octant_colors colors;
     const struct wd_octant_bake_params params = {0};
-    planted_init(&planted, *state, "tests/api/small.json", NULL);
+    planted_init(&planted, *state, "tests/api/small.json", cache);
     assert_true(wd_octant_colors_bake(&colors, &planted.test->gpu, &planted.forest, &params));
     const struct wd_octant_look *root = &colors.looks[0];
     for (uint32_t side = 0; side < WD_OCTANT_SIDES; side++) {
@@ -96,7 +121,7 @@ static void baking_twice_gives_the_same(void **state)
     struct planted planted;
     struct wd_octant_colors a, b;
     const struct wd_octant_bake_params params = {.pixels = 8};
-    planted_init(&planted, *state, "tests/api/small.json", NULL);
+    planted_init(&planted, *state, "tests/api/small.json", cache);
     assert_true(wd_octant_colors_bake(&a, &planted.test->gpu, &planted.forest, &params));
     assert_true(wd_octant_colors_bake(&b, &planted.test->gpu, &planted.forest, &params));
     assert_memory_equal(a.looks, b.looks, a.bytes);
@@ -131,7 +156,7 @@ static void a_cluster_covers_what_its_octant_covers(void **state)
     const struct wd_octant_bake_params octants = {.pixels = 64};
     const struct wd_octant_bake_params cells = {.cluster_size = 12, .least_alpha = 0.004f};
     const uint32_t root = 0;
-    planted_init(&planted, *state, "tests/forest/one.json", NULL);
+    planted_init(&planted, *state, "tests/forest/one.json", cache);
     assert_true(wd_octant_colors_bake(&colors, &planted.test->gpu, &planted.forest, &octants));
     assert_true(
         wd_octant_clusters_bake(&clusters, &planted.test->gpu, &planted.forest, &root, 1, &cells));
@@ -152,7 +177,7 @@ static void faint_cells_are_dropped(void **state)
     const struct wd_octant_bake_params params = {.cluster_size = 8, .least_alpha = 0.004f};
     const struct wd_octant_bake_params strict = {.cluster_size = 8, .least_alpha = 0.3f};
     const uint32_t root = 0;
-    planted_init(&planted, *state, "tests/forest/one.json", NULL);
+    planted_init(&planted, *state, "tests/forest/one.json", cache);
     assert_true(
         wd_octant_clusters_bake(&all, &planted.test->gpu, &planted.forest, &root, 1, &params));
     assert_true(
@@ -168,7 +193,7 @@ static void bad_parameters_are_named(void **state)
     struct planted planted;
     struct wd_octant_clusters clusters;
     const uint32_t root = 0;
-    planted_init(&planted, *state, "tests/forest/one.json", NULL);
+    planted_init(&planted, *state, "tests/forest/one.json", cache);
     const struct {
         struct wd_octant_bake_params params;
         const char *says;
@@ -197,5 +222,5 @@ int main(void)
         TEST(faint_cells_are_dropped),
         TEST(bad_parameters_are_named),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_cache, remove_cache);
 }
