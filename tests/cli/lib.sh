@@ -1,7 +1,7 @@
 # shellcheck shell=sh disable=SC2034
 # Sourced by the tests of the program: runs it and compares what comes out.
 #   $1 the program, $2 the root of the sources
-weald=$1
+weald=$(realpath "$1")
 root=$2
 tiny=$root/tests/viewer/tiny.json
 scratch=$(mktemp -d)

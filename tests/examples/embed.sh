@@ -25,8 +25,8 @@ PKG_CONFIG_PATH=$(dirname "$pc")
 export PKG_CONFIG_SYSROOT_DIR PKG_CONFIG_PATH
 # A system root is put before every directory, also before Vulkan's: only weald's flags are asked for.
 flags=$(pkg-config --cflags --libs weald | sed "s,$scratch/installed/usr/include ,/usr/include ,g")
-# shellcheck disable=SC2086  # one word a flag
-"$compiler" "$root/examples/embed.c" $flags -lvulkan -o "$scratch/embed"
+# shellcheck disable=SC2086  # one word a flag, and of the compiler
+$compiler "$root/examples/embed.c" $flags -lvulkan -o "$scratch/embed"
 libraries=$(dirname "$(find "$scratch/installed" -name 'libweald.so' | head -1)")
 LD_LIBRARY_PATH=$libraries "$scratch/embed" "$root/tests/viewer/tiny.json" "$scratch/installed.ppm"
 cmp "$scratch/built.ppm" "$scratch/installed.ppm"

@@ -54,7 +54,7 @@ static void reads_of_host_data_need_nothing(void **state)
     assert_false(wd_barrier_for_buffer(&buffer, WD_USE_GRAPHICS_READ, &barrier));
     assert_true(wd_barrier_for_buffer(&buffer, WD_USE_COMPUTE_WRITE, &barrier));
     assert_int_equal(barrier.buffer.srcStageMask, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
-                                                      VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
+                                                      VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT |
                                                       VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
                                                       VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 }

@@ -253,7 +253,19 @@ static void months_change_leaves(void **state)
     assert_false(wd_species_in_month(&in, oak, (double)NAN, NULL));
 }
 
-/* The project's own scenes; the folder of species stands in for the data, which is not opened. */
+/* Whether the scene plants models that lie with the data. */
+static bool needs_models(const char *path)
+{
+    char *text = NULL;
+    size_t size;
+    struct wd_log log = {NULL, NULL};
+    bool needs = wd_file_read(path, 1 << 20, &log, &text, &size) && strstr(text, "${data}/models");
+    free(text);
+    return needs;
+}
+
+/* The project's own scenes. Without the data the folder of species stands in for it: of rasters and
+ * tables only the names are looked at here, models are opened. */
 static void own_scenes_load(void **state)
 {
     (void)state;
@@ -261,15 +273,22 @@ static void own_scenes_load(void **state)
     DIR *folder = opendir(folder_path);
     assert_non_null(folder);
     int loaded = 0;
+    char *data_path = wd_path_beside(species_dir, "../shared/data");
+    bool data = access(data_path, R_OK) == 0;
     for (struct dirent *entry; (entry = readdir(folder));) {
         size_t length = strlen(entry->d_name);
         if (length < 6 || strcmp(entry->d_name + length - 5, ".json") != 0)
             continue;
         struct collected all = {0};
         struct wd_log log = {collect, &all};
-        struct wd_scene_params params = {.data_dir = species_dir};
+        struct wd_scene_params params = {.data_dir = data ? data_path : species_dir};
         struct wd_scene scene;
         char *path = wd_format("%s/%s", folder_path, entry->d_name);
+        if (!data && needs_models(path)) {
+            print_message("%s: skipped, there is no ../shared/data\n", entry->d_name);
+            free(path);
+            continue;
+        }
         if (!wd_scene_load_with(&scene, path, &params, &log) || all.warnings)
             fail_msg("%s", all.text);
         assert_non_null(wd_scene_find_camera(&scene, "overview"));
@@ -280,6 +299,7 @@ static void own_scenes_load(void **state)
     }
     closedir(folder);
     free(folder_path);
+    free(data_path);
     assert_true(loaded > 0);
 }
 
