@@ -69,9 +69,11 @@ expect() {
     done
     fail "$1: not $2"
 }
-hold_key() { # hold_key KEY SECONDS
+hold_key() { # hold_key KEY SECONDS: and for two frames at least, however slow they are
     xdotool keydown "$1"
     sleep "$2"
+    ask
+    ask
     xdotool keyup "$1"
 }
 find_window() { window=$(xdotool search --onlyvisible --name '^weald: tiny' 2>/dev/null | head -1) && [ -n "$window" ]; }
