@@ -19,25 +19,36 @@ layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 #include "lib/tree_vertex.glsl"
 #include "lib/tree_mesh.glsl"
 
-/* Whether this vertex' leaf is drawn as a twig. */
-bool is_spray(wd_tree_vertex v, wd_tree tree)
+/* Whether a leaf is drawn as this mesh has it: it may be drawn as a twig, or thinned out. Those that
+ * stay grow about their middles. */
+bool settle_leaf(inout wd_tree_vertex v, wd_tree tree)
 {
-    uint name = v.kind >> WD_VERTEX_LEAF_SHIFT;
-    if (DETAIL == 0u || push.spray_reach == 0.0 || name == 0u)
-        return false;
+    wd_tree_leaf leaf = leaves[(v.kind >> WD_VERTEX_LEAF_SHIFT) - 1u];
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];
-    vec3 at = tree_foot_rel(tree)
-              + tree_offset(tree_pose_of(tree, model), leaves[name - 1u].position_m);
-    return wd_hash_unit(wd_hash2(leaves[name - 1u].random, tree.random))
-           < wd_spray_share(length(at), push.spray_reach);
+    tree_pose pose = tree_pose_of(tree, model);
+    float far_m = length(tree_foot_rel(tree) + tree_offset(pose, leaf.position_m));
+    if (DETAIL != 0u && push.spray_reach > 0.0
+        && wd_hash_unit(wd_hash2(leaf.random, tree.random)) < wd_spray_share(far_m,
+                                                                            push.spray_reach))
+        return false;
+    float share = wd_leaf_share(push.leaf_m * pose.across * push.pixels_per_radian / far_m);
+    if (float((v.kind >> WD_VERTEX_LEAF_SHIFT) - 1u) >= share * float(push.leaf_count))
+        return false;
+    vec3 along = octahedral_decode(unpackSnorm2x16(leaf.axis));
+    vec3 middle = leaf.position_m + along * (0.5 * leaf.size_m);
+    v.position_m = middle + (v.position_m - middle) * inversesqrt(share);
+    return true;
 }
 
 void main()
 {
     wd_instance instance = instances[gl_InstanceIndex];
     wd_tree_vertex v = vertices[gl_VertexIndex];
-    if (is_spray(v, trees[instance.tree]))
-        instance.show = 0.0;
+    if (push.leaf_count != 0u && v.kind >> WD_VERTEX_LEAF_SHIFT != 0u
+        && !settle_leaf(v, trees[instance.tree])) {
+        gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
+        return;
+    }
     tree_mesh_vertex(instance, v);
 }

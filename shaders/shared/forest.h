@@ -96,6 +96,21 @@ struct wd_tree_push {
     uint32_t card_vertices;  /* a tree: WD_CARD_VERTICES, or WD_UPRIGHT_VERTICES where all are seen
                                 so level that the third card shows nothing */
     float spray_reach;       /* of wd_spray_share; 0: no leaf is drawn as a twig */
+    float leaf_m;            /* length of the mesh's drawn leaves */
+    uint32_t leaf_count;     /* of them, in progressive order; 0: all are drawn at any distance */
 };
+
+/* Leaves in progressive order thin out with distance, and those that stay grow so that their area
+ * does (stochastic simplification: Cook et al. 2007; W5): what a tree costs follows the pixels that
+ * it covers. Leaves this long on screen, and longer ones, are all drawn. */
+#define WD_LEAF_WHOLE_PX 3.0f
+#define WD_LEAF_LEAST_SHARE 0.02f
+
+/* Share of the leaves drawn where one is `leaf_px` long. */
+WD_FUNC float wd_leaf_share(float leaf_px)
+{
+    float t = leaf_px / WD_LEAF_WHOLE_PX, share = t * t;
+    return share > 1.0f ? 1.0f : (share < WD_LEAF_LEAST_SHARE ? WD_LEAF_LEAST_SHARE : share);
+}
 
 #endif

@@ -7,9 +7,11 @@
 
 #include "base/memory.h"
 
-/* A kept model: words, then for the full and the reduced mesh its vertices and its indices, packed
- * by meshoptimizer's codecs (the sequence codec keeps the order of indices). */
-enum { MESHES = 2, MESH_WORDS = 5, FIGURES = 6, WORDS = FIGURES + MESHES * MESH_WORDS };
+/* A kept model: words, then for the full mesh, the reduced one and the twig its vertices and its
+ * indices, then the leaves, packed by meshoptimizer's codecs (the sequence codec keeps the order of
+ * indices). */
+enum { MESHES = 3, MESH_WORDS = 5, FIGURES = 7, LEAVES = FIGURES + MESHES * MESH_WORDS,
+       WORDS = LEAVES + 2 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
 static const uint32_t MAX_VERTICES = 1u << 26;
 
@@ -65,6 +67,14 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
     figures[3] = &model->dbh_m;
     figures[4] = &model->age_years;
     figures[5] = &model->leaf_area_m2;
+    figures[6] = &model->spray_reach;
+}
+
+static void meshes_of(struct wd_tree_mesh *meshes[MESHES], struct wd_tree_model *model)
+{
+    meshes[0] = &model->full;
+    meshes[1] = &model->reduced;
+    meshes[2] = &model->spray;
 }
 
 /* Appends a mesh to `block` and describes it at `words`. */
@@ -92,8 +102,13 @@ static size_t mesh_bound(const struct wd_tree_mesh *mesh)
 
 static void store_model(struct wd_bake_cache *cache, uint64_t key, struct wd_tree_model *model)
 {
-    size_t capacity = 4 * WORDS + mesh_bound(&model->full) + mesh_bound(&model->reduced);
+    struct wd_tree_mesh *meshes[MESHES];
+    meshes_of(meshes, model);
     size_t used = 4 * WORDS;
+    size_t capacity =
+        used + meshopt_encodeVertexBufferBound(model->leaf_count, sizeof *model->leaves);
+    for (int i = 0; i < MESHES; i++)
+        capacity += mesh_bound(meshes[i]);
     uint8_t *block = wd_alloc(capacity);
     float *figures[FIGURES];
     figures_of(figures, model);
@@ -102,8 +117,13 @@ static void store_model(struct wd_bake_cache *cache, uint64_t key, struct wd_tre
         memcpy(&bits, figures[i], sizeof bits);
         put_word(block, i, bits);
     }
-    used = pack_mesh(block, used, capacity, block + 4 * FIGURES, &model->full);
-    used = pack_mesh(block, used, capacity, block + 4 * (FIGURES + MESH_WORDS), &model->reduced);
+    for (int i = 0; i < MESHES; i++)
+        used = pack_mesh(block, used, capacity, block + 4 * (FIGURES + i * MESH_WORDS), meshes[i]);
+    size_t leaf_bytes = meshopt_encodeVertexBuffer(block + used, capacity - used, model->leaves,
+                                                   model->leaf_count, sizeof *model->leaves);
+    put_word(block, LEAVES, model->leaf_count);
+    put_word(block, LEAVES + 1, (uint32_t)leaf_bytes);
+    used += leaf_bytes;
     wd_cache_store(cache, "growth", key, block, used);
     free(block);
 }
@@ -139,6 +159,25 @@ static bool unpack_mesh(struct wd_tree_mesh *mesh, const uint8_t *words, const u
     return ok;
 }
 
+/* A model without leaves has no records; with them its full mesh names no others. */
+static bool unpack_leaves(struct wd_tree_model *model, const uint8_t *block, size_t size,
+                          size_t used)
+{
+    uint32_t count = get_word(block, LEAVES);
+    size_t bytes = get_word(block, LEAVES + 1);
+    if (count > MAX_VERTICES || size - used < bytes)
+        return false;
+    model->leaf_count = count;
+    model->leaves = count ? wd_alloc_array(count, sizeof *model->leaves) : NULL;
+    if (count && meshopt_decodeVertexBuffer(model->leaves, count, sizeof *model->leaves,
+                                            block + used, bytes) != 0)
+        return false;
+    for (uint32_t i = 0; i < model->full.vertex_count && count; i++)
+        if (model->full.vertices[i].kind >> WD_VERTEX_LEAF_SHIFT > count)
+            return false;
+    return true;
+}
+
 static bool load_model(struct wd_tree_model *model, struct wd_bake_cache *cache, uint64_t key)
 {
     size_t size, used = 4 * WORDS;
@@ -152,9 +191,11 @@ static bool load_model(struct wd_tree_model *model, struct wd_bake_cache *cache,
             uint32_t bits = get_word(block, i);
             memcpy(figures[i], &bits, sizeof bits);
         }
-        const uint8_t *words = block + 4 * FIGURES;
-        ok = unpack_mesh(&model->full, words, block, size, &used) &&
-             unpack_mesh(&model->reduced, words + 4 * MESH_WORDS, block, size, &used);
+        struct wd_tree_mesh *meshes[MESHES];
+        meshes_of(meshes, model);
+        for (int i = 0; i < MESHES && ok; i++)
+            ok = unpack_mesh(meshes[i], block + 4 * (FIGURES + i * MESH_WORDS), block, size, &used);
+        ok = ok && unpack_leaves(model, block, size, used);
     }
     free(block);
     if (!ok)

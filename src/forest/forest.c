@@ -94,6 +94,59 @@ static bool repeats(const struct preparation *work, uint32_t index)
            work->grown[index].full.vertices == work->grown[index - 1].full.vertices;
 }
 
+static float mean_leaf_m(const struct wd_tree_model *model)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < model->leaf_count; i++)
+        sum += (double)model->leaves[i].size_m;
+    return (float)(sum / (double)model->leaf_count);
+}
+
+/* Names the kites of a reduced mesh, which are the model's first leaves; returns their number. */
+static uint32_t name_kites(struct wd_tree_vertex *vertices, uint32_t count)
+{
+    uint32_t corners = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t kind = vertices[i].kind;
+        if (!(kind & WD_VERTEX_LEAF) || (kind & WD_VERTEX_FLOWER))
+            continue;
+        if (kind >> WD_VERTEX_LEAF_SHIFT)
+            return 0; /* fronds, which keep their form */
+        vertices[i].kind |= (corners++ / 4 + 1) << WD_VERTEX_LEAF_SHIFT;
+    }
+    return corners / 4;
+}
+
+/* Where the leaves of a mesh begin to be too many, step by step. */
+static void find_leaf_ends(struct wd_mesh_range *range, const struct wd_tree_vertex *vertices,
+                           const uint32_t *indices)
+{
+    for (int step = 0; step < WD_LEAF_STEPS; step++)
+        range->leaf_ends[step] = range->index_count;
+    for (uint32_t i = range->wood_index_count; range->leaf_count && i < range->index_count; i += 3) {
+        uint32_t name = vertices[indices[i]].kind >> WD_VERTEX_LEAF_SHIFT;
+        for (int step = 0; step < WD_LEAF_STEPS; step++)
+            if (range->leaf_ends[step] == range->index_count &&
+                (name == 0 || name - 1 > range->leaf_count >> step))
+                range->leaf_ends[step] = i;
+    }
+}
+
+/* How leaves of a model's meshes thin out with distance. `vertices` are those of the reduced one. */
+static void describe_leaves(struct wd_mesh_range ranges[2], const struct wd_tree_model *model,
+                            struct wd_tree_vertex *vertices)
+{
+    if (!model->leaf_count)
+        return;
+    struct wd_mesh_range *full = &ranges[WD_LEVEL_MESH], *reduced = &ranges[WD_LEVEL_REDUCED];
+    full->leaf_count = model->leaf_count;
+    full->leaf_m = mean_leaf_m(model);
+    reduced->leaf_count = name_kites(vertices, reduced->vertex_count);
+    if (reduced->leaf_count > 0)
+        reduced->leaf_m =
+            full->leaf_m * sqrtf((float)full->leaf_count / (float)reduced->leaf_count);
+}
+
 static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
@@ -108,7 +161,10 @@ static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
             forest->ranges[i][level] =
                 (struct wd_mesh_range){(uint32_t)index_count, mesh->index_count,
                                        (uint32_t)vertex_count, mesh->vertex_count,
-                                       mesh->wood_index_count};
+                                       mesh->wood_index_count,
+                                       0,
+                                       0,
+                                       {0}};
             vertex_count += (mesh->vertex_count + WD_MESH_ALIGNMENT - 1) / WD_MESH_ALIGNMENT *
                             WD_MESH_ALIGNMENT;
             index_count += mesh->index_count;
@@ -124,6 +180,13 @@ static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
                    mesh->vertex_count * sizeof *vertices);
             memcpy(indices + range->first_index, mesh->indices,
                    mesh->index_count * sizeof *indices);
+        }
+        if (!repeats(work, i))
+            describe_leaves(forest->ranges[i], &work->grown[i],
+                            vertices + forest->ranges[i][WD_LEVEL_REDUCED].first_vertex);
+        for (int level = 0; level < 2 && !repeats(work, i); level++) {
+            struct wd_mesh_range *range = &forest->ranges[i][level];
+            find_leaf_ends(range, vertices + range->first_vertex, indices + range->first_index);
         }
     }
     bool ok =

@@ -11,10 +11,16 @@
 
 /* Where a mesh is in the common buffers. Its indices count from its own first vertex: the vertex
  * buffer is bound from there, since all of it may be more than a device binds at once. */
+enum { WD_LEAF_STEPS = 6 };
 struct wd_mesh_range {
     uint32_t first_index, index_count;
     uint32_t first_vertex, vertex_count; /* first: a multiple of WD_MESH_ALIGNMENT */
     uint32_t wood_index_count; /* of index_count, these come first */
+    uint32_t leaf_count; /* drawn leaves that are named, in progressive order; 0 without records */
+    float leaf_m;        /* their mean length */
+    /* Indices that hold the wood and the first leaf_count >> step leaves; after leaf_ends[0] come
+     * flowers. */
+    uint32_t leaf_ends[WD_LEAF_STEPS];
 };
 /* Vertices; a multiple of every storage buffer alignment (256 bytes) that Vulkan allows. */
 #define WD_MESH_ALIGNMENT 64

@@ -193,7 +193,8 @@ static void add_tree(struct dissolve *dissolve, const struct wd_tree_draw *draw,
     uint32_t model = wd_forest_model_of(forest, tree);
     if (geometry > 0.0f) {
         uint32_t level = whole_m < options->branches_m ? WD_LEVEL_MESH : WD_LEVEL_REDUCED;
-        wd_selection_add_mesh(&dissolve->selection, model, level, index, geometry);
+        wd_selection_add_mesh(&dissolve->selection, &(struct wd_mesh_choice){model, level, 0},
+                              index, geometry);
         add_leaves(dissolve, options, model, (struct wd_leafy_instance){index, geometry, 0, 0},
                    whole_m);
     }

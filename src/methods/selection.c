@@ -20,6 +20,7 @@ struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
         .reduced_m = (float)scene->quality.reduced_distance_m * view->lod_scale,
         .blend = (float)scene->quality.blend,
         .finest = WD_LEVEL_MESH,
+        .pass = pass,
     };
     bool specimens = scene->individuals != NULL; /* few: whole shadows at any distance */
     if (pass == WD_PASS_CAMERA || view->cascade < REDUCED_CASCADE || specimens) {
@@ -32,6 +33,11 @@ struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
     rule.reduced_m = rule.finest == WD_LEVEL_CARD ? 0.0f : rule.mesh_m;
     rule.mesh_m = 0.0f;
     return rule;
+}
+
+float wd_leaf_pixels(const struct wd_view *view, enum wd_tree_pass pass)
+{
+    return (pass == WD_PASS_SHADOW ? 0.55f : 1) * view->pixels_per_radian;
 }
 
 /* Shares of a nearer and a farther level about the distance where they change. */
@@ -102,25 +108,59 @@ void wd_selection_add_range(struct wd_selection *selection, const struct wd_rang
         *wd_push(selection->ranges, selection->range_count, selection->range_capacity) = *range;
 }
 
-void wd_selection_add_mesh(struct wd_selection *selection, uint32_t model, uint32_t level,
+void wd_selection_add_mesh(struct wd_selection *selection, const struct wd_mesh_choice *choice,
                            uint32_t tree, float show)
 {
     selection->mesh_keys = wd_grow(selection->mesh_keys, selection->mesh_count,
                                    &selection->key_capacity, sizeof *selection->mesh_keys);
-    selection->mesh_keys[selection->mesh_count] = model * 2 + level;
+    selection->mesh_keys[selection->mesh_count] =
+        (choice->model * 2 + choice->level) * WD_LEAF_STEPS + choice->leaf_step;
     *wd_push(selection->meshes, selection->mesh_count, selection->mesh_capacity) =
         (struct wd_instance){tree, show};
+}
+
+struct tree_box {
+    float min[3], max[3];
+};
+
+static struct tree_box box_of(const struct wd_tree *tree, const float foot[3])
+{
+    float half = 0.005f * (float)(tree->size >> 16), height = 0.01f * (float)(tree->size & 0xffffu);
+    /* wind and leaning boughs reach a little further */
+    float reach = half * 1.5f + 0.1f * height + 0.5f;
+    return (struct tree_box){
+        {foot[0] - reach, foot[1] - reach, foot[2] - 1.0f},
+        {foot[0] + reach, foot[1] + reach, foot[2] + 1.1f * height},
+    };
 }
 
 static enum wd_side tree_side(const struct wd_view *view, const struct wd_tree *tree,
                               const float foot[3])
 {
-    float half = 0.005f * (float)(tree->size >> 16), height = 0.01f * (float)(tree->size & 0xffffu);
-    /* wind and leaning boughs reach a little further */
-    float reach = half * 1.5f + 0.1f * height + 0.5f;
-    const float min[3] = {foot[0] - reach, foot[1] - reach, foot[2] - 1.0f};
-    const float max[3] = {foot[0] + reach, foot[1] + reach, foot[2] + 1.1f * height};
-    return wd_frustum_box(&view->frustum, min, max);
+    struct tree_box box = box_of(tree, foot);
+    return wd_frustum_box(&view->frustum, box.min, box.max);
+}
+
+/* How far the leaves of a tree's mesh thin out, seen from the place of its box that is nearest. */
+static uint32_t leaf_step(const struct wd_forest_device *forest, const struct wd_view *view,
+                          enum wd_tree_pass pass, const struct wd_mesh_range *range,
+                          uint32_t index, const float foot[3])
+{
+    const struct wd_tree *tree = &forest->world->trees[index];
+    const struct wd_model *model = &forest->host_models[wd_forest_model_of(forest, tree)];
+    struct tree_box box = box_of(tree, foot);
+    float squared = 0;
+    for (int k = 0; k < 3; k++) {
+        float outside = fmaxf(fmaxf(box.min[k], -box.max[k]), 0);
+        squared += outside * outside;
+    }
+    float leaf_m = range->leaf_m * WD_TREE_CROWN_M(*tree) / model->crown_m;
+    float share =
+        wd_leaf_share(leaf_m * wd_leaf_pixels(view, pass) / fmaxf(sqrtf(squared), 0.01f));
+    uint32_t step = 0;
+    for (; range->leaf_count && step < WD_LEAF_STEPS - 1 && share <= 0.5f; step++)
+        share *= 2;
+    return step;
 }
 
 static void foot_of(const struct wd_view *view, const struct wd_tree *tree, float foot[3])
@@ -159,8 +199,12 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
     struct wd_levels levels = wd_levels_at(&own, height_m, distance_m);
     uint32_t model = wd_forest_model_of(forest, tree);
     for (uint32_t level = WD_LEVEL_MESH; level <= WD_LEVEL_REDUCED; level++) {
-        if (levels.show[level] * fade > 0.0f)
-            wd_selection_add_mesh(selection, model, level, index, levels.show[level] * fade);
+        if (levels.show[level] * fade > 0.0f) {
+            uint32_t step =
+                leaf_step(forest, view, rule->pass, &forest->ranges[model][level], index, foot);
+            wd_selection_add_mesh(selection, &(struct wd_mesh_choice){model, level, step}, index,
+                                  levels.show[level] * fade);
+        }
     }
     /* the card's shader applies the fade itself: ranges need it too */
     if (levels.show[WD_LEVEL_CARD] * fade > 0.0f)
@@ -170,7 +214,7 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
 
 void wd_selection_sort(struct wd_selection *selection, uint32_t model_count)
 {
-    size_t keys = (size_t)model_count * 2, count = selection->mesh_count;
+    size_t keys = (size_t)model_count * 2 * WD_LEAF_STEPS, count = selection->mesh_count;
     if (count == 0)
         return;
     uint32_t *first = wd_alloc_array(keys + 1, sizeof *first);
@@ -180,7 +224,8 @@ void wd_selection_sort(struct wd_selection *selection, uint32_t model_count)
     for (size_t key = 0; key < keys; key++) {
         if (first[key + 1])
             *wd_push(selection->batches, selection->batch_count, selection->batch_capacity) =
-                (struct wd_mesh_batch){(uint32_t)key / 2, key % 2, first[key], first[key + 1]};
+                (struct wd_mesh_batch){(uint32_t)key / WD_LEAF_STEPS / 2, key / WD_LEAF_STEPS % 2,
+                                       key % WD_LEAF_STEPS, first[key], first[key + 1]};
         first[key + 1] += first[key];
     }
     for (size_t i = 0; i < count; i++)

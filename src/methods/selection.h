@@ -18,12 +18,15 @@ struct wd_level_rule {
     float mesh_m, reduced_m; /* for a tree of 20 m; both grow with height, unless `plain` */
     float blend;             /* share of the distance over which levels blend */
     uint32_t finest;         /* WD_LEVEL_*: shadows of far cascades start lower */
+    enum wd_tree_pass pass;
     float farthest_m;        /* greatest mesh distance that a layer asks for itself */
     bool plain;              /* distances hold for every tree, whatever its height or layer */
     bool parallel;           /* levels blend at the same time: the ghosts that G7 avoids */
 };
 struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
                                       const struct wd_view *view, enum wd_tree_pass pass);
+/* Pixels of a radian, as far as leaves thin out by them: shadows hold fewer and larger ones. */
+float wd_leaf_pixels(const struct wd_view *view, enum wd_tree_pass pass);
 struct wd_levels wd_levels_at(const struct wd_level_rule *rule, float height_m, float distance_m);
 /* Distance beyond which every tree up to `height_m` is a card and nothing else. */
 float wd_level_card_distance(const struct wd_level_rule *rule, float height_m);
@@ -35,7 +38,7 @@ struct wd_range {
 
 /* Trees of one model and level. */
 struct wd_mesh_batch {
-    uint32_t model, level;
+    uint32_t model, level, leaf_step; /* at most leaf_count >> leaf_step leaves show */
     uint32_t first, count; /* instances */
 };
 
@@ -45,7 +48,7 @@ struct wd_selection {
     struct wd_instance *cards; /* drawn as cards one by one */
     size_t card_count, card_capacity;
     struct wd_instance *meshes; /* in the order they were found, until sorted into batches */
-    uint32_t *mesh_keys;        /* model * 2 + level, parallel to meshes */
+    uint32_t *mesh_keys;        /* (model * 2 + level) * WD_LEAF_STEPS + step, parallel to meshes */
     size_t mesh_count, mesh_capacity, key_capacity;
     struct wd_mesh_batch *batches;
     size_t batch_count, batch_capacity;
@@ -62,8 +65,11 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
                            const struct wd_view *view, const struct wd_level_rule *rule,
                            uint32_t tree);
 
-/* Adds one tree at a mesh level, wholly or in part. */
-void wd_selection_add_mesh(struct wd_selection *selection, uint32_t model, uint32_t level,
+/* Adds one tree at a mesh level, wholly or in part, with its leaves as far as the step says. */
+struct wd_mesh_choice {
+    uint32_t model, level, leaf_step;
+};
+void wd_selection_add_mesh(struct wd_selection *selection, const struct wd_mesh_choice *choice,
                            uint32_t tree, float show);
 bool wd_tree_in_view(const struct wd_view *view, const struct wd_tree *tree);
 

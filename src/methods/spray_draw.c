@@ -38,15 +38,26 @@ bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
     return wd_pipeline_init_graphics(pipeline, gpu, &params);
 }
 
-/* Twigs of one model, gathered before they are uploaded. */
+/* What it takes to show a leaf in view as a twig. */
+struct candidate {
+    float distance_m, reach, chance; /* shown where the share at this distance is over `chance` */
+    uint32_t triangles;
+};
+
+/* Twigs of one model, gathered before they are uploaded, or all that could be. */
 struct gather {
+    float scale;
     struct wd_spray_instance *items;
     size_t count, capacity;
+    struct candidate *candidates; /* gathered instead, with `weigh` */
+    size_t candidate_count, candidate_capacity;
+    bool weigh;
 };
 
 /* A tree as it stands: camera-relative. */
 struct stand {
     uint32_t index;
+    uint32_t triangles; /* of a twig */
     float foot[3], reach;
     struct wd_tree_pose pose;
 };
@@ -62,16 +73,22 @@ static void gather_leaf(struct gather *gather, const struct wd_tree_draw *draw,
                    foot[1] + (pose->turn_sin * x + pose->turn_cos * y) * pose->across,
                    foot[2] + leaf->position_m[2] * pose->up};
     float square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
-    if (square > WD_SPRAY_NONE_M * WD_SPRAY_NONE_M * stand->reach * stand->reach ||
-        wd_hash_unit(wd_hash2(leaf->random, tree->random)) >=
-            wd_spray_share(sqrtf(square), stand->reach))
+    if (square > WD_SPRAY_NONE_M * WD_SPRAY_NONE_M * stand->reach * stand->reach)
+        return;
+    float distance_m = sqrtf(square), chance = wd_hash_unit(wd_hash2(leaf->random, tree->random));
+    if (chance >= wd_spray_share(distance_m, stand->reach))
         return;
     float reach = 2 * leaf->size_m * fmaxf(pose->across, pose->up), min[3], max[3];
     for (int k = 0; k < 3; k++) {
         min[k] = at[k] - reach;
         max[k] = at[k] + reach;
     }
-    if (wd_frustum_box(&draw->view->frustum, min, max) != WD_OUTSIDE)
+    if (wd_frustum_box(&draw->view->frustum, min, max) == WD_OUTSIDE)
+        return;
+    if (gather->weigh)
+        *wd_push(gather->candidates, gather->candidate_count, gather->candidate_capacity) =
+            (struct candidate){distance_m, stand->reach, chance, stand->triangles};
+    else
         *wd_push(gather->items, gather->count, gather->capacity) =
             (struct wd_spray_instance){stand->index, index};
 }
@@ -83,11 +100,13 @@ static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, 
     const struct wd_tree *tree = &forest->world->trees[tree_index];
     const int32_t place_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
     const struct wd_spray_range *range = &forest->sprays.ranges[model];
-    struct stand stand = {tree_index, {0}, range->reach,
-                          wd_tree_pose_of(*tree, forest->host_models[model])};
+    struct stand stand = {.index = tree_index,
+                          .triangles = range->index_count / 3,
+                          .reach = gather->scale * range->reach,
+                          .pose = wd_tree_pose_of(*tree, forest->host_models[model])};
     for (int k = 0; k < 3; k++)
         stand.foot[k] = (float)(place_mm[k] * 0.001 - draw->view->eye_m[k]);
-    float reach = 0.01f * (float)(tree->size >> 16) + WD_SPRAY_NONE_M * range->reach;
+    float reach = 0.01f * (float)(tree->size >> 16) + WD_SPRAY_NONE_M * stand.reach;
     if (stand.foot[0] * stand.foot[0] + stand.foot[1] * stand.foot[1] > reach * reach)
         return;
     for (uint32_t i = 0; i < range->leaf_count; i++)
@@ -127,19 +146,55 @@ static void draw_range(const struct wd_tree_draw *draw, const struct wd_spray_ra
     draw->stats->triangles += (uint64_t)range->index_count / 3 * gather->count;
 }
 
-void wd_spray_draw(const struct wd_tree_draw *draw, const struct wd_selection *selection)
+static bool has_sprays(const struct wd_tree_draw *draw, const struct wd_mesh_batch *batch)
 {
-    struct gather gather = {0};
+    return batch->level == WD_LEVEL_MESH && batch->leaf_step == 0 &&
+           draw->forest->sprays.ranges[batch->model].leaf_count > 0;
+}
+
+static void gather_batch(struct gather *gather, const struct wd_tree_draw *draw,
+                         const struct wd_selection *selection, const struct wd_mesh_batch *batch)
+{
+    gather->count = 0;
+    for (uint32_t k = 0; k < batch->count && has_sprays(draw, batch); k++)
+        gather_tree(gather, draw, batch->model, selection->meshes[batch->first + k].tree);
+}
+
+static uint64_t triangles_at(const struct gather *gather, float scale)
+{
+    uint64_t sum = 0;
+    for (size_t i = 0; i < gather->candidate_count; i++) {
+        const struct candidate *leaf = &gather->candidates[i];
+        if (leaf->chance < wd_spray_share(leaf->distance_m, scale * leaf->reach))
+            sum += leaf->triangles;
+    }
+    return sum;
+}
+
+float wd_spray_scale(const struct wd_tree_draw *draw, const struct wd_selection *selection)
+{
+    struct gather gather = {.scale = 1, .weigh = true};
+    for (size_t i = 0; i < selection->batch_count; i++)
+        gather_batch(&gather, draw, selection, &selection->batches[i]);
+    float scale = 1, step = 0.5f;
+    if (triangles_at(&gather, 1) > WD_SPRAY_BUDGET) {
+        for (scale = 0; step > 1e-4f; step *= 0.5f)
+            if (triangles_at(&gather, scale + step) <= WD_SPRAY_BUDGET)
+                scale += step;
+    }
+    free(gather.candidates);
+    return scale;
+}
+
+void wd_spray_draw(const struct wd_tree_draw *draw, const struct wd_selection *selection,
+                   float scale)
+{
+    struct gather gather = {.scale = scale};
     for (size_t i = 0; i < selection->batch_count; i++) {
         const struct wd_mesh_batch *batch = &selection->batches[i];
-        const struct wd_spray_range *range = &draw->forest->sprays.ranges[batch->model];
-        if (batch->level != WD_LEVEL_MESH || !range->leaf_count)
-            continue;
-        gather.count = 0;
-        for (uint32_t k = 0; k < batch->count; k++)
-            gather_tree(&gather, draw, batch->model, selection->meshes[batch->first + k].tree);
+        gather_batch(&gather, draw, selection, batch);
         if (gather.count)
-            draw_range(draw, range, &gather);
+            draw_range(draw, &draw->forest->sprays.ranges[batch->model], &gather);
     }
     free(gather.items);
 }

@@ -160,7 +160,7 @@ static struct wd_binding bind_leaves(const struct wd_forest_device *forest, uint
 }
 
 static void bind_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_batch *batch,
-                      struct wd_binding instances)
+                      struct wd_binding instances, float spray_scale)
 {
     const struct wd_forest_device *forest = draw->forest;
     const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
@@ -183,14 +183,34 @@ static void bind_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_batc
                                                         forest->look_sampler),
                                           bind_leaves(forest, batch->model)};
     struct wd_tree_push push = tree_push(draw, batch->level);
-    push.spray_reach = forest->sprays.ranges[batch->model].reach;
+    if (batch->level == WD_LEVEL_MESH)
+        push.spray_reach = spray_scale * forest->sprays.ranges[batch->model].reach;
+    push.pixels_per_radian = wd_leaf_pixels(draw->view, draw->pass);
+    push.leaf_m = range->leaf_m;
+    push.leaf_count = range->leaf_count;
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
     wd_cmd_bind_indices(draw->cmd, &forest->indices);
 }
 
+enum { WOOD = -1 };
+
+/* Instances of a mesh with its wood alone, or with the leaves of a step and flowers. */
+static void draw_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_range *range, int step,
+                      const struct wd_range *instances)
+{
+    uint32_t count = instances->end - instances->begin, flowers = range->leaf_ends[0];
+    uint32_t end = step == WOOD ? range->wood_index_count : range->leaf_ends[step];
+    if (step == 0)
+        end = flowers = range->index_count; /* all at once */
+    draw_indexed(draw, end, count, range->first_index, 0, instances->begin);
+    if (step != WOOD && range->index_count > flowers)
+        draw_indexed(draw, range->index_count - flowers, count, range->first_index + flowers, 0,
+                     instances->begin);
+}
+
 static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selection *selection,
-                        enum wd_draw_grouping grouping)
+                        enum wd_draw_grouping grouping, float spray_scale)
 {
     const struct wd_forest_device *forest = draw->forest;
     struct wd_binding instances;
@@ -200,16 +220,14 @@ static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selecti
     for (size_t i = 0; i < selection->batch_count; i++) {
         const struct wd_mesh_batch *batch = &selection->batches[i];
         const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
-        bind_mesh(draw, batch, instances);
+        bind_mesh(draw, batch, instances, spray_scale);
         draw->stats->trees[batch->level] += batch->count;
-        if (grouping != WD_DRAW_SINGLE) {
-            uint32_t indices =
-                grouping == WD_DRAW_WOOD ? range->wood_index_count : range->index_count;
-            draw_indexed(draw, indices, batch->count, range->first_index, 0, batch->first);
-            continue;
+        uint32_t draws = grouping == WD_DRAW_SINGLE ? batch->count : 1;
+        for (uint32_t k = 0; k < draws; k++) {
+            const struct wd_range part = {batch->first + k, batch->first + k + batch->count / draws,
+                                          0};
+            draw_mesh(draw, range, grouping == WD_DRAW_WOOD ? WOOD : (int)batch->leaf_step, &part);
         }
-        for (uint32_t k = 0; k < batch->count; k++)
-            draw_indexed(draw, range->index_count, 1, range->first_index, 0, batch->first + k);
     }
 }
 
@@ -277,15 +295,17 @@ static void draw_cards(const struct wd_tree_draw *draw, const struct wd_selectio
 void wd_tree_draw_wood(const struct wd_tree_draw *draw, struct wd_selection *selection)
 {
     wd_selection_sort(selection, draw->forest->model_count);
-    draw_meshes(draw, selection, WD_DRAW_WOOD);
+    draw_meshes(draw, selection, WD_DRAW_WOOD, 0);
 }
 
 void wd_tree_draw_selection(const struct wd_tree_draw *draw, struct wd_selection *selection,
                             enum wd_draw_grouping grouping)
 {
     wd_selection_sort(selection, draw->forest->model_count);
-    draw_meshes(draw, selection, grouping);
-    if (draw->pass == WD_PASS_CAMERA)
-        wd_spray_draw(draw, selection);
+    bool sprays = draw->pass == WD_PASS_CAMERA;
+    float spray_scale = sprays ? wd_spray_scale(draw, selection) : 0;
+    draw_meshes(draw, selection, grouping, spray_scale);
+    if (sprays)
+        wd_spray_draw(draw, selection, spray_scale);
     draw_cards(draw, selection, grouping);
 }

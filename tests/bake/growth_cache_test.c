@@ -66,6 +66,10 @@ static void assert_same_model(const struct wd_tree_model *a, const struct wd_tre
 {
     assert_same_mesh(&a->full, &b->full);
     assert_same_mesh(&a->reduced, &b->reduced);
+    assert_same_mesh(&a->spray, &b->spray);
+    assert_int_equal(a->leaf_count, b->leaf_count);
+    assert_memory_equal(a->leaves, b->leaves, a->leaf_count * sizeof *a->leaves);
+    assert_true(a->leaf_count > 0 && a->spray_reach == b->spray_reach);
     assert_true(a->height_m == b->height_m && a->crown_radius_m == b->crown_radius_m);
     assert_true(a->crown_base_m == b->crown_base_m && a->dbh_m == b->dbh_m);
     assert_true(a->age_years == b->age_years && a->leaf_area_m2 == b->leaf_area_m2);
