@@ -4,7 +4,7 @@
 /* `albedo` is that of the card at uv (z: layer); `card` is turn, tint_show, normal, ratio_flags. */
 void card_surface(vec3 uv, float lod, vec4 albedo, uvec4 card, uint surface)
 {
-    vec4 packed = textureLod(card_normal, uv, lod);
+    vec4 packed = textureLod(card_normal, uv, lod - float(WD_CARD_NORMAL_MIP));
     albedo.rgb *= unpackUnorm4x8(card.y).rgb * 2.0;
     if (frame.view_mode == WD_MODE_LOD)
         albedo.rgb = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * packed.a);

@@ -39,7 +39,9 @@ void main()
     if (noise >= first + (1.0 - first) * second)
         discard;
     bool is_wood = wood_first == (noise < first);
-    vec4 packed = is_wood ? textureLod(wood_normal, uv, lod) : textureLod(leaf_normal, uv, lod);
+    float normal_lod = lod - float(WD_CARD_NORMAL_MIP);
+    vec4 packed = is_wood ? textureLod(wood_normal, uv, normal_lod)
+                          : textureLod(leaf_normal, uv, normal_lod);
     vec3 albedo = is_wood ? wood.rgb : leaf.rgb * tint_show.rgb * 2.0;
     if (frame.view_mode == WD_MODE_LOD)
         albedo = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * packed.a);

@@ -42,7 +42,7 @@ void main()
     float opacity = card_opacity(albedo.a, lod) * tint_show.a;
     if (opacity < 1.0 / 255.0)
         discard;
-    vec4 packed = textureLod(card_normal, uv, lod);
+    vec4 packed = textureLod(card_normal, uv, lod - float(WD_CARD_NORMAL_MIP));
     wd_pixel pixel;
     pixel.ray = pixel_ray(ivec2(gl_FragCoord.xy));
     pixel.direction = normalize(pixel.ray);

@@ -110,7 +110,7 @@ void main()
                   && toward_m >= from_m && toward_m < from_m + slice_m;
     if (noise >= albedo.a || !inside)
         discard;
-    vec4 normal = textureLod(card_normal, card.uv, lod);
+    vec4 normal = textureLod(card_normal, card.uv, lod - float(WD_CARD_NORMAL_MIP));
     vec3 turned = world_normal(t, card, normal.xyz * 2.0 - 1.0);
     out_albedo = vec4(albedo.rgb * wd_tree_tint(t.tree), 1.0);
     out_normal = vec4(normalize(turned + vec3(0.0, 0.0, 1e-5)) * 0.5 + 0.5, normal.a);

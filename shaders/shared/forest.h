@@ -15,6 +15,8 @@
  * keeps crowns whole from above). */
 #define WD_CARD_WIDTH_TEXELS 128 /* of the finest mip */
 #define WD_CARD_HEIGHT_TEXELS 256
+/* Normals and openness are kept from this mip on: colour and holes alone show finer ones. */
+#define WD_CARD_NORMAL_MIP 1
 #define WD_CARD_SIDES 3
 #define WD_CARDS 4
 /* Drawn are the two upright ones that face the viewer most (the third is edge on, its share is 0

@@ -41,14 +41,33 @@ static bool make_image(struct wd_image *image, struct wd_gpu *gpu, struct wd_ima
 
 /* --- cards ------------------------------------------------------------------------------- */
 
+/* The finest mip of a plane that is kept. */
+static uint32_t first_mip(int plane)
+{
+    return plane == WD_PLANE_NORMAL ? WD_CARD_NORMAL_MIP : 0;
+}
+
+static bool make_card_plane(struct wd_image *image, struct wd_gpu *gpu, int plane, uint32_t models)
+{
+    uint32_t width, height, first = first_mip(plane);
+    wd_card_size(first, &width, &height);
+    return make_image(image, gpu,
+                      (struct wd_image_params){.name = names[plane],
+                                               .format = formats[plane],
+                                               .width = width,
+                                               .height = height,
+                                               .layers = WD_CARDS * models,
+                                               .mips = WD_CARD_MIPS - first});
+}
+
 static bool upload_card_plane(struct wd_image *image, struct wd_gpu *gpu, uint32_t model,
-                              const uint8_t *plane)
+                              const uint8_t *plane, uint32_t first)
 {
     for (uint32_t card = 0; card < WD_CARDS; card++) {
-        for (uint32_t mip = 0; mip < WD_CARD_MIPS; mip++) {
+        for (uint32_t mip = first; mip < WD_CARD_MIPS; mip++) {
             uint32_t width, height;
             wd_card_size(mip, &width, &height);
-            if (!wd_image_upload(gpu, image, model * WD_CARDS + card, mip,
+            if (!wd_image_upload(gpu, image, model * WD_CARDS + card, mip - first,
                                  plane + wd_card_offset(card, mip), (size_t)4 * width * height))
                 return false;
         }
@@ -85,20 +104,14 @@ bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
     bool ok = true;
     *from_cache = 0;
     for (int k = 0; k < WD_PLANES && ok; k++)
-        ok = !images[k] || make_image(images[k], gpu,
-                                      (struct wd_image_params){.name = names[k],
-                                                               .format = formats[k],
-                                                               .width = WD_CARD_WIDTH,
-                                                               .height = WD_CARD_HEIGHT,
-                                                               .layers = WD_CARDS *
-                                                                         forest->model_count,
-                                                               .mips = WD_CARD_MIPS});
+        ok = !images[k] || make_card_plane(images[k], gpu, k, forest->model_count);
     for (uint32_t i = 0; i < forest->model_count && ok; i++) {
         struct wd_cards cards = {0};
         ok = wd_progress_report(progress, "baking trees", i, forest->model_count) &&
              get_cards(&cards, forest, gpu, &baker, i, parts, from_cache);
         for (int k = 0; k < WD_PLANES && ok; k++)
-            ok = !images[k] || upload_card_plane(images[k], gpu, i, cards.planes[k]);
+            ok = !images[k] ||
+                 upload_card_plane(images[k], gpu, i, cards.planes[k], first_mip(k));
         wd_cards_finish(&cards);
     }
     wd_baker_finish(&baker);
