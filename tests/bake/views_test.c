@@ -78,10 +78,10 @@ static void add_ball(struct wd_tree_mesh *mesh)
     }
 }
 
-static struct fixture make(void **state, void (*add)(struct wd_tree_mesh *mesh),
-                           void (*more)(struct wd_tree_mesh *mesh))
+static void make(struct fixture *f, void **state, void (*add)(struct wd_tree_mesh *mesh),
+                 void (*more)(struct wd_tree_mesh *mesh))
 {
-    struct fixture f = {.test = *state};
+    *f = (struct fixture){.test = *state};
     struct wd_tree_mesh mesh = {0};
     uint8_t looks[2 * LOOK_SIZE * LOOK_SIZE * 4];
     for (int i = 0; i < LOOK_SIZE * LOOK_SIZE; i++) {
@@ -91,10 +91,9 @@ static struct fixture make(void **state, void (*add)(struct wd_tree_mesh *mesh),
     add(&mesh);
     if (more)
         more(&mesh);
-    assert_true(wd_baker_init(&f.baker, &f.test->gpu, &f.test->log));
-    assert_true(device_mesh_init(&f.device, &f.test->gpu, &mesh, looks, LOOK_SIZE));
+    assert_true(wd_baker_init(&f->baker, &f->test->gpu, &f->test->log));
+    assert_true(device_mesh_init(&f->device, &f->test->gpu, &mesh, looks, LOOK_SIZE));
     wd_tree_mesh_finish(&mesh);
-    return f;
 }
 
 static void finish(struct fixture *f)
@@ -143,7 +142,8 @@ static void assert_texel(const struct wd_view_set *set, int plane, uint32_t view
 static void a_cube_is_seen_as_a_cube(void **state)
 {
     const float radius = sqrtf(2.0f);
-    struct fixture f = make(state, add_cube, NULL);
+    struct fixture f;
+    make(&f, state, add_cube, NULL);
     struct wd_view_set set = bake(&f, (struct wd_view_model){radius, 0.0f, 2.0f, 0}, WD_BAKE_ALL);
     static const int normals[5][4] = {{255, 128, 128, 255},
                                       {128, 255, 128, 255},
@@ -166,7 +166,8 @@ static void a_cube_is_seen_as_a_cube(void **state)
 
 static void a_ball_is_round_from_everywhere(void **state)
 {
-    struct fixture f = make(state, add_ball, NULL);
+    struct fixture f;
+    make(&f, state, add_ball, NULL);
     struct wd_view_set_params params = {{WD_VIEWS_EVEN, 3, 0}, SIZE, 4, WD_BAKE_ALL};
     const struct wd_view_model model = {1.0f, 0.0f, 2.0f, 0};
     struct wd_view_atlas atlas;
@@ -197,7 +198,8 @@ static void a_ball_is_round_from_everywhere(void **state)
 /* W6: wood and leaves apart. The ball bulges out of the cube's walls. */
 static void parts_come_apart(void **state)
 {
-    struct fixture f = make(state, add_cube, add_ball);
+    struct fixture f;
+    make(&f, state, add_cube, add_ball);
     const struct wd_view_model model = {1.5f, 0.0f, 2.0f, 0};
     struct wd_view_set all = bake(&f, model, WD_BAKE_ALL);
     struct wd_view_set wood = bake(&f, model, WD_BAKE_WOOD);
@@ -217,7 +219,8 @@ static void parts_come_apart(void **state)
 
 static void baking_twice_gives_the_same(void **state)
 {
-    struct fixture f = make(state, add_cube, add_ball);
+    struct fixture f;
+    make(&f, state, add_cube, add_ball);
     const struct wd_view_model model = {1.5f, 0.0f, 2.0f, 0};
     struct wd_view_set a = bake(&f, model, WD_BAKE_ALL), b = bake(&f, model, WD_BAKE_ALL);
     for (int plane = 0; plane < WD_PLANES; plane++)
@@ -229,7 +232,8 @@ static void baking_twice_gives_the_same(void **state)
 
 static void cards_show_the_cube_from_three_sides_and_above(void **state)
 {
-    struct fixture f = make(state, add_cube, NULL);
+    struct fixture f;
+    make(&f, state, add_cube, NULL);
     const struct wd_card_extent extent = {2.0f, 2.0f, 0.0f, 2.0f};
     struct wd_cards cards;
     assert_true(wd_cards_bake(&cards, &f.baker, &f.device.mesh, &extent, WD_BAKE_ALL));
