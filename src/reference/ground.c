@@ -2,7 +2,10 @@
 
 #include <math.h>
 
-enum { TILE_CELLS = 16 };
+enum { TILE_CELLS = 16, WALLS = 4 };
+
+/* Bounds hold what rounding may move. */
+static const double SLACK_M = 0.01;
 
 /* --- a ray over the grid ------------------------------------------------------------------- */
 
@@ -59,8 +62,9 @@ static bool step(struct walk *walk, uint32_t i, uint32_t j, bool upper, double t
         return false;
     double share = before_m / (before_m - after_m);
     hit->at_m = (float)(from_m + (to_m - from_m) * share);
-    hit->slope[0] = (float)(triangle.east / walk->terrain->cell_m);
-    hit->slope[1] = (float)(triangle.north / walk->terrain->cell_m);
+    hit->normal[0] = (float)(-triangle.east / walk->terrain->cell_m);
+    hit->normal[1] = (float)(-triangle.north / walk->terrain->cell_m);
+    hit->normal[2] = 1;
     hit->triangle = triangle.id;
     return true;
 }
@@ -133,6 +137,45 @@ bool wd_trace_ground_hit(const struct wd_terrain *terrain, const double from_m[3
     }
 }
 
+/* --- walls ------------------------------------------------------------------------------------- */
+
+/* Sides 0 west, 1 east, 2 south, 3 north. A wall reaches from the terrain's foot up to its edge. */
+static bool meet_wall(const struct wd_terrain *terrain, uint32_t side, const double from_m[3],
+                      const double direction[3], struct wd_ground_hit *hit)
+{
+    const double extent_m[2] = {wd_terrain_extent_x_m(terrain), wd_terrain_extent_y_m(terrain)};
+    uint32_t axis = side / 2;
+    double at_m = ((side % 2 ? extent_m[axis] : 0) - from_m[axis]) / direction[axis], place_m[3];
+    if (!isfinite(at_m))
+        return false;
+    for (int k = 0; k < 3; k++)
+        place_m[k] = from_m[k] + direction[k] * at_m;
+    if (place_m[1 - axis] < 0 || place_m[1 - axis] > extent_m[1 - axis] ||
+        place_m[2] < (double)wd_terrain_foot_m(terrain) ||
+        place_m[2] > (double)wd_terrain_height(terrain, place_m[0], place_m[1]))
+        return false;
+    *hit = (struct wd_ground_hit){.at_m = (float)at_m, .triangle = WD_TRACE_WALL + side};
+    hit->normal[axis] = side % 2 ? 1.0f : -1.0f;
+    return true;
+}
+
+static void bound_wall(const struct wd_trace_ground *ground, uint32_t side,
+                       struct RTCBounds *bounds)
+{
+    const struct wd_terrain *terrain = ground->terrain;
+    double low[3] = {0, 0, (double)wd_terrain_foot_m(terrain)};
+    double high[3] = {wd_terrain_extent_x_m(terrain), wd_terrain_extent_y_m(terrain),
+                      (double)terrain->max_m};
+    if (side % 2)
+        low[side / 2] = high[side / 2];
+    else
+        high[side / 2] = low[side / 2];
+    for (int k = 0; k < 3; k++) {
+        (&bounds->lower_x)[k] = (float)(low[k] - ground->origin_m[k] - SLACK_M);
+        (&bounds->upper_x)[k] = (float)(high[k] - ground->origin_m[k] + SLACK_M);
+    }
+}
+
 /* --- Embree's side --------------------------------------------------------------------------- */
 
 static uint32_t tiles_across(uint32_t samples)
@@ -155,7 +198,11 @@ static void bound_tile(const struct RTCBoundsFunctionArguments *args)
 {
     const struct wd_trace_ground *ground = args->geometryUserPtr;
     const struct wd_terrain *terrain = ground->terrain;
-    uint32_t cells[4];
+    uint32_t cells[4], tiles = tiles_across(terrain->width) * tiles_across(terrain->height);
+    if (args->primID >= tiles) {
+        bound_wall(ground, args->primID - tiles, args->bounds_o);
+        return;
+    }
     tile_cells(terrain, args->primID, cells);
     float low = INFINITY, high = -INFINITY;
     for (uint32_t j = cells[1]; j <= cells[3]; j++) {
@@ -165,14 +212,13 @@ static void bound_tile(const struct RTCBoundsFunctionArguments *args)
             high = fmaxf(high, height_m);
         }
     }
-    const double slack = 0.01;
     struct RTCBounds *bounds = args->bounds_o;
-    bounds->lower_x = (float)(cells[0] * terrain->cell_m - ground->origin_m[0] - slack);
-    bounds->lower_y = (float)(cells[1] * terrain->cell_m - ground->origin_m[1] - slack);
-    bounds->lower_z = (float)(low - ground->origin_m[2] - slack);
-    bounds->upper_x = (float)(cells[2] * terrain->cell_m - ground->origin_m[0] + slack);
-    bounds->upper_y = (float)(cells[3] * terrain->cell_m - ground->origin_m[1] + slack);
-    bounds->upper_z = (float)(high - ground->origin_m[2] + slack);
+    bounds->lower_x = (float)(cells[0] * terrain->cell_m - ground->origin_m[0] - SLACK_M);
+    bounds->lower_y = (float)(cells[1] * terrain->cell_m - ground->origin_m[1] - SLACK_M);
+    bounds->lower_z = (float)(low - ground->origin_m[2] - SLACK_M);
+    bounds->upper_x = (float)(cells[2] * terrain->cell_m - ground->origin_m[0] + SLACK_M);
+    bounds->upper_y = (float)(cells[3] * terrain->cell_m - ground->origin_m[1] + SLACK_M);
+    bounds->upper_z = (float)(high - ground->origin_m[2] + SLACK_M);
 }
 
 static bool meet_tile(const struct wd_trace_ground *ground, uint32_t tile, const struct RTCRay *ray,
@@ -181,11 +227,13 @@ static bool meet_tile(const struct wd_trace_ground *ground, uint32_t tile, const
     const double from_m[3] = {ray->org_x + ground->origin_m[0], ray->org_y + ground->origin_m[1],
                               ray->org_z + ground->origin_m[2]};
     const double direction[3] = {ray->dir_x, ray->dir_y, ray->dir_z};
-    uint32_t cells[4];
-    tile_cells(ground->terrain, tile, cells);
-    return wd_trace_ground_hit(ground->terrain, from_m, direction, cells, ray->tnear, ray->tfar,
-                               hit) &&
-           hit->at_m > ray->tnear && hit->at_m < ray->tfar;
+    const struct wd_terrain *terrain = ground->terrain;
+    uint32_t cells[4], tiles = tiles_across(terrain->width) * tiles_across(terrain->height);
+    tile_cells(terrain, tile, cells);
+    bool met = tile < tiles ? wd_trace_ground_hit(terrain, from_m, direction, cells, ray->tnear,
+                                                  ray->tfar, hit)
+                            : meet_wall(terrain, tile - tiles, from_m, direction, hit);
+    return met && hit->at_m > ray->tnear && hit->at_m < ray->tfar;
 }
 
 static void intersect_tile(const struct RTCIntersectFunctionNArguments *args)
@@ -195,9 +243,9 @@ static void intersect_tile(const struct RTCIntersectFunctionNArguments *args)
     if (!args->valid[0] || !meet_tile(args->geometryUserPtr, args->primID, &rayhit->ray, &found))
         return;
     rayhit->ray.tfar = found.at_m;
-    rayhit->hit.Ng_x = -found.slope[0];
-    rayhit->hit.Ng_y = -found.slope[1];
-    rayhit->hit.Ng_z = 1;
+    rayhit->hit.Ng_x = found.normal[0];
+    rayhit->hit.Ng_y = found.normal[1];
+    rayhit->hit.Ng_z = found.normal[2];
     rayhit->hit.u = rayhit->hit.v = 0;
     rayhit->hit.primID = found.triangle;
     rayhit->hit.geomID = args->geomID;
@@ -219,7 +267,8 @@ void wd_trace_ground_init(struct wd_trace_ground *ground, RTCDevice device,
         .terrain = terrain, .origin_m = {origin_m[0], origin_m[1], origin_m[2]}};
     ground->geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(ground->geometry, tiles_across(terrain->width) *
-                                                           tiles_across(terrain->height));
+                                                           tiles_across(terrain->height) +
+                                                           (terrain->hole ? 0 : WALLS));
     rtcSetGeometryUserData(ground->geometry, ground);
     rtcSetGeometryMask(ground->geometry, UINT32_MAX);
     rtcSetGeometryBoundsFunction(ground->geometry, bound_tile, NULL);

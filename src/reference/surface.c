@@ -192,6 +192,12 @@ static void ground_surface(struct wd_surface *surface, const struct wd_trace_sce
                            float pixel_rad)
 {
     const struct wd_trace_ground *ground = &scene->ground;
+    if (hit->triangle >= WD_TRACE_WALL) {
+        surface->albedo = wd_v3_scale(wd_v3_of(scene->frame->soil),
+                                      0.75f + 0.25f * cosf(surface->place.z * 1.3f));
+        surface->outward = surface->flat = hit->normal;
+        return;
+    }
     double x_m = (double)surface->place.x + ground->origin_m[0];
     double y_m = (double)surface->place.y + ground->origin_m[1];
     float slope[2], footprint_m = COARSE_FOOTPRINT_M;

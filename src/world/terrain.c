@@ -175,6 +175,11 @@ float wd_terrain_slope_squared(const struct wd_terrain *terrain, double x_m, dou
     return (float)steepest;
 }
 
+float wd_terrain_foot_m(const struct wd_terrain *terrain)
+{
+    return terrain->min_m - 0.02f * (float)wd_terrain_extent_x_m(terrain);
+}
+
 bool wd_terrain_contains(const struct wd_terrain *terrain, double x_m, double y_m)
 {
     if (!(x_m >= 0 && y_m >= 0 && x_m <= wd_terrain_extent_x_m(terrain) &&

@@ -143,7 +143,7 @@ void wd_terrain_view_init(struct wd_terrain_view *out, const struct wd_patch_ran
     *out = (struct wd_terrain_view){
         .cell_m = (float)terrain->cell_m,
         .above_m = (float)ranges->above_m,
-        .curtain_m = terrain->min_m - 0.02f * (float)wd_terrain_extent_x_m(terrain),
+        .curtain_m = wd_terrain_foot_m(terrain),
         .width = terrain->width,
         .height = terrain->height,
         .has_holes = terrain->hole != NULL,
