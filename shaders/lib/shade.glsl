@@ -3,6 +3,8 @@
  * Expects `frame`, `push` (wd_light_push), `trees`, `models`, PARTS and the libraries of noise,
  * shadow, gbuffer, tree and crown. */
 
+#include "shared/canopy.h"
+
 const float PER_PI = 0.318309886;
 
 /* Skylight on a surface, with what the ground throws back from below. Under a canopy it has come
@@ -106,12 +108,31 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     return place;
 }
 
+/* Where the shader does not say what canopy covers a place, none does. */
+#ifndef COVER_AT
+#define COVER_AT(at) 0.0
+#endif
+
+/* Share of the sky that the forest around leaves to a place on a tree: as little as to the ground at
+ * its foot, all of it at its top, for trees stand among their like. */
+float forest_openness(wd_pixel pixel)
+{
+    wd_tree tree = trees[pixel.surface - 1u];
+    vec2 at = (pixel.rel.xy + push.camera_m) * push.cover_scale;
+    float up = (pixel.rel.z - tree_foot_rel(tree).z) / max(WD_TREE_HEIGHT_M(tree), 0.1);
+    return mix(wd_canopy_openness(COVER_AT(at)), 1.0,
+               smoothstep(0.1, 0.95, up));
+}
+
 /* `sun_share` is what of the sun reaches the place, `ground_share` what the ground leaves of it. */
 vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share)
 {
     float noise = pixel_noise(at, frame.sample_index);
     uint cascade = shadow_cascade(pixel.axis_m, noise);
     wd_place place = ground_place(pixel);
+    float openness = pixel.openness;
+    if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u)
+        openness *= forest_openness(pixel);
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u && pixel.material >= WD_MATERIAL_LEAF)
         place = leaf_place(pixel, cascade);
     ground_share = ground_shadow(place.rel);
@@ -125,6 +146,6 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 sunlit = pixel.albedo * place.sides.x + transmitted * place.sides.y + place.gloss;
     vec3 skylit = pixel.albedo + 0.4 * transmitted + place.wax;
     vec3 light = frame.sun_irradiance * sun_share * sunlit
-                 + ambient(place.normal, pixel.openness) * skylit;
+                 + ambient(place.normal, openness) * skylit;
     return light * PER_PI;
 }

@@ -3,6 +3,7 @@
 #ifndef WD_SHARED_GROUND_COVER_H
 #define WD_SHARED_GROUND_COVER_H
 
+#include "shared/canopy.h"
 #include "shared/noise.h"
 #include "shared/snow.h"
 
@@ -147,8 +148,7 @@ WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, floa
     float rough = 1.0f + WD_SMOOTH(0.7f, 1.2f, steep / WD_FRAME(rock_slope)) * 1.5f;
     look.normal = wd_v3_normalize(WD_V3(-slope_east - n.bump_east * rough,
                                         -slope_north - n.bump_north * rough, 1.0f));
-    float canopy = WD_SMOOTH(0.15f, 0.9f, cover);
-    look.openness = WD_MIX(1.0f, 0.14f, canopy)
+    look.openness = wd_canopy_openness(cover)
                     * (0.85f + 0.15f * WD_CLAMP(1.0f + 2.0f * n.fine, 0.0f, 1.0f));
     return look;
 }

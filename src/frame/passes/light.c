@@ -38,8 +38,8 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     };
     bool ok = wd_pipeline_init_compute(&pass->view, gpu, &params);
     params.shader = (struct wd_spirv)SPIRV(light_comp);
-    params.bindings.count = 12;
-    params.bindings.types[11] = IMAGE;
+    params.bindings.count = 13;
+    params.bindings.types[11] = params.bindings.types[12] = IMAGE;
     for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
         const uint32_t constants[] = {wd_tile_list_parts(list), list};
         params.constants = (struct wd_spec_constants){2, constants};
@@ -117,6 +117,7 @@ static void use_gbuffer(struct wd_cmd *cmd, struct wd_targets *targets)
 static struct wd_light_push push_of(const struct wd_light_pass *pass,
                                     const struct wd_light_params *params)
 {
+    const struct wd_ground *ground = &params->forest->ground;
     return (struct wd_light_push){
         .camera_m = {(float)params->view->eye_m[0], (float)params->view->eye_m[1]},
         .sun_cell_m = pass->sun_field.cell_m,
@@ -128,6 +129,8 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
         .has_overlay = params->overlay == WD_OVERLAY_OVER,
         .extent_m = {(float)wd_terrain_extent_x_m(params->forest->ground.terrain),
                      (float)wd_terrain_extent_y_m(params->forest->ground.terrain)},
+        .cover_scale = {(float)(1 / (ground->cover_cell_m * ground->cover.width)),
+                        (float)(1 / (ground->cover_cell_m * ground->cover.height))},
         .tile_columns = (params->targets->width + WD_TILE - 1) / WD_TILE,
         .tile_rows = (params->targets->height + WD_TILE - 1) / WD_TILE,
     };
@@ -211,6 +214,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_STORAGE_IMAGE(&targets->radiance),
         WD_BIND_BUFFER(&pass->lists),
         WD_BIND_IMAGE(push.has_overlay ? &targets->overlay : &targets->albedo, pass->nearest),
+        WD_BIND_IMAGE(&params->forest->ground.cover, params->forest->ground.sampler),
     };
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);
