@@ -40,7 +40,8 @@ bool octant_level(octant_tree t)
 /* The rectangle's lower left (xy) and upper right (zw) corner, as far as the picture goes. */
 vec4 octant_rectangle(octant_tree t)
 {
-    float reach = t.pose.across * (octant_level(t) ? 1.42 * t.model.half_depth_m : t.model.half_width_m);
+    float reach = t.pose.across
+                  * (octant_level(t) ? 1.42 * t.model.half_depth_m : t.model.half_width_m);
     vec4 box = octant_level(t)
                    ? t.foot.xyxy + vec4(-reach, -reach, reach, reach)
                    : vec4(t.foot.x - reach, t.foot.y + t.model.bottom_m * t.pose.up,

@@ -1,5 +1,5 @@
-/* Fragments of trees that are drawn by their view sets. VIEW_DEPTH defined: where on its ray a pixel
- * meets the tree follows from the pictures' depths; else the quad is all there is. */
+/* Fragments of trees that are drawn by their view sets. VIEW_DEPTH defined: where on its ray a
+ * pixel meets the tree follows from the pictures' depths; else the quad is all there is. */
 #include "shared/frame.h"
 #include "shared/view_draw.h"
 
@@ -100,8 +100,8 @@ vec3 refined_place(vec3 toward, float layer)
 vec3 world_vector(vec3 v, vec2 scale)
 {
     v.x *= sign(in_pose.z);
-    return vec3(vec2(in_pose.x * v.x - in_pose.y * v.y, in_pose.y * v.x + in_pose.x * v.y) * scale.x,
-                v.z * scale.y);
+    vec2 turned = vec2(in_pose.x * v.x - in_pose.y * v.y, in_pose.y * v.x + in_pose.x * v.y);
+    return vec3(turned * scale.x, v.z * scale.y);
 }
 
 float view_noise()

@@ -1,6 +1,6 @@
 #version 460
-/* Which pixels of far ground show canopy, and of which tree: a tree is drawn by lot among those that
- * stand there, and a place of it by lot from its picture from this side. So the mean over pixels is
+/* Which pixels of far ground show canopy, and of which tree: a tree is drawn by lot among those
+ * that stand there, and a place of it by lot from its picture from this side. So the mean over pixels is
  * that of the trees, at a cost that knows pixels only. */
 #include "shared/frame.h"
 #include "shared/forest.h"
@@ -28,8 +28,8 @@ layout(scalar, push_constant) uniform Push { wd_canopy_push push; };
 
 vec3 ground_at(ivec2 at)
 {
-    float depth = texelFetch(gbuffer_depth, clamp(at, ivec2(0), ivec2(frame.width, frame.height) - 1),
-                             0).x;
+    ivec2 last = ivec2(frame.width, frame.height) - 1;
+    float depth = texelFetch(gbuffer_depth, clamp(at, ivec2(0), last), 0).x;
     return pixel_ray(at) * (frame.near_m / max(depth, 1e-9));
 }
 

@@ -24,7 +24,7 @@ layout(location = 2) flat out vec3 out_eye;   /* in the model's frame */
 layout(location = 3) flat out vec4 out_pose;  /* turn; mirrored across; up */
 layout(location = 4) flat out vec4 out_foot;  /* rel; lod */
 layout(location = 5) flat out vec4 out_tint;  /* a: show */
-layout(location = 6) flat out uvec4 out_flat; /* surface, random, view model, views (10 bits each) */
+layout(location = 6) flat out uvec4 out_flat; /* surface, random, model, views (10 bits each) */
 layout(location = 7) flat out vec3 out_weights;
 layout(location = 8) flat out vec3 out_toward[3]; /* of the views */
 

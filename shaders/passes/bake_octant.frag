@@ -23,7 +23,7 @@ layout(location = 1) out vec4 out_normal;
 struct octant_card {
     vec3 uv;
     vec2 width, normal;
-    float behind, mirrored; /* 1: seen from behind; -1: its width runs against the picture's right */
+    float behind, mirrored; /* 1: seen from behind; -1: its width runs to the left */
 };
 
 /* Seen from the side: the card that faces the viewer most, turned to face it wholly. */
@@ -106,8 +106,8 @@ void main()
     float toward_m = depth_m(t, card, textureLod(card_depth, card.uv, lod));
     float slice_m = t.picture.size_m / float(t.picture.slices);
     float from_m = float(t.picture.slice) * slice_m;
-    bool inside = all(greaterThanEqual(card.uv.xy, vec2(0.0))) && all(lessThan(card.uv.xy, vec2(1.0)))
-                  && toward_m >= from_m && toward_m < from_m + slice_m;
+    bool inside = all(greaterThanEqual(card.uv.xy, vec2(0.0)))
+                  && all(lessThan(card.uv.xy, vec2(1.0))) && toward_m >= from_m && toward_m < from_m + slice_m;
     if (noise >= albedo.a || !inside)
         discard;
     vec4 normal = textureLod(card_normal, card.uv, lod - float(WD_CARD_NORMAL_MIP));

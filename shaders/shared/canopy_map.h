@@ -1,4 +1,4 @@
-/* canopy_map.h: the forest as a property of the ground's pixels, where trees are too far to be drawn
+/* canopy_map.h: the forest as a look of the ground's pixels, where trees are too far to be drawn
  * (the shader-maps of Bruneton and Neyret 2012). */
 #ifndef WD_SHARED_CANOPY_MAP_H
 #define WD_SHARED_CANOPY_MAP_H
@@ -26,8 +26,8 @@ struct wd_canopy_pixel {
 };
 WD_STATIC_ASSERT_SIZE(wd_canopy_pixel, 12);
 
-/* Share of a canopy's ground that is hidden, seen at an angle whose cosine to the ground's normal is
- * given: trees are ellipsoids strewn at random, and their shadows along the view lengthen with the
+/* Share of a canopy's ground that is hidden, seen at an angle whose cosine to the ground's normal
+ * is given: trees are ellipsoids strewn at random, and their shadows along the view lengthen with the
  * angle, the more the taller they are for their width (Li and Strahler 1992). */
 WD_FUNC float wd_canopy_hides(float cover, float aspect, float cosine)
 {

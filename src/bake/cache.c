@@ -17,7 +17,7 @@
 
 #include "code_key.h"
 
-/* A file: little-endian words (magic, key, bytes of the content, its XXH64), then one zstd frame. */
+/* A file: little-endian words (magic, key, bytes of the content, its XXH64), then a zstd frame. */
 enum { HEADER_BYTES = 32, NAME_TAIL = 21 /* -0123456789abcdef.bin */ };
 static const char MAGIC[8] = "weald-1";
 static const int COMPRESSION = 1;

@@ -22,8 +22,8 @@ struct wd_card_extent {
 };
 struct wd_card_extent wd_card_extent_of(const struct wd_tree_mesh *mesh);
 
-/* The cards of one model, card after card, mip after mip, 4 bytes a texel. What a plane (WD_PLANE_*)
- * holds is in shared/view_set.h; depth 1 is a half width before the card (of the level card: at
+/* The cards of one model, card after card, mip after mip, 4 bytes a texel. What a plane
+ * (WD_PLANE_*) holds is in shared/view_set.h; depth 1 is a half width before the card (of the level card: at
  * the top), 0 as far behind it (at the bottom). */
 struct wd_cards {
     uint8_t *planes[WD_PLANES]; /* wd_cards_bytes() each */

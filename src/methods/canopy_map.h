@@ -1,4 +1,4 @@
-/* canopy_map.h: far forest drawn as a property of the ground's pixels (Bruneton and Neyret 2012). */
+/* canopy_map.h: far forest drawn as a look of the ground's pixels (Bruneton and Neyret 2012). */
 #ifndef WD_METHODS_CANOPY_MAP_H
 #define WD_METHODS_CANOPY_MAP_H
 

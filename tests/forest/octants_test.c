@@ -49,8 +49,9 @@ static double card_area(struct planted *planted, uint32_t card)
     for (size_t i = 0; i < count; i++)
         sum += texels[4 * i + 3] / 255.0;
     free(texels);
-    double width = card == WD_CARD_SIDES ? (double)model->half_depth_m : (double)model->half_width_m;
-    double tall = card == WD_CARD_SIDES ? 2.0 * width : (double)(model->top_m - model->bottom_m);
+    bool level = card == WD_CARD_SIDES;
+    double width = (double)(level ? model->half_depth_m : model->half_width_m);
+    double tall = level ? 2.0 * width : (double)(model->top_m - model->bottom_m);
     return sum / (double)count * 2.0 * width * tall;
 }
 
