@@ -5,6 +5,7 @@
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
+layout(constant_id = 3) const uint SMALL = 0u; /* 1: an item is a thread's work, 0: a group's */
 
 layout(scalar, set = 0, binding = 0) readonly buffer View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
@@ -38,12 +39,20 @@ void draw_disc(vec2 center, float radius, uint depth_bits, uint id)
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (group >= counts.items)
+    uint index = group, first = gl_LocalInvocationID.x, step_size = gl_WorkGroupSize.x;
+    if (SMALL != 0u) {
+        index = group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+        first = 0u;
+        step_size = 1u;
+    }
+    if (index >= (SMALL != 0u ? counts.small_items : counts.items))
         return;
-    wd_splat_item item = items[group];
+    if (SMALL != 0u)
+        index = view.item_capacity - 1u - index;
+    wd_splat_item item = items[index];
     wd_splat_tree tree = splat_trees[item.tree];
     vec2 size = vec2(view.width, view.height);
-    for (uint i = gl_LocalInvocationID.x; i < item.count; i += gl_WorkGroupSize.x) {
+    for (uint i = first; i < item.count; i += step_size) {
         wd_splat disc = splats[splat_index(tree, item.first + i)];
         vec3 clip = splat_clip(tree, splat_place(disc));
         float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
@@ -59,6 +68,6 @@ void main()
         float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0))
                              : tree.radius * sqrt(abs(facing))) * inverse;
         vec2 at = (clip.xy * inverse * 0.5 + 0.5) * size;
-        draw_disc(at, radius, floatBitsToUint(depth), group * WD_ITEM_SPLATS + i + 1u);
+        draw_disc(at, radius, floatBitsToUint(depth), index * WD_ITEM_SPLATS + i + 1u);
     }
 }

@@ -13,7 +13,8 @@ layout(scalar, set = 0, binding = 4) readonly buffer Wood { wd_splat_wood wood[]
 
 #include "lib/splat.glsl"
 
-/* Pixels whose middles lie in the triangle; depth is linear on screen. */
+/* Pixels whose middles lie in the triangle, row by row: from which column on, and up to which, all
+ * three shares are positive. Shares and depth are linear on screen. */
 void draw_triangle(vec3 a, vec3 b, vec3 c, uint id)
 {
     vec2 size = vec2(view.width, view.height);
@@ -27,18 +28,24 @@ void draw_triangle(vec3 a, vec3 b, vec3 c, uint id)
     share_x.x = -share_x.y - share_x.z;
     share_y.x = -share_y.y - share_y.z;
     vec2 from = low + 0.5 - a.xy;
-    vec3 row = vec3(1.0, 0.0, 0.0) + share_x * from.x + share_y * from.y;
-    vec3 depths = vec3(a.z, b.z, c.z), share = row;
-    ivec2 begin = ivec2(low), end = ivec2(high), at = begin;
-    while (at.y <= end.y) {
-        if (all(greaterThanEqual(share, vec3(0.0))))
-            SPLAT(uint(at.y) * view.width + uint(at.x), floatBitsToUint(dot(share, depths)), id);
-        share += share_x;
-        if (++at.x > end.x) {
-            at = ivec2(begin.x, at.y + 1);
-            row += share_y;
-            share = row;
+    vec3 row = vec3(1.0, 0.0, 0.0) + share_x * from.x + share_y * from.y + 1e-5;
+    vec3 depths = vec3(a.z, b.z, c.z);
+    vec3 inverse = -1.0 / mix(share_x, vec3(1e-12), equal(share_x, vec3(0.0)));
+    bvec3 rises = greaterThan(share_x, vec3(0.0));
+    float last = high.x - low.x;
+    for (float y = low.y; y <= high.y; y += 1.0) {
+        vec3 edges = row * inverse;
+        vec3 begins = mix(vec3(0.0), edges, rises), ends = mix(edges, vec3(last), rises);
+        float begin = max(ceil(max(max(begins.x, begins.y), begins.z)), 0.0);
+        float end = min(floor(min(min(ends.x, ends.y), ends.z)), last);
+        float depth = dot(row + share_x * begin, depths), step_x = dot(share_x, depths);
+        uint at = uint(y) * view.width + uint(low.x + begin);
+        for (float x = begin; x <= end; x += 1.0) {
+            SPLAT(at, floatBitsToUint(depth), id);
+            depth += step_x;
+            at++;
         }
+        row += share_y;
     }
 }
 

@@ -4,23 +4,24 @@
 
 layout(local_size_x = 1) in;
 
+layout(constant_id = 0) const uint THREADS = 64u; /* of a splat's group */
+
 layout(scalar, set = 0, binding = 0) readonly buffer View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 2) writeonly buffer Groups { wd_splat_groups groups; };
 
+uint[3] groups_of(uint count)
+{
+    return uint[3](min(count, 32768u), (count + 32767u) / 32768u, 1u);
+}
+
 void main()
 {
-    uint clusters = counts.clusters, items = min(counts.items, view.item_capacity);
-    uint wood_items = min(counts.wood_items, view.item_capacity);
-    counts.items = items;
-    counts.wood_items = wood_items;
-    groups.wood[0] = min(wood_items, 32768u);
-    groups.wood[1] = (wood_items + 32767u) / 32768u;
-    groups.wood[2] = 1u;
-    groups.select[0] = min(clusters, 32768u);
-    groups.select[1] = (clusters + 32767u) / 32768u;
-    groups.select[2] = 1u;
-    groups.splat[0] = min(items, 32768u);
-    groups.splat[1] = (items + 32767u) / 32768u;
-    groups.splat[2] = 1u;
+    counts.items = min(counts.items, view.item_capacity);
+    counts.small_items = min(counts.small_items, view.item_capacity - counts.items);
+    counts.wood_items = min(counts.wood_items, view.item_capacity);
+    groups.select = groups_of(counts.clusters);
+    groups.splat = groups_of(counts.items);
+    groups.small = groups_of((counts.small_items + THREADS - 1u) / THREADS);
+    groups.wood = groups_of(counts.wood_items);
 }

@@ -4,6 +4,8 @@
 #include "shared/forest.h"
 #include "shared/continuum.h"
 
+layout(constant_id = 0) const uint WOOD = 0u; /* splats and wood apart: see main */
+
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Pixels { uvec2 pixels[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
@@ -103,24 +105,25 @@ void main()
 {
     uvec2 at = uvec2(gl_FragCoord.xy);
     uvec2 pixel = pixels[at.y * frame.width + at.x];
-    if (pixel.x == 0u)
+    /* software devices run both sides of a branch, but not what follows a discard of all */
+    if (pixel.x == 0u || ((pixel.x & WD_ID_WOOD) != 0u) != (WOOD != 0u))
         discard;
     gl_FragDepth = uintBitsToFloat(pixel.y);
     wd_seen seen;
-    if ((pixel.x & WD_ID_WOOD) != 0u)
+    if (WOOD != 0u)
         seen = seen_wood((pixel.x & ~WD_ID_WOOD) - 1u);
     else
         seen = seen_splat(pixel.x - 1u);
     uint index = splat_trees[seen.tree].tree;
-    wd_tree tree = trees[index];
-    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
-                            + WD_TREE_VARIANT(tree) % push.variants];
+    vec2 turn = unpackHalf2x16(splat_trees[seen.tree].turn);
+    vec2 shape = unpackHalf2x16(splat_trees[seen.tree].shape);
     if (!seen.wood)
-        seen.albedo *= tree_tint(tree);
+        seen.albedo *= unpackUnorm4x8(splat_trees[seen.tree].tint).rgb * 2.0;
     if (frame.view_mode == WD_MODE_LOD)
         seen.albedo = (seen.wood ? vec3(0.5, 0.3, 0.1) : vec3(0.1, 0.6, 0.15))
                       * (0.3 + 0.7 * seen.openness);
-    vec3 normal = tree_normal(tree_pose_of(tree, model), seen.normal);
+    vec3 normal =
+        tree_normal(tree_pose(turn, vec2(shape.x, 1.0), 1.0, shape.y), seen.normal);
     out_albedo = vec4(seen.albedo, seen.openness);
     out_normal = vec4(normal * 0.5 + 0.5,
                       float(seen.wood ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF) / 3.0);

@@ -1,12 +1,12 @@
 #version 460
-/* One workgroup a visible cluster, one thread a tree: how many splats each tree gets, and where
- * its model stands in this view. */
+/* One workgroup a visible cluster: how many splats each tree gets, and where its model stands in
+ * this view. */
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/continuum.h"
 #include "shared/hash.h"
 
-layout(local_size_x = WD_CLUSTER_TREES) in;
+layout(local_size_x_id = 0) in;
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer View { wd_splat_view view; };
@@ -57,16 +57,17 @@ vec3 clip_of(vec4 column)
     return vec3(column.xy, view.orthographic != 0u ? column.z : column.w);
 }
 
-void fill_rows(inout wd_splat_tree splats, tree_pose pose, wd_splat_model model, vec3 foot)
+void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot)
 {
+    vec3 extent_m = splat_models[model].extent_m;
     mat4 clip = view.clip_from_rel;
     vec3 east = clip_of(clip[0]), north = clip_of(clip[1]), up = clip_of(clip[2]);
     vec2 x_axis = tree_turn(pose, vec2(pose.across, 0.0));
     vec2 y_axis = tree_turn(pose, vec2(0.0, pose.across));
-    vec3 along_x = (x_axis.x * east + x_axis.y * north) * model.extent_m.x;
-    vec3 along_y = (y_axis.x * east + y_axis.y * north) * model.extent_m.y;
-    vec3 along_z = up * pose.up * model.extent_m.z;
-    vec3 corner = foot + tree_offset(pose, model.min_m);
+    vec3 along_x = (x_axis.x * east + x_axis.y * north) * extent_m.x;
+    vec3 along_y = (y_axis.x * east + y_axis.y * north) * extent_m.y;
+    vec3 along_z = up * pose.up * extent_m.z;
+    vec3 corner = foot + tree_offset(pose, splat_models[model].min_m);
     vec3 start = clip_of(clip * vec4(corner, 1.0));
     splats.clip_x = vec4(along_x.x, along_y.x, along_z.x, start.x);
     splats.clip_y = vec4(along_x.y, along_y.y, along_z.y, start.y);
@@ -74,12 +75,13 @@ void fill_rows(inout wd_splat_tree splats, tree_pose pose, wd_splat_model model,
 }
 
 /* How many strata, from the top, show anything past what the frame before saw. */
-uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, wd_splat_model model,
+uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint model, vec3 sway,
                  uint strata)
 {
     float height_m = WD_TREE_HEIGHT_M(tree) * 1.02;
-    vec2 wide = max(-model.min_m.xy, model.min_m.xy + model.extent_m.xy);
-    float reach_m = length(wide) * pose.across + 0.1;
+    vec2 wide = max(-splat_models[model].min_m.xy,
+                    splat_models[model].min_m.xy + splat_models[model].extent_m.xy);
+    float reach_m = length(wide) * pose.across + length(sway) + 0.1;
     vec4 low = view.history_from_rel * vec4(foot, 1.0);
     vec4 high = view.history_from_rel * vec4(foot + vec3(0.0, 0.0, height_m), 1.0);
     float nearest_m = min(low.w, high.w) - reach_m;
@@ -96,7 +98,7 @@ uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, wd_splat_
     float lowest = lowest_seen(box);
     strata = lowest < 0.0 ? 0u : strata;
     while (strata > 1u) {
-        float share = model.strata_top_m[strata - 1u] * pose.up / height_m;
+        float share = splat_models[model].strata_top_m[strata - 1u] * pose.up / height_m;
         if (mix(bottom.y, top.y, share) - around.y <= lowest)
             break;
         strata--;
@@ -117,6 +119,12 @@ wd_splat_item item_at(uint slot, uint count, uint i)
 
 void add_splats(uint slot, uint count)
 {
+    if (count <= WD_SMALL_SPLATS) {
+        uint at = atomicAdd(counts.small_items, 1u);
+        if (at < view.item_capacity)
+            items[view.item_capacity - 1u - at] = wd_splat_item(slot, 0u, count);
+        return;
+    }
     uint wanted = item_count(count), first = atomicAdd(counts.items, wanted);
     for (uint i = 0u; i < wanted && first + i < view.item_capacity; i++)
         items[first + i] = item_at(slot, count, i);
@@ -129,11 +137,28 @@ void add_wood(uint slot, uint count)
         wood_items[first + i] = item_at(slot, count, i);
 }
 
-/* Radius in metres of discs that face the viewer, `count` for an area of which `share` is theirs. */
-float disc_radius(wd_point_gains gains, float area_m2, float share_m2, float count, float sine)
+/* wd_point_gain, without copies of its tables. */
+#define GAIN(gains, k)                                                                             \
+    mix(splat_models[model].gains.level[k], splat_models[model].gains.above[k], sine * sine)
+
+/* Where a count lies in the tables: index of an entry and share of the next. */
+vec2 gain_place(float count)
 {
-    float equal = count * area_m2 / max(share_m2, 1e-6); /* points of the whole tree */
-    return sqrt(wd_point_gain(gains, equal, sine) * share_m2 / (3.14159265 * count));
+    float octave = clamp(floor(log2(count / float(WD_POINT_LEAST))), 0.0, float(WD_POINT_GAINS - 2));
+    float at = count / (float(WD_POINT_LEAST) * exp2(octave));
+    return vec2(octave, clamp(at - 1.0, 0.0, 1.0));
+}
+
+/* Radii in metres of discs that face the viewer, `count` for leaves and for wood each. */
+vec2 disc_radii(uint model, vec2 count, float sine)
+{
+    vec2 area_m2 = vec2(splat_models[model].leaf_area_m2, splat_models[model].wood_area_m2);
+    vec2 equal = count * (area_m2.x + area_m2.y) / max(area_m2, 1e-6); /* points of all the tree */
+    vec2 leaf = gain_place(equal.x), wood = gain_place(equal.y);
+    uint i = uint(leaf.x), k = uint(wood.x);
+    vec2 gain = vec2(mix(GAIN(leaf, i), GAIN(leaf, i + 1u), leaf.y),
+                     mix(GAIN(wood, k), GAIN(wood, k + 1u), wood.y));
+    return sqrt(gain * area_m2 / (3.14159265 * count));
 }
 
 /* Triangles of wood for a tree that tall: few of the largest while it is small. */
@@ -142,15 +167,8 @@ uint wood_triangles(uint model, float tall_px)
     return min(uint(tall_px * tall_px * 0.02 + tall_px), splat_models[model].wood_count);
 }
 
-void main()
+void select_tree(uint index)
 {
-    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (group >= counts.clusters)
-        return;
-    uint cluster = visible[group];
-    if (gl_LocalInvocationID.x >= clusters[cluster].count)
-        return;
-    uint index = clusters[cluster].first + gl_LocalInvocationID.x;
     wd_tree tree = trees[index];
     vec3 foot = tree_foot_rel(tree);
     if (tree_is_outside(tree, foot))
@@ -158,18 +176,18 @@ void main()
     uint model_index = WD_TREE_SPECIES(tree) * view.variants
                        + WD_TREE_VARIANT(tree) % view.variants;
     wd_model model = models[model_index];
-    wd_splat_model splat_model = splat_models[model_index];
     tree_pose pose = tree_pose_of(tree, model);
     vec3 middle = foot + vec3(0.0, 0.0, 0.5 * WD_TREE_HEIGHT_M(tree));
     float distance_m = view.orthographic != 0u ? 1.0 : max(length(middle), 0.1);
     vec3 toward = view.orthographic != 0u ? frame.sun_direction : -normalize(middle);
 
+    vec3 sway = tree_sway(tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
     float pixels_per_m = view.pixels / distance_m;
     float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m;
     bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(tree.random));
     uint strata = wood ? WD_LEAF_STRATA : WD_SPLAT_STRATA;
     if (view.has_history != 0u)
-        strata = seen_strata(tree, foot, toward, pose, splat_model, strata);
+        strata = seen_strata(tree, foot, toward, pose, model_index, sway, strata);
     if (strata == 0u)
         return;
 
@@ -178,18 +196,19 @@ void main()
     wd_splat_tree splats;
     splats.per_stratum = min(uint(ceil(wanted / float(WD_SPLAT_STRATA))), WD_STRATUM_SPLATS);
     float size = sqrt(pose.across * mix(pose.across, pose.up, 0.5)) * view.pixels;
-    float area_m2 = splat_model.leaf_area_m2 + splat_model.wood_area_m2;
-    splats.radius = size * disc_radius(splat_model.leaf, area_m2, splat_model.leaf_area_m2,
-                                       float(splats.per_stratum * WD_LEAF_STRATA), toward.z);
-    splats.wood_radius = size * disc_radius(splat_model.wood, area_m2, splat_model.wood_area_m2,
-                                            float(splats.per_stratum), toward.z);
+    vec2 radii = disc_radii(model_index, float(splats.per_stratum) * vec2(WD_LEAF_STRATA, 1.0),
+                            toward.z);
+    splats.radius = size * radii.x;
+    splats.wood_radius = size * radii.y;
     splats.toward = model_direction(pose, toward);
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
-    splats.first_wood = splat_model.wood_first;
+    splats.first_wood = splat_models[model_index].wood_first;
     splats.offset = wd_hash_mix(tree.random) + frame.sample_index * splats.per_stratum;
-    fill_rows(splats, pose, splat_model, foot);
-    vec3 sway = tree_sway(tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
+    splats.turn = packHalf2x16(pose.turn);
+    splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / pose.across));
+    splats.tint = packUnorm4x8(vec4(tree_tint(tree) * 0.5, 0.0));
+    fill_rows(splats, pose, model_index, foot);
     splats.sway = clip_of(view.clip_from_rel * vec4(sway, 0.0));
 
     uint slot = atomicAdd(counts.trees, 1u);
@@ -199,4 +218,15 @@ void main()
     add_splats(slot, splats.per_stratum * strata);
     if (wood)
         add_wood(slot, wood_triangles(model_index, tall_px));
+}
+
+/* A loop, since software devices run idle lanes to the end. */
+void main()
+{
+    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (group >= counts.clusters)
+        return;
+    wd_cluster cluster = clusters[visible[group]];
+    for (uint i = gl_LocalInvocationID.x; i < cluster.count; i += gl_WorkGroupSize.x)
+        select_tree(cluster.first + i);
 }

@@ -20,6 +20,9 @@
  * item * WD_ITEM_SPLATS + splat of the item + 1, with the highest bit for triangles of wood. */
 #define WD_ITEM_SPLATS 512u
 #define WD_ID_WOOD 0x80000000u
+/* Trees of at most so many splats are the work of one thread, so that their data are read once and
+ * not by every thread of a group. Their items are stored from the end of the list. */
+#define WD_SMALL_SPLATS 96u
 
 /* A splat: its place in the model's box (unorm 16) and its normal (octahedral, snorm 8). */
 struct wd_splat {
@@ -78,6 +81,7 @@ struct wd_splat_view {
     float pixels;            /* of a metre at w = 1 */
     float near_m;
     uint32_t width, height;
+    uint32_t texels;         /* of the target for one of the view's pixels, each way */
     float density;           /* splats a pixel that a tree covers */
     uint32_t min_splats;     /* of a tree */
     float wood_px;           /* trees taller than about this have triangles of wood */
@@ -91,11 +95,11 @@ struct wd_splat_view {
 };
 
 struct wd_splat_counts {
-    uint32_t clusters, trees, items, wood_items;
+    uint32_t clusters, trees, items, small_items, wood_items;
 };
 /* Indirect dispatches that follow from them. */
 struct wd_splat_groups {
-    uint32_t select[3], splat[3], wood[3];
+    uint32_t select[3], splat[3], small[3], wood[3];
 };
 
 /* A visible tree, ready to be splatted. Rows give clip coordinates of a place in the model's box,
@@ -110,6 +114,9 @@ struct wd_splat_tree {
     uint32_t offset;       /* of the window in each stratum */
     uint32_t per_stratum;  /* splats of the window */
     uint32_t first_wood;   /* triangle of the model */
+    uint32_t turn;         /* cosine and sine of the tree's yaw, half floats */
+    uint32_t shape;        /* 1 or -1 mirrored, vertical over horizontal scale, half floats */
+    uint32_t tint;         /* half of each factor of the leaves' colour, unorm 8 */
 };
 
 struct wd_splat_item {

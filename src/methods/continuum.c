@@ -53,13 +53,13 @@ static const uint32_t resolve_shadow_frag[] =
 enum { MAX_TREES = 1 << 19, MAX_ITEMS = 1 << 20 };
 
 /* What is rasterised. */
-enum { SHAPE_SPLATS, SHAPE_WOOD, SHAPES };
+enum { SHAPE_SPLATS, SHAPE_SMALL, SHAPE_WOOD, SHAPES };
 
 struct continuum {
     struct wd_gpu *gpu;
     struct wd_pipeline cull, args, choose;
     struct wd_pipeline draw[SHAPES][2][2]; /* [][WD_PASS_*][1: ids of the second pass] */
-    struct wd_pipeline resolve[2];  /* [WD_PASS_*] */
+    struct wd_pipeline resolve[2], resolve_shadow; /* splats, wood */
     struct wd_pipeline pyramid[WD_PYRAMID_LEVELS - 1];
     VkSampler nearest;
     struct wd_continuum_forest forest;
@@ -81,18 +81,23 @@ struct continuum {
 static bool init_draws(struct continuum *c, struct wd_gpu *gpu)
 {
     const struct wd_spirv shaders[SHAPES][2] = {
-        {SPIRV(splat_twice_comp), SPIRV(splat_comp)}, {SPIRV(wood_twice_comp), SPIRV(wood_comp)}};
-    bool once = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS;
+        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
+        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
+        {SPIRV(wood_twice_comp), SPIRV(wood_comp)}};
+    bool wide = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS;
     for (uint32_t i = 0; i < SHAPES * 2 * 2; i++) {
-        uint32_t kind = i / 4, pass = i / 2 % 2, ids = i % 2;
+        uint32_t shape = i / 4, pass = i / 2 % 2, ids = i % 2;
+        bool once = wide && pass == WD_PASS_CAMERA;
         /* llvmpipe's subgroups are 8 wide; a wider group only idles on small trees */
-        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW, ids};
+        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW, ids,
+                                      shape == SHAPE_SMALL};
         const struct wd_compute_params params = {
-            .shader = shaders[kind][once],
+            .shader = shaders[shape][once],
             .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
-            .constants = {once ? 2 : 3, constants},
+            .constants = {4, constants},
         };
-        if ((!once || !ids) && !wd_pipeline_init_compute(&c->draw[kind][pass][ids], gpu, &params))
+        bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
+        if (needed && !wd_pipeline_init_compute(&c->draw[shape][pass][ids], gpu, &params))
             return false;
     }
     return true;
@@ -111,13 +116,17 @@ static bool init_resolve(struct continuum *c, struct wd_gpu *gpu)
         .depth_format = WD_DEPTH_FORMAT,
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
-    if (!wd_pipeline_init_graphics(&c->resolve[WD_PASS_CAMERA], gpu, &params))
-        return false;
+    for (uint32_t wood = 0; wood < 2; wood++) {
+        params.constants = (struct wd_spec_constants){1, &wood};
+        if (!wd_pipeline_init_graphics(&c->resolve[wood], gpu, &params))
+            return false;
+    }
     params.fragment = (struct wd_spirv)SPIRV(resolve_shadow_frag);
+    params.constants.count = 0;
     params.bindings.count = 2;
     params.push_size = 0;
     params.color_count = 0;
-    return wd_pipeline_init_graphics(&c->resolve[WD_PASS_SHADOW], gpu, &params);
+    return wd_pipeline_init_graphics(&c->resolve_shadow, gpu, &params);
 }
 
 static bool init_pyramid(struct continuum *c, struct wd_gpu *gpu)
@@ -141,12 +150,15 @@ static bool continuum_init(void *state, struct wd_gpu *gpu)
     c->gpu = gpu;
     const struct wd_compute_params cull = {
         .shader = SPIRV(cull_comp), .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
+    const uint32_t threads = gpu->software ? 8 : 64;
     const struct wd_compute_params args = {.shader = SPIRV(args_comp),
-                                           .bindings = {3, {BUFFER, BUFFER, BUFFER}}};
+                                           .bindings = {3, {BUFFER, BUFFER, BUFFER}},
+                                           .constants = {1, &threads}};
     const struct wd_compute_params choose = {
         .shader = SPIRV(select_comp),
         .bindings = {12, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
-                          BUFFER, BUFFER, BUFFER}}};
+                          BUFFER, BUFFER, BUFFER}},
+        .constants = {1, &threads}};
     return wd_pipeline_init_compute(&c->cull, gpu, &cull) &&
            wd_pipeline_init_compute(&c->args, gpu, &args) &&
            wd_pipeline_init_compute(&c->choose, gpu, &choose) && init_draws(c, gpu) &&
@@ -157,7 +169,8 @@ static void continuum_finish(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
     struct wd_pipeline *pipelines[] = {
-        &c->cull, &c->args, &c->choose, &c->resolve[0], &c->resolve[1]};
+        &c->cull, &c->args, &c->choose, &c->resolve[0], &c->resolve[1],
+                                       &c->resolve_shadow};
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         wd_pipeline_finish(pipelines[i], gpu);
     for (uint32_t i = 0; i < SHAPES * 2 * 2; i++)
@@ -215,9 +228,10 @@ static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
 
 /* --- one view ---------------------------------------------------------------------------- */
 
+/* For either pass. */
 static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
 {
-    VkDeviceSize size = (VkDeviceSize)view->width * view->height * sizeof(uint64_t);
+    VkDeviceSize size = (VkDeviceSize)view->width * view->height * 2 * sizeof(uint32_t);
     if (c->pixels.size >= size)
         return true;
     wd_cmd_defer_buffer(cmd, &c->pixels);
@@ -283,6 +297,7 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
         .near_m = 0.1f,
         .width = view->width,
         .height = view->height,
+        .texels = 1,
         .density = (float)options->density,
         .min_splats = (uint32_t)options->min_splats,
         .wood_px = (float)options->wood_px,
@@ -296,10 +311,16 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
     if (!shadow)
         set_history(c, values, view);
     if (shadow) {
+        values->density = (float)options->shadow_density;
+        values->min_splats = WD_SPLAT_STRATA;
+        if (view->cascade > 0 && view->width % 2 == 0)
+            values->texels = 2; /* these cascades hold crowns, not leaves: shaders/lib/shade.glsl */
+        values->width /= values->texels;
+        values->height /= values->texels;
         float squared = 0.0f;
         for (int k = 0; k < 3; k++)
             squared += view->clip_from_rel[k][0] * view->clip_from_rel[k][0];
-        values->pixels = 0.5f * sqrtf(squared) * (float)view->width;
+        values->pixels = 0.5f * sqrtf(squared) * (float)values->width;
     }
 }
 
@@ -355,18 +376,34 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw)
     record_args(c, cmd);
 }
 
+/* Words of the visibility buffer that a pixel takes: id and depth, or depth alone. */
+static VkDeviceSize pixel_bytes(enum wd_tree_pass pass)
+{
+    return pass == WD_PASS_CAMERA ? 2 * sizeof(uint32_t) : sizeof(uint32_t);
+}
+
+static void clear_pixels(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    VkDeviceSize size =
+        (VkDeviceSize)draw->view->width * draw->view->height * pixel_bytes(draw->pass);
+    wd_cmd_use_buffer(draw->cmd, &c->pixels, WD_USE_TRANSFER_WRITE);
+    if (!draw->cmd->failed)
+        vkCmdFillBuffer(draw->cmd->vk, c->pixels.buffer, 0, size, 0);
+}
+
 static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
-    const struct wd_buffer *items[] = {&c->items, &c->wood_items};
-    const struct wd_buffer *shapes[] = {&c->forest.splats, &c->forest.wood};
+    const struct wd_buffer *items[] = {&c->items, &c->items, &c->wood_items};
+    const struct wd_buffer *shapes[] = {&c->forest.splats, &c->forest.splats, &c->forest.wood};
     const VkDeviceSize groups[] = {offsetof(struct wd_splat_groups, splat),
+                                   offsetof(struct wd_splat_groups, small),
                                    offsetof(struct wd_splat_groups, wood)};
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->trees, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->items, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->wood_items, WD_USE_COMPUTE_READ);
-    wd_cmd_fill_buffer(cmd, &c->pixels, 0);
+    clear_pixels(c, draw);
     for (uint32_t i = 0; i < 2 * SHAPES; i++) {
         uint32_t ids = i / SHAPES, kind = i % SHAPES;
         const struct wd_pipeline *pipeline = &c->draw[kind][draw->pass][ids];
@@ -434,33 +471,45 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     wd_cmd_use_buffer(cmd, &c->wood_items, WD_USE_GRAPHICS_READ);
 }
 
+static void draw_camera(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    const struct wd_tree_push push = {.variants = draw->forest->variants};
+    const struct wd_binding bindings[] = {draw->uniforms,
+                                          WD_BIND_BUFFER(&c->pixels),
+                                          WD_BIND_BUFFER(&c->trees),
+                                          WD_BIND_BUFFER(&c->items),
+                                          WD_BIND_BUFFER(&c->forest.splats),
+                                          WD_BIND_BUFFER(&c->forest.looks),
+                                          WD_BIND_BUFFER(&draw->forest->trees),
+                                          WD_BIND_BUFFER(&draw->forest->models),
+                                          WD_BIND_BUFFER(&c->wood_items),
+                                          WD_BIND_BUFFER(&c->forest.wood),
+                                          WD_BIND_IMAGE(&draw->forest->looks,
+                                                        draw->forest->look_sampler)};
+    for (uint32_t wood = 0; wood < 2; wood++) {
+        wd_cmd_bind(draw->cmd, &c->resolve[wood], bindings);
+        wd_cmd_push(draw->cmd, &c->resolve[wood], &push, sizeof push);
+        wd_cmd_draw(draw->cmd, 3, 1);
+        draw->stats->draw_calls++;
+    }
+}
+
+static void draw_cascade(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels)};
+    wd_cmd_bind(draw->cmd, &c->resolve_shadow, bindings);
+    wd_cmd_draw(draw->cmd, 3, 1);
+    draw->stats->draw_calls++;
+}
+
 static void continuum_draw(void *state, const struct wd_tree_draw *draw)
 {
-    struct continuum *c = state;
-    struct wd_cmd *cmd = draw->cmd;
-    if (cmd->failed)
+    if (draw->cmd->failed)
         return;
-    const struct wd_pipeline *pipeline = &c->resolve[draw->pass];
-    const struct wd_binding camera[] = {draw->uniforms,
-                                        WD_BIND_BUFFER(&c->pixels),
-                                        WD_BIND_BUFFER(&c->trees),
-                                        WD_BIND_BUFFER(&c->items),
-                                        WD_BIND_BUFFER(&c->forest.splats),
-                                        WD_BIND_BUFFER(&c->forest.looks),
-                                        WD_BIND_BUFFER(&draw->forest->trees),
-                                        WD_BIND_BUFFER(&draw->forest->models),
-                                        WD_BIND_BUFFER(&c->wood_items),
-                                        WD_BIND_BUFFER(&c->forest.wood),
-                                        WD_BIND_IMAGE(&draw->forest->looks,
-                                                      draw->forest->look_sampler)};
-    const struct wd_binding shadow[] = {c->view, WD_BIND_BUFFER(&c->pixels)};
-    wd_cmd_bind(cmd, pipeline, draw->pass == WD_PASS_CAMERA ? camera : shadow);
-    if (draw->pass == WD_PASS_CAMERA) {
-        const struct wd_tree_push push = {.variants = draw->forest->variants};
-        wd_cmd_push(cmd, pipeline, &push, sizeof push);
-    }
-    wd_cmd_draw(cmd, 3, 1);
-    draw->stats->draw_calls++;
+    if (draw->pass == WD_PASS_CAMERA)
+        draw_camera(state, draw);
+    else
+        draw_cascade(state, draw);
 }
 
 const struct wd_method wd_method_continuum = {

@@ -50,6 +50,7 @@ static void add_run(struct gathering *g, uint32_t begin, uint32_t end)
     }
 }
 
+/* Small neighbours in the order share clusters. */
 static void gather(struct gathering *g, uint32_t index)
 {
     const struct wd_octant *octant = &g->octree->octants[index];
@@ -57,11 +58,21 @@ static void gather(struct gathering *g, uint32_t index)
         add_run(g, octant->begin, octant->end);
         return;
     }
-    add_run(g, octant->begin, octant->own_end);
+    uint32_t begin = octant->begin, end = octant->own_end;
     for (uint32_t i = 0, child = octant->first_child; i < octant->child_count; i++) {
-        gather(g, child);
-        child = g->octree->octants[child].next_sibling;
+        const struct wd_octant *part = &g->octree->octants[child];
+        if (part->end - begin > WD_CLUSTER_TREES) {
+            add_run(g, begin, end);
+            begin = part->begin;
+            if (part->end - begin > WD_CLUSTER_TREES) {
+                gather(g, child);
+                begin = part->end;
+            }
+        }
+        end = part->end;
+        child = part->next_sibling;
     }
+    add_run(g, begin, end);
 }
 
 uint32_t wd_clusters_make(struct wd_cluster **clusters, const struct wd_octree *octree,

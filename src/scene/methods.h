@@ -17,6 +17,7 @@ struct wd_grid_options {
 
 struct wd_continuum_options {
     double density;     /* splats a pixel that a crown covers */
+    double shadow_density; /* of a cascade's texel */
     int64_t min_splats; /* of a tree */
     double wood_px;     /* trees taller than this have wood of triangles */
 };
