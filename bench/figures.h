@@ -26,6 +26,10 @@ bool bench_mean_colour(const char *gpu);
 bool bench_reflectance(const char *gpu);
 bool bench_shadow_cost(const char *gpu);
 bool bench_wind_cost(const char *gpu);
+bool bench_continuum_frame(const char *gpu);
+bool bench_continuum_vs_octree(const char *gpu);
+bool bench_continuum_floor(const char *gpu);
+bool bench_continuum_memory(const char *gpu);
 
 /* Sorts and returns the middle one. */
 double bench_median(double *values, size_t count);

@@ -76,7 +76,7 @@ void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot
 
 /* How many strata, from the top, show anything past what the frame before saw. */
 uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint model, vec3 sway,
-                 uint strata)
+                 float disc, uint strata)
 {
     float height_m = WD_TREE_HEIGHT_M(tree) * 1.02;
     vec2 wide = max(-splat_models[model].min_m.xy,
@@ -89,8 +89,8 @@ uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint mode
         return strata;
     vec2 size = vec2(view.width, view.height);
     vec2 bottom = (low.xy / low.w * 0.5 + 0.5) * size, top = (high.xy / high.w * 0.5 + 0.5) * size;
-    float reach_px = reach_m * view.pixels / nearest_m + 1.0;
-    vec2 around = vec2(reach_px, reach_px * abs(toward.z) + 1.0);
+    float disc_px = disc / nearest_m + 1.0, reach_px = reach_m * view.pixels / nearest_m;
+    vec2 around = vec2(reach_px, reach_px * abs(toward.z)) + disc_px;
     wd_screen_box box = clamp_screen_box(min(bottom, top) - around, max(bottom, top) + around,
                                          nearest_m);
     if (!box.known)
@@ -164,7 +164,7 @@ vec2 disc_radii(uint model, vec2 count, float sine)
 /* Triangles of wood for a tree that tall: few of the largest while it is small. */
 uint wood_triangles(uint model, float tall_px)
 {
-    return min(uint(tall_px * tall_px * 0.02 + tall_px), splat_models[model].wood_count);
+    return min(uint(tall_px * tall_px * 0.006 + tall_px), splat_models[model].wood_count);
 }
 
 void select_tree(uint index)
@@ -185,12 +185,6 @@ void select_tree(uint index)
     float pixels_per_m = view.pixels / distance_m;
     float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m;
     bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(tree.random));
-    uint strata = wood ? WD_LEAF_STRATA : WD_SPLAT_STRATA;
-    if (view.has_history != 0u)
-        strata = seen_strata(tree, foot, toward, pose, model_index, sway, strata);
-    if (strata == 0u)
-        return;
-
     float wanted = max(view.density * covered_px(tree, toward, pixels_per_m),
                        float(view.min_splats));
     wd_splat_tree splats;
@@ -200,6 +194,13 @@ void select_tree(uint index)
                             toward.z);
     splats.radius = size * radii.x;
     splats.wood_radius = size * radii.y;
+    uint strata = wood ? WD_LEAF_STRATA : WD_SPLAT_STRATA;
+    if (view.has_history != 0u)
+        strata = seen_strata(tree, foot, toward, pose, model_index, sway,
+                             max(splats.radius, splats.wood_radius), strata);
+    if (strata == 0u)
+        return;
+
     splats.toward = model_direction(pose, toward);
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;

@@ -33,12 +33,12 @@ static const struct wd_key grid_keys[] = {
 static const struct wd_keys grid_table = TABLE(grid);
 
 static const struct wd_key continuum_keys[] = {
-    {"density", WD_KEY_DOUBLE, OPTION(continuum, density), 0.01, 64, "1",
+    {"density", WD_KEY_DOUBLE, OPTION(continuum, density), 0.01, 64, "0.5",
      "Splats for each pixel that a crown covers.", .row = "continuum"},
     {"shadow_density", WD_KEY_DOUBLE, OPTION(continuum, shadow_density), 0.01, 64, "0.35",
      "Splats for each texel of a shadow map that a crown covers; a shadow is looked up in several "
      "texels.", .row = "continuum"},
-    {"min_splats", WD_KEY_INTEGER, OPTION(continuum, min_splats), 8, 1024, "32",
+    {"min_splats", WD_KEY_INTEGER, OPTION(continuum, min_splats), 8, 1024, "16",
      "Splats of a tree, however small it is on screen.", .row = "continuum"},
     {"wood_px", WD_KEY_DOUBLE, OPTION(continuum, wood_px), 1, 1e6, "32",
      "Trees taller than this many pixels have their stem and boughs drawn as triangles.",
