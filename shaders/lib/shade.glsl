@@ -16,20 +16,34 @@ vec3 ambient(vec3 normal, float openness)
     vec3 sky = frame.sky_irradiance * (up * (1.0 + 0.25 * toward));
     vec3 lit_ground = frame.sun_irradiance * (0.35 * max(frame.sun_direction.z, 0.0))
                       + 0.6 * frame.sky_irradiance;
-    vec3 leafy = mix(vec3(0.95, 1.05, 0.75), vec3(1.0), openness);
+    vec3 leafy = mix(vec3(0.95, 0.95, 0.80), vec3(1.0), openness);
     return (sky + lit_ground * frame.grass * (1.0 - up)) * leafy * openness;
+}
+
+/* acos within 0.02 (Lagarde 2014) */
+float angle_of(float cosine)
+{
+    float x = min(abs(cosine), 1.0);
+    float angle = (1.5707963 - 0.21 * x) * sqrt(1.0 - x);
+    return cosine < 0.0 ? 3.14159265 - angle : angle;
 }
 
 /* Leaves turned every way, seen and lit from directions whose cosine is given: mean share of their
  * reflected (x) and transmitted (y) light relative to a lit wall (Ross 1981). */
 vec2 leaf_cloud(float cosine)
 {
-    /* acos within 0.02 (Lagarde 2014) */
-    float x = min(abs(cosine), 1.0);
-    float angle = (1.5707963 - 0.21 * x) * sqrt(1.0 - x);
-    angle = cosine < 0.0 ? 3.14159265 - angle : angle;
-    float sine = sqrt(1.0 - x * x);
+    float angle = angle_of(cosine), sine = sqrt(max(1.0 - cosine * cosine, 0.0));
     return vec2(sine + (3.14159265 - angle) * cosine, sine - angle * cosine) * (2.0 / 9.4247780);
+}
+
+/* Leaves that the eye sees from the sun's side are those that the sun reaches: the nearer both
+ * directions, the fewer shaded leaves are seen (Kuusk 1985). From above, most of the others lie in the
+ * shade of neighbours; a forest's edge, seen level, has few. Factors on the light that an even cloud
+ * of leaves would return, set by the path tracer's curve over a closed canopy (docs/lighting.md). */
+float sunlit_seen(vec3 eye)
+{
+    float apart = angle_of(dot(eye, frame.sun_direction));
+    return mix(0.95, 0.45, smoothstep(0.0, 0.5, eye.z)) + 1.3 * exp(-3.2 * apart);
 }
 
 /* One leaf with its own normal: which side the sun and the eye are on. */
@@ -61,6 +75,7 @@ struct wd_place {
     vec3 transmittance; /* over albedo */
     float gloss;
     float wax;          /* of leaves: mean reflection of their surface, white */
+    float sky;          /* of the skylight that its openness says: leaves shade each other */
 };
 
 wd_place ground_place(wd_pixel pixel)
@@ -74,6 +89,7 @@ wd_place ground_place(wd_pixel pixel)
     place.transmittance = vec3(0.0);
     place.gloss = 0.0;
     place.wax = 0.0;
+    place.sky = 1.0;
     return place;
 }
 
@@ -99,11 +115,12 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     place.ahead_m = mapped > 0.0 ? 0.0 : path_m + frame.cascade_texel_m[min(cascade, 3u)];
     vec3 outward = crown_normal(crown, place.rel);
     float cosine = dot(eye, frame.sun_direction);
-    float hotspot = 1.0 + 0.3 * smoothstep(0.9, 1.0, cosine);
-    place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.normal, eye), near) * hotspot;
+    place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.normal, eye), near);
+    place.sides *= mix(sunlit_seen(eye), 1.0, mapped);
     place.transmittance = model.transmittance;
     place.gloss = leaf_gloss(pixel, model.roughness, near) + 0.010;
-    place.wax = 0.012;
+    place.wax = 0.016;
+    place.sky = 0.85;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     return place;
 }
@@ -146,6 +163,6 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 sunlit = pixel.albedo * place.sides.x + transmitted * place.sides.y + place.gloss;
     vec3 skylit = pixel.albedo + 0.4 * transmitted + place.wax;
     vec3 light = frame.sun_irradiance * sun_share * sunlit
-                 + ambient(place.normal, openness) * skylit;
+                 + ambient(place.normal, openness) * place.sky * skylit;
     return light * PER_PI;
 }
