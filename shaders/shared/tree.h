@@ -29,7 +29,7 @@ WD_STATIC_ASSERT_SIZE(wd_tree, 32);
 struct wd_tree_vertex {
     WD_VEC3(position_m);
     uint32_t normal; /* octahedral, two 16-bit snorm (x in the low half) */
-    uint32_t uv;     /* two half floats: bark: turns around, metres along; leaf: 0..1 across, along */
+    uint32_t uv;     /* two half floats: bark: tiles around, metres along; leaf: 0..1 across, along */
     uint32_t tint;   /* R, G, B: multiplier of the look texture, 255 is 1; A: sky openness of the
                         place in the crown, 0 dark .. 255 free */
     uint32_t kind;   /* bits 0..7: flexibility (0 trunk foot .. 255 leaf tip); bit 8: leaf;

@@ -8,7 +8,7 @@
 #include "tree/look.h"
 #include "tree/progressive.h"
 
-enum { MAX_LEAVES = 200000 };
+enum { MAX_LEAF_TRIANGLES = 600000 };
 
 /* A piece of a twig that bears leaves. */
 struct carrier {
@@ -25,6 +25,7 @@ struct carriers {
 void wd_foliage_finish(struct wd_foliage *foliage)
 {
     free(foliage->leaves);
+    free(foliage->flowers);
     wd_tree_density_finish(&foliage->crown);
     *foliage = (struct wd_foliage){0};
 }
@@ -247,7 +248,8 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
     double most = (double)(area_m2 / wd_leaf_unit_area(species)) / (real_m * real_m);
     if (count > most)
         count = most;
-    return count < 40 ? 40 : count > MAX_LEAVES ? MAX_LEAVES : (size_t)count;
+    size_t bound = MAX_LEAF_TRIANGLES / wd_leaf_least_triangles(species);
+    return count < 40 ? 40 : count > (double)bound ? bound : (size_t)count;
 }
 
 /* Sprays that would hang into the ground lie on it. */
@@ -301,6 +303,59 @@ static void init_crown(struct wd_foliage *foliage, const struct wd_skeleton *ske
     wd_tree_density_init(&foliage->crown, low, high, cell);
 }
 
+static void scale_all(struct wd_leaf *leaves, size_t count, float factor)
+{
+    for (size_t i = 0; i < count; i++) {
+        leaves[i].position_m = wd_v3_scale(leaves[i].position_m, factor);
+        leaves[i].size_m *= factor;
+    }
+}
+
+void wd_foliage_scale(struct wd_foliage *foliage, float factor)
+{
+    scale_all(foliage->leaves, foliage->count, factor);
+    scale_all(foliage->flowers, foliage->flower_count, factor);
+    foliage->area_m2 *= factor * factor;
+    foliage->crown.origin_m = wd_v3_scale(foliage->crown.origin_m, factor);
+    foliage->crown.cell_m *= factor;
+}
+
+/* Flowers stand where light reaches, the best lit first; those of leafless months where leaves
+ * would. `places` are in progressive order. */
+static void choose_flowers(struct wd_foliage *foliage, const struct wd_tree_form *form,
+                           const struct wd_leaf *places, size_t count)
+{
+    const struct wd_species *species = form->species;
+    double spread = wd_species_has_fronds(species)
+                        ? (double)count / fmax((double)species->leaf.count, 1)
+                        : wd_dpow((double)form->spread, 1.1);
+    size_t wanted = (size_t)((double)species->flower.count * fmin(spread, 4) + 0.5);
+    foliage->flowers = wd_alloc_array(wanted + 1, sizeof *foliage->flowers);
+    for (float least = 0.6f; least > 0.1f; least -= 0.1f)
+        for (size_t i = 0; i < count && foliage->flower_count < wanted; i++)
+            if (places[i].sky > least && (least > 0.55f || places[i].sky <= least + 0.1f))
+                foliage->flowers[foliage->flower_count++] = places[i];
+}
+
+/* Leaves by the weight of what carries them. */
+static void place_leaves(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
+                         const struct wd_tree_form *form, const struct carriers *carriers,
+                         size_t wanted)
+{
+    foliage->leaves = wd_alloc_array(wanted + 1, sizeof *foliage->leaves);
+    double given = 0, weight = 0;
+    for (size_t i = 0; i < carriers->count; i++) {
+        weight += (double)carriers->items[i].weight;
+        int of = (int)((double)wanted * weight / (double)carriers->weight - given);
+        given += of;
+        for (int n = 0; n < of && foliage->count < wanted; n++) {
+            struct wd_leaf *leaf = &foliage->leaves[foliage->count];
+            place_leaf(leaf, foliage, skeleton, form, &carriers->items[i], n, of);
+            foliage->count += !wd_tree_is_cut(form, leaf->position_m);
+        }
+    }
+}
+
 void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
                      const struct wd_tree_form *form)
 {
@@ -313,23 +368,22 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
     if (wd_species_has_fronds(form->species)) {
         wd_fronds_place(foliage, skeleton, form);
         order_leaves(foliage, form->key);
+        choose_flowers(foliage, form, foliage->leaves, foliage->count);
         return;
     }
     gather_carriers(&carriers, skeleton, form);
     weigh_carriers(&carriers, foliage, skeleton, area);
-    foliage->leaves = wd_alloc_array(wanted + 1, sizeof *foliage->leaves);
-    double given = 0, weight = 0;
-    for (size_t i = 0; i < carriers.count; i++) {
-        weight += (double)carriers.items[i].weight;
-        int of = (int)((double)wanted * weight / (double)carriers.weight - given);
-        given += of;
-        for (int n = 0; n < of && foliage->count < wanted; n++) {
-            struct wd_leaf *leaf = &foliage->leaves[foliage->count];
-            place_leaf(leaf, foliage, skeleton, form, &carriers.items[i], n, of);
-            foliage->count += !wd_tree_is_cut(form, leaf->position_m);
-        }
-    }
+    bool bare = wanted == 0 && form->species->flower.count > 0;
+    place_leaves(foliage, skeleton, form, &carriers,
+                 bare ? 4 * (size_t)form->species->flower.count : wanted);
     free(carriers.items);
-    scale_leaves(foliage, form->species, area);
+    if (bare)
+        for (size_t i = 0; i < foliage->count; i++)
+            foliage->leaves[i].size_m *= 0.01f * form->species->leaf.length_cm;
+    else
+        scale_leaves(foliage, form->species, area);
     order_leaves(foliage, form->key);
+    choose_flowers(foliage, form, foliage->leaves, foliage->count);
+    if (bare)
+        foliage->count = 0;
 }

@@ -21,6 +21,8 @@ struct wd_leaf {
 struct wd_foliage {
     struct wd_leaf *leaves;
     size_t count;
+    struct wd_leaf *flowers; /* places of flowers: leaves that they stand before, or would */
+    size_t flower_count;
     struct wd_tree_density crown; /* leaf area, with its light swept */
     float area_m2;
 };
@@ -29,8 +31,14 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
                      const struct wd_tree_form *form);
 void wd_foliage_finish(struct wd_foliage *foliage);
 
+/* Brings places and sizes to another size. */
+void wd_foliage_scale(struct wd_foliage *foliage, float factor);
+
 /* Area of one leaf or shoot of unit length as drawn, one side. */
 float wd_leaf_unit_area(const struct wd_species *species);
+
+/* Triangles of a leaf or shoot where there are too many for outlines: 1 or more. */
+size_t wd_leaf_least_triangles(const struct wd_species *species);
 
 /* Appends every leaf as drawn near. */
 void wd_foliage_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "tree/coverage.h"
 #include "tree/foliage.h"
+#include "tree/fronds.h"
 #include "tree/leaf_spray.h"
 #include "tree/import.h"
 #include "tree/wood.h"
@@ -15,13 +16,27 @@ enum {
     LEAST_WOOD_TRIANGLES = 1000,
     REDUCED_WOOD_TRIANGLES = 1600,
     REDUCED_LEAVES = 2600, /* two triangles each */
+    LEAST_SIDES = 3,
+    MOST_STEP = 32,
 };
+#define MOST_RADIUS_M 20.0f /* no branch is thicker */
 
-/* Leaves out the thinnest branches until the rest fits the budget. */
+/* Leaves out the thinnest branches until the rest fits the budget. Stems are never left out: where
+ * they alone are too much they get fewer sides and rings. */
 static void fit_wood(struct wd_wood_style *style, const struct wd_skeleton *skeleton,
                      const struct wd_species *species, size_t triangles)
 {
-    while (wd_wood_triangles(skeleton, species, style) > triangles)
+    struct wd_wood_style stems = *style;
+    stems.least_radius_m = INFINITY;
+    while (wd_wood_triangles(skeleton, species, &stems) > triangles &&
+           (stems.most_sides > LEAST_SIDES || stems.node_step < MOST_STEP)) {
+        stems.node_step *= stems.most_sides > LEAST_SIDES ? 1 : 2;
+        stems.most_sides -= stems.most_sides > LEAST_SIDES;
+    }
+    style->most_sides = stems.most_sides;
+    style->node_step = stems.node_step;
+    while (style->least_radius_m < MOST_RADIUS_M &&
+           wd_wood_triangles(skeleton, species, style) > triangles)
         style->least_radius_m = 1.08f * style->least_radius_m + 1e-4f;
 }
 
@@ -46,6 +61,41 @@ static void build_reduced(struct wd_tree_mesh *mesh, const struct wd_skeleton *s
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
     wd_foliage_mesh_reduced(mesh, foliage, form->species, REDUCED_LEAVES);
+}
+
+/* Fronds arch and plumes stand over them: their mesh is asked. */
+static float foliage_top_m(const struct wd_foliage *foliage, const struct wd_species *species)
+{
+    float top = 0;
+    if (wd_species_has_fronds(species)) {
+        struct wd_tree_mesh mesh = {0};
+        wd_foliage_mesh(&mesh, foliage, species);
+        wd_tree_mesh_update_bounds(&mesh);
+        top = mesh.vertex_count ? mesh.max_m[2] : 0;
+        wd_tree_mesh_finish(&mesh);
+        return top;
+    }
+    for (size_t i = 0; i < foliage->count; i++) {
+        const struct wd_leaf *leaf = &foliage->leaves[i];
+        top = wd_maxf(top, leaf->position_m.z + wd_maxf(leaf->axis.z, 0) * leaf->size_m);
+    }
+    return top;
+}
+
+/* Growth itself ends near the asked height: wood and leaves are brought to it before stems get
+ * their thickness, so that the stem is as thick as asked too. A hedge's height is its cut's. */
+static void fit_height(struct wd_skeleton *skeleton, struct wd_foliage *foliage,
+                       struct wd_tree_form *form)
+{
+    float top = foliage_top_m(foliage, form->species);
+    for (size_t i = 0; i < skeleton->node_count; i++)
+        top = wd_maxf(top, skeleton->nodes[i].position_m.z);
+    if (form->clip || !(top > 0))
+        return;
+    float factor = form->height_m / top;
+    wd_skeleton_scale(skeleton, factor);
+    wd_foliage_scale(foliage, factor);
+    form->crown_base_m = wd_minf(factor * form->crown_base_m, 0.98f * form->height_m);
 }
 
 static void scale_mesh(struct wd_tree_mesh *mesh, float factor)
@@ -102,7 +152,7 @@ static void build_spray(struct wd_tree_model *model, const struct wd_foliage *fo
     wd_foliage_records(model->leaves, foliage);
 }
 
-/* The mesh is brought to exactly the asked height: growth itself ends near it. */
+/* The mesh is brought to exactly the asked height: leaves end a little beside their axes. */
 static void finish_model(struct wd_tree_model *model, const struct wd_skeleton *skeleton,
                          const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
@@ -146,6 +196,8 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     if (!wd_skeleton_grow(&skeleton, &form, log))
         return false;
     wd_foliage_grow(&foliage, &skeleton, &form);
+    fit_height(&skeleton, &foliage, &form);
+    wd_skeleton_set_radii(&skeleton, &form);
     build_full(&model->full, &skeleton, &foliage, &form);
     build_reduced(&model->reduced, &skeleton, &foliage, &form);
     build_spray(model, &foliage, form.species);

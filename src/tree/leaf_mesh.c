@@ -2,7 +2,8 @@
 #include "tree/leaf_template.h"
 #include "tree/look.h"
 
-/* Bytes that the leaves of a full mesh may take with their outlines; more leaves are kites. */
+/* Bytes that the leaves, or flowers, of a full mesh may take with their outlines; more leaves are
+ * kites, and more flowers than fit are left out. */
 enum { OUTLINE_BYTES = 2200000 };
 
 /* Everything a leaf's vertices have in common. */
@@ -92,17 +93,6 @@ static void add_flower(struct wd_tree_mesh *mesh, const struct wd_leaf *leaf,
     add_template(&brush, flower);
 }
 
-static void add_flowers(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
-                        const struct wd_species *species, const struct wd_leaf_template *flower)
-{
-    double share = (double)foliage->count / fmax((double)species->leaf.count, 1);
-    size_t wanted = (size_t)((double)species->flower.count * fmin(share, 4) + 0.5);
-    for (size_t i = 0; i < foliage->count && wanted > 0; i++)
-        if (foliage->leaves[i].sky > 0.25f) {
-            add_flower(mesh, &foliage->leaves[i], species, flower);
-            wanted--;
-        }
-}
 
 /* --- leaves ------------------------------------------------------------------------------ */
 
@@ -116,6 +106,15 @@ float wd_leaf_unit_area(const struct wd_species *species)
         wd_leaf_template_finish(&leaf);
     }
     return area;
+}
+
+size_t wd_leaf_least_triangles(const struct wd_species *species)
+{
+    struct wd_leaf_template leaf;
+    wd_leaf_template_init(&leaf, species, WD_LEAF_AS_KITE, 0);
+    size_t triangles = leaf.index_count / 3;
+    wd_leaf_template_finish(&leaf);
+    return triangles ? triangles : 1;
 }
 
 static uint32_t pack_vec3(struct wd_vec3 v)
@@ -146,6 +145,24 @@ static size_t template_bytes(const struct wd_leaf_template *leaf)
            leaf->index_count * sizeof(uint32_t);
 }
 
+/* With their outlines, or else with few triangles, as many as `bytes` allow. */
+static void add_flowers(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
+                        const struct wd_species *species, enum wd_leaf_form form, size_t bytes)
+{
+    struct wd_leaf_template flower;
+    if (foliage->flower_count == 0)
+        return;
+    wd_flower_template_init(&flower, species, form);
+    if (form == WD_LEAF_AS_BLADE && foliage->flower_count * template_bytes(&flower) > bytes) {
+        wd_leaf_template_finish(&flower);
+        wd_flower_template_init(&flower, species, WD_LEAF_AS_KITE);
+    }
+    size_t most = bytes / (template_bytes(&flower) + 1);
+    for (size_t i = 0; i < foliage->flower_count && i < most; i++)
+        add_flower(mesh, &foliage->flowers[i], species, &flower);
+    wd_leaf_template_finish(&flower);
+}
+
 static void add_leaves(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
                        const struct wd_species *species, enum wd_leaf_form form)
 {
@@ -163,21 +180,6 @@ static void add_leaves(struct wd_tree_mesh *mesh, const struct wd_foliage *folia
     }
     for (uint32_t i = 0; i < WD_LEAF_VARIANTS; i++)
         wd_leaf_template_finish(&leaves[i]);
-}
-
-void wd_foliage_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
-                     const struct wd_species *species)
-{
-    struct wd_leaf_template leaf, flower;
-    wd_leaf_template_init(&leaf, species, WD_LEAF_AS_BLADE, 0);
-    bool outlined = foliage->count * template_bytes(&leaf) <= OUTLINE_BYTES;
-    wd_leaf_template_finish(&leaf);
-    add_leaves(mesh, foliage, species, outlined ? WD_LEAF_AS_BLADE : WD_LEAF_AS_KITE);
-    if (species->flower.count > 0) {
-        wd_flower_template_init(&flower, species, WD_LEAF_AS_BLADE);
-        add_flowers(mesh, foliage, species, &flower);
-        wd_leaf_template_finish(&flower);
-    }
 }
 
 /* Feathers keep their shape with a quarter of the leaflets, each four times as wide; a fern's pinnae
@@ -201,6 +203,28 @@ static bool is_frond(const struct wd_species *species)
     return species->leaf.compound == WD_COMPOUND_BIPINNATE ||
            (species->leaf.compound == WD_COMPOUND_PINNATE && species->leaf.leaflets > 16) ||
            (species->leaf.compound == WD_COMPOUND_SIMPLE && species->leaf.shape == WD_LEAF_BLADE);
+}
+
+static bool outlines_fit(const struct wd_foliage *foliage, const struct wd_species *species,
+                         size_t bytes)
+{
+    struct wd_leaf_template leaf;
+    wd_leaf_template_init(&leaf, species, WD_LEAF_AS_BLADE, 0);
+    bool fit = foliage->count * template_bytes(&leaf) <= bytes;
+    wd_leaf_template_finish(&leaf);
+    return fit;
+}
+
+void wd_foliage_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
+                     const struct wd_species *species)
+{
+    struct wd_species drawn = *species;
+    if (is_frond(species) && species->leaf.compound != WD_COMPOUND_SIMPLE &&
+        !outlines_fit(foliage, species, OUTLINE_BYTES))
+        drawn = coarser_fronds(species);
+    add_leaves(mesh, foliage, &drawn,
+               outlines_fit(foliage, &drawn, OUTLINE_BYTES) ? WD_LEAF_AS_BLADE : WD_LEAF_AS_KITE);
+    add_flowers(mesh, foliage, species, WD_LEAF_AS_BLADE, OUTLINE_BYTES);
 }
 
 static void add_kites(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
@@ -236,18 +260,13 @@ static void add_kites(struct wd_tree_mesh *mesh, const struct wd_foliage *foliag
 void wd_foliage_mesh_reduced(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
                              const struct wd_species *species, size_t count)
 {
-    if (is_frond(species) && foliage->count <= count) {
-        struct wd_species coarse = *species;
-        if (species->leaf.compound != WD_COMPOUND_SIMPLE)
-            coarse = coarser_fronds(species);
+    struct wd_species coarse = *species;
+    if (is_frond(species) && species->leaf.compound != WD_COMPOUND_SIMPLE)
+        coarse = coarser_fronds(species);
+    if (is_frond(species) && foliage->count <= count &&
+        outlines_fit(foliage, &coarse, OUTLINE_BYTES / 4))
         add_leaves(mesh, foliage, &coarse, WD_LEAF_AS_BLADE);
-    } else {
+    else
         add_kites(mesh, foliage, species, count < foliage->count ? count : foliage->count);
-    }
-    if (species->flower.count > 0) {
-        struct wd_leaf_template flower;
-        wd_flower_template_init(&flower, species, WD_LEAF_AS_KITE);
-        add_flowers(mesh, foliage, species, &flower);
-        wd_leaf_template_finish(&flower);
-    }
+    add_flowers(mesh, foliage, species, WD_LEAF_AS_KITE, OUTLINE_BYTES / 4);
 }

@@ -20,6 +20,38 @@ static void set_loads(struct wd_skeleton *skeleton)
     }
 }
 
+float wd_root_flare(const struct wd_tree_form *form, float dbh_m, float z_m)
+{
+    double above = (double)wd_maxf(z_m, -0.1f * dbh_m);
+    return (form->species->root_flare - 1) *
+           (float)wd_dexp(-above / (0.75 * (double)wd_maxf(dbh_m, 1e-4f)));
+}
+
+/* Radius of a stem at height z, between its nodes. */
+static float radius_at_m(const struct wd_skeleton *skeleton, const struct wd_branch *stem, float z)
+{
+    const struct wd_skeleton_node *nodes = &skeleton->nodes[stem->first_node];
+    size_t i = 0;
+    while (i + 2 < stem->node_count && nodes[i + 1].position_m.z < z)
+        i++;
+    float low = nodes[i].position_m.z, high = nodes[i + 1].position_m.z;
+    return wd_mixf(nodes[i].radius_m, nodes[i + 1].radius_m,
+                   wd_clampf((z - low) / wd_maxf(high - low, 1e-4f), 0, 1));
+}
+
+/* Where diameters are taken there is a little of the flare, and taper has begun. */
+static void fit_diameter(struct wd_skeleton *skeleton, const struct wd_tree_form *form,
+                         const struct wd_branch *stem)
+{
+    float at = (float)form->species->allometry.diameter_at_m;
+    if (at <= 0 || form->height_m < 1.2f * at)
+        return;
+    float found = radius_at_m(skeleton, stem, at) * (1 + wd_root_flare(form, form->dbh_m, at));
+    float factor = 0.5f * form->dbh_m / wd_maxf(found, TIP_RADIUS_M);
+    for (size_t i = 0; i < stem->node_count; i++)
+        skeleton->nodes[stem->first_node + i].radius_m *= factor;
+}
+
 /* A stem with one leader tapers by height alone; one that dissolves, by what it carries. */
 static void set_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
@@ -59,7 +91,7 @@ static void set_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *fo
 
 /* The trunk's part grows with height; each branch begins as its parent does there, so that nothing
  * tears at the joints. */
-static void set_flexibility(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
+void wd_skeleton_set_flexibility(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
     static const float share[3] = {0.45f, 0.55f, 0.8f};
     for (size_t b = 0; b < skeleton->branch_count; b++) {
@@ -108,7 +140,8 @@ void wd_skeleton_set_radii(struct wd_skeleton *skeleton, const struct wd_tree_fo
         set_trunk(skeleton, form);
     for (size_t i = 0; !lone && i < skeleton->stem_count; i++)
         set_stem(skeleton, form, i);
-    set_flexibility(skeleton, form);
+    if (skeleton->stem_count == 1)
+        fit_diameter(skeleton, form, &skeleton->branches[0]);
     for (size_t b = skeleton->stem_count; b < skeleton->branch_count; b++)
         set_branch(skeleton, form, &skeleton->branches[b]);
 }

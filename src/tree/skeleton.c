@@ -12,6 +12,17 @@ void wd_skeleton_finish(struct wd_skeleton *skeleton)
     *skeleton = (struct wd_skeleton){0};
 }
 
+void wd_skeleton_scale(struct wd_skeleton *skeleton, float factor)
+{
+    for (size_t i = 0; i < skeleton->node_count; i++) {
+        struct wd_skeleton_node *node = &skeleton->nodes[i];
+        node->position_m = wd_v3_scale(node->position_m, factor);
+        node->along_m *= factor;
+    }
+    for (size_t i = 0; i < skeleton->branch_count; i++)
+        skeleton->branches[i].length_m *= factor;
+}
+
 struct wd_vec3 wd_branch_point(const struct wd_skeleton *skeleton, const struct wd_branch *branch,
                                float share, struct wd_vec3 *direction, size_t *node)
 {
@@ -321,6 +332,6 @@ bool wd_skeleton_grow(struct wd_skeleton *skeleton, const struct wd_tree_form *f
                              "spacing_m or fewer orders",
                         form->species->name, (double)form->height_m, WD_MAX_BRANCHES);
     }
-    wd_skeleton_set_radii(skeleton, form);
+    wd_skeleton_set_flexibility(skeleton, form);
     return true;
 }

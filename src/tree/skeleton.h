@@ -38,14 +38,24 @@ struct wd_skeleton {
     struct wd_tree_density crowd; /* where branches are already: later ones grow into gaps */
 };
 
-/* Grows trunk and branches of all orders and their radii. False (logged) when the species asks for
+/* Grows trunk and branches of all orders, without their radii. False (logged) when the species asks for
  * more than WD_MAX_BRANCHES. */
 bool wd_skeleton_grow(struct wd_skeleton *skeleton, const struct wd_tree_form *form,
                       const struct wd_log *log);
 void wd_skeleton_finish(struct wd_skeleton *skeleton);
 
-/* Thickness and flexibility of every node from what it carries; called by wd_skeleton_grow. */
+/* Brings places and lengths to another size. */
+void wd_skeleton_scale(struct wd_skeleton *skeleton, float factor);
+
+/* Flexibility of every node; called by wd_skeleton_grow. */
+void wd_skeleton_set_flexibility(struct wd_skeleton *skeleton, const struct wd_tree_form *form);
+
+/* Thickness of every node from what it carries, once: with the root flare, the stem is as thick as
+ * form->dbh_m where the species' diameters are taken. */
 void wd_skeleton_set_radii(struct wd_skeleton *skeleton, const struct wd_tree_form *form);
+
+/* Extra radius of the root flare at height z, as a share. It falls off within two diameters. */
+float wd_root_flare(const struct wd_tree_form *form, float dbh_m, float z_m);
 
 /* Place and direction at `share` (0 base .. 1 tip) of a branch; *node is the node below. */
 struct wd_vec3 wd_branch_point(const struct wd_skeleton *skeleton, const struct wd_branch *branch,

@@ -2,6 +2,7 @@
 
 #include "tree/buttress.h"
 #include "tree/look.h"
+#include "tree/look_map.h"
 
 enum { MAX_RINGS = 48, MAX_SIDES = 64 };
 
@@ -31,6 +32,30 @@ static int gather_rings(const struct wd_skeleton *skeleton, const struct wd_bran
                                        node->along_m, node->flexibility, 0, 0};
     }
     return count;
+}
+
+static bool folds(const struct ring *a, const struct ring *b)
+{
+    struct wd_vec3 way = wd_v3_sub(b->center_m, a->center_m);
+    struct wd_vec3 bend = wd_v3_sub(b->direction, a->direction);
+    float thick = wd_maxf(a->radius_m * (1 + a->flare), b->radius_m * (1 + b->flare));
+    return wd_v3_dot(way, wd_v3_add(a->direction, b->direction)) <
+           2.2f * thick * wd_v3_length(bend);
+}
+
+/* Where wood bends more sharply than it is thick, rings would cut through one another: those that
+ * would are left out, but never the first and the last. */
+static int drop_folds(struct ring *rings, int count)
+{
+    int kept = 1;
+    for (int i = 1; i < count; i++) {
+        bool last = i == count - 1;
+        while (last && kept > 1 && folds(&rings[kept - 1], &rings[i]))
+            kept--;
+        if (last || !folds(&rings[kept - 1], &rings[i]))
+            rings[kept++] = rings[i];
+    }
+    return kept;
 }
 
 /* The collar where a branch leaves its parent. */
@@ -66,11 +91,8 @@ static int trunk_rings(const struct wd_skeleton *skeleton, const struct wd_branc
     }
     for (int i = 1; i < node_count; i++)
         rings[count++] = nodes[i];
-    for (int i = 0; i < count; i++) {
-        float above = wd_maxf(rings[i].center_m.z, -0.1f * dbh);
-        double fall = wd_dexp(-(double)above / (0.75 * (double)dbh));
-        rings[i].flare = (form->species->root_flare - 1) * (float)fall;
-    }
+    for (int i = 0; i < count; i++)
+        rings[i].flare = wd_root_flare(form, dbh, rings[i].center_m.z);
     return count;
 }
 
@@ -81,6 +103,7 @@ struct tube {
     const struct wd_bark_tint *bark;
     int sides;
     bool trunk, fins; /* fins: buttresses shape its rings */
+    float turns;      /* of the bark's tile around it */
     float circle[MAX_SIDES][2];
 };
 
@@ -155,7 +178,8 @@ static uint32_t add_ring(const struct tube *tube, const struct ring *ring, struc
         struct wd_tree_vertex vertex = {
             .position_m = {p.x, p.y, p.z},
             .normal = wd_pack_normal(normal),
-            .uv = wd_pack_uv((float)i / (float)tube->sides, ring->along_m),
+            .uv = wd_pack_uv(tube->turns * (float)i / (float)tube->sides,
+                             ring->along_m),
             .tint = tint,
             .kind = (uint32_t)ring->flexibility & 0xffu,
         };
@@ -180,7 +204,7 @@ static void close_tip(const struct tube *tube, const struct ring *ring, uint32_t
     struct wd_tree_vertex vertex = {
         .position_m = {p.x, p.y, p.z},
         .normal = wd_pack_normal(normal),
-        .uv = wd_pack_uv(0.5f, ring->along_m),
+        .uv = wd_pack_uv(0.5f * tube->turns, ring->along_m),
         .tint = ring_tint(tube, ring),
         .kind = (uint32_t)ring->flexibility & 0xffu,
     };
@@ -234,13 +258,23 @@ static int branch_sides(const struct wd_skeleton *skeleton, const struct wd_bran
     return branch->order == WD_TRUNK ? wd_buttress_sides(species, sides) : sides;
 }
 
+/* Bark has the same grain on thick and thin wood: whole turns where the seam would be seen, part of
+ * the tile on branches. */
+static float bark_turns(float radius_m)
+{
+    float turns = 2 * (float)WD_PI * radius_m / WD_BARK_TILE_WIDTH_M;
+    return turns < 0.5f ? wd_maxf(turns, 0.02f) : floorf(turns + 0.5f);
+}
+
 static void set_circle(struct tube *tube, int sides)
 {
+    /* as wide from all sides together as the round branch: of the same girth (Cauchy) */
+    double out = WD_PI / ((double)sides * wd_dsin(WD_PI / (double)sides));
     tube->sides = sides;
     for (int i = 0; i < sides; i++) {
         double angle = 2 * WD_PI * (double)i / (double)sides;
-        tube->circle[i][0] = (float)wd_dcos(angle);
-        tube->circle[i][1] = (float)wd_dsin(angle);
+        tube->circle[i][0] = (float)(out * wd_dcos(angle));
+        tube->circle[i][1] = (float)(out * wd_dsin(angle));
     }
 }
 
@@ -263,8 +297,10 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
         tube.fins = trunk && sides > style->most_sides;
         int count = trunk ? trunk_rings(skeleton, branch, form, style->node_step, rings)
                           : branch_rings(skeleton, branch, style->node_step, rings);
+        count = drop_folds(rings, count);
         if (form->species->form == WD_FORM_SNAG)
             rings[count - 1].jag_m = 1.6f * rings[count - 1].radius_m;
+        tube.turns = bark_turns(trunk ? 0.5f * form->dbh_m : rings[0].radius_m);
         add_tube(&tube, rings, count);
     }
 }

@@ -69,12 +69,12 @@ static void same_parameters_same_bytes(void **state)
 static void known_hashes(void **state)
 {
     static const uint64_t expected[SPECIES_COUNT] = {
-        0x5b66320d434c61f9u, 0x580ee6ed3ed77e33u, 0x051ef21d404cccc3u,
-        0x13f6af5291a431e1u, 0x07d67c7d5e893fd9u, 0x7704a7164f4e82e4u,
-        0x82eb9640e8318064u, 0x761cfe9a569e1211u, 0x81421e7273ea41deu,
-        0x5ca24903e9a43a9fu, 0xfd054758e8daf8f4u, 0xad54bc839049b6c7u,
-        0xc02dba99a83985cdu, 0x9ccd3ee9dccab0eau, 0xffd4f0211b54ec98u,
-        0x93c44cbc8fca2784u, 0xbbfca612f0d3be27u};
+        0x6aea3737aa5d74bfu, 0x66e96e56e7ecb89eu, 0x1b11e0e920f1137au,
+        0xed199cb4c87730d3u, 0xbcf9ea2af01619e9u, 0x35b5467adba9f42cu,
+        0x9c0f3bf36d01a3f9u, 0xaac40b54b3d9325au, 0x87275f1d90ac1f0bu,
+        0xde948dc108aad9b4u, 0xc41b428bf8973969u, 0x64f8d43ebfcfa83fu,
+        0x36601ea3c619e6bcu, 0x5bf83db17d13534eu, 0xd4355d17ef9e0e71u,
+        0x4666ea5f5f3cbb45u, 0x403d2bf609461a36u};
     struct wd_arena arena = {0};
     int wrong = 0;
     (void)state;
@@ -126,11 +126,58 @@ static void check_model(const struct wd_species *species, const struct wd_tree_m
     assert_true(!leafy || model->crown_radius_m > 0.02f * height_m);
     assert_true(model->crown_radius_m < 2 * height_m);
     assert_true(model->crown_base_m >= 0 && model->crown_base_m < height_m);
-    double dbh = wd_species_stem_of_height_cm(species, (double)height_m) * 0.01;
-    if (!((double)model->dbh_m > 0.55 * dbh && (double)model->dbh_m < 2 * dbh))
-        print_error("%s %g m: dbh %g, expected %g m\n", species->name, (double)height_m,
-                    (double)model->dbh_m, dbh);
-    assert_true((double)model->dbh_m > 0.55 * dbh && (double)model->dbh_m < 2 * dbh);
+}
+
+/* Diameter of the circle with the area that the plane at height z cuts from the wood around the
+ * axis: the stem, not the branches that cross the plane elsewhere. Every triangle that the plane
+ * cuts adds one side of the outline. */
+static double diameter_at(const struct wd_tree_mesh *mesh, double z)
+{
+    double area = 0;
+    for (uint32_t i = 0; i < mesh->wood_index_count; i += 3) {
+        double cut[2][2];
+        int count = 0, up = 0;
+        for (uint32_t k = 0; k < 3; k++) {
+            const float *a = mesh->vertices[mesh->indices[i + k]].position_m;
+            const float *b = mesh->vertices[mesh->indices[i + (k + 1) % 3]].position_m;
+            if (((double)a[2] < z) == ((double)b[2] < z))
+                continue;
+            double t = (z - (double)a[2]) / ((double)b[2] - (double)a[2]);
+            for (int axis = 0; axis < 2; axis++)
+                cut[count][axis] = (double)a[axis] + t * ((double)b[axis] - (double)a[axis]);
+            up = (double)a[2] < z ? count : up;
+            count++;
+        }
+        if (count == 2) /* the outline runs from where the triangle's edge goes down to up */
+            area += 0.5 * (cut[1 - up][0] * cut[up][1] - cut[up][0] * cut[1 - up][1]);
+    }
+    return 2 * sqrt(fabs(area) / 3.14159265);
+}
+
+/* The stem is as thick as the allometry says, and as the model says, where diameters are taken. */
+static void stems_are_as_thick_as_asked(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    for (int s = 0; s < SPECIES_COUNT; s++)
+        for (uint32_t seed = 1; seed <= 5; seed++) {
+            struct wd_species species = test_species(&arena, test_species_names[s]);
+            float height = species.typical_height_m * (0.6f + 0.1f * (float)seed);
+            struct wd_grow_params params = {.seed = seed, .openness = 0.2f * (float)(seed - 1)};
+            params.height_m = fminf(height, species.height_range_m[1]);
+            struct wd_tree_model model = grow(&species, seed, params.height_m, params.openness);
+            assert_true(wd_grow_params_resolve(&params, &species, NULL));
+            double at = species.allometry.diameter_at_m, wanted = (double)params.dbh_m;
+            double found = (double)model.dbh_m;
+            if (at > 0 && species.buttress.count == 0 && (double)model.crown_base_m > at)
+                found = diameter_at(&model.full, at);
+            if (fabs(found / wanted - 1) > 0.05)
+                fail_msg("%s %g m: %g cm thick, wanted %g, said %g", species.name,
+                         (double)params.height_m, 100 * found, 100 * wanted,
+                         100 * (double)model.dbh_m);
+            wd_tree_model_finish(&model);
+        }
+    wd_arena_finish(&arena);
 }
 
 static void models_are_sound(void **state)
@@ -163,11 +210,10 @@ static void check_winding(const struct wd_species *species, const struct wd_tree
                      sum[2] * (a[0] * b[1] - a[1] * b[0]);
         inward += face < 0;
     }
-    if (inward * 1000 > mesh->wood_index_count / 3)
+    if (inward * 2000 > mesh->wood_index_count / 3)
         print_error("%s %g m: %u of %u inward\n", species->name, (double)height_m, inward,
                     mesh->wood_index_count / 3);
-    bool splinters = species->form == WD_FORM_SNAG;
-    assert_true(inward * (splinters ? 50 : 250) <= mesh->wood_index_count / 3); /* sharp bends */
+    assert_true(inward * 1000 <= mesh->wood_index_count / 3);
 }
 
 static void wood_faces_outward(void **state)
@@ -387,6 +433,7 @@ int main(void)
         cmocka_unit_test(same_parameters_same_bytes),
         cmocka_unit_test(known_hashes),
         cmocka_unit_test(models_are_sound),
+        cmocka_unit_test(stems_are_as_thick_as_asked),
         cmocka_unit_test(wood_faces_outward),
         cmocka_unit_test(budgets_of_mature_trees_hold),
         cmocka_unit_test(any_prefix_of_leaves_is_fair),

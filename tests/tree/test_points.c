@@ -139,45 +139,75 @@ static void prefixes_are_spread_better_than_chance(void **state)
     }
 }
 
-/* Means over points [first, first + count): share of wood, normal, albedo bytes, height. */
+/* Share of wood, normal, albedo bytes, height. */
+static void figures_of(const struct wd_tree_point *point, double figures[8])
+{
+    float normal[3];
+    wd_unpack_normal(point->normal, normal);
+    figures[0] = point->kind & WD_POINT_LEAF ? 0.0 : 1.0;
+    for (int k = 0; k < 3; k++) {
+        figures[1 + k] = (double)normal[k];
+        figures[4 + k] = (double)(point->albedo >> (8 * k) & 255) / 255;
+    }
+    figures[7] = (double)point->position_m[2];
+}
+
+/* Means over points [first, first + count). */
 static void mean_of(const struct wd_tree_points *points, size_t first, size_t count,
                     double mean[8])
 {
-    for (int k = 0; k < 8; k++)
-        mean[k] = 0;
+    memset(mean, 0, 8 * sizeof *mean);
     for (size_t i = first; i < first + count; i++) {
-        const struct wd_tree_point *point = &points->points[i];
-        float normal[3];
-        wd_unpack_normal(point->normal, normal);
-        mean[0] += (point->kind & WD_POINT_LEAF ? 0.0 : 1.0) / (double)count;
-        for (int k = 0; k < 3; k++) {
-            mean[1 + k] += (double)normal[k] / (double)count;
-            mean[4 + k] += (double)(point->albedo >> (8 * k) & 255) / 255 / (double)count;
-        }
-        mean[7] += (double)point->position_m[2] / (double)count;
+        double figures[8];
+        figures_of(&points->points[i], figures);
+        for (int k = 0; k < 8; k++)
+            mean[k] += figures[k] / (double)count;
     }
 }
 
+static void variance_of(const struct wd_tree_points *points, const double mean[8],
+                        double variance[8])
+{
+    memset(variance, 0, 8 * sizeof *variance);
+    for (size_t i = 0; i < points->count; i++) {
+        double figures[8];
+        figures_of(&points->points[i], figures);
+        for (int k = 0; k < 8; k++)
+            variance[k] += (figures[k] - mean[k]) * (figures[k] - mean[k]) / (double)points->count;
+    }
+}
+
+/* Squared deviations from the whole's means, in those of as many points drawn by chance: all
+ * together less than chance, and none beyond four of its standard deviations. */
 static void windows_keep_the_means(void **state)
 {
     (void)state;
     for (int s = 0; s < MANY_LEAVES; s++) {
         struct sampled sampled;
-        double whole[8], part[8];
+        double whole[8], part[8], variance[8], normals = 0, heights = 0;
+        int windows = 0;
         sample_species(&sampled, test_species_names[s]);
         const struct wd_tree_points *points = &sampled.points;
         mean_of(points, 0, POINTS, whole);
+        variance_of(points, whole, variance);
         float area = points->leaf_area_m2 + points->wood_area_m2;
         assert_float_equal(whole[0], points->wood_area_m2 / area, 1e-3f);
         for (size_t count = 256; count <= 2048; count *= 2)
             for (size_t first = 0; first < POINTS; first += POINTS / 4) {
-                double bound = 1.3 / sqrt((double)count); /* more than two deviations of chance */
                 mean_of(points, first, count, part);
                 assert_float_equal((float)part[0], (float)whole[0], 2 / (float)count);
-                for (int k = 1; k < 7; k++)
-                    assert_true(fabs(part[k] - whole[k]) < bound);
-                assert_true(fabs(part[7] - whole[7]) < 0.008 * (double)sampled.model.height_m);
+                for (int k = 1; k < 8; k++) {
+                    double chance = (variance[k] + 1e-9) / (double)count;
+                    double off = (part[k] - whole[k]) * (part[k] - whole[k]) / chance;
+                    assert_true(off < 16);
+                    *(k < 7 ? &normals : &heights) += k < 7 ? off / 6 : off;
+                }
+                windows++;
             }
+        print_message("%s: %.2f of chance, heights %.3f\n", test_species_names[s],
+                      normals / windows, heights / windows);
+        assert_true(normals < 0.95 * windows);
+        assert_true(heights < 0.1 * windows);
         sampled_finish(&sampled);
     }
 }
