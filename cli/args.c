@@ -26,6 +26,8 @@ static const struct cli_option option_table[] = {
      "stem diameter at 1.3 m (default: from the height)"},
     {"open", 0, "SHARE", CLI_KIND_REAL, AT(openness), 0, 1, CLI_GROW,
      "0 grown in a forest to 1 in the open (default: 0)"},
+    {"clip", 0, "BOX|FILE", CLI_KIND_TEXT, AT(clip), 0, 0, CLI_GROW,
+     "cut as a hedge to WIDTHxDEPTHxHEIGHT metres or to a model's closed mesh, in place of a size"},
     {"detail", 0, "FACTOR", CLI_KIND_REAL, AT(detail), 0.01, 8, CLI_GROW,
      "leaves and twigs relative to the species' own number (default: 1)"},
     {"month", 0, "MONTH", CLI_KIND_REAL, AT(month), 1, 13, CLI_GROW,

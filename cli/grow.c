@@ -78,6 +78,7 @@ static enum wd_result grow_all(struct cli_session *session, struct grown *grown)
         .dbh_m = options->dbh_cm * 0.01,
         .age_years = options->age_years,
         .openness = options->openness,
+        .clip = options->clip,
         .detail = options->detail,
         .log = session->log,
     };

@@ -20,6 +20,9 @@ struct wd_specimen_params {
     double height_m, dbh_m, age_years; /* at most two that do not contradict each other; 0: open */
     double openness;    /* 0 grown in a forest .. 1 in the open */
     double detail;      /* leaves and twigs relative to the species' own number; 0: 1 */
+    const char *clip;   /* NULL; what a hedge plant is cut to, in place of a size: a box,
+                           "1.2x0.6x1.8" (width, depth, height in metres), or a model file with a
+                           closed mesh, in metres, y up, put on the ground over the foot */
     double month;       /* 1 the first of January .. 13 the last of December; 0: summer */
     struct wd_log log;
 };

@@ -46,6 +46,7 @@ struct wd_place_layer {
     uint32_t height_min_cm, height_span_cm;     /* span counts both ends */
     uint32_t aspect_min, aspect_span;           /* in 1/1024 */
     uint32_t tint;             /* greatest step from neutral, 0..127 */
+    uint32_t turn;             /* yaw of all in 1/65536 turns; from 65536: each its own */
     uint32_t variants;
     uint32_t map_kind, map_width, map_height;
     WD_STRUCT wd_axis map_axis[2];

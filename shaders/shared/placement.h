@@ -231,9 +231,12 @@ WD_FUNC uint32_t wd_place_crown_cm(WD_PLACE_IN uint32_t pick, uint32_t height_cm
     return crown_cm < 1u ? 1u : (crown_cm > 65535u ? 65535u : crown_cm);
 }
 
-WD_FUNC uint32_t wd_place_look(uint32_t tree_key, uint32_t tint)
+#define WD_PLACE_ANY_TURN 0x10000u
+
+WD_FUNC uint32_t wd_place_look(uint32_t tree_key, uint32_t tint, uint32_t turn)
 {
     uint32_t yaw = wd_hash2(tree_key, WD_FOR_YAW);
+    yaw = turn < WD_PLACE_ANY_TURN ? (yaw & 0xffff0000u) | turn : yaw;
     uint32_t random = wd_hash2(tree_key, WD_FOR_TINT);
     /* the sum of two even numbers: most trees are near neutral */
     uint32_t step = ((random & 0xffffu) + (random >> 16)) * tint >> 16;
@@ -287,7 +290,7 @@ WD_FUNC WD_STRUCT wd_tree wd_place_grow(WD_PLACE_IN uint32_t tree_key, int32_t x
     tree.id = 0u;
     tree.kind = WD_TABLE_AT(pick + WD_PICK_SPECIES) | (variant << 16);
     tree.size = height_cm | (wd_place_crown_cm(WD_PLACE_PASS pick, height_cm, aspect) << 16);
-    tree.look = wd_place_look(tree_key, WD_LAYER(tint));
+    tree.look = wd_place_look(tree_key, WD_LAYER(tint), WD_LAYER(turn));
     tree.random = wd_hash2(tree_key, WD_FOR_OWN);
     return tree;
 }

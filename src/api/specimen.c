@@ -70,6 +70,7 @@ enum wd_result wd_specimen_create(struct wd_specimen **result,
         .detail = (float)params->detail,
     };
     if (!load_species(specimen, params) ||
+        !wd_specimen_set_clip(specimen, params->clip) ||
         !wd_tree_grow(&specimen->model, &specimen->species, &specimen->params, &specimen->log)) {
         wd_specimen_destroy(&specimen);
         return WD_ERROR_INPUT;

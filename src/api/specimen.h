@@ -8,12 +8,17 @@
 struct wd_specimen {
     struct wd_species species; /* in its season */
     struct wd_grow_params params;
+    struct wd_clip_volume clip; /* what params.clip points at */
     struct wd_tree_model model;
     char *source;              /* the file that the species is from */
     double month;              /* 0: summer */
     struct wd_arena arena;
     struct wd_log log;
 };
+
+/* Reads what the specimen is to be cut to, if anything (NULL). False, logged, where it is neither a
+ * box nor a mesh, or the species cannot be cut. */
+bool wd_specimen_set_clip(struct wd_specimen *specimen, const char *clip);
 
 enum { WD_SPECIMEN_LEVELS = 2 };
 

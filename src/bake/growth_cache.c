@@ -34,6 +34,24 @@ uint64_t wd_species_key(const struct wd_species *species)
     return key;
 }
 
+/* How an individual is grown; of a volume that it is cut to, what that holds. */
+static uint64_t params_key(uint64_t key, const struct wd_grow_params *params)
+{
+    struct wd_grow_params values;
+    memcpy(&values, params, sizeof values);
+    values.clip = NULL;
+    key = wd_cache_key(key, &values, sizeof values);
+    const struct wd_clip_volume *clip = params->clip;
+    if (!clip)
+        return key;
+    key = wd_cache_key(key, clip->min_m, sizeof clip->min_m);
+    key = wd_cache_key(key, clip->max_m, sizeof clip->max_m);
+    key = wd_cache_key(key, clip->positions_m,
+                       3 * (size_t)clip->vertex_count * sizeof *clip->positions_m);
+    return wd_cache_key(key, clip->indices,
+                        3 * (size_t)clip->triangle_count * sizeof *clip->indices);
+}
+
 /* What an imported mesh is, byte by byte. */
 static uint64_t mesh_key(const struct wd_tree_mesh *mesh)
 {
@@ -208,7 +226,7 @@ bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_ca
 {
     uint64_t species = wd_species_key(&scene->species[index / (uint32_t)scene->variants]);
     const struct wd_grow_params params = wd_variant_params(scene, index);
-    *key = wd_cache_key(species, &params, sizeof params);
+    *key = params_key(species, &params);
     if (species && load_model(model, cache, *key))
         return true;
     if (!wd_variant_grow(model, scene, index, log))

@@ -64,6 +64,10 @@ static const struct wd_key layer_keys[] = {
     {"aspect", WD_KEY_RANGE, LAYER(aspect), 0.1, 10, "[0.85, 1.15]",
      "Crown width over that of the species at the tree's height, drawn evenly between."},
     {"tint", WD_KEY_DOUBLE, LAYER(tint), 0, 1, "0.3", "Spread of colour between trees."},
+    {"yaw_deg", WD_KEY_INTEGERS, LAYER(yaw_deg), -360, 360,
+     .count_offset = LAYER(yaw_count),
+     .doc = "Every tree is turned so many degrees, counter-clockwise from above: 0 lays the "
+            "width of a clipped one from west to east. Without it each has an angle of its own."},
     {"fade_near_m", WD_KEY_VECTOR, LAYER(fade_near_m), 0, 1e6, "[0, 0]",
      "Trees are seen only beyond this span of distances and fade in over it, in metres.",
      .length = 2, .flags = WD_KEY_SORTED},

@@ -48,6 +48,12 @@ struct wd_scene_share {
 };
 
 enum wd_layer_placement { WD_PLACE_GRID, WD_PLACE_POISSON, WD_PLACE_CANOPY };
+/* A species whose individuals are cut to a box: rows of them are a hedge (W9). */
+struct wd_scene_clip {
+    const char *name;        /* species */
+    float box_m[3];          /* width along the tree's own x, depth, height */
+};
+
 struct wd_scene_layer {
     const char *name;
     int placement;           /* grid: one per jittered cell (I1); poisson: R2; canopy: one a local
@@ -68,6 +74,8 @@ struct wd_scene_layer {
     float height_m[2];       /* drawn evenly between */
     float aspect[2];         /* crown width, as a factor of the species' own at that height */
     double tint;             /* spread of colour between trees, 0..1 */
+    int64_t *yaw_deg;        /* all are turned so far, counter-clockwise; NULL: each its own way */
+    size_t yaw_count;
     double fade_near_m[2];   /* 0, 0: none. Seen only beyond, fading in over this span (I7) */
     double fade_far_m[2];    /* 0, 0: none. Fades out over this span */
     double mesh_distance_m;  /* 3D meshes nearer than this (I6); 0: the quality's own */
@@ -132,6 +140,8 @@ struct wd_scene {
                                              that layers and inventories name */
     size_t species_file_count;
     struct wd_species *species; /* loaded, parallel to species_files */
+    struct wd_scene_clip *clips; /* hedges among the species */
+    size_t clip_count;
     int64_t variants;        /* grown individuals a species */
     const struct wd_grow_params *individuals; /* NULL; or, not from a file, one a species: each is
                                 grown so (tree/grow.h), and `variants` is 1 */

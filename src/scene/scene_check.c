@@ -103,6 +103,8 @@ bool wd_scene_check_layer(void *object, const struct wd_keys_place *place)
     if (layer->placement != WD_PLACE_POISSON && layer->density > 1)
         ok = wd_keys_error(place, "density", "found %g; allowed is a probability from 0 to 1 "
                            "(only poisson takes a mean number of trees)", layer->density);
+    if (layer->yaw_count > 1)
+        ok = wd_keys_error(place, "yaw_deg", "found %zu angles; allowed is one", layer->yaw_count);
     return check_layer_maps(layer, place) && ok;
 }
 

@@ -198,6 +198,35 @@ static bool load_all(struct loader *loader, struct wd_scene *scene)
     return ok;
 }
 
+/* Free-growing forms and artists' models cannot be cut. */
+static bool cut_hedges(const struct loader *loader, struct wd_scene *scene)
+{
+    struct wd_keys_place map = {loader->root->reader, loader->root, "clips", 0};
+    bool ok = true;
+    for (size_t i = 0; i < scene->clip_count; i++) {
+        const struct wd_scene_clip *clip = &scene->clips[i];
+        int index = wd_scene_find_species(scene, clip->name);
+        if (index < 0) {
+            ok = wd_keys_error(&map, clip->name, "no layer or inventory has the species \"%.60s\"",
+                               clip->name);
+            continue;
+        }
+        struct wd_species *species = &scene->species[index];
+        if (species->model.file || species->order_count == 0)
+            ok = wd_keys_error(&map, clip->name, "%.60s %s; allowed are grown species with "
+                               "branches", clip->name,
+                               species->model.file ? "is an artist's model" : "has no branches");
+        else if (!(clip->box_m[2] >= species->height_range_m[0] &&
+                   clip->box_m[2] <= species->height_range_m[1]))
+            ok = wd_keys_error(&map, clip->name, "the box is %g m high; the species' file allows "
+                               "%g to %g", (double)clip->box_m[2],
+                               (double)species->height_range_m[0],
+                               (double)species->height_range_m[1]);
+        memcpy(species->clip_box_m, clip->box_m, sizeof species->clip_box_m);
+    }
+    return ok;
+}
+
 bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *place)
 {
     struct loader loader = {.root = place};
@@ -206,6 +235,7 @@ bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *p
     ok = take_layers(&loader, scene) && ok;
     ok = take_inventories(&loader, scene) && ok;
     ok = load_all(&loader, scene) && ok;
+    ok = ok && cut_hedges(&loader, scene);
     finish(&loader);
     return ok;
 }

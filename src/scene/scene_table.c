@@ -182,6 +182,15 @@ static const struct wd_key quality_keys[] = {
 };
 static const struct wd_keys quality_table = GROUP("quality", quality_keys, quality);
 
+#define CLIP(member) offsetof(struct wd_scene_clip, member)
+static const struct wd_key clip_keys[] = {
+    {"box_m", WD_KEY_FLOATS, CLIP(box_m), 0.1, 50,
+     .doc = "Width, depth and height of the box, in metres.", .length = 3,
+     .flags = WD_KEY_REQUIRED},
+    {0},
+};
+static const struct wd_keys clip_table = {"clip", clip_keys, sizeof(struct wd_scene_clip), NULL};
+
 static const struct wd_key scene_keys[] = {
     {"name", WD_KEY_STRING, SCENE(name), .doc = "Title; the file's name where absent."},
     {"seed", WD_KEY_INTEGER, SCENE(seed), 0, 4294967295.0, "1",
@@ -190,6 +199,9 @@ static const struct wd_key scene_keys[] = {
     {"species", WD_KEY_STRING_MAP, SCENE(species_files), .count_offset = SCENE(species_file_count),
      .doc = "Names of species and their files, beside the scene; others are looked for in species/ "
             "and ../species/ beside the scene, then among the installed ones."},
+    {"clips", WD_KEY_MAP, SCENE(clips), .table = &clip_table, .count_offset = SCENE(clip_count),
+     .doc = "Names of species whose individuals are cut to a box, as plants of a hedge are. A name "
+            "of its own in \"species\" keeps the same species' free trees apart."},
     {"variants", WD_KEY_INTEGER, SCENE(variants), 1, 64, "5", "Individuals grown a species."},
     {"layers", WD_KEY_LIST, SCENE(layers), .table = &wd_scene_layer_keys,
      .count_offset = SCENE(layer_count), .doc = "Trees placed by rule."},

@@ -38,6 +38,10 @@ double wd_species_height_m(const struct wd_species *species, double dbh_cm)
 double wd_species_crown_m(const struct wd_species *species, double dbh_cm)
 {
     const struct wd_allometry *a = &species->allometry;
+    const float *box = species->clip_box_m;
+    if (box[2] > 0)
+        return 2 * (double)(wd_hedge_reach_m(box[0], box[1]) / box[2]) *
+               wd_species_height_m(species, dbh_cm);
     if (species->model.crown_share > 0)
         return (double)species->model.crown_share * wd_species_height_m(species, dbh_cm);
     return a->crown_a + a->crown_b * wd_dpow(dbh_cm > 0 ? dbh_cm : 0, a->crown_c);
@@ -101,8 +105,17 @@ double wd_species_crown_of_height_m(const struct wd_species *species, double hei
     return wd_species_crown_m(species, wd_species_dbh_cm(species, sure_m)) * height_m / sure_m;
 }
 
+float wd_hedge_reach_m(float width_m, float depth_m)
+{
+    return sqrtf(width_m * depth_m / 3.14159265f);
+}
+
 void wd_species_variant_range_m(const struct wd_species *species, float range_m[2])
 {
+    if (species->clip_box_m[2] > 0) {
+        range_m[0] = range_m[1] = species->clip_box_m[2];
+        return;
+    }
     float low = 0.45f * species->typical_height_m, high = 1.1f * species->typical_height_m;
     range_m[0] = low > species->height_range_m[0] ? low : species->height_range_m[0];
     range_m[1] = high < species->height_range_m[1] ? high : species->height_range_m[1];

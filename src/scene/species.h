@@ -163,6 +163,7 @@ struct wd_species {
         size_t leaf_count, wood_count;
         float crown_share;    /* crown diameter over height where allometry.crown_b is 0 */
     } model;
+    float clip_box_m[3];      /* width, depth, height of the box that a hedge is cut to; 0: none */
     struct wd_tree_import *imported; /* the model once read: wd_species_import_models */
     float flexibility;        /* wind: top displacement over height at 10 m/s, share */
 };
@@ -195,6 +196,9 @@ double wd_species_stem_of_height_cm(const struct wd_species *species, double hei
 /* Crown diameter of a tree in a forest. Just over the height where diameters are taken and near
  * the greatest height (where any diameter fits) crowns scale with height. */
 double wd_species_crown_of_height_m(const struct wd_species *species, double height_m);
+
+/* Radius of the circle as large as a rectangle: how far a hedge reaches. */
+float wd_hedge_reach_m(float width_m, float depth_m);
 
 /* Heights that a species' variants stand for, in equal parts: from half grown to tall, so that
  * young trees are not scaled down old ones. The range is empty where the species' own is. */

@@ -4,6 +4,14 @@
 
 enum { MAX_TRIANGLES = 1000000 };
 
+struct wd_clip_volume wd_clip_box(const float size_m[3])
+{
+    return (struct wd_clip_volume){
+        .min_m = {-0.5f * size_m[0], -0.5f * size_m[1], wd_minf(0.04f, 0.1f * size_m[2])},
+        .max_m = {0.5f * size_m[0], 0.5f * size_m[1], size_m[2]},
+    };
+}
+
 static bool check_mesh(const struct wd_clip_volume *volume, const struct wd_log *log)
 {
     if (volume->triangle_count > MAX_TRIANGLES)
@@ -128,8 +136,13 @@ bool wd_clip_grid_init(struct wd_clip_grid *grid, const struct wd_clip_volume *v
     set_bounds(grid, volume);
     if (!check_bounds(grid, log))
         return false;
-    grid->area_m2 = (grid->max_m[0] - grid->min_m[0]) * (grid->max_m[1] - grid->min_m[1]);
-    return grid->box || fill_columns(grid, volume, log);
+    float width = grid->max_m[0] - grid->min_m[0], depth = grid->max_m[1] - grid->min_m[1];
+    grid->area_m2 = width * depth;
+    if (!grid->box && !fill_columns(grid, volume, log))
+        return false;
+    grid->shell_m2 = grid->area_m2 + 2 * (width + depth) * (grid->max_m[2] - grid->min_m[2]) *
+                                         sqrtf(grid->area_m2 / (width * depth));
+    return true;
 }
 
 bool wd_clip_inside(const struct wd_clip_grid *grid, struct wd_vec3 p)
@@ -142,4 +155,14 @@ bool wd_clip_inside(const struct wd_clip_grid *grid, struct wd_vec3 p)
         return true;
     int i = column_of(grid, 0, (double)p.x), j = column_of(grid, 1, (double)p.y);
     return grid->columns[j * WD_CLIP_SIDE + i] >> column_of(grid, 2, (double)p.z) & 1;
+}
+
+bool wd_clip_near_shell(const struct wd_clip_grid *grid, struct wd_vec3 p, float reach_m)
+{
+    const struct wd_vec3 beside[5] = {{reach_m, 0, 0}, {-reach_m, 0, 0}, {0, reach_m, 0},
+                                      {0, -reach_m, 0}, {0, 0, reach_m}};
+    for (int i = 0; i < 5; i++)
+        if (!wd_clip_inside(grid, wd_v3_add(p, beside[i])))
+            return true;
+    return false;
 }

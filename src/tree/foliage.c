@@ -9,6 +9,8 @@
 #include "tree/progressive.h"
 
 enum { MAX_LEAF_TRIANGLES = 600000 };
+#define HEDGE_SHARE 0.3f /* of the leaf area index of a forest */
+#define HEDGE_SHELL_M 0.18f
 
 /* A piece of a twig that bears leaves. */
 struct carrier {
@@ -78,7 +80,8 @@ static void fill_crown(struct wd_foliage *foliage, const struct wd_skeleton *ske
 
 /* A twig bears leaves by its length and by the light that reaches it. */
 static void weigh_carriers(struct carriers *carriers, struct wd_foliage *foliage,
-                           const struct wd_skeleton *skeleton, float area_m2)
+                           const struct wd_skeleton *skeleton, const struct wd_tree_form *form,
+                           float area_m2)
 {
     float length = 0;
     for (size_t i = 0; i < carriers->count; i++)
@@ -93,6 +96,8 @@ static void weigh_carriers(struct carriers *carriers, struct wd_foliage *foliage
                                            &d, &node);
         float sky = wd_tree_density_sky(&foliage->crown, p);
         carrier->weight = carrier->length_m * (0.35f + sky);
+        if (form->clip && wd_clip_near_shell(form->clip, p, HEDGE_SHELL_M))
+            carrier->weight *= 4; /* what is cut buds behind the cut */
         carriers->weight += carrier->weight;
     }
     wd_tree_density_clear(&foliage->crown);
@@ -227,8 +232,8 @@ static void order_leaves(struct wd_foliage *foliage, uint32_t key)
 static float leaf_area_m2(const struct wd_tree_form *form)
 {
     float projection = (float)WD_PI * form->crown_radius_m * form->crown_radius_m;
-    if (form->clip)
-        projection = form->clip->area_m2;
+    if (form->clip) /* light comes to its sides too: leaves all over them, less deep */
+        return HEDGE_SHARE * form->clip->shell_m2 * form->species->leaf.area_index;
     return 1.05f * projection * form->species->leaf.area_index;
 }
 
@@ -246,7 +251,7 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
     count *= fmin(spread, needles ? 1 : low ? 4 : 1.2);
     double real_m = 0.01 * (double)(needles ? species->leaf.shoot_cm : species->leaf.length_cm);
     double most = (double)(area_m2 / wd_leaf_unit_area(species)) / (real_m * real_m);
-    if (count > most)
+    if (count > most || form->clip) /* a hedge is seen from near */
         count = most;
     size_t bound = MAX_LEAF_TRIANGLES / wd_leaf_least_triangles(species);
     return count < 40 ? 40 : count > (double)bound ? bound : (size_t)count;
@@ -372,7 +377,7 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
         return;
     }
     gather_carriers(&carriers, skeleton, form);
-    weigh_carriers(&carriers, foliage, skeleton, area);
+    weigh_carriers(&carriers, foliage, skeleton, form, area);
     bool bare = wanted == 0 && form->species->flower.count > 0;
     place_leaves(foliage, skeleton, form, &carriers,
                  bare ? 4 * (size_t)form->species->flower.count : wanted);

@@ -168,6 +168,9 @@ static void finish_model(struct wd_tree_model *model, const struct wd_skeleton *
     }
     model->height_m = form->height_m;
     model->crown_radius_m = factor * crown_radius_m(foliage, skeleton);
+    if (form->clip)
+        model->crown_radius_m = wd_hedge_reach_m(form->clip->max_m[0] - form->clip->min_m[0],
+                                                 form->clip->max_m[1] - form->clip->min_m[1]);
     model->crown_base_m = factor * form->crown_base_m;
     model->dbh_m = factor * form->dbh_m;
     model->leaf_area_m2 = factor * factor * foliage->area_m2;
@@ -183,13 +186,16 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
         return true;
     }
     struct wd_grow_params resolved = *params;
+    const struct wd_clip_volume own = wd_clip_box(species->clip_box_m);
+    if (!resolved.clip && species->clip_box_m[2] > 0)
+        resolved.clip = &own;
     if (!wd_grow_params_resolve(&resolved, species, log))
         return false;
     struct wd_tree_form form = wd_tree_form_of(species, &resolved);
     struct wd_clip_grid clip;
-    if (params->clip && !wd_clip_grid_init(&clip, params->clip, log))
+    if (resolved.clip && !wd_clip_grid_init(&clip, resolved.clip, log))
         return false;
-    if (params->clip)
+    if (resolved.clip)
         wd_tree_form_clip(&form, &clip);
     struct wd_skeleton skeleton;
     struct wd_foliage foliage;

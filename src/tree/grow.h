@@ -26,7 +26,7 @@ struct wd_grow_params {
     float openness;    /* 0 forest-grown (narrow, high crown) .. 1 open-grown (wide, low crown) */
     float detail;      /* leaves and twigs of the full mesh relative to the species' own number;
                           0 means 1 */
-    const struct wd_clip_volume *clip; /* NULL, or what the plant is cut to: its top gives the
+    const struct wd_clip_volume *clip; /* NULL (the species' own box, if any), or what the plant is cut to: its top gives the
                                           height, so no size may be given */
 };
 

@@ -177,6 +177,8 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     stem.start = wd_branch_point(skeleton, parent, joint->share, &axis, &stem.parent_node);
     stem.along_m = skeleton->nodes[stem.parent_node].along_m;
     float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], joint->height);
+    if (form->clip && order == 0) /* cut limbs are level down to the ground */
+        angle = wd_mixf(100, 20, joint->height);
     angle *= (float)(WD_PI / 180) * wd_random_range(&random, 0.88f, 1.12f);
     float best = -1e30f;
     for (int i = 0; i < TRIES; i++) {
@@ -210,7 +212,7 @@ static float spacing_m(const struct wd_tree_form *form, int order)
     double squeeze = wd_dpow((double)form->spread, power);
     float spacing = form->species->orders[order].spacing_m * (float)squeeze;
     if (form->clip) /* cut shoots branch again: a hedge is as dense as its light allows */
-        spacing = wd_minf(spacing, (order == 0 ? 0.05f : 0.07f) * form->crown_radius_m + 0.03f);
+        spacing = wd_minf(spacing, (order == 0 ? 0.03f : 0.05f) * form->crown_radius_m + 0.02f);
     return spacing;
 }
 
@@ -275,7 +277,7 @@ static bool grow_along(struct wd_skeleton *skeleton, const struct wd_tree_form *
         float left = wd_random_range(&random, 0, 1) < 0.08f ? 0.5f : 0;
         float turn = ((int)index & 1) + left;
         joint.around_rad = (float)WD_PI * turn;
-        joint.jitter_rad = (1 - spec->flatness) * (float)WD_PI * 0.55f;
+        joint.jitter_rad = (1 - (form->clip ? 0 : spec->flatness)) * (float)WD_PI * 0.55f;
         joint.length_m = spec->length_ratio * limb * (1.15f - 0.75f * share);
         joint.length_m *= wd_random_range(&random, 0.8f, 1.1f);
         joint.key = wd_hash3(parent.key, 0xb0, (uint32_t)index);

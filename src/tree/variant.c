@@ -17,9 +17,10 @@ struct wd_grow_params wd_variant_params(const struct wd_scene *scene, uint32_t i
     uint32_t variants = (uint32_t)scene->variants, variant = index % variants;
     if (scene->individuals)
         return scene->individuals[index];
+    const struct wd_species *species = &scene->species[index / variants];
     return (struct wd_grow_params){
         .seed = variant + 1,
-        .height_m = variant_height(&scene->species[index / variants], variant, variants),
+        .height_m = species->clip_box_m[2] > 0 ? 0 : variant_height(species, variant, variants),
         .openness = 0.35f,
     };
 }

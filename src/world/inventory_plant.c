@@ -131,7 +131,7 @@ static void plant_tree(struct planting *planting, size_t index, const double at_
     tree.kind = from->species | wd_place_variant(wd_hash2(key, WD_FOR_VARIANT), variants,
                                                  height_cm, range_cm[0], range_cm[1]) << 16;
     tree.size = height_cm | crown_cm_of(from, species, height_cm) << 16;
-    tree.look = wd_place_look(key, 64);
+    tree.look = wd_place_look(key, 64, WD_PLACE_ANY_TURN);
     tree.random = wd_hash2(key, WD_FOR_OWN);
     planting->planted[planting->trees.count] = (uint32_t)index;
     wd_tree_list_add(&planting->trees, &tree);

@@ -77,6 +77,14 @@ static uint32_t clamp_cm(double height_m)
     return cm < 1.0 ? 1 : cm > 65535.0 ? 65535 : (uint32_t)cm;
 }
 
+static uint32_t turn_of(const struct wd_scene_layer *from)
+{
+    if (!from->yaw_count)
+        return WD_PLACE_ANY_TURN;
+    double turns = (double)from->yaw_deg[0] / 360.0;
+    return (uint32_t)((turns - floor(turns)) * 65536.0) & 0xffffu;
+}
+
 static void set_sizes(struct wd_place_layer *to, const struct wd_scene_layer *from)
 {
     to->height_min_cm = clamp_cm(from->height_m[0]);
@@ -88,6 +96,7 @@ static void set_sizes(struct wd_place_layer *to, const struct wd_scene_layer *fr
     uint32_t aspect_max = (uint32_t)(fmin(high, 15.0) * 1024.0 + 0.5);
     to->aspect_span = aspect_max > to->aspect_min ? aspect_max - to->aspect_min + 1 : 1;
     to->tint = (uint32_t)(fmin(fmax(from->tint, 0.0), 1.0) * 127.0 + 0.5);
+    to->turn = turn_of(from);
 }
 
 static bool set_cells(struct wd_placement *placement, const struct wd_log *log)

@@ -64,6 +64,27 @@ else
     echo "skip the Khronos validator: there is no npm, or it has no gltf-validator"
 fi
 
+# Hedges: to a box, and to the closed mesh that a cut plant's own box is.
+printf 'v %s\n' '-.6 .1 -.4' '.6 .1 -.4' '.6 .1 .4' '-.6 .1 .4' '-.6 1.5 -.4' '.6 1.5 -.4' \
+    '.6 1.5 .4' '-.6 1.5 .4' >"$out/box.obj"
+printf 'f %s\n' '1 2 3 4' '8 7 6 5' '1 5 6 2' '2 6 7 3' '3 7 8 4' '4 8 5 1' >>"$out/box.obj"
+head -n 13 "$out/box.obj" >"$out/open.obj"
+expect 0 'beech .* 1\.5 m high' grow beech --clip 1.2x0.8x1.5 -o "$out/hedge.glb"
+expect 0 'beech .* 1\.4 m high' grow beech --clip "$out/box.obj" -o "$out/meshed.glb"
+expect 1 'WIDTHxDEPTHxHEIGHT' grow beech --clip 1x2 -o "$out/a.glb"
+expect 1 'not closed' grow beech --clip "$out/open.obj" -o "$out/a.glb"
+expect 1 'it has no branches' grow fern --clip 1x1x1 -o "$out/a.glb"
+expect 1 'allowed is one of the two' grow beech --clip 1x1x1 --height 2 -o "$out/a.glb"
+cat >"$out/hedge.json" <<EOF
+{"terrain": {"kind": "flat", "size_m": [8, 8]}, "variants": 1,
+ "species": {"hedge": "$root/species/beech.json"}, "clips": {"hedge": {"box_m": [1.1, 0.7, 1.7]}},
+ "layers": [{"species": "hedge", "spacing_m": 0.8, "yaw_deg": 0, "height_m": 1.7, "aspect": 1}]}
+EOF
+# shellcheck disable=SC2086  # $small is many words
+expect 0 . render "$out/hedge.json" -o "$out/hedge.png" $small --gpu-validate
+sed 's/"clips": {"hedge"/"clips": {"hedges"/' "$out/hedge.json" >"$out/wrong.json"
+expect 1 'has the species "hedges"' check "$out/wrong.json"
+
 # What cannot be.
 expect 2 'no output named' grow oak
 expect 2 'must end in .glb, .obj, .png or .exr' grow oak -o "$out/a.fbx"
