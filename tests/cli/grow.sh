@@ -65,8 +65,8 @@ else
 fi
 
 # Hedges: to a box, and to the closed mesh that a cut plant's own box is.
-printf 'v %s\n' '-.6 .1 -.4' '.6 .1 -.4' '.6 .1 .4' '-.6 .1 .4' '-.6 1.5 -.4' '.6 1.5 -.4' \
-    '.6 1.5 .4' '-.6 1.5 .4' >"$out/box.obj"
+printf 'v %s\n' '-0.6 0.1 -0.4' '0.6 0.1 -0.4' '0.6 0.1 0.4' '-0.6 0.1 0.4' '-0.6 1.5 -0.4' '0.6 1.5 -0.4' \
+    '0.6 1.5 0.4' '-0.6 1.5 0.4' >"$out/box.obj"
 printf 'f %s\n' '1 2 3 4' '8 7 6 5' '1 5 6 2' '2 6 7 3' '3 7 8 4' '4 8 5 1' >>"$out/box.obj"
 head -n 13 "$out/box.obj" >"$out/open.obj"
 expect 0 'beech .* 1\.5 m high' grow beech --clip 1.2x0.8x1.5 -o "$out/hedge.glb"
