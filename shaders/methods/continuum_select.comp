@@ -167,7 +167,8 @@ uint wood_triangles(uint model, float tall_px)
     return min(uint(tall_px * tall_px * 0.006 + tall_px), splat_models[model].wood_count);
 }
 
-void select_tree(uint index)
+/* `share` of the trees around stand for all. */
+void select_tree(uint index, float share)
 {
     wd_tree tree = trees[index];
     vec3 foot = tree_foot_rel(tree);
@@ -189,7 +190,7 @@ void select_tree(uint index)
                        float(view.min_splats));
     wd_splat_tree splats;
     splats.per_stratum = min(uint(ceil(wanted / float(WD_SPLAT_STRATA))), WD_STRATUM_SPLATS);
-    float size = sqrt(pose.across * mix(pose.across, pose.up, 0.5)) * view.pixels;
+    float size = sqrt(pose.across * mix(pose.across, pose.up, 0.5) / share) * view.pixels;
     vec2 radii = disc_radii(model_index, float(splats.per_stratum) * vec2(WD_LEAF_STRATA, 1.0),
                             toward.z);
     splats.radius = size * radii.x;
@@ -221,13 +222,30 @@ void select_tree(uint index)
         add_wood(slot, wood_triangles(model_index, tall_px));
 }
 
-/* A loop, since software devices run idle lanes to the end. */
+/* Share of a cluster's trees that is drawn: all, until trees cover but a few pixels. */
+float drawn_share(wd_cluster cluster)
+{
+    if (view.orthographic != 0u)
+        return 1.0;
+    ivec3 low = ivec3(cluster.min_mm[0], cluster.min_mm[1], cluster.min_mm[2]);
+    ivec3 high = ivec3(cluster.max_mm[0], cluster.max_mm[1], cluster.max_mm[2]);
+    float distance_m = length(rel_of_mm(low + (high - low) / 2));
+    float tall_px = view.typical_m * view.pixels / max(distance_m, 1.0);
+    return clamp(tall_px * tall_px * (0.2 / WD_LEAST_TREE_PX), 1.0 / float(WD_CLUSTER_TREES), 1.0);
+}
+
+/* A loop, since software devices run idle lanes to the end. In the order of reversed bits any prefix
+ * of a cluster's trees is spread over all of it. */
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
     if (group >= counts.clusters)
         return;
     wd_cluster cluster = clusters[visible[group]];
-    for (uint i = gl_LocalInvocationID.x; i < cluster.count; i += gl_WorkGroupSize.x)
-        select_tree(cluster.first + i);
+    uint drawn = uint(ceil(drawn_share(cluster) * float(WD_CLUSTER_TREES)));
+    for (uint i = gl_LocalInvocationID.x; i < drawn; i += gl_WorkGroupSize.x) {
+        uint at = bitfieldReverse(i) >> 26;
+        if (at < cluster.count)
+            select_tree(cluster.first + at, float(drawn) / float(WD_CLUSTER_TREES));
+    }
 }

@@ -60,6 +60,8 @@ struct wd_splat_model {
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u
+/* Where trees cover fewer pixels than this, fewer of them stand for all. */
+#define WD_LEAST_TREE_PX 8.0
 struct wd_cluster {
     int32_t min_mm[3], max_mm[3]; /* bounds of its trees */
     uint32_t first, count;
@@ -80,6 +82,7 @@ struct wd_splat_view {
     uint32_t orthographic;   /* 1: a cascade; depth is z, not z / w */
     float pixels;            /* of a metre at w = 1 */
     float near_m;
+    float typical_m;         /* height of a tree, to tell how many a far cluster needs */
     uint32_t width, height;
     uint32_t texels;         /* of the target for one of the view's pixels, each way */
     float density;           /* splats a pixel that a tree covers */

@@ -295,6 +295,7 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
         .orthographic = shadow,
         .pixels = view->pixels_per_radian,
         .near_m = 0.1f,
+        .typical_m = 0.7f * draw->forest->max_tree_height_m,
         .width = view->width,
         .height = view->height,
         .texels = 1,
