@@ -16,7 +16,7 @@ vec3 ambient(vec3 normal, float openness)
     vec3 sky = frame.sky_irradiance * (up * (1.0 + 0.25 * toward));
     vec3 lit_ground = frame.sun_irradiance * (0.35 * max(frame.sun_direction.z, 0.0))
                       + 0.6 * frame.sky_irradiance;
-    vec3 leafy = mix(vec3(0.95, 0.95, 0.80), vec3(1.0), openness);
+    vec3 leafy = mix(vec3(0.90, 0.82, 0.80), vec3(1.0), openness);
     return (sky + lit_ground * frame.grass * (1.0 - up)) * leafy * openness;
 }
 
@@ -43,7 +43,7 @@ vec2 leaf_cloud(float cosine)
 float sunlit_seen(vec3 eye)
 {
     float apart = angle_of(dot(eye, frame.sun_direction));
-    return mix(0.95, 0.45, smoothstep(0.0, 0.5, eye.z)) + 1.3 * exp(-3.2 * apart);
+    return mix(0.95, 0.40, smoothstep(0.0, 0.5, eye.z)) + 1.35 * exp(-3.2 * apart);
 }
 
 /* One leaf with its own normal: which side the sun and the eye are on. */
@@ -119,8 +119,8 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     place.sides *= mix(sunlit_seen(eye), 1.0, mapped);
     place.transmittance = model.transmittance;
     place.gloss = leaf_gloss(pixel, model.roughness, near) + 0.010;
-    place.wax = 0.016;
-    place.sky = 0.85;
+    place.wax = 0.020;
+    place.sky = mix(1.05, 0.80, smoothstep(0.0, 0.5, eye.z));
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     return place;
 }
@@ -138,7 +138,7 @@ float forest_openness(wd_pixel pixel)
     vec2 at = (pixel.rel.xy + push.camera_m) * push.cover_scale;
     float up = (pixel.rel.z - tree_foot_rel(tree).z) / max(WD_TREE_HEIGHT_M(tree), 0.1);
     return mix(wd_canopy_openness(COVER_AT(at)), 1.0,
-               smoothstep(0.1, 0.95, up));
+               smoothstep(0.0, 0.75, up));
 }
 
 /* `sun_share` is what of the sun reaches the place, `ground_share` what the ground leaves of it. */

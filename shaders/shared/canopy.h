@@ -4,11 +4,10 @@
 
 #include "shared/vec.h"
 
-/* Share of the sky that the canopy leaves to the forest's floor. Places between crowns see little of
- * it long before the crowns touch: most of the sky stands low, behind trees. */
+/* Share of the sky that the canopy leaves to the forest's floor. */
 WD_FUNC float wd_canopy_openness(float cover)
 {
-    return WD_MIX(1.0f, 0.14f, WD_SMOOTH(0.1f, 0.8f, cover));
+    return WD_MIX(1.0f, 0.14f, WD_SMOOTH(0.15f, 0.9f, cover));
 }
 
 #endif
