@@ -28,7 +28,29 @@ struct card_tree {
     vec3 toward; /* unit, from its middle to the eye */
     float show;  /* of its layer at this distance */
     float lod;
+    float level; /* share of the level card: the upright ones have the rest */
 };
+
+/* The crown as an ellipsoid: its middle's height over the foot, half its width and half its height.
+ * Seen from the elevation e its outline is sqrt(h^2 cos^2 e + w^2 sin^2 e) high. */
+vec3 card_crown(card_tree t)
+{
+    float half_m = 0.5 * (t.model.height_m - t.model.crown_base_m) * t.pose.up;
+    return vec3(t.model.height_m * t.pose.up - half_m, 0.5 * t.model.crown_m * t.pose.across,
+                half_m);
+}
+
+float outline_half_m(vec3 crown, float sine)
+{
+    return sqrt(mix(crown.z * crown.z, crown.y * crown.y, sine * sine));
+}
+
+/* The more of what is seen of the crown is its top. */
+float level_share(vec3 crown, float sine)
+{
+    float top = crown.y * sine / outline_half_m(crown, sine);
+    return top * top * smoothstep(WD_LEVEL_CARD_SINE, 2.0 * WD_LEVEL_CARD_SINE, sine);
+}
 
 card_tree card_tree_of(wd_tree tree, wd_model model)
 {
@@ -43,6 +65,7 @@ card_tree card_tree_of(wd_tree tree, wd_model model)
     float tall_px = height_m * (SHADOW != 0u ? 1.0 / frame.cascade_texel_m[push.cascade]
                                              : push.pixels_per_radian / distance_m);
     t.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, 8.0);
+    t.level = level_share(card_crown(t), abs(t.toward.z));
     return t;
 }
 
@@ -51,7 +74,7 @@ struct card_frame {
     vec3 middle, across, down;
     vec3 normal; /* toward the side that the card was rendered from */
     uint layer;  /* of the model's own */
-    float share; /* of the card that shows at this angle */
+    float begin, share; /* of the tree's noise: the card's interval at this angle */
 };
 
 /* As the sun sees the tree: as wide as the crown, as tall as stem and crown's depth together; the
@@ -69,25 +92,51 @@ card_frame sun_card(card_tree t)
     card.across = vec3(across * (t.model.half_width_m * t.pose.across), 0.0);
     card.down = up * -tall;
     card.layer = sun.z > 0.8 ? WD_CARD_SIDES : 0u;
+    card.begin = 0.0;
     card.share = 1.0;
     card.normal = sun;
     return card;
 }
 
+/* Leans so that it faces the viewer, and as high as the crown's outline is. */
+vec3 leaned(vec3 level, vec3 toward, float scale)
+{
+    float cosine = max(length(toward.xy), 1e-4);
+    float along = dot(level.xy, toward.xy) / cosine;
+    vec3 ahead = vec3(toward.xy / cosine, 0.0);
+    vec3 down = ahead * abs(toward.z) - vec3(0.0, 0.0, cosine * sign(toward.z));
+    return level + along * (scale * down - ahead);
+}
+
 card_frame level_card(card_tree t)
 {
     float half_m = t.model.half_depth_m;
+    vec3 crown = card_crown(t);
+    float scale = outline_half_m(crown, t.toward.z) / crown.y;
     card_frame card;
-    card.middle = vec3(0.0, 0.0, t.model.height_m * WD_CARD_TOP * t.pose.up);
-    card.across = tree_offset(t.pose, vec3(half_m, 0.0, 0.0));
-    card.down = tree_offset(t.pose, vec3(0.0, -half_m, 0.0));
+    card.middle = vec3(0.0, 0.0, crown.x);
+    card.across = leaned(tree_offset(t.pose, vec3(half_m, 0.0, 0.0)), t.toward, scale);
+    card.down = leaned(tree_offset(t.pose, vec3(0.0, -half_m, 0.0)), t.toward, scale);
     card.layer = WD_CARD_SIDES;
     card.normal = vec3(0.0, 0.0, 1.0);
-    card.share = smoothstep(WD_LEVEL_CARD_SINE, 0.6, abs(t.toward.z));
+    card.share = t.level;
+    card.begin = 1.0 - t.level;
     return card;
 }
 
-/* Cards seen edge on would streak: they go before that, and the others stand for them. */
+/* How far a card faces the viewer, seen level. */
+float card_facing(card_tree t, vec2 axis)
+{
+    return abs(axis.y * t.toward.x - axis.x * t.toward.y) / max(length(t.toward.xy), 0.1);
+}
+
+float facing_weight(float facing)
+{
+    return smoothstep(0.5, 0.75, facing);
+}
+
+/* Cards seen edge on would streak: they go before that, and the others stand for them. At a slant
+ * they are drawn wider, and from above higher, by what the view takes away. */
 card_frame upright_card(card_tree t, uint slot)
 {
     vec2 own_toward = vec2(dot(t.toward.xy, t.pose.turn),
@@ -95,12 +144,22 @@ card_frame upright_card(card_tree t, uint slot)
     card_frame card;
     card.layer = facing_card(slot, own_toward);
     vec2 axis = tree_turn(t.pose, card_axis(card.layer));
-    card.middle = vec3(0.0, 0.0, 0.5 * (t.model.top_m + t.model.bottom_m) * t.pose.up);
-    card.across = vec3(axis * (t.model.half_width_m * t.pose.across), 0.0);
-    card.down = vec3(0.0, 0.0, -0.5 * (t.model.top_m - t.model.bottom_m) * t.pose.up);
+    vec2 other = tree_turn(t.pose, card_axis(facing_card(1u - slot, own_toward)));
+    float facing = card_facing(t, axis), weight = facing_weight(facing);
+    float weights = max(weight + facing_weight(card_facing(t, other)), 1e-4);
+    card.share = (1.0 - t.level) * weight / weights;
+    card.begin = slot == 0u ? 0.0 : 1.0 - t.level - card.share;
+
+    vec3 crown = card_crown(t);
+    float sine = min(abs(t.toward.z), 0.95);
+    float higher = outline_half_m(crown, sine) / (crown.z * sqrt(1.0 - sine * sine));
+    float middle_m = 0.5 * (t.model.top_m + t.model.bottom_m) * t.pose.up;
+    /* a long stem keeps its foot, a wide crown its middle */
+    float fixed_m = crown.x * crown.y * crown.y / (crown.y * crown.y + crown.z * crown.z);
+    card.middle = vec3(0.0, 0.0, fixed_m + (middle_m - fixed_m) * higher);
+    card.across = vec3(axis * (t.model.half_width_m * t.pose.across / max(facing, 0.6)), 0.0);
+    card.down = vec3(0.0, 0.0, -0.5 * (t.model.top_m - t.model.bottom_m) * t.pose.up * higher);
     card.normal = vec3(vec2(axis.y, -axis.x) * t.pose.mirror.x, 0.0);
-    float facing = abs(dot(card.normal.xy, t.toward.xy)) / max(length(t.toward.xy), 0.1);
-    card.share = smoothstep(0.5, 0.75, facing);
     return card;
 }
 
@@ -123,6 +182,16 @@ vec4 card_clip(card_tree t, card_frame card, vec2 side)
     return SHADOW != 0u ? shadow_clip(push.cascade, rel) : frame.clip_from_rel * vec4(rel, 1.0);
 }
 
+/* Where a tree's noise lies: fixed to the pixel of its foot, and another for each tree. */
+uint card_noise_shift(card_tree t)
+{
+    vec4 clip = frame.steady_clip_from_rel * vec4(t.foot, 1.0); /* samples share their noise */
+    vec2 size = vec2(frame.width, frame.height);
+    vec2 foot = clamp((clip.xy / max(clip.w, 0.01) * 0.5 + 0.5) * size, -1e6, 1e6);
+    uvec2 shift = uvec2(t.tree.random & 255u, t.tree.random >> 8) - uvec2(ivec2(floor(foot)));
+    return (shift.x & 255u) << 24 | (shift.y & 255u) << 16;
+}
+
 /* `show` is that of the level of detail. */
 wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show)
 {
@@ -136,7 +205,8 @@ wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show
     result.ratio = t.pose.up / t.pose.across;
     result.layer = t.model.card_layer + card.layer;
     result.lod = t.lod;
-    result.random = t.tree.random ^ (card.layer * 0x9e3779b9u);
+    result.random = SHADOW != 0u ? t.tree.random ^ (card.layer * 0x9e3779b9u)
+                                 : card_noise_shift(t) | uint(card.begin * 255.0 + 0.5) << 8;
     result.surface = index + 1u;
     return card_pack(result);
 }

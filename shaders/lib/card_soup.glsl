@@ -45,7 +45,7 @@ card_tree soup_tree(uint index)
 bool soup_tree_seen(card_tree t)
 {
     float half_m = 0.55 * WD_TREE_HEIGHT_M(t.tree);
-    float radius = length(vec2(half_m, t.model.half_width_m * t.pose.across)) + 0.1 * half_m;
+    float radius = 1.2 * length(vec2(half_m, t.model.half_width_m * t.pose.across)) + 0.1 * half_m;
     vec4 middle = vec4(t.foot + vec3(0.0, 0.0, half_m), 1.0);
     float least = dot(cull.plane[0], middle);
     for (uint i = 1u; i < WD_CULL_PLANES; i++)

@@ -17,34 +17,48 @@ wd_crown crown_of(wd_tree tree, wd_model model)
     return crown;
 }
 
-/* A card's picture is flat: its places are moved, along the view ray, to a plane that faces the
- * camera, half the crown's radius before its centre. */
-vec3 crown_card_place(wd_crown crown, vec3 rel)
-{
-    float far = length(crown.center_rel);
-    vec3 toward = crown.center_rel / far;
-    float radius_m = 1.0 / length(toward / crown.radii_m);
-    float along = dot(rel, toward);
-    return along > 0.1 ? rel * (max(far - 0.5 * radius_m, 0.1) / along) : rel;
-}
-
-/* Metres of crown between a place and the sun. */
+/* Metres of crown between a place and the sun; leaves without the ellipsoid are taken to stand on
+ * it, the stem below where it is. */
 float crown_path_m(wd_crown crown, vec3 rel)
 {
     vec3 q = (rel - crown.center_rel) / crown.radii_m;
-    float outside = length(q);
-    q /= max(outside, 1.0);
+    q /= q.z < -1.0 ? 1.0 : max(length(q), 1.0);
     vec3 s = frame.sun_direction / crown.radii_m;
     float ss = dot(s, s), qs = dot(q, s);
-    return (sqrt(max(qs * qs - ss * (dot(q, q) - 1.0), 0.0)) - qs) / ss;
+    float root = sqrt(max(qs * qs - ss * (dot(q, q) - 1.0), 0.0));
+    return (max(root - qs, 0.0) - max(-root - qs, 0.0)) / ss;
 }
 
-/* Share of the sun left after that way: half the leaf area a ray meets stands across it (spherical
- * leaf angles), and a crown holds some 4 m2 of leaves over each m2 of ground, somewhat clumped. */
+/* Of the light, a metre of crown takes this share: half the leaf area a ray meets stands across it
+ * (spherical leaf angles), and a crown holds some 4 m2 of leaves over each m2 of ground, somewhat
+ * clumped. */
+float crown_per_m(wd_crown crown)
+{
+    return 0.5 * 4.0 * 0.85 / (2.0 * crown.radii_m.z) + 0.06;
+}
+
+/* Share of the sun left after that way. */
 float crown_through(wd_crown crown, float path_m)
 {
-    float per_m = 0.5 * 4.0 * 0.85 / (2.0 * crown.radii_m.z) + 0.06;
-    return exp(-per_m * path_m);
+    return exp(-crown_per_m(crown) * path_m);
+}
+
+/* A card's picture is flat: its places are moved along the view ray to where the sun is as strong
+ * as on the mean of what the ray may meet. Light falls off with e^-t; the eye's ray meets leaves and
+ * wood half as often again (chosen by the brightness of cards beside that of meshes): with the
+ * density 1.5 e^-1.5t / (1 - e^-1.5x) on a way of x. The mean of e^-t over that is
+ * 0.6 (1 - e^-2.5x) / (1 - e^-1.5x). */
+vec3 crown_card_place(wd_crown crown, vec3 direction)
+{
+    vec3 s = direction / crown.radii_m;
+    float ss = dot(s, s), nearest_m = dot(crown.center_rel / crown.radii_m, s) / ss;
+    vec3 off = (direction * nearest_m - crown.center_rel) / crown.radii_m;
+    float half_m = sqrt(max(1.0 - dot(off, off), 0.0) / ss);
+    float from_m = max(nearest_m - half_m, 0.1);
+    float way_m = max(nearest_m + half_m - from_m, 0.0), x = way_m * crown_per_m(crown);
+    float left = 0.6 * (1.0 - exp(-2.5 * x)) / (1.0 - exp(-1.5 * max(x, 1e-3)));
+    float share = x < 0.02 ? 0.5 : -log(left) / x;
+    return direction * (from_m + share * way_m);
 }
 
 /* The crown's outward direction at a place: the smooth normal of its ellipsoid. */

@@ -108,7 +108,7 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
     float mapped = cascade == 0u && !card ? 0.6 : 0.0;
     wd_place place;
-    place.rel = card ? crown_card_place(crown, pixel.rel) : pixel.rel;
+    place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
     float path_m = crown_path_m(crown, place.rel);
     float through = crown_through(crown, path_m) * min(pixel.openness * 1.2, 1.0);
     place.own = mix(through, 1.0, mapped);

@@ -26,7 +26,7 @@ void main()
     vec3 uv = vec3(in_uv, card_layer(in_more.x));
     vec4 albedo = textureLod(card_albedo, uv, lod);
     float opacity = card_opacity(albedo.a, lod) * unpackUnorm4x8(in_card.y).a;
-    if (card_noise(in_uv, lod, in_more.y, frame.sample_index) >= opacity)
+    if (!card_shows(in_more.y, opacity, frame.sample_index))
         discard;
     card_surface(uv, lod, albedo, in_card, in_more.z);
 }

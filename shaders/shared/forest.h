@@ -11,7 +11,7 @@
 #endif
 
 /* A model's cards: three upright through the trunk's axis, a third of a half turn apart, and one
- * level at CARD_TOP of the height (crossed billboards, Guerrero 2006, section 4; the level one
+ * level in the middle of the crown (crossed billboards, Guerrero 2006, section 4; the level one
  * keeps crowns whole from above). */
 #define WD_CARD_WIDTH_TEXELS 128 /* of the finest mip */
 #define WD_CARD_HEIGHT_TEXELS 256
@@ -24,7 +24,6 @@
 #define WD_CARD_VERTICES 12  /* a tree */
 #define WD_UPRIGHT_VERTICES 8
 #define WD_LEVEL_CARD_SINE 0.25 /* of the angle above or below, at which the level card begins */
-#define WD_CARD_TOP 0.62
 /* For the sun: one card that faces it. */
 #define WD_SHADOW_CARD_VERTICES 4
 /* Trees that one draw of cards may hold: the length of the index pattern. */

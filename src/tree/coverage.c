@@ -102,7 +102,7 @@ static void find_factor(struct fit *fit, float wanted)
 
 void wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full)
 {
-    static const struct wd_vec3 towards[VIEWS] = {{0.96f, 0, 0.28f}, {0, 0.6f, 0.8f}};
+    static const struct wd_vec3 towards[VIEWS] = {{0.998f, 0, 0.07f}, {0, 0.77f, 0.64f}};
     if (reduced->wood_index_count == reduced->index_count)
         return;
     struct fit fit = {

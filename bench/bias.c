@@ -1,0 +1,211 @@
+#include "bias.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "scene/species.h"
+
+enum { MAX_TREES = 64 };
+
+const struct bias_form bias_forms[BIAS_FORMS] = {
+    {"full", "method=octree", "quality.mesh_distance_m=1000000",
+     "quality.reduced_distance_m=1000000", {false, false, false, false}},
+    {"reduced", "method=octree", "quality.mesh_distance_m=0",
+     "quality.reduced_distance_m=1000000", {false, true, false, false}},
+    {"cards", "method=octree", "quality.mesh_distance_m=0", "quality.reduced_distance_m=0",
+     {false, false, true, true}},
+    {"splats", "method=continuum", "quality.mesh_distance_m=0", "quality.reduced_distance_m=0",
+     {false, true, true, true}},
+};
+const int bias_height_px[BIAS_HEIGHTS] = {512, 128, 32, 8};
+static const int tree_counts[BIAS_HEIGHTS] = {1, 8, 32, MAX_TREES};
+/* 64 samples a pixel of the reference: squares of pictures that are so many times as fine. */
+static const int reference_zoom[BIAS_HEIGHTS] = {4, 8, 8, 8};
+static const int reference_shifts[BIAS_HEIGHTS] = {2, 1, 1, 1};
+static const int shifts[BIAS_HEIGHTS] = {1, 2, 4, 4}; /* squared: pictures a form */
+const double bias_elevation_deg[BIAS_VIEWS] = {4, 40};
+
+static bool write_scene(struct bias_stand *stand, const char *species)
+{
+    char path[80], root[1024];
+    snprintf(stand->folder, sizeof stand->folder, "/tmp/weald-lod-XXXXXX");
+    if (!getcwd(root, sizeof root) || !mkdtemp(stand->folder)) {
+        fprintf(stderr, "bench: no temporary directory can be made in /tmp\n");
+        return false;
+    }
+    snprintf(path, sizeof path, "%s/trees.csv", stand->folder);
+    snprintf(stand->scene, sizeof stand->scene, "%s/scene.json", stand->folder);
+    FILE *trees = fopen(path, "w"), *scene = fopen(stand->scene, "w");
+    bool ok = trees && scene;
+    double side = 2 * MAX_TREES * stand->spacing_m;
+    if (ok) {
+        fprintf(trees, "x_m,y_m,species,height_m\n");
+        for (int i = 0; i < MAX_TREES; i++)
+            fprintf(trees, "%.2f,%.2f,tree,%.2f\n",
+                    0.5 * side + (i - 0.5 * (MAX_TREES - 1)) * stand->spacing_m, 0.5 * side,
+                    stand->height_m);
+        fprintf(scene, "{\"name\": \"lod\", \"variants\": 2,\n"
+                       "\"terrain\": {\"kind\": \"flat\", \"size_m\": [%g, %g], \"cell_m\": 100},\n"
+                       "\"species\": {\"tree\": \"%s/%s\"},\n"
+                       "\"inventories\": [{\"file\": \"trees.csv\", \"frame\": \"local\"}],\n"
+                       "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40},\n"
+                       "\"wind\": {\"speed_mps\": 0}, \"fog\": {\"visibility_m\": 10000000},\n"
+                       "\"quality\": {\"shadow_distance_m\": 1, \"shadow_size\": 16}}\n",
+                side, side, root, species);
+    }
+    ok = (!trees || fclose(trees) == 0) && (!scene || fclose(scene) == 0) && ok;
+    if (!ok)
+        fprintf(stderr, "bench: %s cannot be written\n", stand->folder);
+    return ok;
+}
+
+void bias_stand_finish(struct bias_stand *stand)
+{
+    char path[80];
+    snprintf(path, sizeof path, "%s/trees.csv", stand->folder);
+    unlink(path);
+    unlink(stand->scene);
+    rmdir(stand->folder);
+}
+
+/* The camera that shows the middle trees of the row `height_px` tall, shifted by parts of one of
+ * its pixels; far away, so that all are seen alike. */
+static struct wd_render_params view_of(const struct bias_stand *stand, int height, int view,
+                                       int zoom, double shift_x, double shift_y)
+{
+    const double pi = 3.14159265358979323846;
+    double pixels_per_m = zoom * bias_height_px[height] / stand->height_m;
+    double elevation = bias_elevation_deg[view] * pi / 180, distance = 120 * stand->height_m;
+    double wide = tree_counts[height] * stand->spacing_m;
+    double tall = 1.15 * (stand->height_m * cos(elevation) + stand->spacing_m * sin(elevation));
+    struct wd_render_params params = {.samples = 1, .layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID};
+    params.width = (uint32_t)ceil(wide * pixels_per_m / zoom) * (uint32_t)zoom;
+    params.height = (uint32_t)ceil(tall * pixels_per_m / zoom) * (uint32_t)zoom;
+    double middle = MAX_TREES * stand->spacing_m, x = shift_x / pixels_per_m;
+    double y = shift_y / pixels_per_m;
+    params.camera = (struct wd_camera){
+        .position_m = {middle + x, middle - distance * cos(elevation) - y * sin(elevation),
+                       0.5 * stand->height_m + distance * sin(elevation) + y * cos(elevation)},
+        .pitch_rad = -elevation,
+        .fov_rad = 2 * atan(0.5 * params.height / pixels_per_m / distance),
+    };
+    return params;
+}
+
+static bool show(struct bias_shown *shown, struct wd_renderer *renderer,
+                 const struct wd_render_params *params)
+{
+    struct wd_picture picture;
+    if (wd_renderer_render(renderer, params, &picture) != WD_OK)
+        return false;
+    size_t pixels = (size_t)params->width * params->height;
+    *shown = (struct bias_shown){.width = params->width, .height = params->height,
+                            .luminance = wd_alloc_array(pixels, sizeof(float))};
+    for (size_t i = 0; i < pixels; i++) {
+        if (!picture.tree_id[i])
+            continue;
+        const float *c = picture.color + 3 * i;
+        shown->luminance[i] = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+        shown->covered += 1;
+        shown->radiance += (double)shown->luminance[i];
+    }
+    shown->radiance /= shown->covered > 0 ? shown->covered : 1;
+    wd_picture_finish(&picture);
+    return true;
+}
+
+static void add_reference(struct bias_shown *sum, struct bias_shown *part, int zoom, int pictures)
+{
+    size_t z = (size_t)zoom;
+    float share = 1.0f / (float)(zoom * zoom * pictures);
+    sum->width = part->width / (uint32_t)zoom;
+    sum->height = part->height / (uint32_t)zoom;
+    if (!sum->luminance)
+        sum->luminance = wd_alloc_array((size_t)sum->width * sum->height, sizeof(float));
+    for (size_t y = 0; y < part->height; y++)
+        for (size_t x = 0; x < part->width; x++)
+            sum->luminance[y / z * sum->width + x / z] +=
+                part->luminance[y * part->width + x] * share;
+    sum->radiance += part->radiance * part->covered;
+    sum->covered += part->covered;
+    free(part->luminance);
+}
+
+bool bias_show_reference(struct bias_shown *sum, struct wd_renderer *renderer,
+                           const struct bias_stand *stand, int height, int view)
+{
+    int side = reference_shifts[height], count = side * side, zoom = reference_zoom[height];
+    *sum = (struct bias_shown){0};
+    for (int i = 0; i < count; i++) {
+        struct bias_shown part;
+        double x = (i % side + 0.5) / side - 0.5, y = (i / side + 0.5) / side - 0.5;
+        struct wd_render_params params = view_of(stand, height, view, zoom, x, y);
+        if (!show(&part, renderer, &params))
+            return false;
+        add_reference(sum, &part, zoom, count);
+    }
+    sum->radiance /= sum->covered > 0 ? sum->covered : 1;
+    sum->covered /= zoom * zoom * count;
+    return true;
+}
+
+/* Root mean square of what one picture differs by, over the mean radiance of trees. */
+static double picture_error(const struct bias_shown *form, const struct bias_shown *reference)
+{
+    double sum = 0, pixels = 0;
+    for (size_t i = 0; i < (size_t)form->width * form->height; i++) {
+        double difference = (double)(form->luminance[i] - reference->luminance[i]);
+        sum += difference * difference;
+        pixels += form->luminance[i] > 0 || reference->luminance[i] > 0;
+    }
+    return sqrt(sum / fmax(pixels, 1)) / fmax(reference->radiance, 1e-12);
+}
+
+bool bias_measure(struct bias *bias, struct wd_renderer *renderer, const struct bias_stand *stand,
+                    int height, int view, const struct bias_shown *reference)
+{
+    double covered = 0, radiance = 0, error = 0;
+    int side = shifts[height], count = side * side;
+    for (int i = 0; i < count; i++) {
+        struct bias_shown shown;
+        struct wd_render_params params =
+            view_of(stand, height, view, 1, (double)(i % side) / side, (double)(i / side) / side);
+        if (!show(&shown, renderer, &params))
+            return false;
+        if (i == 0)
+            error = picture_error(&shown, reference);
+        covered += shown.covered;
+        radiance += shown.covered * shown.radiance;
+        free(shown.luminance);
+    }
+    radiance /= covered > 0 ? covered : 1;
+    bias->coverage_pct = 100 * (covered / count / reference->covered - 1);
+    bias->radiance_pct = 100 * (radiance / reference->radiance - 1);
+    bias->error_pct = 100 * error;
+    return true;
+}
+
+bool bias_stand_init(struct bias_stand *stand, const char *path)
+{
+    struct wd_arena arena = {0};
+    struct wd_species species;
+    *stand = (struct bias_stand){0};
+    if (!wd_species_load(&species, path, &arena, NULL))
+        return false;
+    stand->height_m = 0.8 * (double)species.typical_height_m;
+    stand->spacing_m = 1.6 * stand->height_m;
+    wd_arena_finish(&arena);
+    return write_scene(stand, path);
+}
+
+struct wd_forest *bias_forest(const struct bias_stand *stand, const struct bias_form *form)
+{
+    const char *const settings[] = {form->method, form->mesh_m, form->reduced_m, NULL};
+    const struct wd_forest_params params = {.scene_path = stand->scene, .settings = settings};
+    struct wd_forest *forest = NULL;
+    return wd_forest_create(&forest, &params) == WD_OK ? forest : NULL;
+}
