@@ -106,7 +106,7 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     bool card = pixel.material == WD_MATERIAL_CARD;
     vec3 eye = -pixel.direction;
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
-    float mapped = cascade == 0u && !card ? 0.6 : 0.0;
+    float mapped = cascade == 0u && !card ? 0.75 : 0.0;
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
     float path_m = crown_path_m(crown, place.rel);
@@ -119,7 +119,7 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     place.sides *= mix(sunlit_seen(eye), 1.0, mapped);
     place.transmittance = model.transmittance;
     place.gloss = leaf_gloss(pixel, model.roughness, near) + 0.010;
-    place.wax = 0.020;
+    place.wax = 0.024;
     place.sky = mix(1.05, 0.80, smoothstep(0.0, 0.5, eye.z));
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     return place;
