@@ -43,7 +43,7 @@ vec2 leaf_cloud(float cosine)
 float sunlit_seen(vec3 eye)
 {
     float apart = angle_of(dot(eye, frame.sun_direction));
-    return mix(0.95, 0.40, smoothstep(0.0, 0.5, eye.z)) + 1.35 * exp(-3.2 * apart);
+    return mix(0.95, 0.33, smoothstep(0.0, 0.5, eye.z)) + 1.55 * exp(-2.7 * apart);
 }
 
 /* One leaf with its own normal: which side the sun and the eye are on. */
