@@ -7,6 +7,7 @@
 
 #include "base/color.h"
 #include "base/memory.h"
+#include "shared/hash.h"
 #include "tree/import_parts.h"
 
 static float edge(const float a[2], const float b[2], float x, float y)
@@ -38,18 +39,37 @@ static void mark_triangle(uint8_t *used, uint32_t size, float corner[3][2])
     }
 }
 
+/* Leaves of a tree share their place on the texture: what was marked lately, by hash. */
+enum { MARKED = 4096 };
+
+static bool newly_marked(uint32_t (*marked)[3], const uint32_t uv[3])
+{
+    uint32_t *slot = marked[wd_hash2(wd_hash2(uv[0], uv[1]), uv[2]) % MARKED];
+    if (memcmp(slot, uv, sizeof *marked) == 0)
+        return false;
+    memcpy(slot, uv, sizeof *marked);
+    return true;
+}
+
 static void mark(uint8_t *used, uint32_t size, const struct wd_tree_mesh *mesh, uint32_t begin,
                  uint32_t end)
 {
+    uint32_t(*marked)[3] = wd_alloc_array(MARKED, sizeof *marked);
     for (uint32_t i = begin; i + 2 < end; i += 3) {
         float corner[3][2];
+        uint32_t uv[3];
+        for (uint32_t k = 0; k < 3; k++)
+            uv[k] = mesh->vertices[mesh->indices[i + k]].uv;
+        if (!newly_marked(marked, uv))
+            continue;
         for (uint32_t k = 0; k < 3; k++) {
-            wd_unpack_uv(mesh->vertices[mesh->indices[i + k]].uv, corner[k]);
+            wd_unpack_uv(uv[k], corner[k]);
             corner[k][0] *= (float)size;
             corner[k][1] *= (float)size;
         }
         mark_triangle(used, size, corner);
     }
+    free(marked);
 }
 
 /* Fills `from` (weight in the fourth value) by way of a square of half its side. */
