@@ -110,7 +110,8 @@ grep -q 'no window can be opened' "$scratch/log" || fail "no display: no message
 echo "ok   no display"
 
 mkfifo "$scratch/display"
-Xvfb -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 3>"$scratch/display" 2>/dev/null &
+# Without -noreset it starts anew when the last window closes, and refuses whoever comes then.
+Xvfb -noreset -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 3>"$scratch/display" 2>/dev/null &
 server=$!
 read -r number <"$scratch/display"
 DISPLAY=:$number
