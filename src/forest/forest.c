@@ -303,7 +303,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
               upload_trees(forest, gpu) && upload_fades(forest, gpu) &&
               make_card_pattern(&forest->card_indices, gpu) &&
               wd_sampler_init(&forest->look_sampler, gpu, WD_SAMPLER_TRILINEAR_REPEAT) &&
-              wd_sampler_init(&forest->card_sampler, gpu, WD_SAMPLER_LINEAR_CLAMP) &&
+              wd_sampler_init(&forest->card_sampler, gpu, WD_SAMPLER_MAGNIFY_CLAMP) &&
               wd_sampler_init(&forest->point_sampler, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
               (forest->model_count == 0 || prepare(&work, gpu));
     for (uint32_t i = 0; i < forest->model_count; i++)

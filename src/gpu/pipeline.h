@@ -78,6 +78,7 @@ void wd_pipeline_finish(struct wd_pipeline *pipeline, struct wd_gpu *gpu);
 enum wd_sampler_kind {
     WD_SAMPLER_NEAREST_CLAMP,
     WD_SAMPLER_LINEAR_CLAMP,
+    WD_SAMPLER_MAGNIFY_CLAMP, /* linear where a texel is larger than a pixel, else nearest */
     WD_SAMPLER_LINEAR_REPEAT,
     WD_SAMPLER_TRILINEAR_CLAMP,
     WD_SAMPLER_TRILINEAR_REPEAT,

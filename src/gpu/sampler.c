@@ -15,7 +15,7 @@ bool wd_sampler_init(VkSampler *sampler, struct wd_gpu *gpu, enum wd_sampler_kin
     const VkSamplerCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
         .magFilter = filter,
-        .minFilter = filter,
+        .minFilter = kind == WD_SAMPLER_MAGNIFY_CLAMP ? VK_FILTER_NEAREST : filter,
         .mipmapMode = trilinear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST,
         .addressModeU = address,
         .addressModeV = address,
