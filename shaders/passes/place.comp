@@ -12,7 +12,7 @@ layout(push_constant, scalar) uniform Push {
 };
 layout(set = 0, binding = 0, scalar) readonly buffer Layer {
     wd_place_layer place_layer;
-    wd_ground place_ground;
+    wd_place_ground place_ground;
 };
 layout(set = 0, binding = 1, scalar) readonly buffer Heights { float heights_m[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer Holes { uint holes[]; }; /* a byte a sample */

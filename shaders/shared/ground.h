@@ -26,7 +26,7 @@ uint WD_MULTIPLY_HIGH(uint a, uint b)
 
 #ifdef __STDC_VERSION__
 struct wd_ground_input {
-    struct wd_ground ground;
+    struct wd_place_ground ground;
     const float *height_m;
     const uint8_t *hole; /* NULL where has_holes is 0 */
 };

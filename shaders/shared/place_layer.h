@@ -17,7 +17,7 @@ struct wd_axis {
     uint32_t inverse, shift; /* shift at most 31 */
 };
 
-struct wd_ground {
+struct wd_place_ground {
     int32_t extent_mm[2];    /* east, north; the ground is where 0 <= x, y <= extent */
     uint32_t width, height;  /* samples, at least 2 each; row 0 in the south */
     WD_STRUCT wd_axis axis;  /* cells of the grid */

@@ -148,11 +148,13 @@ enum wd_result wd_file_check(const char *path, const char *data_dir, const struc
 
 char *wd_schema_text(const char *kind)
 {
-    if (strcmp(kind, "scene") == 0)
-        return wd_keys_schema(&wd_scene_keys, "scene.schema.json");
-    if (strcmp(kind, "species") == 0)
-        return wd_keys_schema(&wd_species_keys, "species.schema.json");
-    if (strcmp(kind, "model") == 0)
-        return wd_keys_schema(&wd_species_model_keys, "model.schema.json");
+    static const struct {
+        const char *name;
+        const struct wd_keys *table;
+    } kinds[] = {
+        {"scene", &wd_scene_keys}, {"species", &wd_species_keys}, {"model", &wd_species_model_keys}};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (strcmp(kind, kinds[i].name) == 0)
+            return wd_keys_schema(kinds[i].table, kind);
     return NULL;
 }

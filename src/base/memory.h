@@ -11,7 +11,8 @@ void *wd_alloc(size_t size);                 /* zeroed; free() it; size 0 gives 
 void *wd_alloc_array(size_t count, size_t element_size); /* zeroed, overflow-checked */
 void *wd_realloc(void *block, size_t size);
 char *wd_strdup(const char *text);
-char *wd_format(const char *format, ...) __attribute__((format(printf, 1, 2))); /* free() it */
+/* free() it */
+char *wd_format(const char *format, ...) __attribute__((format(printf, 1, 2), nonnull(1)));
 
 /* Grows `*items` so that one more element fits: doubles `*capacity` when count == capacity. */
 void *wd_grow(void *items, size_t count, size_t *capacity, size_t element_size);

@@ -120,7 +120,7 @@ struct wd_keys_input {
 bool wd_keys_read_input(const struct wd_keys *table, const struct wd_keys_input *input,
                         struct wd_arena *arena, const struct wd_log *log, void *object);
 
-/* The JSON Schema (draft 2020-12) of a table, as text; free() it. */
-char *wd_keys_schema(const struct wd_keys *table, const char *id);
+/* The JSON Schema (draft 2020-12) of a table, as text; its $id is urn:weald:NAME. free() it. */
+char *wd_keys_schema(const struct wd_keys *table, const char *name);
 
 #endif

@@ -142,12 +142,12 @@ static json_t *table_schema(const struct wd_keys *table, struct tables *tables)
     return schema;
 }
 
-char *wd_keys_schema(const struct wd_keys *table, const char *id)
+char *wd_keys_schema(const struct wd_keys *table, const char *name)
 {
     struct tables tables = {0};
-    json_t *schema = json_pack("{s:s, s:s, s:s}", "$schema",
-                               "https://json-schema.org/draft/2020-12/schema", "$id", id, "title",
-                               table->title);
+    json_t *schema = json_pack("{s:s, s:s+, s:s}", "$schema",
+                               "https://json-schema.org/draft/2020-12/schema", "$id", "urn:weald:",
+                               name, "title", table->title);
     json_t *root = table_schema(table, &tables);
     json_object_set_new(json_object_get(root, "properties"), "$schema",
                         json_pack("{s:s, s:s}", "type", "string", "description",
@@ -156,9 +156,9 @@ char *wd_keys_schema(const struct wd_keys *table, const char *id)
     json_decref(root);
     json_t *definitions = json_object();
     for (size_t i = 0; i < tables.count; i++) {
-        char *name = definition_name(tables.items[i]);
-        json_object_set_new(definitions, name, table_schema(tables.items[i], &tables));
-        free(name);
+        char *definition = definition_name(tables.items[i]);
+        json_object_set_new(definitions, definition, table_schema(tables.items[i], &tables));
+        free(definition);
     }
     json_object_set_new(schema, "$defs", definitions);
     char *text = json_dumps(schema, JSON_INDENT(2) | JSON_REAL_PRECISION(9));

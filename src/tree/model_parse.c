@@ -31,16 +31,15 @@ struct parse {
     uint64_t offsets[7];
 };
 
-static _Noreturn void give_up(struct parse *parse, const char *format, ...)
+static _Noreturn void give_up(const struct parse *parse, const char *format, ...)
 {
+    struct wd_model_header header = {0}; /* not ready */
     va_list args;
     va_start(args, format);
-    vsnprintf(parse->header.message, sizeof parse->header.message, format, args);
+    vsnprintf(header.message, sizeof header.message, format, args);
     va_end(args);
-    parse->header.ready = 0;
     if (ftruncate(parse->file, 0) == 0 &&
-        pwrite(parse->file, &parse->header, sizeof parse->header, 0) ==
-            (ssize_t)sizeof parse->header)
+        pwrite(parse->file, &header, sizeof header, 0) == (ssize_t)sizeof header)
         _exit(0);
     _exit(1);
 }

@@ -91,7 +91,7 @@ static bool check_place(struct planting *planting, const struct wd_inventory_tre
                         const double at_mm[2], bool *stands)
 {
     const struct wd_inventory *inventory = planting->inventory;
-    const struct wd_ground *ground = &planting->ground.ground;
+    const struct wd_place_ground *ground = &planting->ground.ground;
     *stands = true;
     bool inside = at_mm[0] >= 0.0 && at_mm[1] >= 0.0 && at_mm[0] <= ground->extent_mm[0] &&
                   at_mm[1] <= ground->extent_mm[1];

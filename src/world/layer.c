@@ -103,7 +103,7 @@ static bool set_cells(struct wd_placement *placement, const struct wd_log *log)
 {
     struct wd_place_layer *to = &placement->input.layer;
     const struct wd_scene_layer *from = placement->layer;
-    const struct wd_ground *ground = &placement->input.ground.ground;
+    const struct wd_place_ground *ground = &placement->input.ground.ground;
     if (from->placement == WD_PLACE_CANOPY)
         return true;
     if (!(from->spacing_m >= 0.01 && from->spacing_m <= 100000.0))
@@ -121,7 +121,7 @@ static bool set_layer(struct wd_placement *placement, const struct wd_placement_
 {
     struct wd_place_layer *to = &placement->input.layer;
     const struct wd_scene_layer *from = placement->layer;
-    const struct wd_ground *ground = &placement->input.ground.ground;
+    const struct wd_place_ground *ground = &placement->input.ground.ground;
     to->key = wd_hash2(params->seed, (uint32_t)index);
     to->extent_mm[0] = ground->extent_mm[0];
     to->extent_mm[1] = ground->extent_mm[1];

@@ -65,7 +65,7 @@ bool wd_ground_input_init(struct wd_ground_input *input, const struct wd_terrain
     if (!(terrain->cell_m >= 0.002))
         return wd_error(log, "terrain: samples %g m apart, at least 0.002 m are needed",
                         terrain->cell_m);
-    input->ground = (struct wd_ground){
+    input->ground = (struct wd_place_ground){
         .extent_mm = {(int32_t)x_mm, (int32_t)y_mm},
         .width = terrain->width,
         .height = terrain->height,

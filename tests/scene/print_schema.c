@@ -10,7 +10,7 @@ int main(int argc, char **argv)
     for (size_t i = 0; argc == 2 && i < SCHEMA_COUNT; i++) {
         if (strcmp(argv[1], schemas[i].name) != 0)
             continue;
-        char *text = wd_keys_schema(schemas[i].table, schemas[i].id);
+        char *text = wd_keys_schema(schemas[i].table, schemas[i].name);
         puts(text);
         free(text);
         return 0;

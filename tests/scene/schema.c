@@ -19,7 +19,7 @@ static void published_schemas_follow_the_tables(void **state)
         char *path = wd_format("%s/%s", docs_dir, schemas[i].file), *published;
         size_t size;
         assert_true(wd_file_read(path, 1 << 24, NULL, &published, &size));
-        char *made = wd_keys_schema(schemas[i].table, schemas[i].id);
+        char *made = wd_keys_schema(schemas[i].table, schemas[i].name);
         if (size != strlen(made) + 1 || strncmp(made, published, size - 1) != 0)
             fail_msg("%s differs from the tables; make it anew: scene-print-schema %s > %s", path,
                      schemas[i].name, path);
@@ -55,7 +55,7 @@ static void every_reference_has_its_definition(void **state)
 {
     (void)state;
     for (size_t i = 0; i < SCHEMA_COUNT; i++) {
-        char *text = wd_keys_schema(schemas[i].table, schemas[i].id);
+        char *text = wd_keys_schema(schemas[i].table, schemas[i].name);
         json_t *schema = json_loads(text, 0, NULL);
         json_t *definitions = json_object_get(schema, "$defs");
         static const char reference[] = "\"$ref\": \"#/$defs/";

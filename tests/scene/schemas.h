@@ -5,14 +5,12 @@
 #include "scene/scene.h"
 
 static const struct {
-    const char *name, *file, *id;
+    const char *name, *file;
     const struct wd_keys *table;
 } schemas[] = {
-    {"scene", "scene.schema.json", "https://weald.invalid/scene.schema.json", &wd_scene_keys},
-    {"species", "species.schema.json", "https://weald.invalid/species.schema.json",
-     &wd_species_keys},
-    {"model", "model.schema.json", "https://weald.invalid/model.schema.json",
-     &wd_species_model_keys},
+    {"scene", "scene.schema.json", &wd_scene_keys},
+    {"species", "species.schema.json", &wd_species_keys},
+    {"model", "model.schema.json", &wd_species_model_keys},
 };
 enum { SCHEMA_COUNT = sizeof schemas / sizeof *schemas };
 

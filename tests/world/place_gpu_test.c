@@ -81,7 +81,7 @@ static void plant_there(struct gpu_test *test, const struct stage *stage, uint32
 {
     struct {
         struct wd_place_layer layer;
-        struct wd_ground ground;
+        struct wd_place_ground ground;
     } told = {stage->placement.input.layer, stage->placement.input.ground.ground};
     size_t samples = (size_t)stage->terrain.width * stage->terrain.height;
     uint32_t slots = told.layer.count_size;
