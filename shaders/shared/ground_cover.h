@@ -4,6 +4,7 @@
 #define WD_SHARED_GROUND_COVER_H
 
 #include "shared/canopy.h"
+#include "shared/ground_litter.h"
 #include "shared/noise.h"
 #include "shared/snow.h"
 
@@ -18,24 +19,23 @@ struct wd_ground_noise {
     float broad;  /* 131 m */
     float middle; /* 16 m */
     float small_; /* 2 m */
-    float fine;   /* of the size of a few pixels, at most half a metre */
+    float fine;   /* 0.5 m and less */
     float bump_east, bump_north; /* slope that the smaller ones add */
 };
 
-/* Detail at whatever size pixels show best: three octaves that follow the footprint, each coming
- * in and going out smoothly. */
+/* Tufts, clods and crumbs: 0.5 m, 0.13 m and 32 mm. */
 WD_FUNC WD_VECTOR wd_fine_noise(WD_FRAME_IN float east_m, float north_m, float footprint_m)
 {
-    float octave = WD_CLAMP(WD_LOG2(footprint_m * 1500.0f), 3.0f, 8.0f);
-    int32_t bits = WD_INT(octave);
-    float rest = octave - WD_FLOAT(bits);
     WD_VECTOR fine = WD_V3(0.0f, 0.0f, 0.0f);
-    for (int32_t i = 0; i < 3; i++) {
-        float share = i == 0 ? 1.0f - rest : i == 1 ? 1.0f : rest;
-        WD_STRUCT wd_lattice at = wd_lattice_at(WD_FRAME_PASS east_m, north_m, bits + i);
-        fine = wd_v3_add(fine, wd_v3_scale(wd_gradient_noise(at, 4u), share));
+    int32_t octaves = footprint_m < 0.0192f ? 3 : footprint_m < 0.0768f ? 2
+                      : footprint_m < 0.3072f ? 1 : 0; /* none that would be of no weight */
+    for (int32_t i = 0; i < octaves; i++) {
+        int32_t bits = 9 - 2 * i;
+        WD_STRUCT wd_lattice at = wd_lattice_at(WD_FRAME_PASS east_m, north_m, bits);
+        fine = wd_v3_add(fine, wd_v3_scale(wd_gradient_noise(at, 4u),
+                                           0.6f * wd_noise_share(footprint_m, bits)));
     }
-    return wd_v3_scale(fine, wd_noise_share(footprint_m, 9));
+    return fine;
 }
 
 WD_FUNC WD_STRUCT wd_ground_noise wd_ground_noise_at(WD_FRAME_IN float east_m, float north_m,
@@ -50,9 +50,36 @@ WD_FUNC WD_STRUCT wd_ground_noise wd_ground_noise_at(WD_FRAME_IN float east_m, f
                * wd_noise_share(footprint_m, 14);
     n.small_ = wave.x;
     n.fine = fine.x;
-    n.bump_east = wave.y * 0.05f + fine.y * 0.22f;
-    n.bump_north = wave.z * 0.05f + fine.z * 0.22f;
+    n.bump_east = wave.y * 0.05f + fine.y * 0.18f;
+    n.bump_north = wave.z * 0.05f + fine.z * 0.18f;
     return n;
+}
+
+/* What lies strewn at a place, and how plainly pixels of this size show it, 0..1. */
+struct wd_ground_strewn {
+    WD_STRUCT wd_strewn_hit hit;
+    float plain;
+};
+
+/* From this footprint on, in metres, leaves on the ground are no more than its mean colour. */
+#define WD_STREWN_NONE_M 0.045f
+
+/* Under trees leaves, in meadows blades; `shade` as in wd_soil_albedo. */
+WD_FUNC WD_STRUCT wd_ground_strewn wd_ground_strewn_at(WD_FRAME_IN float east_m, float north_m,
+                                                       float shade, float footprint_m)
+{
+    WD_STRUCT wd_strewn things;
+    bool leaves = shade > 0.5f;
+    things.bits = 6;
+    things.layers = footprint_m < WD_STREWN_NONE_M ? 4 : 0;
+    things.half_length = leaves ? 0.55f : 0.75f;
+    things.half_width = leaves ? 0.30f : 0.065f;
+    things.chance = leaves ? 0.8f : 0.95f;
+    things.salt = leaves ? 31u : 32u;
+    WD_STRUCT wd_ground_strewn strewn;
+    strewn.hit = wd_strewn_at(WD_FRAME_PASS east_m, north_m, things);
+    strewn.plain = 1.0f - WD_SMOOTH(0.4f * WD_STREWN_NONE_M, WD_STREWN_NONE_M, footprint_m);
+    return strewn;
 }
 
 /* Layers of rock: bands by height, tilted a little, broken by noise. */
@@ -67,28 +94,56 @@ WD_FUNC WD_VECTOR wd_rock_albedo(WD_FRAME_IN float height_m, WD_STRUCT wd_ground
     return wd_v3_mul(wd_v3_scale(WD_FRAME_V3(rock), WD_MAX(stain, 0.3f)), hue);
 }
 
-/* Meadow: dry on shoulders and knolls, lush in hollows; tufts near the eye. */
+/* Meadow: dry on shoulders and knolls, lush in hollows; blades and the thatch between them near the
+ * eye. */
 WD_FUNC WD_VECTOR wd_grass_albedo(WD_FRAME_IN float height_m, float steep,
-                                  WD_STRUCT wd_ground_noise n)
+                                  WD_STRUCT wd_ground_noise n, WD_STRUCT wd_ground_strewn strewn)
 {
     float high = WD_SMOOTH(-400.0f, 200.0f, height_m - WD_FRAME(tree_line_m));
-    float dry = 0.42f + 0.8f * n.broad + 0.6f * n.middle + 0.35f * n.small_ + 0.5f * steep
-                + 0.5f * high;
-    WD_VECTOR straw = wd_v3_mul(WD_FRAME_V3(grass), WD_V3(1.60f, 1.14f, 1.10f));
-    WD_VECTOR lush = wd_v3_mul(WD_FRAME_V3(grass), WD_V3(0.74f, 0.88f, 0.84f));
+    float dry = 0.42f + 0.8f * n.broad + 0.7f * n.middle + 0.55f * n.small_ + 0.4f * n.fine
+                + 0.5f * steep + 0.5f * high;
+    bool blade = strewn.hit.rank > 0.0f;
+    dry += strewn.plain * (blade ? 0.7f * strewn.hit.random - 0.4f : 0.25f);
+    WD_VECTOR straw = wd_v3_mul(WD_FRAME_V3(grass), WD_V3(1.55f, 1.14f, 1.30f));
+    WD_VECTOR lush = wd_v3_mul(WD_FRAME_V3(grass), WD_V3(0.80f, 0.86f, 0.80f));
+    float bright = blade ? 1.35f - 0.35f * strewn.hit.depth : 0.82f;
     return wd_v3_scale(wd_v3_mix(lush, straw, WD_CLAMP(dry, 0.0f, 1.0f)),
-                       WD_MAX(1.0f + 0.75f * n.fine + 0.22f * n.small_, 0.2f));
+                       WD_MIX(1.0f, bright, strewn.plain)
+                           * WD_MAX(1.0f + 0.75f * n.fine + 0.4f * n.small_ + 0.15f * n.middle,
+                                    0.2f));
 }
 
-/* Under trees: needles and leaves, moss in the broad lows, bare earth between. */
-WD_FUNC WD_VECTOR wd_floor_albedo(WD_FRAME_IN WD_STRUCT wd_ground_noise n)
+/* Colour of one fallen leaf, old and dark or fresh and pale, or of the earth that none covers; the
+ * mean over all is the litter's. */
+WD_FUNC WD_VECTOR wd_leaf_litter(WD_FRAME_IN WD_STRUCT wd_strewn_hit hit)
 {
-    float moss = WD_SMOOTH(0.05f, 0.4f, n.middle + 0.6f * n.small_ + 0.3f * n.broad);
-    WD_VECTOR green = wd_v3_mul(wd_v3_mix(WD_FRAME_V3(litter), WD_FRAME_V3(grass), 0.75f),
-                                WD_V3(0.72f, 0.95f, 0.6f));
-    float earth = WD_SMOOTH(0.1f, 0.5f, n.small_ - 0.5f * n.middle);
+    float bright = 0.62f + 1.1f * hit.random * hit.random;
+    WD_VECTOR warm = WD_V3(1.08f, 0.98f, 0.86f), pale = WD_V3(0.98f, 1.02f, 1.12f);
+    WD_VECTOR hue = wd_v3_mix(warm, pale, wd_fract(hit.random * 7.0f));
+    bright *= 1.0f - 0.5f * hit.depth + 0.25f * WD_SMOOTH(0.8f, 1.0f, hit.rib);
+    WD_VECTOR leaf = wd_v3_scale(wd_v3_mul(WD_FRAME_V3(litter), hue), 1.30f * bright);
+    WD_VECTOR earth = wd_v3_scale(wd_v3_mix(WD_FRAME_V3(litter), WD_FRAME_V3(soil), 0.4f), 0.55f);
+    return hit.rank > 0.0f ? leaf : earth;
+}
+
+/* Under trees: needles and leaves, moss and low herbs in some hollows, bare earth between. */
+WD_FUNC WD_VECTOR wd_floor_albedo(WD_FRAME_IN WD_STRUCT wd_ground_noise n,
+                                  WD_STRUCT wd_ground_strewn strewn)
+{
+    float moss = WD_SMOOTH(0.12f, 0.5f, 0.5f * n.middle + 0.8f * n.small_ + 0.5f * n.fine
+                                            + 0.2f * n.broad);
+    WD_VECTOR green = wd_v3_mul(wd_v3_mix(WD_FRAME_V3(litter), WD_FRAME_V3(grass), 0.65f),
+                                WD_V3(0.62f, 0.74f, 0.6f));
+    float earth = WD_SMOOTH(0.1f, 0.5f, n.small_ - 0.5f * n.middle + 0.3f * n.fine);
     WD_VECTOR bare = wd_v3_mix(WD_FRAME_V3(litter), WD_FRAME_V3(soil), 0.6f * earth);
-    return wd_v3_scale(wd_v3_mix(bare, green, 0.7f * moss), WD_MAX(1.0f + 0.8f * n.fine, 0.2f));
+    bare = wd_v3_scale(bare, WD_MAX(1.0f + 0.55f * n.fine + 0.3f * n.small_, 0.2f));
+    WD_VECTOR leaves = wd_v3_scale(wd_leaf_litter(WD_FRAME_PASS strewn.hit),
+                                   WD_MAX(1.0f + 0.3f * n.fine + 0.3f * n.small_, 0.2f));
+    bare = wd_v3_mix(bare, leaves, strewn.plain);
+    green = wd_v3_scale(green, WD_MAX(1.0f + 0.8f * n.fine, 0.2f));
+    /* fallen leaves lie on moss as well */
+    float over = strewn.hit.rank > 0.0f && strewn.hit.depth < 0.4f ? strewn.plain : 0.0f;
+    return wd_v3_mix(bare, green, 0.6f * moss * (1.0f - over));
 }
 
 /* 0 below the snow line, 1 above; lower where it is level, none on walls. Fresh snow lies below the
@@ -102,25 +157,31 @@ WD_FUNC float wd_snow_share(WD_FRAME_IN float height_m, float steep, WD_STRUCT w
     return lies * (1.0f - WD_SMOOTH(0.9f, 1.4f, steep + 0.3f * n.small_ + 0.2f * n.middle));
 }
 
+/* 0 in the open .. 1 on the floor of a forest. */
+WD_FUNC float wd_floor_share(float cover, WD_STRUCT wd_ground_noise n)
+{
+    return WD_SMOOTH(0.15f, 0.6f, cover + 0.3f * n.small_ + 0.15f * n.middle + 0.1f * n.fine);
+}
+
 /* Grass, forest floor and worn earth, before rock, water's edge and snow. */
 WD_FUNC WD_VECTOR wd_soil_albedo(WD_FRAME_IN float height_m, float steep, float cover,
-                                 WD_STRUCT wd_ground_noise n)
+                                 WD_STRUCT wd_ground_noise n, WD_STRUCT wd_ground_strewn strewn)
 {
-    WD_VECTOR albedo = wd_grass_albedo(WD_FRAME_PASS height_m, steep, n);
-    float shade = WD_SMOOTH(0.25f, 0.75f, cover + 0.35f * n.small_ + 0.2f * n.middle);
-    albedo = wd_v3_mix(albedo, wd_floor_albedo(WD_FRAME_PASS n), shade);
+    WD_VECTOR albedo = wd_grass_albedo(WD_FRAME_PASS height_m, steep, n, strewn);
+    albedo = wd_v3_mix(albedo, wd_floor_albedo(WD_FRAME_PASS n, strewn), wd_floor_share(cover, n));
     float worn = WD_SMOOTH(0.55f, 1.0f, steep / WD_FRAME(rock_slope) + 0.5f * n.middle
                                         + 0.25f * n.small_);
-    worn = WD_MAX(worn, 0.55f * WD_SMOOTH(0.30f, 0.55f, n.middle + n.small_ * 0.8f - cover));
+    worn = WD_MAX(worn, 0.45f * WD_SMOOTH(0.30f, 0.55f, n.middle + n.small_ * 0.8f - cover));
     WD_VECTOR earth = wd_v3_scale(WD_FRAME_V3(soil),
                                   WD_MAX(1.0f + 0.6f * n.fine + 0.3f * n.small_, 0.3f));
     return wd_v3_mix(albedo, earth, 0.75f * worn);
 }
 
 WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float steep, float cover,
-                                   WD_STRUCT wd_ground_noise n, float footprint_m)
+                                   WD_STRUCT wd_ground_noise n, WD_STRUCT wd_ground_strewn strewn,
+                                   float footprint_m)
 {
-    WD_VECTOR albedo = wd_soil_albedo(WD_FRAME_PASS height_m, steep, cover, n);
+    WD_VECTOR albedo = wd_soil_albedo(WD_FRAME_PASS height_m, steep, cover, n, strewn);
     float over = (height_m - WD_FRAME(tree_line_m)) / 500.0f;
     float bare = WD_SMOOTH(0.85f, 1.15f, steep / WD_FRAME(rock_slope) + 0.30f * n.middle
                                          + 0.15f * n.small_ + WD_CLAMP(over, 0.0f, 0.9f));
@@ -130,8 +191,7 @@ WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float steep, floa
     albedo = wd_v3_mix(albedo, wd_v3_scale(WD_FRAME_V3(soil), 1.25f), 0.8f * beach);
     float wet = 1.0f - WD_SMOOTH(0.0f, 0.35f, above_water_m);
     albedo = wd_v3_scale(albedo, 1.0f - 0.45f * wet);
-    return wd_v3_mix(albedo, WD_SNOW_ALBEDO,
-                     wd_snow_share(WD_FRAME_PASS height_m, steep, n));
+    return albedo;
 }
 
 /* `rel`: the place; `slope`: rise over run east and north; `cover`: of the canopy, 0..1. */
@@ -141,13 +201,20 @@ WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, floa
 {
     float height_m = rel.z + WD_FLOAT(WD_FRAME(camera_mm[2])) * 0.001f;
     WD_STRUCT wd_ground_noise n = wd_ground_noise_at(WD_FRAME_PASS rel.x, rel.y, footprint_m);
+    WD_STRUCT wd_ground_strewn strewn = wd_ground_strewn_at(
+        WD_FRAME_PASS rel.x, rel.y, wd_floor_share(cover, n), footprint_m);
     float steep = WD_SQRT(slope_east * slope_east + slope_north * slope_north);
+    float snow = wd_snow_share(WD_FRAME_PASS height_m, steep, n);
+    WD_VECTOR albedo =
+        wd_ground_albedo(WD_FRAME_PASS height_m, steep, cover, n, strewn, footprint_m);
     WD_STRUCT wd_ground_look look;
-    look.albedo = wd_v3_clamp(
-        wd_ground_albedo(WD_FRAME_PASS height_m, steep, cover, n, footprint_m), 0.0f, 1.0f);
+    look.albedo = wd_v3_clamp(wd_v3_mix(albedo, WD_SNOW_ALBEDO, snow), 0.0f, 1.0f);
     float rough = 1.0f + WD_SMOOTH(0.7f, 1.2f, steep / WD_FRAME(rock_slope)) * 1.5f;
-    look.normal = wd_v3_normalize(WD_V3(-slope_east - n.bump_east * rough,
-                                        -slope_north - n.bump_north * rough, 1.0f));
+    rough *= 1.0f - 0.75f * snow; /* it fills what is uneven */
+    float tilt = strewn.plain * (1.0f - snow);
+    look.normal = wd_v3_normalize(
+        WD_V3(-slope_east - n.bump_east * rough - tilt * strewn.hit.tilt_east,
+              -slope_north - n.bump_north * rough - tilt * strewn.hit.tilt_north, 1.0f));
     look.openness = wd_canopy_openness(cover)
                     * (0.85f + 0.15f * WD_CLAMP(1.0f + 2.0f * n.fine, 0.0f, 1.0f));
     return look;

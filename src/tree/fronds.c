@@ -13,6 +13,7 @@ enum { MAX_FRONDS = 600 };
 
 struct frond {
     float azimuth_rad, rise_rad; /* over the horizon */
+    float aside_rad;             /* it leans so far off the way from the stem to its foot */
     float size_m, out_m;         /* length; distance of its foot from the stem's axis */
 };
 
@@ -51,7 +52,8 @@ static struct frond fern_frond(const struct wd_tree_form *form, float age, int n
     return frond;
 }
 
-/* Blades of all lengths from a disc, leaning outward the more the farther out they stand. */
+/* Blades of all lengths from a disc: a tuft's lean outward, the more the farther out they stand; a
+ * sward's, wider than a blade is long, any way. */
 static struct frond grass_blade(const struct wd_tree_form *form, float age,
                                 struct wd_random *random)
 {
@@ -64,6 +66,8 @@ static struct frond grass_blade(const struct wd_tree_form *form, float age,
     frond.size_m = 0.01f * species->leaf.length_cm * form->scale *
                    wd_random_range(random, 0.45f, 1.05f);
     frond.out_m = out * wd_maxf(0.5f * form->dbh_m, form->scale * species->stems.spread_m);
+    if (species->stems.spread_m > 0.01f * species->leaf.length_cm)
+        frond.aside_rad = (float)WD_PI * wd_random_signed(random);
     return frond;
 }
 
@@ -99,6 +103,7 @@ static void place_frond(struct wd_leaf *leaf, const struct wd_skeleton *skeleton
     if (form->species->form == WD_FORM_GRASS)
         foot.z = 0;
     leaf->position_m = wd_v3_mad(foot, out, frond.out_m);
+    out = level(frond.azimuth_rad + frond.aside_rad);
     leaf->axis = wd_v3_turn(out, WD_V3(0, 0, 1), frond.rise_rad);
     leaf->normal = wd_v3_turn(WD_V3(0, 0, 1), out, -frond.rise_rad);
     /* fronds twist a little about their own axis, blades a lot */

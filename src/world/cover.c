@@ -6,6 +6,7 @@
 #include "base/memory.h"
 
 enum { SIDE = 4 }; /* sample points along a cell's side */
+enum { LOWEST_CM = 150 }; /* lower ones are herbs and seedlings: no canopy over the ground */
 static const double most_cells = 4.0 * 1024.0 * 1024.0;
 
 /* Bit 4 * row + column of a cell is set where that sample point lies under a crown. */
@@ -53,7 +54,8 @@ void wd_cover_init(struct wd_world *world)
     size_t count = (size_t)samples.width * samples.height;
     samples.masks = wd_alloc_array(count, sizeof *samples.masks);
     for (size_t i = 0; i < world->tree_count; i++)
-        mark_disc(&samples, &world->trees[i]);
+        if ((world->trees[i].size & 0xffffu) >= LOWEST_CM)
+            mark_disc(&samples, &world->trees[i]);
     world->cover = wd_alloc(count);
     for (size_t i = 0; i < count; i++)
         world->cover[i] = (uint8_t)(__builtin_popcount(samples.masks[i]) * 255 / (SIDE * SIDE));

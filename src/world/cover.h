@@ -4,8 +4,9 @@
 
 #include "world/world.h"
 
-/* Fills world->cover, cover_width, cover_height and cover_cell_m from the trees: cells of 4 m, or
- * larger so that there are at most 4 million. Each cell is sampled at 4 x 4 points. */
+/* Fills world->cover, cover_width, cover_height and cover_cell_m from the trees of 1.5 m and
+ * higher: cells of 4 m, or larger so that there are at most 4 million. Each cell is sampled at
+ * 4 x 4 points. */
 void wd_cover_init(struct wd_world *world);
 
 #endif
