@@ -41,7 +41,7 @@ void wd_forest_destroy(struct wd_forest **forest);
 
 struct wd_forest_info {
     const char *name;
-    uint64_t tree_count;
+    uint64_t tree_count;       /* of layers planted on demand the number to be expected */
     uint32_t species_count, layer_count, inventory_count;
     double min_m[3], max_m[3]; /* local frame: ground and trees */
     double origin_m[2];        /* projected coordinates of local (0, 0) */
@@ -50,7 +50,7 @@ struct wd_forest_info {
     uint64_t hash;             /* equal worlds have equal hashes */
     uint32_t seed;
     uint32_t octant_count, octree_depth;
-    double terrain_cell_m, terrain_ha;
+    double terrain_cell_m;
 };
 
 /* Fills `*info`; its strings live as long as the forest. Thread-safe. */
@@ -77,7 +77,8 @@ struct wd_tree_info {
     double position_m[3];  /* local: the trunk's foot */
     double height_m, crown_diameter_m, yaw_rad;
 };
-/* The tree with this id (1..tree_count, as in the tree_id layer of a picture). Thread-safe. */
+/* The tree with this id (as in the tree_id layer of a picture; stored trees have 1, 2, ..., those of
+ * layers on demand the number of their cell after these, modulo 2^32). Thread-safe. */
 bool wd_forest_get_tree(const struct wd_forest *forest, uint32_t id, struct wd_tree_info *info);
 
 /* Height of the ground at a local place, metres; outside, that of the nearest edge. Thread-safe. */

@@ -12,6 +12,7 @@ layout(scalar, set = 0, binding = 3) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 4) writeonly buffer Visible { uint visible[]; };
 
 layout(scalar, set = 0, binding = 5) readonly buffer Pyramid { float pyramid[]; };
+layout(scalar, set = 0, binding = 6) readonly buffer Pages { uint pages[]; }; /* slots */
 
 #include "lib/frustum.glsl"
 #include "lib/pyramid.glsl"
@@ -40,7 +41,14 @@ void main()
 {
     uint index = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * 64u
                  + gl_LocalInvocationID.x;
-    if (index >= view.cluster_count)
+    if (index >= view.cluster_count + view.page_count * WD_CLUSTERS_A_PAGE)
+        return;
+    if (index >= view.cluster_count) {
+        uint at = index - view.cluster_count;
+        index = view.cluster_count + pages[at / WD_CLUSTERS_A_PAGE] * WD_CLUSTERS_A_PAGE
+                + at % WD_CLUSTERS_A_PAGE;
+    }
+    if (clusters[index].count == 0u)
         return;
     vec3 low = rel_of_mm(ivec3(clusters[index].min_mm[0], clusters[index].min_mm[1],
                                clusters[index].min_mm[2]));

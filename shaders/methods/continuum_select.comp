@@ -21,6 +21,7 @@ layout(scalar, set = 0, binding = 9) writeonly buffer Items { wd_splat_item item
 
 layout(scalar, set = 0, binding = 10) writeonly buffer WoodItems { wd_splat_item wood_items[]; };
 layout(scalar, set = 0, binding = 11) readonly buffer Pyramid { float pyramid[]; };
+layout(set = 0, binding = 12) uniform sampler2D slopes;
 
 #include "lib/frustum.glsl"
 #include "lib/pyramid.glsl"
@@ -28,11 +29,13 @@ layout(scalar, set = 0, binding = 11) readonly buffer Pyramid { float pyramid[];
 #include "lib/tree.glsl"
 
 /* Reach of crowns that lean and sway, as octree's selection has it. */
-bool tree_is_outside(wd_tree tree, vec3 foot)
+bool tree_is_outside(wd_tree tree, vec3 foot, float stretch)
 {
     float height_m = WD_TREE_HEIGHT_M(tree);
-    float reach = WD_TREE_CROWN_M(tree) * 0.75 + 0.1 * height_m + 0.5;
-    return box_is_outside(foot - vec3(reach, reach, 1.0), foot + vec3(reach, reach, 1.1 * height_m));
+    float reach = WD_TREE_CROWN_M(tree) * 0.75 * stretch + 0.1 * height_m + 0.5;
+    float below = stretch > 1.0 ? 1.0 + 0.5 * reach : 1.0;
+    return box_is_outside(foot - vec3(reach, reach, below),
+                          foot + vec3(reach, reach, 0.1 * height_m + height_m + below - 1.0));
 }
 
 /* Pixels that a crown covers: half a spheroid's shadow, as crowns taper. */
@@ -57,17 +60,20 @@ vec3 clip_of(vec4 column)
     return vec3(column.xy, view.orthographic != 0u ? column.z : column.w);
 }
 
-void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot)
+/* `slope`: how far the model leans with the ground, rise over run. */
+void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot, vec2 slope)
 {
     vec3 extent_m = splat_models[model].extent_m;
     mat4 clip = view.clip_from_rel;
     vec3 east = clip_of(clip[0]), north = clip_of(clip[1]), up = clip_of(clip[2]);
     vec2 x_axis = tree_turn(pose, vec2(pose.across, 0.0));
     vec2 y_axis = tree_turn(pose, vec2(0.0, pose.across));
-    vec3 along_x = (x_axis.x * east + x_axis.y * north) * extent_m.x;
-    vec3 along_y = (y_axis.x * east + y_axis.y * north) * extent_m.y;
+    vec3 along_x = (x_axis.x * east + x_axis.y * north + dot(slope, x_axis) * up) * extent_m.x;
+    vec3 along_y = (y_axis.x * east + y_axis.y * north + dot(slope, y_axis) * up) * extent_m.y;
     vec3 along_z = up * pose.up * extent_m.z;
-    vec3 corner = foot + tree_offset(pose, splat_models[model].min_m);
+    vec3 corner = tree_offset(pose, splat_models[model].min_m);
+    corner.z += dot(slope, corner.xy);
+    corner += foot;
     vec3 start = clip_of(clip * vec4(corner, 1.0));
     splats.clip_x = vec4(along_x.x, along_y.x, along_z.x, start.x);
     splats.clip_y = vec4(along_x.y, along_y.y, along_z.y, start.y);
@@ -167,12 +173,23 @@ uint wood_triangles(uint model, float tall_px)
     return min(uint(tall_px * tall_px * 0.006 + tall_px), splat_models[model].wood_count);
 }
 
-/* `share` of the trees around stand for all. */
+/* Slope of the ground that a tree stands for when it is `wide_m` wide. */
+vec2 slope_under(vec3 foot, float wide_m)
+{
+    return textureLod(slopes, foot.xy * view.slopes_scale + view.slopes_offset,
+                      log2(max(wide_m / view.slopes_texel_m, 1.0))).xy;
+}
+
+/* `share` of the trees around stand for all: a tree is drawn as wide as the ground that it stands for
+ * asks, as high as it is, and its splats grow with it. */
 void select_tree(uint index, float share)
 {
     wd_tree tree = trees[index];
+    if (tree.size == 0u)
+        return;
+    float stretch = inversesqrt(share);
     vec3 foot = tree_foot_rel(tree);
-    if (tree_is_outside(tree, foot))
+    if (tree_is_outside(tree, foot, stretch))
         return;
     uint model_index = WD_TREE_SPECIES(tree) * view.variants
                        + WD_TREE_VARIANT(tree) % view.variants;
@@ -195,6 +212,8 @@ void select_tree(uint index, float share)
                             toward.z);
     splats.radius = size * radii.x;
     splats.wood_radius = size * radii.y;
+    float own_across = pose.across;
+    pose.across *= stretch;
     uint strata = wood ? WD_LEAF_STRATA : WD_SPLAT_STRATA;
     if (view.has_history != 0u)
         strata = seen_strata(tree, foot, toward, pose, model_index, sway,
@@ -208,9 +227,11 @@ void select_tree(uint index, float share)
     splats.first_wood = splat_models[model_index].wood_first;
     splats.offset = wd_hash_mix(tree.random) + frame.sample_index * splats.per_stratum;
     splats.turn = packHalf2x16(pose.turn);
-    splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / pose.across));
+    splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
     splats.tint = packUnorm4x8(vec4(tree_tint(tree) * 0.5, 0.0));
-    fill_rows(splats, pose, model_index, foot);
+    vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
+                             : vec2(0.0);
+    fill_rows(splats, pose, model_index, foot, slope);
     splats.sway = clip_of(view.clip_from_rel * vec4(sway, 0.0));
 
     uint slot = atomicAdd(counts.trees, 1u);
@@ -222,16 +243,40 @@ void select_tree(uint index, float share)
         add_wood(slot, wood_triangles(model_index, tall_px));
 }
 
-/* Share of a cluster's trees that is drawn: all, until trees cover but a few pixels. */
-float drawn_share(wd_cluster cluster)
+/* How many times over a cluster's crowns may cover what is seen of it: what lies deeper is hidden all
+ * the same. */
+const float MOST_LAYERS = 4.0;
+
+/* Which of a cluster's trees are drawn: the first so many records, of which each stands for 1 over
+ * the share of trees. */
+struct wd_drawn {
+    uint count;
+    float share;
+};
+
+/* All, until trees cover but a few pixels. */
+wd_drawn drawn_of(wd_cluster cluster)
 {
+    bool paged = (cluster.count & WD_CLUSTER_PAGED) != 0u;
+    float held = exp2(-2.0 * float(WD_CLUSTER_LEVEL(cluster))); /* share of trees that have records */
     if (view.orthographic != 0u)
-        return 1.0;
+        return wd_drawn(WD_CLUSTER_TREES, held);
     ivec3 low = ivec3(cluster.min_mm[0], cluster.min_mm[1], cluster.min_mm[2]);
     ivec3 high = ivec3(cluster.max_mm[0], cluster.max_mm[1], cluster.max_mm[2]);
-    float distance_m = length(rel_of_mm(low + (high - low) / 2));
-    float tall_px = view.typical_m * view.pixels / max(distance_m, 1.0);
-    return clamp(tall_px * tall_px * (0.2 / WD_LEAST_TREE_PX), 1.0 / float(WD_CLUSTER_TREES), 1.0);
+    vec3 middle = rel_of_mm(low + (high - low) / 2), size_m = vec3(high - low) * 0.001;
+    float distance_m = max(length(middle), 1.0);
+    float typical_m = paged ? WD_CLUSTER_HEIGHT_M(cluster) : view.typical_m;
+    float tall_px = typical_m * view.pixels / distance_m;
+    float wanted = tall_px * tall_px * (0.2 / WD_LEAST_TREE_PX) / held;
+    float count = ceil(clamp(wanted * float(WD_CLUSTER_TREES), 1.0, float(WD_CLUSTER_TREES)));
+    float share = held * count / float(WD_CLUSTER_TREES);
+    if (!paged)
+        return wd_drawn(uint(count), share);
+    float sine = min(abs(middle.z) / distance_m, 1.0), cosine = sqrt(1.0 - sine * sine);
+    float seen_m2 = size_m.x * size_m.y * sine + max(size_m.x, size_m.y) * size_m.z * cosine;
+    float crowns_m2 = 0.2 * typical_m * typical_m * float(WD_CLUSTER_COUNT(cluster)) / held;
+    count = ceil(count * min(MOST_LAYERS * seen_m2 / crowns_m2, 1.0));
+    return wd_drawn(uint(max(count, 1.0)), share);
 }
 
 /* A loop, since software devices run idle lanes to the end. In the order of reversed bits any prefix
@@ -242,10 +287,11 @@ void main()
     if (group >= counts.clusters)
         return;
     wd_cluster cluster = clusters[visible[group]];
-    uint drawn = uint(ceil(drawn_share(cluster) * float(WD_CLUSTER_TREES)));
-    for (uint i = gl_LocalInvocationID.x; i < drawn; i += gl_WorkGroupSize.x) {
+    wd_drawn drawn = drawn_of(cluster);
+    uint records = (cluster.count & WD_CLUSTER_PAGED) != 0u ? WD_CLUSTER_TREES : cluster.count;
+    for (uint i = gl_LocalInvocationID.x; i < drawn.count; i += gl_WorkGroupSize.x) {
         uint at = bitfieldReverse(i) >> 26;
-        if (at < cluster.count)
-            select_tree(cluster.first + at, float(drawn) / float(WD_CLUSTER_TREES));
+        if (at < records)
+            select_tree(cluster.first + at, drawn.share);
     }
 }

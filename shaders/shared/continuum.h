@@ -62,11 +62,23 @@ struct wd_splat_model {
 #define WD_CLUSTER_TREES 64u
 /* Where trees cover fewer pixels than this, fewer of them stand for all. */
 #define WD_LEAST_TREE_PX 8.0
+/* Height of a tree that covers so many: its square's fifth. */
+#define WD_WHOLE_TREE_PX 6.3245553f
 struct wd_cluster {
     int32_t min_mm[3], max_mm[3]; /* bounds of its trees */
-    uint32_t first, count;
+    uint32_t first;
+    uint32_t count; /* bits 0..6: trees. Bit 7: of a page: all WD_CLUSTER_TREES records count, those
+                       without a tree have size 0; a tree stands for 4^level (bits 8..12); mean
+                       height in cm in bits 16..31 */
 };
 WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
+#define WD_CLUSTERS_A_PAGE 16u
+#define WD_CLUSTER_PAGED 0x80u
+#define WD_CLUSTER_OF_PAGE(trees, level, height_cm)                                                \
+    ((trees) | WD_CLUSTER_PAGED | ((level) << 8) | ((height_cm) << 16))
+#define WD_CLUSTER_COUNT(cluster) ((cluster).count & 0x7fu)
+#define WD_CLUSTER_LEVEL(cluster) (((cluster).count >> 8) & 0x1fu)
+#define WD_CLUSTER_HEIGHT_M(cluster) (WD_FLOAT((cluster).count >> 16) * 0.01f)
 
 /* Levels of the depth pyramid. A texel of level l holds the farthest depth of a square of 2^(l + 1)
  * pixels; rows of a level follow each other, levels begin at pyramid_first. */
@@ -89,6 +101,10 @@ struct wd_splat_view {
     uint32_t min_splats;     /* of a tree */
     float wood_px;           /* trees taller than about this have triangles of wood */
     uint32_t cluster_count, variants;
+    uint32_t page_count;     /* their clusters follow the others */
+    WD_VEC2(slopes_scale);   /* slopes image: coordinates = rel * scale + offset */
+    WD_VEC2(slopes_offset);
+    float slopes_texel_m;
     uint32_t tree_capacity, item_capacity;
     /* What the frame before saw, to leave out what it hid. 0: nothing is known. */
     uint32_t has_history;

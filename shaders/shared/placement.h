@@ -173,6 +173,45 @@ WD_FUNC float wd_place_patch(WD_PLACE_IN uint32_t x, uint32_t y)
     return kept;
 }
 
+/* The probability that a tree may stand there, and the ground under it. */
+struct wd_place_odds {
+    float chance;
+    float height_m;
+};
+
+/* Stops, with a chance of 0, as soon as it is known to be at most `least`. */
+WD_FUNC WD_STRUCT wd_place_odds wd_place_odds_at(WD_PLACE_IN int32_t x_mm, int32_t y_mm,
+                                                 float least)
+{
+    WD_STRUCT wd_place_odds odds;
+    odds.chance = 0.0f;
+    odds.height_m = 0.0f;
+    uint32_t x = WD_UINT(x_mm), y = WD_UINT(y_mm);
+    WD_PRECISE float chance = 1.0f;
+    if (WD_LAYER(map_kind) != WD_PLACE_MAP_NONE)
+        chance = wd_place_map_at(WD_PLACE_PASS x, y);
+    if (least >= chance)
+        return odds;
+    if (WD_LAYER(has_patches) != 0u)
+        chance = chance * wd_place_patch(WD_PLACE_PASS x, y);
+    if (least >= chance)
+        return odds;
+    WD_STRUCT wd_ground_place place = wd_ground_locate(WD_PLACE_GROUND x_mm, y_mm);
+    odds.height_m = wd_ground_height(WD_PLACE_GROUND place);
+    if (WD_LAYER(has_altitude) != 0u) {
+        chance = chance * wd_ramp_at(WD_LAYER(altitude[0]), odds.height_m);
+        chance = chance * wd_ramp_at(WD_LAYER(altitude[1]), odds.height_m);
+    }
+    if (least < chance && WD_LAYER(has_slope) != 0u) {
+        float slope = wd_ground_slope_squared(WD_PLACE_GROUND place);
+        chance = chance * wd_ramp_at(WD_LAYER(slope[0]), slope);
+        chance = chance * wd_ramp_at(WD_LAYER(slope[1]), slope);
+    }
+    bool dry = WD_LAYER(has_water) == 0u || odds.height_m >= WD_LAYER(water_m);
+    odds.chance = dry && !wd_ground_is_hole(WD_PLACE_GROUND place) ? chance : 0.0f;
+    return odds;
+}
+
 /* Whether a tree may stand there, and the ground under it. */
 struct wd_place_verdict {
     bool accepted;
@@ -183,33 +222,10 @@ WD_FUNC WD_STRUCT wd_place_verdict wd_place_judge(WD_PLACE_IN uint32_t tree_key,
                                                   int32_t y_mm)
 {
     WD_STRUCT wd_place_verdict verdict;
-    verdict.accepted = false;
-    verdict.z_mm = 0;
-    uint32_t x = WD_UINT(x_mm), y = WD_UINT(y_mm);
     float random = wd_hash_unit(wd_hash2(tree_key, WD_FOR_RULE));
-    WD_PRECISE float chance = 1.0f;
-    if (WD_LAYER(map_kind) != WD_PLACE_MAP_NONE)
-        chance = wd_place_map_at(WD_PLACE_PASS x, y);
-    if (random >= chance)
-        return verdict;
-    if (WD_LAYER(has_patches) != 0u)
-        chance = chance * wd_place_patch(WD_PLACE_PASS x, y);
-    if (random >= chance)
-        return verdict;
-    WD_STRUCT wd_ground_place place = wd_ground_locate(WD_PLACE_GROUND x_mm, y_mm);
-    float height_m = wd_ground_height(WD_PLACE_GROUND place);
-    if (WD_LAYER(has_altitude) != 0u) {
-        chance = chance * wd_ramp_at(WD_LAYER(altitude[0]), height_m);
-        chance = chance * wd_ramp_at(WD_LAYER(altitude[1]), height_m);
-    }
-    if (random < chance && WD_LAYER(has_slope) != 0u) {
-        float slope = wd_ground_slope_squared(WD_PLACE_GROUND place);
-        chance = chance * wd_ramp_at(WD_LAYER(slope[0]), slope);
-        chance = chance * wd_ramp_at(WD_LAYER(slope[1]), slope);
-    }
-    bool dry = WD_LAYER(has_water) == 0u || height_m >= WD_LAYER(water_m);
-    verdict.accepted = random < chance && dry && !wd_ground_is_hole(WD_PLACE_GROUND place);
-    verdict.z_mm = wd_ground_mm(height_m);
+    WD_STRUCT wd_place_odds odds = wd_place_odds_at(WD_PLACE_PASS x_mm, y_mm, random);
+    verdict.accepted = random < odds.chance;
+    verdict.z_mm = wd_ground_mm(odds.height_m);
     return verdict;
 }
 

@@ -10,6 +10,7 @@
 
 #ifdef __STDC_VERSION__
 #include <assert.h>
+#include <stdbool.h>
 #include <stdint.h>
 #define WD_VEC2(name) float name[2]
 #define WD_VEC3(name) float name[3]

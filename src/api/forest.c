@@ -89,7 +89,7 @@ void wd_forest_get_info(const struct wd_forest *forest, struct wd_forest_info *i
     const struct wd_terrain *terrain = &world->terrain;
     *info = (struct wd_forest_info){
         .name = forest->scene.name,
-        .tree_count = world->tree_count,
+        .tree_count = world->tree_count + (uint64_t)world->demand.trees,
         .species_count = (uint32_t)forest->scene.species_file_count,
         .layer_count = (uint32_t)forest->scene.layer_count,
         .inventory_count = (uint32_t)forest->scene.inventory_count,
@@ -103,7 +103,6 @@ void wd_forest_get_info(const struct wd_forest *forest, struct wd_forest_info *i
         .octant_count = world->octree.count,
         .octree_depth = world->octree.depth,
         .terrain_cell_m = terrain->cell_m,
-        .terrain_ha = wd_terrain_extent_x_m(terrain) * wd_terrain_extent_y_m(terrain) * 1e-4,
     };
     if (world->octree.count) {
         const struct wd_octant *root = &world->octree.octants[0];
@@ -149,16 +148,16 @@ bool wd_forest_get_inventory(const struct wd_forest *forest, uint32_t index,
 
 bool wd_forest_get_tree(const struct wd_forest *forest, uint32_t id, struct wd_tree_info *info)
 {
-    if (id == 0 || id > forest->world.tree_count)
+    struct wd_tree tree;
+    if (!wd_world_find_tree(&forest->world, id, &tree))
         return false;
-    const struct wd_tree *tree = &forest->world.trees[forest->world.tree_of_id[id]];
     *info = (struct wd_tree_info){
         .id = id,
-        .species = tree->kind & 0xffffu,
-        .position_m = {tree->x_mm * 0.001, tree->y_mm * 0.001, tree->z_mm * 0.001},
-        .height_m = (tree->size & 0xffffu) * 0.01,
-        .crown_diameter_m = (tree->size >> 16) * 0.01,
-        .yaw_rad = (tree->look & 0xffffu) * (6.283185307179586 / 65536.0),
+        .species = tree.kind & 0xffffu,
+        .position_m = {tree.x_mm * 0.001, tree.y_mm * 0.001, tree.z_mm * 0.001},
+        .height_m = (tree.size & 0xffffu) * 0.01,
+        .crown_diameter_m = (tree.size >> 16) * 0.01,
+        .yaw_rad = (tree.look & 0xffffu) * (6.283185307179586 / 65536.0),
     };
     return true;
 }

@@ -101,7 +101,6 @@ static bool read_velocity(struct wd_picture *picture, struct wd_renderer *render
 static bool read_trees(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers,
                        size_t pixels)
 {
-    const struct wd_world *world = &renderer->forest->world;
     uint32_t *surface = read_target(renderer, &renderer->frame.targets.surface, 4);
     if (!surface)
         return false;
@@ -109,14 +108,17 @@ static bool read_trees(struct wd_picture *picture, struct wd_renderer *renderer,
         picture->species = wd_alloc_array(pixels, sizeof(uint32_t));
     if (layers & WD_LAYER_TREE_ID)
         picture->tree_id = wd_alloc_array(pixels, sizeof(uint32_t));
+    struct wd_tree tree;
+    uint32_t before = 0;
     for (size_t i = 0; i < pixels; i++) {
-        if (surface[i] == 0)
+        if (surface[i] == 0 || (surface[i] != before &&
+                                !wd_forest_tree_at(&renderer->device, surface[i] - 1, &tree)))
             continue;
-        const struct wd_tree *tree = &world->trees[surface[i] - 1];
+        before = surface[i];
         if (picture->species)
-            picture->species[i] = (tree->kind & 0xffffu) + 1;
+            picture->species[i] = (tree.kind & 0xffffu) + 1;
         if (picture->tree_id)
-            picture->tree_id[i] = tree->id;
+            picture->tree_id[i] = tree.id;
     }
     free(surface);
     return true;

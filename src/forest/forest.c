@@ -219,6 +219,24 @@ static void describe_content(struct preparation *work, uint32_t index)
 
 /* --- the whole --------------------------------------------------------------------------- */
 
+/* Records of pages follow the stored trees; pages are filled when a view needs them. */
+static bool make_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
+{
+    const struct wd_world *world = forest->world;
+    uint64_t count = world->tree_count + (uint64_t)wd_pages_capacity(gpu, world) * WD_PAGE_TREES;
+    uint64_t size = (count ? count : 1) * sizeof(struct wd_tree);
+    uint32_t limit = gpu->properties.limits.maxStorageBufferRange;
+    const struct wd_buffer_params params = {"trees", size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                            WD_MEMORY_DEVICE};
+    if (size > limit)
+        return wd_error(gpu->log,
+                        "trees: %llu MB are more than the %u MB that %s can bind at once; with "
+                        "\"planting\": \"on_demand\" trees of grids take none",
+                        (unsigned long long)(size >> 20), limit >> 20,
+                        gpu->properties.deviceName);
+    return wd_buffer_init(&forest->trees, gpu, &params);
+}
+
 /* The device's copy carries each tree's layer. */
 static bool upload_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
@@ -231,7 +249,13 @@ static bool upload_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
         forest->max_tree_height_m =
             fmaxf(forest->max_tree_height_m, 0.01f * (float)(trees[i].size & 0xffffu));
     }
-    bool ok = make_table(&forest->trees, gpu, "trees", trees, count * sizeof *trees);
+    for (uint32_t i = 0; i < world->demand.count; i++)
+        forest->max_tree_height_m =
+            fmaxf(forest->max_tree_height_m, world->demand.layers[i].max_height_m);
+    bool ok = make_trees(forest, gpu) &&
+              wd_buffer_upload(gpu, &forest->trees, 0, trees, count * sizeof *trees) &&
+              wd_pages_init(&forest->pages, gpu, world, &forest->ground,
+                            (uint32_t)world->tree_count);
     free(trees);
     return ok;
 }
@@ -325,6 +349,7 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
         wd_buffer_finish(buffers[i], gpu);
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
         wd_image_finish(images[i], gpu);
+    wd_pages_finish(&forest->pages, gpu);
     wd_ground_finish(&forest->ground, gpu);
     wd_forest_sprays_finish(&forest->sprays, gpu);
     if (forest->look_sampler)
@@ -368,6 +393,14 @@ uint32_t wd_forest_fade_of(const struct wd_forest_device *forest, size_t tree)
 {
     uint32_t layer = forest->world->layer_of_tree[tree];
     return layer < MAX_FADES - 1 && layer < forest->scene->layer_count ? layer + 1 : 0;
+}
+
+bool wd_forest_tree_at(const struct wd_forest_device *forest, uint32_t record, struct wd_tree *tree)
+{
+    if (record >= forest->world->tree_count)
+        return wd_pages_tree(&forest->pages, record, tree);
+    *tree = forest->world->trees[record];
+    return true;
 }
 
 uint32_t wd_forest_model_of(const struct wd_forest_device *forest, const struct wd_tree *tree)

@@ -4,6 +4,7 @@
 
 #include "bake/cards.h"
 #include "forest/ground.h"
+#include "forest/pages.h"
 #include "forest/sprays.h"
 #include "gpu/command.h"
 #include "shared/forest.h"
@@ -29,7 +30,8 @@ struct wd_forest_device {
     const struct wd_scene *scene;
     const struct wd_world *world;
     struct wd_ground ground;
-    struct wd_buffer trees;    /* struct wd_tree[], octree order; never empty */
+    struct wd_buffer trees;    /* struct wd_tree[], octree order, then pages; never empty */
+    struct wd_pages pages;     /* of layers on demand */
     struct wd_buffer models;   /* struct wd_model[species * variants] */
     struct wd_buffer vertices; /* struct wd_tree_vertex[] of all models and levels */
     struct wd_buffer indices;  /* uint32_t[] */
@@ -72,6 +74,10 @@ void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd);
 /* Index into the fades of a tree (an index in octree order): its layer + 1; 0 for inventories and
  * for layers beyond the 127th. */
 uint32_t wd_forest_fade_of(const struct wd_forest_device *forest, size_t tree);
+
+/* The tree of a record on the device, as the newest frame saw it; false: there is none. */
+bool wd_forest_tree_at(const struct wd_forest_device *forest, uint32_t record,
+                       struct wd_tree *tree);
 
 /* Index into models of a tree's model. */
 uint32_t wd_forest_model_of(const struct wd_forest_device *forest, const struct wd_tree *tree);

@@ -274,6 +274,34 @@ void wd_ground_finish(struct wd_ground *ground, struct wd_gpu *gpu)
     *ground = (struct wd_ground){0};
 }
 
+static uint32_t patch_at(double at_m, double side_m, uint32_t count)
+{
+    double at = floor(at_m / side_m);
+    return at < 0.0 ? 0 : at >= count ? count - 1 : (uint32_t)at;
+}
+
+struct wd_height_range wd_ground_range(const struct wd_ground *ground, const double min_m[2],
+                                       const double max_m[2])
+{
+    uint32_t k = 0;
+    double side_m = WD_PATCH_CELLS * ground->terrain->cell_m;
+    double longest = fmax(max_m[0] - min_m[0], max_m[1] - min_m[1]);
+    for (; k + 1 < ground->level_count && side_m < longest; k++)
+        side_m *= 2.0;
+    const struct wd_ground_level *level = &ground->levels[k];
+    struct wd_height_range range = {INFINITY, -INFINITY};
+    for (uint32_t j = patch_at(min_m[1], side_m, level->rows);
+         j <= patch_at(max_m[1], side_m, level->rows); j++) {
+        for (uint32_t i = patch_at(min_m[0], side_m, level->columns);
+             i <= patch_at(max_m[0], side_m, level->columns); i++) {
+            const struct wd_height_range *part = &level->ranges[(size_t)j * level->columns + i];
+            range.min_m = fminf(range.min_m, part->min_m);
+            range.max_m = fmaxf(range.max_m, part->max_m);
+        }
+    }
+    return range;
+}
+
 void wd_ground_use(struct wd_ground *ground, struct wd_cmd *cmd)
 {
     wd_cmd_use_buffer(cmd, &ground->heights, WD_USE_SHADER_READ);

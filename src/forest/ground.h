@@ -35,6 +35,10 @@ bool wd_ground_init(struct wd_ground *ground, struct wd_gpu *gpu, const struct w
                     const struct wd_log *log);
 void wd_ground_finish(struct wd_ground *ground, struct wd_gpu *gpu); /* accepts {0} */
 
+/* Bounds of the heights in a rectangle of local metres: never narrower than the truth. */
+struct wd_height_range wd_ground_range(const struct wd_ground *ground, const double min_m[2],
+                                       const double max_m[2]);
+
 /* Declares that shaders of this frame read the ground. */
 void wd_ground_use(struct wd_ground *ground, struct wd_cmd *cmd);
 

@@ -112,7 +112,7 @@ static void record_trees(const struct recording *r, const struct wd_view *view,
     const struct wd_method *method = frame->params.method;
     struct wd_draw_stats stats = {0};
     const struct wd_tree_draw draw = tree_draw_of(r, view, pass, &stats);
-    bool trees = frame->params.forest->world->tree_count &&
+    bool trees = wd_world_has_trees(frame->params.forest->world) &&
                  (pass == WD_PASS_CAMERA || r->values.shadow_taps);
     if (trees && method->select)
         method->select(frame->method_state, &draw);
@@ -174,7 +174,7 @@ static void record_gbuffer(const struct recording *r)
 static bool blends(const struct recording *r)
 {
     const struct wd_frame_params *params = &r->frame->params;
-    return params->method->blend && params->forest->world->tree_count &&
+    return params->method->blend && wd_world_has_trees(params->forest->world) &&
            params->view_mode == WD_MODE_LIT;
 }
 

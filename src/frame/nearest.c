@@ -55,7 +55,9 @@ static void search_ground(struct search *search, uint32_t level, uint32_t column
     const struct wd_height_range *range = &patches->ranges[(size_t)row * patches->columns + column];
     double side = (double)(WD_PATCH_CELLS << level) * ground->terrain->cell_m;
     const double min_m[3] = {column * side, row * side, range->min_m};
-    const double max_m[3] = {min_m[0] + side, min_m[1] + side, range->max_m};
+    double top_m = (double)range->max_m +
+                   (search->forest->world->demand.count ? search->forest->max_tree_height_m : 0.0f);
+    const double max_m[3] = {min_m[0] + side, min_m[1] + side, top_m};
     float distance = seen_distance(search, min_m, max_m);
     if (distance >= search->nearest_m)
         return;

@@ -72,6 +72,8 @@ struct continuum {
         float clip_from_rel[4][4];
     } history;
     struct wd_binding view; /* struct wd_splat_view of the view being drawn */
+    struct wd_forest_device *device; /* whose pages this plants */
+    struct wd_page_list pages; /* of that view */
 };
 
 /* --- pipelines --------------------------------------------------------------------------- */
@@ -149,15 +151,15 @@ static bool continuum_init(void *state, struct wd_gpu *gpu)
     struct continuum *c = state;
     c->gpu = gpu;
     const struct wd_compute_params cull = {
-        .shader = SPIRV(cull_comp), .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
+        .shader = SPIRV(cull_comp), .bindings = {7, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
     const uint32_t threads = gpu->software ? 8 : 64;
     const struct wd_compute_params args = {.shader = SPIRV(args_comp),
                                            .bindings = {3, {BUFFER, BUFFER, BUFFER}},
                                            .constants = {1, &threads}};
     const struct wd_compute_params choose = {
         .shader = SPIRV(select_comp),
-        .bindings = {12, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
-                          BUFFER, BUFFER, BUFFER}},
+        .bindings = {13, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+                          BUFFER, BUFFER, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .constants = {1, &threads}};
     return wd_pipeline_init_compute(&c->cull, gpu, &cull) &&
            wd_pipeline_init_compute(&c->args, gpu, &args) &&
@@ -181,6 +183,7 @@ static void continuum_finish(void *state, struct wd_gpu *gpu)
         vkDestroySampler(gpu->device, c->nearest, NULL);
     wd_buffer_finish(&c->pixels, gpu);
     wd_buffer_finish(&c->history.pyramid, gpu);
+    wd_page_list_finish(&c->pages);
 }
 
 /* --- forest ------------------------------------------------------------------------------ */
@@ -197,14 +200,17 @@ static bool make_work(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *
 static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_forest_device *forest)
 {
     struct continuum *c = state;
-    size_t trees = forest->world->tree_count;
+    size_t paged = (size_t)forest->pages.capacity * WD_PAGE_TREES;
+    size_t trees = forest->world->tree_count + paged;
     if (!trees)
         return true;
+    c->device = forest;
+    wd_pages_forget(&forest->pages);
     c->tree_capacity = trees < MAX_TREES ? (uint32_t)trees : MAX_TREES;
     c->item_capacity = MAX_ITEMS;
     return wd_continuum_forest_init(&c->forest, gpu, forest) &&
            make_work(&c->visible, gpu, "visible clusters",
-                     c->forest.cluster_count * sizeof(uint32_t)) &&
+                     (c->forest.cluster_count + paged / WD_PAGE_CLUSTER) * sizeof(uint32_t)) &&
            make_work(&c->counts, gpu, "splat counts", sizeof(struct wd_splat_counts)) &&
            make_work(&c->groups, gpu, "splat groups", sizeof(struct wd_splat_groups)) &&
            make_work(&c->trees, gpu, "splat trees",
@@ -282,6 +288,29 @@ static void set_history(const struct continuum *c, struct wd_splat_view *values,
     values->still = squared == 0.0;
 }
 
+/* Where trees that stand for others find the ground's slope. */
+static void set_slopes(struct wd_splat_view *values, const struct wd_ground *ground,
+                       const struct wd_view *view)
+{
+    double texel_m = ground->slopes_step * ground->terrain->cell_m;
+    const uint32_t size[2] = {ground->slopes.width, ground->slopes.height};
+    for (int k = 0; k < 2; k++) {
+        values->slopes_scale[k] = (float)(1.0 / (texel_m * size[k]));
+        values->slopes_offset[k] =
+            (float)((view->eye_m[k] / texel_m + 0.5) / size[k]); /* of rel (0, 0) */
+    }
+    values->slopes_texel_m = (float)texel_m;
+}
+
+/* Of a cascade: texels that a metre spans. */
+static float texels_per_m(const struct wd_view *view)
+{
+    float squared = 0.0f;
+    for (int k = 0; k < 3; k++)
+        squared += view->clip_from_rel[k][0] * view->clip_from_rel[k][0];
+    return 0.5f * sqrtf(squared) * (float)view->width;
+}
+
 static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
 {
     const struct wd_view *view = draw->view;
@@ -303,12 +332,14 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
         .min_splats = (uint32_t)options->min_splats,
         .wood_px = (float)options->wood_px,
         .cluster_count = c->forest.cluster_count,
+        .page_count = (uint32_t)c->pages.count,
         .variants = draw->forest->variants,
         .tree_capacity = c->tree_capacity,
         .item_capacity = c->item_capacity,
     };
     memcpy(values->clip_from_rel, view->clip_from_rel, sizeof values->clip_from_rel);
     memcpy(values->planes, view->frustum.planes, sizeof values->planes);
+    set_slopes(values, &draw->forest->ground, view);
     if (!shadow)
         set_history(c, values, view);
     if (shadow) {
@@ -318,11 +349,51 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
             values->texels = 2; /* these cascades hold crowns, not leaves: shaders/lib/shade.glsl */
         values->width /= values->texels;
         values->height /= values->texels;
-        float squared = 0.0f;
-        for (int k = 0; k < 3; k++)
-            squared += view->clip_from_rel[k][0] * view->clip_from_rel[k][0];
-        values->pixels = 0.5f * sqrtf(squared) * (float)values->width;
+        values->pixels = texels_per_m(view) / (float)values->texels;
     }
+}
+
+/* --- pages ------------------------------------------------------------------------------- */
+
+/* Of all slots, so that a frame's views leave each other theirs. */
+static const double CAMERA_SHARE = 0.5, CASCADE_SHARE = 0.1;
+
+static bool page_seen(const void *view, const float min[3], const float max[3])
+{
+    return wd_frustum_box(&((const struct wd_view *)view)->frustum, min, max) != WD_OUTSIDE;
+}
+
+/* Trees on demand: which pages this view is made of. */
+static void select_pages(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    const struct wd_view *view = draw->view;
+    struct wd_pages *pages = &c->device->pages;
+    bool shadow = draw->pass == WD_PASS_SHADOW;
+    struct wd_pages_query query = {
+        .sees = page_seen,
+        .view = view,
+        .eye_m = {view->eye_m[0], view->eye_m[1], view->eye_m[2]},
+        .pixels = view->pixels_per_radian,
+        .orthographic = shadow,
+        .whole_px = WD_WHOLE_TREE_PX,
+        .most = (uint32_t)((shadow ? CASCADE_SHARE : CAMERA_SHARE) * pages->capacity),
+    };
+    if (shadow) {
+        query.pixels = texels_per_m(view);
+        query.whole_px *= 0.5f; /* a shadow is seen from nearer than it falls */
+    }
+    wd_pages_select(pages, draw->cmd, &query, &c->device->trees, &c->forest.clusters,
+                    c->forest.cluster_count, &c->pages);
+}
+
+static struct wd_binding upload_pages(struct continuum *c, struct wd_cmd *cmd)
+{
+    struct wd_binding binding = {0};
+    size_t size = c->pages.count * sizeof *c->pages.slots;
+    uint32_t *slots = wd_cmd_upload(cmd, size ? size : sizeof *slots, &binding);
+    if (slots && size)
+        memcpy(slots, c->pages.slots, size);
+    return binding;
 }
 
 static void record_args(struct continuum *c, struct wd_cmd *cmd)
@@ -346,9 +417,11 @@ static void record_cull(struct continuum *c, const struct wd_tree_draw *draw)
     const struct wd_binding bindings[] = {draw->uniforms, c->view,
                                           WD_BIND_BUFFER(&c->forest.clusters),
                                           WD_BIND_BUFFER(&c->counts), WD_BIND_BUFFER(&c->visible),
-                                          WD_BIND_BUFFER(&c->history.pyramid)};
+                                          WD_BIND_BUFFER(&c->history.pyramid),
+                                          upload_pages(c, cmd)};
+    size_t clusters = c->forest.cluster_count + c->pages.count * WD_PAGE_CLUSTERS;
     wd_cmd_bind(cmd, &c->cull, bindings);
-    wd_cmd_dispatch_1d(cmd, (c->forest.cluster_count + 63) / 64);
+    wd_cmd_dispatch_1d(cmd, (clusters + 63) / 64);
     record_args(c, cmd);
 }
 
@@ -371,7 +444,9 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_BUFFER(&c->trees),
                                           WD_BIND_BUFFER(&c->items),
                                           WD_BIND_BUFFER(&c->wood_items),
-                                          WD_BIND_BUFFER(&c->history.pyramid)};
+                                          WD_BIND_BUFFER(&c->history.pyramid),
+                                          WD_BIND_IMAGE(&draw->forest->ground.slopes,
+                                                        draw->forest->ground.sampler)};
     wd_cmd_bind(cmd, &c->choose, bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
     record_args(c, cmd);
@@ -449,6 +524,9 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
 {
     struct continuum *c = state;
     struct wd_cmd *cmd = draw->cmd;
+    wd_cmd_scope_begin(cmd, "pages");
+    select_pages(c, draw);
+    wd_cmd_scope_end(cmd);
     upload_view(c, draw);
     if (!fit_pixels(c, cmd, draw->view) || !fit_pyramid(c, cmd, draw->view))
         cmd->failed = true;
@@ -515,6 +593,7 @@ static void continuum_draw(void *state, const struct wd_tree_draw *draw)
 
 const struct wd_method wd_method_continuum = {
     .name = "continuum",
+    .on_demand = true,
     .state_size = sizeof(struct continuum),
     .init = continuum_init,
     .finish = continuum_finish,

@@ -9,7 +9,7 @@
 #include "base/jobs.h"
 #include "base/memory.h"
 #include "forest/looks.h"
-#include "tree/variant.h"
+#include "bake/growth_cache.h"
 
 /* --- clusters ---------------------------------------------------------------------------- */
 
@@ -88,7 +88,7 @@ uint32_t wd_clusters_make(struct wd_cluster **clusters, const struct wd_octree *
 /* --- splats ------------------------------------------------------------------------------ */
 
 struct sampling {
-    const struct wd_forest_device *forest;
+    struct wd_forest_device *forest;
     const struct wd_log *log;
     struct wd_splats *splats; /* [model] */
     uint8_t *looks;           /* WD_LOOK_BYTES a species */
@@ -105,7 +105,9 @@ static void sample_model(void *user, size_t index)
 {
     struct sampling *work = user;
     struct wd_tree_model model;
-    if (!wd_variant_grow(&model, work->forest->scene, (uint32_t)index, work->log)) {
+    uint64_t key;
+    struct wd_bake_cache *cache = &work->forest->cache;
+    if (!wd_growth_get(&model, &key, cache, work->forest->scene, (uint32_t)index, work->log)) {
         atomic_store(&work->failed, true);
         return;
     }
@@ -156,7 +158,7 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
 }
 
 static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
-                        const struct wd_forest_device *forest)
+                        struct wd_forest_device *forest)
 {
     size_t species = forest->scene->species_file_count;
     struct sampling work = {
@@ -177,15 +179,19 @@ static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
 }
 
 bool wd_continuum_forest_init(struct wd_continuum_forest *own, struct wd_gpu *gpu,
-                              const struct wd_forest_device *forest)
+                              struct wd_forest_device *forest)
 {
     *own = (struct wd_continuum_forest){0};
-    if (!forest->world->octree.count)
-        return true;
     struct wd_cluster *clusters;
     own->cluster_count = wd_clusters_make(&clusters, &forest->world->octree, forest->world->trees);
-    bool ok = make_buffer(&own->clusters, gpu, "clusters", clusters,
-                          own->cluster_count * sizeof *clusters) &&
+    size_t paged = (size_t)forest->pages.capacity * WD_PAGE_CLUSTERS;
+    const struct wd_buffer_params params = {"clusters",
+                                            (own->cluster_count + paged) * sizeof *clusters,
+                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, WD_MEMORY_DEVICE};
+    bool ok = wd_buffer_init(&own->clusters, gpu, &params) &&
+              (!own->cluster_count ||
+               wd_buffer_upload(gpu, &own->clusters, 0, clusters,
+                                own->cluster_count * sizeof *clusters)) &&
               make_splats(own, gpu, forest);
     free(clusters);
     if (!ok)

@@ -6,7 +6,7 @@
 #include "shared/continuum.h"
 
 struct wd_continuum_forest {
-    struct wd_buffer clusters; /* struct wd_cluster[cluster_count] */
+    struct wd_buffer clusters; /* struct wd_cluster[cluster_count], then those of pages */
     struct wd_buffer splats;   /* struct wd_splat[WD_SPLATS] a model */
     struct wd_buffer looks;    /* uint32_t, parallel */
     struct wd_buffer wood;     /* struct wd_splat_wood of all models */
@@ -16,7 +16,7 @@ struct wd_continuum_forest {
 
 /* Samples the splats of every model and gathers the trees in clusters. */
 bool wd_continuum_forest_init(struct wd_continuum_forest *own, struct wd_gpu *gpu,
-                              const struct wd_forest_device *forest);
+                              struct wd_forest_device *forest);
 void wd_continuum_forest_finish(struct wd_continuum_forest *own, struct wd_gpu *gpu);
 
 /* Clusters of trees[count] in octree order: runs of at most WD_CLUSTER_TREES that no octant's own

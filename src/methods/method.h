@@ -9,6 +9,7 @@
  * sun, then the camera) a frame calls `select`, then `draw`. */
 struct wd_method {
     const char *name;
+    bool on_demand;    /* draws worlds whose trees are planted on demand */
     size_t state_size; /* bytes of what one renderer keeps for it; zeroed before `init` */
     /* Pipelines and the like. On failure `finish` is called all the same. */
     bool (*init)(void *state, struct wd_gpu *gpu);

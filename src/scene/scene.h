@@ -130,6 +130,9 @@ struct wd_scene_time {
     double latitude_deg, longitude_deg; /* north, east; NaN: not given */
 };
 
+/* Whether the trees of grids are all placed and kept, or found anew by whoever looks at them. */
+enum wd_planting { WD_PLANTING_AUTO, WD_PLANTING_STORED, WD_PLANTING_ON_DEMAND };
+
 struct wd_grow_params;
 struct wd_scene {
     const char *path;        /* of the file */
@@ -149,6 +152,7 @@ struct wd_scene {
     size_t layer_count;
     struct wd_scene_inventory *inventories;
     size_t inventory_count;
+    int planting;            /* enum wd_planting */
     struct wd_scene_time time;
     struct {
         double azimuth_deg;  /* clockwise from north */

@@ -6,6 +6,7 @@
 
 static const char *const terrain_kinds[] = {"flat", "diamond-square", "raster", NULL};
 static const char *const nodata_rules[] = {"fill", "cut", NULL};
+static const char *const plantings[] = {"auto", "stored", "on_demand", NULL};
 static const char *const raster_units[] = {"metres", NULL};
 
 #define TERRAIN(member) offsetof(struct wd_scene_terrain, member)
@@ -207,6 +208,10 @@ static const struct wd_key scene_keys[] = {
      .count_offset = SCENE(layer_count), .doc = "Trees placed by rule."},
     {"inventories", WD_KEY_LIST, SCENE(inventories), .table = &wd_scene_inventory_keys,
      .count_offset = SCENE(inventory_count), .doc = "Trees from tables."},
+    {"planting", WD_KEY_ENUM, SCENE(planting), .fallback = "\"auto\"", .choices = plantings,
+     .doc = "Trees of grid layers: stored one by one, or on demand, found again where the camera "
+            "looks, so that any number takes no memory (method continuum only). auto: on demand "
+            "from 4 million on."},
     {"time", WD_KEY_OBJECT, SCENE(time), .table = &time_table,
      .doc = "Date, time of day and place: season and sun."},
     {"sun", WD_KEY_OBJECT, SCENE(sun), .table = &sun_table, .doc = "Sun."},

@@ -111,8 +111,8 @@ static float quantile_radius(const struct quantile *quantile, float scale)
     return 0;
 }
 
-/* Gain of a class for the first `count` points over all plans of one view. Discs reach out as far
- * as the gain may become; seldom is that not enough. */
+/* Gain of a class for the first `count` points over all plans of one view; 0 where they do not cover
+ * as much as the mesh however far discs reach: few points of stems, seen from straight above. */
 static float calibrate_class(const struct wd_tree_points *points, struct plan *plans,
                              int plan_count, size_t count, uint32_t class)
 {
@@ -135,7 +135,17 @@ static float calibrate_class(const struct wd_tree_points *points, struct plan *p
     for (int i = 0; class == WD_POINT_ONE_SIDED && i < plan_count; i++)
         for (size_t pixel = 0; pixel < (size_t)WD_SILHOUETTE * WD_SILHOUETTE; pixel++)
             plans[i].wood_discs[pixel] = plans[i].distance[pixel] <= radius * radius;
-    return radius > 0 ? radius * radius / (pixels_per_m * pixels_per_m * each) : most;
+    return radius > 0 ? radius * radius / (pixels_per_m * pixels_per_m * each) : 0;
+}
+
+/* Counts without a gain take that of the next larger one, the largest that of the next smaller. */
+static void fill_gaps(float *gains)
+{
+    for (int k = WD_POINT_GAINS - 2; k >= 0; k--)
+        gains[k] = gains[k] > 0 ? gains[k] : gains[k + 1];
+    gains[0] = gains[0] > 0 ? gains[0] : 1;
+    for (int k = 1; k < WD_POINT_GAINS; k++)
+        gains[k] = gains[k] > 0 ? gains[k] : gains[k - 1];
 }
 
 static void calibrate_view(struct wd_tree_points *points, struct plan *plans, int plan_count,
@@ -143,15 +153,15 @@ static void calibrate_view(struct wd_tree_points *points, struct plan *plans, in
 {
     for (int k = 0; k < WD_POINT_GAINS; k++) {
         size_t count = (size_t)WD_POINT_LEAST << k;
-        if (k > 0 && count > points->count) { /* never drawn */
-            wood[k] = wood[k - 1];
-            leaf[k] = leaf[k - 1];
+        wood[k] = leaf[k] = 0;
+        if (k > 0 && count > points->count) /* never drawn */
             continue;
-        }
         count = count < points->count ? count : points->count;
         wood[k] = calibrate_class(points, plans, plan_count, count, WD_POINT_ONE_SIDED);
         leaf[k] = calibrate_class(points, plans, plan_count, count, WD_POINT_LEAF);
     }
+    fill_gaps(wood);
+    fill_gaps(leaf);
 }
 
 void wd_tree_points_calibrate(struct wd_tree_points *points, const struct wd_tree_mesh *mesh)

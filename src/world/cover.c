@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/jobs.h"
 #include "base/memory.h"
 
 enum { SIDE = 4 }; /* sample points along a cell's side */
@@ -39,7 +40,31 @@ static void mark_disc(struct samples *samples, const struct wd_tree *tree)
     }
 }
 
-void wd_cover_init(struct wd_world *world)
+/* --- layers on demand ---------------------------------------------------------------------- */
+
+/* Crown area over ground area; Poisson's share of the ground is left open. */
+static void add_expected(void *user, size_t row)
+{
+    struct wd_world *world = user;
+    double cell_m = world->cover_cell_m;
+    for (uint32_t column = 0; column < world->cover_width; column++) {
+        const double min_m[2] = {column * cell_m, row * cell_m};
+        const double max_m[2] = {min_m[0] + cell_m, min_m[1] + cell_m};
+        double area = 0.0;
+        for (uint32_t i = 0; i < world->demand.count; i++) {
+            const struct wd_demand_layer *layer = &world->demand.layers[i];
+            if (layer->max_height_m * 100.0f < (float)LOWEST_CM)
+                continue;
+            double spacing_m = layer->placement.input.layer.cell_mm * 0.001;
+            area += wd_demand_density(layer, min_m, max_m, 1) * layer->crown_area_m2 /
+                    (spacing_m * spacing_m);
+        }
+        uint8_t *cover = &world->cover[row * world->cover_width + column];
+        *cover = (uint8_t)(255.0 - (255.0 - *cover) * exp(-area));
+    }
+}
+
+void wd_cover_init(struct wd_world *world, unsigned threads)
 {
     double x_m = wd_terrain_extent_x_m(&world->terrain);
     double y_m = wd_terrain_extent_y_m(&world->terrain);
@@ -63,4 +88,6 @@ void wd_cover_init(struct wd_world *world)
     world->cover_width = samples.width;
     world->cover_height = samples.height;
     world->cover_cell_m = cell_m;
+    if (world->demand.count)
+        wd_jobs_run(threads, samples.height, add_expected, world);
 }

@@ -18,21 +18,43 @@ struct layer_ends {
     size_t inventory_end;
 };
 
+static bool plant_layer(const struct wd_placement_params *params, size_t index,
+                        struct wd_tree_list *list)
+{
+    struct wd_placement placement;
+    size_t before = list->count;
+    bool ok = wd_placement_init(&placement, params, index) &&
+              wd_placement_fill(&placement, params, list);
+    if (ok)
+        wd_info(params->log, "%s: %zu trees", placement.name, list->count - before);
+    wd_placement_finish(&placement);
+    return ok;
+}
+
 static bool plant_layers(const struct wd_placement_params *params, struct wd_tree_list *list,
                          struct layer_ends *layers)
 {
     layers->inventory_end = list->count;
     for (size_t i = 0; i < params->scene->layer_count; i++) {
-        struct wd_placement placement;
-        size_t before = list->count;
-        bool ok = wd_placement_init(&placement, params, i) &&
-                  wd_placement_fill(&placement, params, list);
-        if (ok)
-            wd_info(params->log, "%s: %zu trees", placement.name, list->count - before);
-        wd_placement_finish(&placement);
-        if (!ok)
+        if (!wd_demand_wants(params->scene, params->terrain, i) && !plant_layer(params, i, list))
             return false;
         layers->ends[i] = list->count;
+    }
+    return true;
+}
+
+/* After the others: their ids follow those of stored trees. */
+static bool add_demand(struct wd_demand *demand, const struct wd_placement_params *params,
+                       size_t stored)
+{
+    for (size_t i = 0; i < params->scene->layer_count; i++) {
+        struct wd_placement placement;
+        if (!wd_demand_wants(params->scene, params->terrain, i))
+            continue;
+        if (!wd_placement_init(&placement, params, i))
+            return false;
+        wd_info(params->log, "%s: planted on demand", placement.name);
+        wd_demand_add(demand, &placement, params->scene, i, stored);
     }
     return true;
 }
@@ -72,6 +94,22 @@ static void index_trees(struct wd_world *world, struct wd_tree_list *list,
     }
 }
 
+/* Species of layers on demand, by their shares. */
+static void count_expected(struct wd_world *world, const struct wd_scene *scene)
+{
+    for (uint32_t i = 0; i < world->demand.count; i++) {
+        const struct wd_scene_layer *layer = &scene->layers[world->demand.layers[i].index];
+        double total = 0.0;
+        for (size_t k = 0; k < layer->species_count; k++)
+            total += layer->species[k].share;
+        for (size_t k = 0; k < layer->species_count; k++) {
+            int species = wd_scene_find_species(scene, layer->species[k].name);
+            world->species_counts[species] +=
+                (uint64_t)(world->demand.layers[i].trees * layer->species[k].share / total);
+        }
+    }
+}
+
 static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool fitted,
                   const struct wd_placement_params *params, struct wd_tree_list *list)
 {
@@ -82,12 +120,14 @@ static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool
         world->inventories[i] = inventories[i].report;
     }
     struct layer_ends layers = {.ends = wd_alloc_array(scene->layer_count, sizeof(size_t))};
-    bool ok = plant_layers(params, list, &layers);
+    bool ok = plant_layers(params, list, &layers) &&
+              add_demand(&world->demand, params, list->count);
     uint64_t count = list->count;
     ok = ok && wd_progress_report(params->progress, "sorting trees", 0, count);
     if (ok) {
         index_trees(world, list, &layers, scene, params->threads);
-        wd_cover_init(world);
+        count_expected(world, scene);
+        wd_cover_init(world, params->threads);
         ok = wd_progress_report(params->progress, "sorting trees", count, count);
     }
     free(layers.ends);
@@ -153,7 +193,47 @@ void wd_world_finish(struct wd_world *world)
     free(world->layer_of_tree);
     free(world->inventories);
     free(world->cover);
+    wd_demand_finish(&world->demand);
     *world = (struct wd_world){0};
+}
+
+bool wd_world_has_trees(const struct wd_world *world)
+{
+    return world->tree_count > 0 || world->demand.count > 0;
+}
+
+bool wd_world_find_tree(const struct wd_world *world, uint32_t id, struct wd_tree *tree)
+{
+    if (id == 0 || id > world->tree_count)
+        return wd_demand_find(&world->demand, id, tree);
+    *tree = world->trees[world->tree_of_id[id]];
+    return true;
+}
+
+/* The same on machines of either byte order. */
+static void hash_words(XXH64_state_t *state, const uint32_t *words, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const unsigned char bytes[4] = {(unsigned char)words[i], (unsigned char)(words[i] >> 8),
+                                        (unsigned char)(words[i] >> 16),
+                                        (unsigned char)(words[i] >> 24)};
+        XXH64_update(state, bytes, sizeof bytes);
+    }
+}
+
+/* Layers on demand: their numbers and what their tables hold. */
+static void hash_demand(XXH64_state_t *state, const struct wd_demand *demand)
+{
+    for (uint32_t i = 0; i < demand->count; i++) {
+        const struct wd_placement *placement = &demand->layers[i].placement;
+        const struct wd_place_layer *layer = &placement->input.layer;
+        const uint32_t words[8] = {layer->key,           layer->columns,
+                                   layer->rows,          layer->cell_mm,
+                                   layer->height_min_cm, layer->height_span_cm,
+                                   layer->variants,      demand->layers[i].first_id};
+        hash_words(state, words, 8);
+        hash_words(state, placement->table, placement->table_count);
+    }
 }
 
 uint64_t wd_world_hash(const struct wd_world *world)
@@ -166,11 +246,9 @@ uint64_t wd_world_hash(const struct wd_world *world)
             (uint32_t)tree->x_mm, (uint32_t)tree->y_mm, (uint32_t)tree->z_mm, tree->id,
             tree->kind,           tree->size,           tree->look,           tree->random,
         };
-        unsigned char bytes[32];
-        for (int i = 0; i < 32; i++)
-            bytes[i] = (unsigned char)(words[i / 4] >> (i % 4 * 8));
-        XXH64_update(state, bytes, sizeof bytes);
+        hash_words(state, words, 8);
     }
+    hash_demand(state, &world->demand);
     uint64_t hash = XXH64_digest(state);
     XXH64_freeState(state);
     return hash;

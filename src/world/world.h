@@ -3,6 +3,7 @@
 #define WD_WORLD_WORLD_H
 
 #include "world/octree.h"
+#include "world/on_demand.h"
 #include "world/terrain.h"
 
 struct wd_world_params {
@@ -31,9 +32,10 @@ struct wd_world {
                                        inventories by row, then layers by cell */
     size_t tree_count;
     uint32_t *tree_of_id;           /* tree_of_id[id] is an index into trees; [0] unused */
-    uint64_t *species_counts;       /* parallel to scene->species */
+    uint64_t *species_counts;       /* parallel to scene->species; of layers on demand expected */
     uint8_t *layer_of_tree;         /* parallel to trees: layer index; 255: inventory */
     struct wd_inventory_report *inventories; /* parallel to scene->inventories */
+    struct wd_demand demand;        /* layers of which nothing else here says anything */
     struct wd_octree octree;
     /* Canopy cover of the ground, 0..255, on a grid of cover_cell_m over the terrain, for the
      * colour of the forest floor. */
@@ -51,7 +53,13 @@ bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
                    const struct wd_world_params *params);
 void wd_world_finish(struct wd_world *world);
 
-/* xxh64 over all trees in id order: equal worlds have equal hashes on every machine. */
+/* Whether it has any trees, stored or on demand. */
+bool wd_world_has_trees(const struct wd_world *world);
+/* The tree of that id, stored or on demand; false: none has it. */
+bool wd_world_find_tree(const struct wd_world *world, uint32_t id, struct wd_tree *tree);
+
+/* xxh64 over all trees in id order: equal worlds have equal hashes on every machine. Of
+ * layers on demand, over what their trees follow from. */
 uint64_t wd_world_hash(const struct wd_world *world);
 
 #endif
