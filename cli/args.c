@@ -17,7 +17,7 @@ static const struct cli_option option_table[] = {
     {"output", 'o', "DIR", CLI_KIND_TEXT, AT(output), 0, 0, CLI_BENCH,
      "directory for results, reference pictures and the report"},
     {"output", 'o', "FILE", CLI_KIND_TEXT, AT(output), 0, 0, CLI_GROW | CLI_EXPORT,
-     "where to write: .glb; of single trees also .obj, .png, .exr"},
+     "where to write: .glb; of single trees also .obj, .png, .exr; of a forest's trees .csv"},
     {"height", 0, "METRES", CLI_KIND_REAL, AT(height_m), 0.01, 130, CLI_GROW,
      "height of the tree (default: the species' typical one; a model's own)"},
     {"age", 0, "YEARS", CLI_KIND_REAL, AT(age_years), 0.01, 10000, CLI_GROW,

@@ -254,9 +254,9 @@ enum cli_status cli_export(struct cli_session *session)
     const struct cli_options *options = session->options;
     struct wd_forest *forest = NULL;
     const char *dot = options->output ? strrchr(options->output, '.') : NULL;
-    if (!dot || strcasecmp(dot, ".glb")) {
-        cli_fail(session, options->output ? "the output must end in .glb"
-                                          : "no output named: add -o FILE.glb");
+    if (!dot || (strcasecmp(dot, ".glb") && strcasecmp(dot, ".csv"))) {
+        cli_fail(session, options->output ? "the output must end in .glb or .csv"
+                                          : "no output named: add -o FILE.glb or FILE.csv");
         return CLI_USAGE;
     }
     if (!cli_output_probe(session, options->output))

@@ -7,15 +7,55 @@
 
 #define DEGREES (180 / M_PI)
 
+/* What a forester asks of a species' trees. */
+struct stand {
+    double stems_per_ha, mean_height_m, max_height_m, mean_crown_m;
+};
+
+/* A row a species; free() it. */
+static struct stand *survey(const struct wd_forest *forest, const struct wd_forest_info *info)
+{
+    struct stand *stands = calloc((size_t)info->species_count + 1, sizeof *stands);
+    struct wd_tree_info tree;
+    if (!stands)
+        abort();
+    for (uint32_t id = 1; wd_forest_get_tree(forest, id, &tree); id++) {
+        struct stand *stand = &stands[tree.species];
+        stand->stems_per_ha += 1; /* until all are seen, sums */
+        stand->mean_height_m += tree.height_m;
+        stand->mean_crown_m += tree.crown_diameter_m;
+        stand->max_height_m = fmax(stand->max_height_m, tree.height_m);
+    }
+    for (uint32_t i = 0; i < info->species_count; i++) {
+        struct stand *stand = &stands[i];
+        double count = fmax(stand->stems_per_ha, 1);
+        stand->mean_height_m /= count;
+        stand->mean_crown_m /= count;
+        stand->stems_per_ha /= info->terrain_ha;
+    }
+    return stands;
+}
+
+static void print_species(const struct wd_species_info *species, const struct stand *stand)
+{
+    printf("  %10llu  %s%s%s%s", (unsigned long long)species->tree_count, species->name,
+           species->latin ? " (" : "", species->latin ? species->latin : "",
+           species->latin ? ")" : "");
+    if (species->tree_count > 0)
+        printf(": %.3g/ha, %.1f m high (highest %.1f m), crowns of %.1f m", stand->stems_per_ha,
+               stand->mean_height_m, stand->max_height_m, stand->mean_crown_m);
+    putchar('\n');
+}
+
 static void print_trees(const struct wd_forest *forest, const struct wd_forest_info *info)
 {
-    printf("\ntrees       %llu in %u layers and %u inventories\n",
+    printf("\ntrees       %llu in %u layers and %u inventories; means of height and crown\n",
            (unsigned long long)info->tree_count, info->layer_count, info->inventory_count);
+    struct stand *stands = survey(forest, info);
     struct wd_species_info species;
     for (uint32_t i = 0; wd_forest_get_species(forest, i, &species); i++)
-        printf("  %10llu  %s%s%s%s\n", (unsigned long long)species.tree_count, species.name,
-               species.latin ? " (" : "", species.latin ? species.latin : "",
-               species.latin ? ")" : "");
+        print_species(&species, &stands[i]);
+    free(stands);
     struct wd_inventory_info inventory;
     for (uint32_t i = 0; wd_forest_get_inventory(forest, i, &inventory); i++)
         printf("inventory   %s: %llu rows, %llu planted, %llu dead, %llu duplicate, %llu outside\n",
@@ -99,8 +139,9 @@ static void json_text(const char *key, const char *text)
     printf(",\n");
 }
 
-static void json_species(const struct wd_forest *forest)
+static void json_species(const struct wd_forest *forest, const struct wd_forest_info *info)
 {
+    struct stand *stands = survey(forest, info);
     struct wd_species_info species;
     printf("  \"species\": [");
     for (uint32_t i = 0; wd_forest_get_species(forest, i, &species); i++) {
@@ -108,8 +149,12 @@ static void json_species(const struct wd_forest *forest)
         json_string(species.name, SIZE_MAX);
         printf(", \"latin\": ");
         json_string(species.latin, SIZE_MAX);
-        printf(", \"tree_count\": %llu}", (unsigned long long)species.tree_count);
+        printf(", \"tree_count\": %llu, \"stems_per_ha\": %.10g, \"mean_height_m\": %.10g, "
+               "\"max_height_m\": %.10g, \"mean_crown_diameter_m\": %.10g}",
+               (unsigned long long)species.tree_count, stands[i].stems_per_ha,
+               stands[i].mean_height_m, stands[i].max_height_m, stands[i].mean_crown_m);
     }
+    free(stands);
     printf("\n  ],\n");
 }
 
@@ -191,7 +236,7 @@ static void print_json(const struct wd_forest *forest, const struct wd_forest_in
     printf("  \"width\": %u,\n  \"height\": %u,\n  \"samples\": %u,\n", defaults.width,
            defaults.height, defaults.samples);
     json_text("method", defaults.method);
-    json_species(forest);
+    json_species(forest, info);
     json_inventories(forest);
     json_cameras(forest);
     json_devices(devices);

@@ -31,12 +31,15 @@ static const struct cli_command commands[] = {
      "  weald grow maple.obj --height 18 -o maple.png --camera-distance 6\n"
      "  weald grow --sheet oak beech pine -o sheet.png\n",
      cli_grow},
-    {"export", CLI_EXPORT, "SCENE -o FILE.glb", 1, 1, "write a scene for other programs",
+    {"export", CLI_EXPORT, "SCENE -o FILE", 1, 1, "write a scene for other programs",
      "Plants a scene and writes its trees and its ground as one .glb: each individual's meshes once,\n"
      "with levels of detail (MSFT_lod), and where it stands (EXT_mesh_gpu_instancing). Metres, y up,\n"
-     "about the middle of the ground, whose own coordinates are in the scene's extras.",
+     "about the middle of the ground, whose own coordinates are in the scene's extras. Or writes its\n"
+     "trees as a .csv, a row for each: id (as in the tree_id layer of pictures), species, place in the\n"
+     "terrain's own coordinates, height, crown diameter, layer.",
      "  weald export scenes/bei.json --data ~/data -o bei.glb\n"
-     "  weald export scenes/valley.json -o valley.glb --max-trees 2000000\n",
+     "  weald export scenes/valley.json -o valley.glb --max-trees 2000000\n"
+     "  weald export scenes/valley.json -o trees.csv\n",
      cli_export},
     {"view", CLI_VIEW, "SCENE", 1, 1, "walk or fly through a scene in a window",
      "Opens a window to walk and fly through a scene. Cameras saved with Shift+C go to\n"

@@ -50,7 +50,7 @@ struct wd_forest_info {
     uint64_t hash;             /* equal worlds have equal hashes */
     uint32_t seed;
     uint32_t octant_count, octree_depth;
-    double terrain_cell_m;
+    double terrain_cell_m, terrain_ha;
 };
 
 /* Fills `*info`; its strings live as long as the forest. Thread-safe. */

@@ -103,6 +103,7 @@ void wd_forest_get_info(const struct wd_forest *forest, struct wd_forest_info *i
         .octant_count = world->octree.count,
         .octree_depth = world->octree.depth,
         .terrain_cell_m = terrain->cell_m,
+        .terrain_ha = wd_terrain_extent_x_m(terrain) * wd_terrain_extent_y_m(terrain) * 1e-4,
     };
     if (world->octree.count) {
         const struct wd_octant *root = &world->octree.octants[0];

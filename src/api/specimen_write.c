@@ -6,6 +6,7 @@
 
 #include "api/forest.h"
 #include "api/specimen.h"
+#include "api/tree_list.h"
 #include "base/memory.h"
 #include "tree/export.h"
 #include "tree/variant.h"
@@ -189,8 +190,10 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
     const struct wd_terrain *terrain = &forest->world.terrain;
     uint64_t most = max_trees ? max_trees : DEFAULT_MAX_TREES;
     struct scene_export export = {.forest = forest, .variants = (uint32_t)forest->scene.variants};
+    if (has_ending(path, ".csv"))
+        return wd_tree_list_write(forest, path, progress, log);
     if (!has_ending(path, ".glb")) {
-        wd_error(log, "%s: forests are written as .glb", path);
+        wd_error(log, "%s: forests are written as .glb or .csv", path);
         return WD_ERROR_INPUT;
     }
     if (forest->world.tree_count > most) {

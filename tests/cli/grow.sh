@@ -38,6 +38,20 @@ check 'a model written again is sound' sound "$out/again.glb" roots=1 levels=1
 check 'three variants are sound' sound "$out/three.glb" roots=3 levels=3
 trees=$("$weald" info "$tiny" --json | jq .tree_count)
 check 'a scene is sound' sound "$out/tiny.glb" "instances=$trees"
+
+# A forest's list of trees, planted again from that list, is the same list.
+expect 0 'trees.csv: ' export "$tiny" -o "$out/trees.csv"
+check 'a row for each tree' test "$(wc -l <"$out/trees.csv")" -eq $((trees + 1))
+cat >"$out/listed.json" <<EOF
+{"terrain": {"kind": "flat", "size_m": [80, 40]},
+ "species": {"oak": "$root/species/oak.json", "spruce": "$root/species/spruce.json"},
+ "inventories": [{"file": "trees.csv", "species": {"oak": "oak", "spruce": "spruce"}}]}
+EOF
+expect 0 'listed.csv: ' export "$out/listed.json" -o "$out/listed.csv"
+for list in trees listed; do
+    cut -d, -f2-4,6-7 "$out/$list.csv" | sort >"$out/$list.sorted"
+done
+check 'a list planted again is the same list' cmp "$out/trees.sorted" "$out/listed.sorted"
 for other in autumn cards near model; do
     check "$other changes the picture" sh -c "! cmp -s '$out/oak.png' '$out/$other.png'"
 done
@@ -91,7 +105,7 @@ expect 2 'must end in .glb, .obj, .png or .exr' grow oak -o "$out/a.fbx"
 expect 2 'no species named' grow -o "$out/a.png"
 expect 2 'a sheet is a .png' grow --sheet oak -o "$out/a.glb"
 expect 2 'goes with one species' grow oak birch --variants 2 -o "$out/a.glb"
-expect 2 'must end in .glb' export "$tiny" -o "$out/a.obj"
+expect 2 'must end in .glb or .csv' export "$tiny" -o "$out/a.obj"
 expect 1 'did you mean "oak"\?' grow oka -o "$out/a.glb"
 expect 1 'there is no season "sommer"' grow oak --season sommer -o "$out/a.glb"
 expect 1 'exclude each other' grow oak --season summer --month 3 -o "$out/a.glb"

@@ -11,6 +11,10 @@ check 'info --json: 200 trees, sums agree' sh -c "'$weald' info '$tiny' --json |
     jq -e '.tree_count == 200 and ([.species[].tree_count] | add) == 200 and
            (.cameras | map(.name)) == [\"south\", \"west\"] and .paths[0].duration_s == 4 and
            (.devices | length) > 0 and .octant_count > 0 and .host_bytes > 0'"
+check 'info --json: 625 stems a hectare, 8 to 14 m high' sh -c "'$weald' info '$tiny' --json |
+    jq -e '([.species[].stems_per_ha] | add | . > 624 and . < 626) and
+           ([.species[] | .mean_height_m > 9 and .mean_height_m < 13 and .max_height_m <= 14 and
+                          .mean_crown_diameter_m > 1] | all)'"
 forest_hash() { "$weald" info "$tiny" --json "$@" | jq -r .hash; }
 one=$(forest_hash --threads 1)
 check 'the forest has a hash' test -n "$one"
