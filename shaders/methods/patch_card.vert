@@ -1,8 +1,11 @@
 #version 460
-/* Trees of a patch as billboards that face the eye, back to front (shared/patch_order.h). The
- * patch's table holds, for every cell, where its trees begin, then the trees. */
+/* Trees of a patch as billboards that face the eye, back to front (shared/patch_order.h). A
+ * patch's table holds, for every cell, where its trees begin, then the trees; once by rows, once by
+ * columns. */
 #include "shared/frame.h"
 #include "shared/forest.h"
+#define WD_PATCH_FIRST(cell) first_tree(cell)
+uint first_tree(uint cell);
 #include "shared/patch_order.h"
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
@@ -14,6 +17,11 @@ layout(scalar, set = 0, binding = 6) readonly buffer Fades { wd_layer_fade fades
 layout(scalar, set = 0, binding = 9) readonly buffer Near { vec2 near_m[]; };
 layout(scalar, push_constant) uniform Push { wd_patch_push push; };
 
+uint first_tree(uint cell)
+{
+    return table[push.table + cell];
+}
+
 #include "lib/tree.glsl"
 #include "lib/billboard.glsl"
 
@@ -22,17 +30,13 @@ layout(location = 0) out vec2 out_uv;
 layout(location = 1) flat out uvec4 out_card;
 layout(location = 2) flat out uvec3 out_more;
 
-/* The tree at that place in the order, or -1. */
-int tree_at(uint place)
+/* The tree that is number `place` from the back. */
+uint tree_at(uint place)
 {
-    if (push.slots == 0u)
-        return int(table[place]);
-    uint index = place / push.slots, slot = place - index * push.slots;
-    uint cell = wd_patch_cell(push.order, index);
-    uint first = table[cell], end = table[cell + 1u];
-    if (first + slot >= end)
-        return -1;
-    return int(table[push.order.columns * push.order.rows + 1u + first + slot]);
+    if (push.cells == 0u)
+        return table[place];
+    uint at = wd_patch_tree(push.cells, push.before_line, push.before_cell, place);
+    return table[push.table + push.cells * push.cells + 1u + at];
 }
 
 float shown(wd_tree tree, float distance_m)
@@ -46,9 +50,7 @@ float shown(wd_tree tree, float distance_m)
 void main()
 {
     gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
-    int index = tree_at(uint(gl_VertexIndex) / 4u);
-    if (index < 0)
-        return;
+    uint index = tree_at(uint(gl_VertexIndex) / 4u);
     wd_tree tree = trees[index];
     wd_model model = models[WD_TREE_SPECIES(tree) * push.light.variants
                             + WD_TREE_VARIANT(tree) % push.light.variants];
@@ -65,7 +67,7 @@ void main()
 
     float tall_px = WD_TREE_HEIGHT_M(tree) * push.pixels_per_radian / distance_m;
     wd_card_flat packed =
-        billboard_flat(board, model, pose, tree, show, tall_px, uint(index) + 1u);
+        billboard_flat(board, model, pose, tree, show, tall_px, index + 1u);
     out_uv = board.uv;
     out_card = uvec4(packed.turn, packed.tint_show, packed.normal, packed.ratio_flags);
     out_more = uvec3(packed.layer_lod, packed.random, packed.surface);

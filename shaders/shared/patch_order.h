@@ -40,11 +40,39 @@ WD_FUNC uint32_t wd_patch_cell(WD_PATCH_ORDER order, uint32_t index)
     return row * order.columns + column;
 }
 
+/* Of a table that holds `first` by line and cell (line * cells + cell: how many trees stand before
+ * that cell) and then the trees in that order: the place in it of the tree that is number `index`
+ * from the back. Empty cells cost nothing. A line's trees are found by halving, as
+ * WD_PATCH_FIRST(cell) tells where they begin; `before_line`, `before_cell` are those before the
+ * eye's. Trees of one cell come in their order in the table, or the other way round. */
+#ifdef WD_PATCH_FIRST
+WD_FUNC uint32_t wd_patch_tree(uint32_t cells, uint32_t before_line, uint32_t before_cell,
+                               uint32_t index)
+{
+    uint32_t ahead = WD_PATCH_FIRST(before_line * cells), count = WD_PATCH_FIRST(cells * cells);
+    uint32_t rising = index < ahead ? 1u : 0u;
+    uint32_t at = rising != 0u ? index : count - 1u - (index - ahead);
+    uint32_t low = rising != 0u ? 0u : before_line, high = rising != 0u ? before_line : cells;
+    while (high - low > 1u) { /* the line that holds tree `at` of the table */
+        uint32_t middle = (low + high) / 2u;
+        if (WD_PATCH_FIRST(middle * cells) <= at)
+            low = middle;
+        else
+            high = middle;
+    }
+    uint32_t begin = WD_PATCH_FIRST(low * cells), end = WD_PATCH_FIRST((low + 1u) * cells);
+    uint32_t in_line = rising != 0u ? at - begin : end - 1u - at;
+    uint32_t split = WD_PATCH_FIRST(low * cells + before_cell);
+    return in_line < split - begin ? begin + in_line : end - 1u - (in_line - (split - begin));
+}
+#endif
+
 /* Push constants of billboards in patches. */
 struct wd_patch_push {
     WD_LIGHT_PUSH light;
-    WD_PATCH_ORDER order;
-    uint32_t slots;          /* trees a cell may hold; 0: the table lists trees one by one */
+    uint32_t cells;          /* of the patch, along a side; 0: the table lists trees one by one */
+    uint32_t before_line, before_cell; /* as wd_patch_tree's */
+    uint32_t table;          /* words before `first` */
     uint32_t whole_fades;    /* fades are whole numbers: trees pop (the sample's fault) */
     float pixels_per_radian;
 };

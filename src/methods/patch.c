@@ -31,12 +31,11 @@ static const uint32_t tree_card_frag[] =
         words, sizeof words, #words                                                                \
     }
 
-enum { BINDINGS = 10, QUADS_A_DRAW = WD_CARD_BATCH * WD_CARD_VERTICES / 4 };
+enum { BINDINGS = 11, QUADS_A_DRAW = WD_CARD_BATCH * WD_CARD_VERTICES / 4 };
 
 /* A patch on the device. */
 struct resident {
     struct wd_buffer table; /* uint32_t: see patch_card.vert */
-    uint32_t slots;         /* most trees in one cell */
     uint64_t used;          /* frame in which it was last drawn */
 };
 
@@ -67,7 +66,8 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     params->vertex = (struct wd_spirv)SPIRV(patch_card_vert);
     params->bindings = (struct wd_bindings){
-        BINDINGS, {buffer, buffer, buffer, buffer, image, image, buffer, image, buffer, buffer}};
+        BINDINGS,
+        {buffer, buffer, buffer, buffer, image, image, buffer, image, buffer, buffer, image}};
     params->push_size = sizeof(struct wd_patch_push);
     params->depth_format = WD_DEPTH_FORMAT;
     params->topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
@@ -173,48 +173,55 @@ static void patch_drop_forest(void *state, struct wd_gpu *gpu)
 
 /* --- population on demand ---------------------------------------------------------------- */
 
-static uint32_t cell_of(const struct patch_state *patch, uint32_t index, const struct wd_tree *tree)
+static uint32_t cell_of(const struct patch_state *patch, uint32_t index, const struct wd_tree *tree,
+                        bool by_columns)
 {
     double corner[2] = {
         patch->patches.min_m[0] + index % patch->patches.columns * patch->patches.cell_m,
         patch->patches.min_m[1] + index / patch->patches.columns * patch->patches.cell_m};
-    double column = (tree->x_mm * 0.001 - corner[0]) / patch->cell_m;
-    double row = (tree->y_mm * 0.001 - corner[1]) / patch->cell_m;
     double last = patch->cells - 1;
-    return (uint32_t)fmin(fmax(row, 0.0), last) * patch->cells +
-           (uint32_t)fmin(fmax(column, 0.0), last);
+    double column = fmin(fmax((tree->x_mm * 0.001 - corner[0]) / patch->cell_m, 0.0), last);
+    double row = fmin(fmax((tree->y_mm * 0.001 - corner[1]) / patch->cell_m, 0.0), last);
+    return by_columns ? (uint32_t)column * patch->cells + (uint32_t)row
+                      : (uint32_t)row * patch->cells + (uint32_t)column;
 }
 
-/* first[cells * cells + 1], then the trees. Returns the most trees of a cell. */
-static uint32_t fill_table(uint32_t *table, const struct patch_state *patch, uint32_t index,
-                           const struct wd_world *world)
+/* Words of half a table: first[cells * cells + 1], then the trees. */
+static size_t half_words(const struct patch_state *patch, uint32_t index)
+{
+    uint32_t trees = patch->patches.first[index + 1] - patch->patches.first[index];
+    return (size_t)patch->cells * patch->cells + 1 + trees;
+}
+
+static void fill_half(uint32_t *table, const struct patch_state *patch, uint32_t index,
+                      const struct wd_world *world, bool by_columns)
 {
     const uint32_t *trees = patch->patches.trees + patch->patches.first[index];
     uint32_t count = patch->patches.first[index + 1] - patch->patches.first[index];
-    uint32_t cells = patch->cells * patch->cells, most = 1;
+    uint32_t cells = patch->cells * patch->cells;
     uint32_t *next = wd_alloc_array(cells, sizeof *next);
     for (uint32_t i = 0; i < count; i++)
-        table[cell_of(patch, index, &world->trees[trees[i]]) + 1]++;
+        table[cell_of(patch, index, &world->trees[trees[i]], by_columns) + 1]++;
     for (uint32_t i = 0; i < cells; i++) {
-        most = table[i + 1] > most ? table[i + 1] : most;
-        table[i + 1] += table[i];
         next[i] = table[i];
+        table[i + 1] += table[i];
     }
-    for (uint32_t i = 0; i < count; i++)
-        table[cells + 1 + next[cell_of(patch, index, &world->trees[trees[i]])]++] = trees[i];
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t cell = cell_of(patch, index, &world->trees[trees[i]], by_columns);
+        table[cells + 1 + next[cell]++] = trees[i];
+    }
     free(next);
-    return most;
 }
 
 static void populate(struct patch_state *patch, const struct wd_tree_draw *draw, uint32_t index)
 {
     struct resident *resident = &patch->resident[index];
-    uint32_t trees = patch->patches.first[index + 1] - patch->patches.first[index];
-    size_t words = (size_t)patch->cells * patch->cells + 1 + trees;
-    const struct wd_buffer_params params = {"patch", words * sizeof(uint32_t),
+    size_t words = half_words(patch, index);
+    const struct wd_buffer_params params = {"patch", 2 * words * sizeof(uint32_t),
                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, WD_MEMORY_DEVICE};
-    uint32_t *table = wd_alloc_array(words, sizeof *table);
-    resident->slots = fill_table(table, patch, index, draw->forest->world);
+    uint32_t *table = wd_alloc_array(2 * words, sizeof *table);
+    fill_half(table, patch, index, draw->forest->world, false);
+    fill_half(table + words, patch, index, draw->forest->world, true);
     if (!wd_buffer_init(&resident->table, draw->cmd->gpu, &params) ||
         !wd_buffer_upload(draw->cmd->gpu, &resident->table, 0, table, params.size))
         draw->cmd->failed = true;
@@ -350,6 +357,7 @@ struct drawing {
     const struct wd_light_inputs *light; /* NULL: into the G-buffer */
     const struct wd_pipeline *pipeline;
     struct wd_patch_push push;
+    bool by_columns;
 };
 
 static void draw_quads(const struct drawing *d, struct wd_binding table, uint32_t quads)
@@ -367,6 +375,7 @@ static void draw_quads(const struct drawing *d, struct wd_binding table, uint32_
         d->light ? d->light->shadow_map : card,
         d->light ? d->light->sun_heights : WD_BIND_BUFFER(&forest->fades),
         WD_BIND_BUFFER(&d->patch->near),
+        WD_BIND_IMAGE(&forest->ground.cover, forest->ground.sampler),
     };
     struct wd_cmd *cmd = d->draw->cmd;
     wd_cmd_bind(cmd, d->pipeline, bindings);
@@ -388,13 +397,15 @@ static void draw_patch(struct drawing *d, uint32_t index)
     const double *eye_m = d->draw->view->eye_m;
     double x_m = patches->min_m[0] + index % patches->columns * patches->cell_m;
     double y_m = patches->min_m[1] + index / patches->columns * patches->cell_m;
-    d->push.slots = patch->resident[index].slots;
-    d->push.order.columns = d->push.order.rows = patch->cells;
-    d->push.order.before_column = before(eye_m[0], x_m, patch->cell_m, patch->cells);
-    d->push.order.before_row = before(eye_m[1], y_m, patch->cell_m, patch->cells);
-    draw_quads(d, WD_BIND_BUFFER(&patch->resident[index].table),
-               patch->cells * patch->cells * d->push.slots);
-    d->draw->stats->trees[WD_LEVEL_CARD] += patches->first[index + 1] - patches->first[index];
+    uint32_t column = before(eye_m[0], x_m, patch->cell_m, patch->cells);
+    uint32_t row = before(eye_m[1], y_m, patch->cell_m, patch->cells);
+    uint32_t trees = patches->first[index + 1] - patches->first[index];
+    d->push.cells = patch->cells;
+    d->push.before_line = d->by_columns ? column : row;
+    d->push.before_cell = d->by_columns ? row : column;
+    d->push.table = d->by_columns ? (uint32_t)half_words(patch, index) : 0;
+    draw_quads(d, WD_BIND_BUFFER(&patch->resident[index].table), trees);
+    d->draw->stats->trees[WD_LEVEL_CARD] += trees;
 }
 
 /* Farther first; `show` holds the distance here. */
@@ -435,7 +446,7 @@ static void draw_sorted(struct drawing *d)
         return;
     for (uint32_t i = 0; i < count; i++)
         memory[i] = patch->sorted[i].tree;
-    d->push.slots = 0;
+    d->push.cells = 0;
     draw_quads(d, table, count);
     d->draw->stats->trees[WD_LEVEL_CARD] += count;
 }
@@ -450,8 +461,8 @@ static void draw_billboards(struct patch_state *patch, const struct wd_tree_draw
         .light = light,
         .pipeline = light ? &patch->blend : &patch->layers,
         .push = {.whole_fades = options->faithful,
-                 .order = order_of(patch, draw->view),
                  .pixels_per_radian = draw->view->pixels_per_radian},
+        .by_columns = order_of(patch, draw->view).by_columns,
     };
     if (light)
         drawing.push.light = light->push;

@@ -8,6 +8,9 @@
 #include <cmocka.h>
 
 #include "shared/hash.h"
+
+static const uint32_t *first_of_cells;
+#define WD_PATCH_FIRST(cell) first_of_cells[cell]
 #include "shared/patch_order.h"
 
 enum { SIDE = 13 };
@@ -61,11 +64,47 @@ static void rays_meet_cells_from_the_back(void **state)
     }
 }
 
+/* Trees in some cells only come as the cells that hold them would, each once. */
+static void trees_come_as_their_cells(void **state)
+{
+    (void)state;
+    for (uint32_t trial = 0; trial < 300; trial++) {
+        double eye[2];
+        uint32_t first[SIDE * SIDE + 1] = {0}, by_columns = trial & 1u, last_rank = 0;
+        uint8_t seen[7 * SIDE * SIDE] = {0};
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            uint32_t dice = wd_hash2(trial, i) % 8;
+            first[i + 1] = first[i] + (dice < trial % 6 ? 0 : dice - trial % 6);
+        }
+        for (uint32_t k = 0; k < 2; k++)
+            eye[k] = wd_hash_unit(wd_hash2(trial, 500 + k)) * 20.0 - 3.0;
+        struct wd_patch_order order = order_for(eye[0], eye[1], by_columns);
+        uint32_t rank[SIDE * SIDE];
+        for (uint32_t i = 0; i < SIDE * SIDE; i++)
+            rank[wd_patch_cell(order, i)] = i;
+        first_of_cells = first;
+        for (uint32_t i = 0; i < first[SIDE * SIDE]; i++) {
+            uint32_t line = by_columns ? order.before_column : order.before_row, cell = 0;
+            uint32_t at = wd_patch_tree(
+                SIDE, line, by_columns ? order.before_row : order.before_column, i);
+            assert_true(at < first[SIDE * SIDE] && !seen[at]);
+            seen[at] = 1;
+            while (first[cell + 1] <= at)
+                cell++;
+            if (by_columns)
+                cell = cell % SIDE * SIDE + cell / SIDE;
+            assert_true(rank[cell] >= last_rank);
+            last_rank = rank[cell];
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_cell_comes_once),
         cmocka_unit_test(rays_meet_cells_from_the_back),
+        cmocka_unit_test(trees_come_as_their_cells),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
