@@ -1,6 +1,15 @@
 /* A vertex of a tree's mesh where it stands. Expects `frame`, `push` (wd_tree_push), `trees`,
  * `models`, SHADOW and the libraries tree and tree_vertex. */
 
+/* Of a mesh, in the model's frame. */
+struct mesh_corner {
+    vec3 position_m, normal;
+    vec2 uv;
+    vec4 tint;
+    uint kind;
+    uint name; /* what the triangle's random number comes from */
+};
+
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_uv; /* z: layer of the look */
 layout(location = 2) out vec4 out_tint;
@@ -16,14 +25,14 @@ float moss_share(vec3 normal, float height_m)
     return shade * (exp(-height_m * 0.9) + 0.12 * smoothstep(0.3, 0.9, normal.z));
 }
 
-void tree_mesh_vertex(wd_instance instance, wd_tree_vertex v)
+void tree_mesh_vertex(wd_instance instance, mesh_corner v)
 {
     wd_tree tree = trees[instance.tree];
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];
     tree_pose pose = tree_pose_of(tree, model);
     vec3 offset = tree_offset(pose, v.position_m);
-    vec3 normal = tree_normal(pose, tree_vertex_normal(v));
+    vec3 normal = tree_normal(pose, v.normal);
     bool leaf = (v.kind & WD_VERTEX_LEAF) != 0u;
 
     offset += tree_sway(tree, model.flexibility, offset.z, frame.time_s);
@@ -34,13 +43,13 @@ void tree_mesh_vertex(wd_instance instance, wd_tree_vertex v)
     }
     vec3 rel = tree_foot_rel(tree) + offset;
     out_normal = normal;
-    out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + wd_vertex_layer(v.kind)));
-    out_tint = unpackUnorm4x8(v.tint);
+    out_uv = vec3(v.uv, float(model.look_layer + wd_vertex_layer(v.kind)));
+    out_tint = v.tint;
     if (leaf)
         out_tint.rgb *= tree_tint(tree);
     out_flat = uvec3(instance.tree + 1u, (leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
                          | (pose.mirror.x < 0.0 ? 4u : 0u),
-                     wd_hash2(uint(gl_VertexIndex), tree.random));
+                     wd_hash2(v.name, tree.random));
     out_show = instance.show;
     out_place = vec4(rel, leaf ? 0.0 : model.moss * moss_share(normal, offset.z));
     gl_Position = SHADOW != 0u ? shadow_clip(push.cascade, rel)

@@ -29,6 +29,12 @@ void main()
         gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
-    v.position_m = place.center_m + (v.position_m - place.center_m) * instance.scale;
-    tree_mesh_vertex(wd_instance(instance.tree, instance.show), v);
+    mesh_corner corner;
+    corner.position_m = place.center_m + (v.position_m - place.center_m) * instance.scale;
+    corner.normal = tree_vertex_normal(v);
+    corner.uv = unpackHalf2x16(v.uv);
+    corner.tint = unpackUnorm4x8(v.tint);
+    corner.kind = v.kind;
+    corner.name = uint(gl_VertexIndex);
+    tree_mesh_vertex(wd_instance(instance.tree, instance.show), corner);
 }

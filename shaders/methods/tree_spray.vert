@@ -7,13 +7,14 @@
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
-layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_tree_vertex vertices[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_packed_vertex vertices[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_spray_instance instances[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer Leaves { wd_tree_leaf leaves[]; };
-layout(scalar, push_constant) uniform Push { wd_tree_push push; };
+layout(scalar, push_constant) uniform Push { wd_spray_push spray; };
 
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
+#define push spray.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
 
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_uv;
@@ -29,28 +30,29 @@ void main()
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];
     wd_tree_leaf leaf = leaves[instance.leaf];
-    wd_tree_vertex v = vertices[gl_VertexIndex];
-    bool blade = (v.kind & WD_VERTEX_LEAF) != 0u;
-    vec3 along = octahedral_decode(unpackSnorm2x16(leaf.axis));
-    vec3 above = octahedral_decode(unpackSnorm2x16(leaf.normal));
-    vec3 shading = octahedral_decode(unpackSnorm2x16(leaf.shading));
-    mat3 turn = mat3(cross(along, above), along, above);
+    wd_packed_vertex v = vertices[gl_VertexIndex];
+    uint kind = v.z_kind >> 16;
+    vec3 place = wd_box_place(spray.twig, v.xy, v.z_kind);
+    bool blade = (kind & WD_VERTEX_LEAF) != 0u;
+    wd_leaf_axes axes = wd_leaf_axes_of(leaf.turn);
+    mat3 turn = mat3(axes.across, axes.along, axes.above);
+    vec3 shading = wd_leaf_shading(leaf.shading);
     vec3 own = turn * octahedral_decode(unpackSnorm2x16(v.normal));
     own = dot(own, shading) < 0.0 ? -own : own;
 
     tree_pose pose = tree_pose_of(tree, model);
-    vec3 at = tree_offset(pose, leaf.position_m + turn * v.position_m * leaf.size_m);
+    vec3 at = tree_offset(pose, wd_leaf_foot(leaf, spray.leaves)
+                                    + turn * place * wd_leaf_size_m(leaf, spray.leaves));
     vec3 normal = tree_normal(pose, mix(shading, own, 0.5));
     at += tree_sway(tree, model.flexibility, at.z, frame.time_s);
     if (frame.wind_speed_mps > 0.0) {
-        float phase = fract(float(leaf.random >> 8) * (1.0 / 16777216.0)
-                            + 0.31 * dot(v.position_m, vec3(1.0)));
-        float bend = min(float((leaf.random & 0xffu) + (v.kind & 0xffu)) * (1.0 / 255.0), 1.0);
+        float phase = fract(wd_hash_unit(wd_hash1(instance.leaf)) + 0.31 * dot(place, vec3(1.0)));
+        float bend = min(float(WD_LEAF_FLEXIBILITY(leaf) + (kind & 0xffu)) * (1.0 / 255.0), 1.0);
         at += normal * wd_wind_flutter(tree_wind(), bend, phase, frame.time_s);
     }
     vec4 tint = unpackUnorm4x8(v.tint), leaf_tint = unpackUnorm4x8(leaf.tint);
     out_normal = normal;
-    out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + wd_vertex_layer(v.kind)));
+    out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + wd_vertex_layer(kind)));
     out_tint = vec4(blade ? tint.rgb * leaf_tint.rgb * tree_tint(tree) : tint.rgb, leaf_tint.a);
     out_flat = uvec3(instance.tree + 1u, (blade ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
                                              | (pose.mirror.x < 0.0 ? 4u : 0u), 0u);

@@ -101,6 +101,25 @@ struct wd_tree_push {
     uint32_t leaf_count;     /* of them, in progressive order; 0: all are drawn at any distance */
 };
 
+/* Push constants of pipelines that draw meshes: those of all, then of wood the box of its vertices,
+ * of leaves that of their places and the set that is drawn (src/forest/meshes.h). */
+struct wd_mesh_push {
+    WD_STRUCT wd_tree_push tree;
+    WD_STRUCT wd_leaf_box box; /* of wood `feet` alone is read */
+    float own, arch_least, arch_range; /* as in struct wd_leaf_set */
+    uint32_t first_leaf, first_corner;
+    uint32_t corner_count, forms; /* corners of each form */
+    uint32_t corner_bits;         /* a vertex's number: leaf << corner_bits | corner */
+    uint32_t first_name;          /* of the triangles' random numbers */
+};
+
+/* Push constants of twigs. */
+struct wd_spray_push {
+    WD_STRUCT wd_tree_push tree;
+    WD_STRUCT wd_leaf_box leaves;
+    WD_STRUCT wd_mesh_box twig; /* in units of the leaf's size */
+};
+
 /* Leaves in progressive order thin out with distance, and those that stay grow so that their area
  * does (stochastic simplification: Cook et al. 2007; W5): what a tree costs follows the pixels that
  * it covers. Leaves this long on screen, and longer ones, are all drawn. */

@@ -33,25 +33,114 @@ struct wd_tree_vertex {
     uint32_t tint;   /* R, G, B: multiplier of the look texture, 255 is 1; A: sky openness of the
                         place in the crown, 0 dark .. 255 free */
     uint32_t kind;   /* bits 0..7: flexibility (0 trunk foot .. 255 leaf tip); bit 8: leaf;
-                        bit 9: flower; bits 10..31: 1 + the wd_tree_leaf that it is part of, or 0 */
+                        bit 9: flower */
 };
 WD_STATIC_ASSERT_SIZE(wd_tree_vertex, 28);
 #define WD_VERTEX_LEAF 0x100u
 #define WD_VERTEX_FLOWER 0x200u /* together with WD_VERTEX_LEAF: a petal */
+#define WD_VERTEX_KIND 0x3ffu   /* all of them */
 
-#define WD_VERTEX_LEAF_SHIFT 10
-
-/* A drawn leaf or needle shoot, which on a large tree stands for a twig with many: close to the
- * camera that twig is drawn instead (its leaves, or needles, of their real size). 36 bytes. */
-struct wd_tree_leaf {
-    WD_VEC3(position_m);    /* of its foot */
-    uint32_t axis, normal;  /* to the tip; the upper side: as wd_tree_vertex.normal */
-    uint32_t shading;       /* how the crown faces the light here, likewise */
-    uint32_t tint;          /* as wd_tree_vertex.tint */
-    float size_m;           /* of the leaf: the unit of the twig's mesh */
-    uint32_t random;        /* bits 0..7: flexibility */
+/* Places in 1/65535 of a box. */
+struct wd_mesh_box {
+    WD_VEC3(least_m);
+    WD_VEC3(step_m);
 };
-WD_STATIC_ASSERT_SIZE(wd_tree_leaf, 36);
+#define WD_BOX_STEPS 65535u
+
+/* `xy`: two places, x in the low half; `z`: bits 16.. are not read. */
+WD_FUNC WD_VECTOR wd_box_place(WD_STRUCT wd_mesh_box box, uint32_t xy, uint32_t z)
+{
+    return WD_V3(box.least_m[0] + box.step_m[0] * WD_FLOAT(xy & 0xffffu),
+                 box.least_m[1] + box.step_m[1] * WD_FLOAT(xy >> 16),
+                 box.least_m[2] + box.step_m[2] * WD_FLOAT(z & 0xffffu));
+}
+
+/* A wd_tree_vertex as the device keeps it, in the box of its mesh. 20 bytes. */
+struct wd_packed_vertex {
+    uint32_t xy;
+    uint32_t z_kind; /* bits 0..15: z; 16..25: kind */
+    uint32_t normal, uv, tint; /* as in wd_tree_vertex */
+};
+WD_STATIC_ASSERT_SIZE(wd_packed_vertex, 20);
+
+/* A leaf, needle shoot or flower: where it stands and how it is turned. Its form is one of its
+ * species (wd_leaf_vertex). On a large tree it stands for a twig with many: close to the camera
+ * that twig is drawn instead (its leaves, or needles, of their real size). 20 bytes. */
+struct wd_tree_leaf {
+    uint32_t xy;      /* of its foot, in the box of the tree's leaves */
+    uint32_t z_size;  /* bits 0..15: z; 16..31: its length, the unit of its form, in steps */
+    uint32_t turn;    /* quaternion from its own frame (x across, y along, z above) to the tree's:
+                         bits 30..31 say which part is largest, bits 0..29 hold the others in
+                         1/1023 of their range */
+    uint32_t shading; /* bits 0..15: how the crown faces the light here, octahedral, two 8-bit
+                         snorm; 16..23: flexibility; 24..29: how much it arches, 0..63;
+                         30..31: which of its species' forms */
+    uint32_t tint;    /* as wd_tree_vertex.tint */
+};
+WD_STATIC_ASSERT_SIZE(wd_tree_leaf, 20);
+#define WD_LEAF_FORM(leaf) ((leaf).shading >> 30)
+#define WD_LEAF_ARCH(leaf) (WD_FLOAT(((leaf).shading >> 24) & 63u) * (1.0f / 63.0f))
+#define WD_LEAF_FLEXIBILITY(leaf) (((leaf).shading >> 16) & 0xffu)
+
+struct wd_leaf_box {
+    WD_STRUCT wd_mesh_box feet;
+    float size_step_m;
+};
+
+WD_FUNC WD_VECTOR wd_leaf_foot(WD_STRUCT wd_tree_leaf leaf, WD_STRUCT wd_leaf_box box)
+{
+    return wd_box_place(box.feet, leaf.xy, leaf.z_size);
+}
+
+WD_FUNC float wd_leaf_size_m(WD_STRUCT wd_tree_leaf leaf, WD_STRUCT wd_leaf_box box)
+{
+    return WD_FLOAT(leaf.z_size >> 16) * box.size_step_m;
+}
+
+/* The axes of its frame, of unit length and square to one another. */
+struct wd_leaf_axes {
+    WD_VECTOR across, along, above;
+};
+
+#define WD_QUATERNION_PART 0.70710678f /* parts but the largest lie within +- this */
+
+WD_FUNC WD_STRUCT wd_leaf_axes wd_leaf_axes_of(uint32_t turn)
+{
+    float scale = 2.0f * WD_QUATERNION_PART / 1023.0f;
+    float a = WD_FLOAT(turn & 1023u) * scale - WD_QUATERNION_PART;
+    float b = WD_FLOAT((turn >> 10) & 1023u) * scale - WD_QUATERNION_PART;
+    float c = WD_FLOAT((turn >> 20) & 1023u) * scale - WD_QUATERNION_PART;
+    float d = WD_SQRT(WD_MAX(1.0f - a * a - b * b - c * c, 0.0f));
+    uint32_t largest = turn >> 30;
+    float w = largest == 0u ? d : a, x = largest == 0u ? a : (largest == 1u ? d : b);
+    float y = largest < 2u ? b : (largest == 2u ? d : c), z = largest == 3u ? d : c;
+    WD_STRUCT wd_leaf_axes axes;
+    axes.across = WD_V3(1.0f - 2.0f * (y * y + z * z), 2.0f * (x * y + w * z),
+                        2.0f * (x * z - w * y));
+    axes.along = WD_V3(2.0f * (x * y - w * z), 1.0f - 2.0f * (x * x + z * z),
+                       2.0f * (y * z + w * x));
+    axes.above = WD_V3(2.0f * (x * z + w * y), 2.0f * (y * z - w * x),
+                       1.0f - 2.0f * (x * x + y * y));
+    return axes;
+}
+
+WD_FUNC WD_VECTOR wd_leaf_shading(uint32_t shading)
+{
+    float x = WD_FLOAT(WD_INT(shading << 24) >> 24) * (1.0f / 127.0f);
+    float y = WD_FLOAT(WD_INT(shading << 16) >> 24) * (1.0f / 127.0f);
+    float z = 1.0f - WD_ABS(x) - WD_ABS(y), fold = z < 0.0f ? -z : 0.0f;
+    x += x >= 0.0f ? -fold : fold;
+    y += y >= 0.0f ? -fold : fold;
+    return wd_v3_normalize(WD_V3(x, y, z));
+}
+
+/* A corner of a leaf's form, in its own frame and in units of its length. 24 bytes. */
+struct wd_leaf_vertex {
+    WD_VEC3(place);
+    uint32_t normal, uv; /* as in wd_tree_vertex; the normal is the upper side's */
+    uint32_t kind;       /* likewise; its flexibility is what is added to the leaf's */
+};
+WD_STATIC_ASSERT_SIZE(wd_leaf_vertex, 24);
 
 /* Twigs of broad leaves are whole nearer than the one, and nothing is drawn as a twig beyond the
  * other; those of needles come at half of either: they are smaller, and many more. */

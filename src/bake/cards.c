@@ -48,14 +48,11 @@ static void init_cards(struct wd_cards *cards)
 /* How far the model reaches from its axis: along a card, and in any direction along x or y. */
 struct wd_card_extent wd_card_extent_of(const struct wd_tree_mesh *mesh)
 {
-    float radius_squared = 0.0f, side = 0.0f;
-    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        const float *p = mesh->vertices[i].position_m;
-        radius_squared = fmaxf(radius_squared, p[0] * p[0] + p[1] * p[1]);
-        side = fmaxf(side, fmaxf(fabsf(p[0]), fabsf(p[1])));
-    }
+    float side = 0.0f;
+    for (int axis = 0; axis < 2; axis++)
+        side = fmaxf(side, fmaxf(fabsf(mesh->min_m[axis]), fabsf(mesh->max_m[axis])));
     return (struct wd_card_extent){
-        .half_width_m = fmaxf(sqrtf(radius_squared) * 1.01f, 0.01f),
+        .half_width_m = fmaxf(mesh->reach_m * 1.01f, 0.01f),
         .half_depth_m = fmaxf(side * 1.01f, 0.01f),
         .bottom_m = mesh->min_m[2],
         .top_m = fmaxf(mesh->max_m[2], mesh->min_m[2] + 0.01f),

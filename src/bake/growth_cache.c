@@ -7,13 +7,15 @@
 
 #include "base/memory.h"
 
-/* A kept model: words, then for the full mesh, the reduced one and the twig its vertices and its
- * indices, then the leaves, packed by meshoptimizer's codecs (the sequence codec keeps the order of
- * indices). */
-enum { MESHES = 3, MESH_WORDS = 5, FIGURES = 7, LEAVES = FIGURES + MESHES * MESH_WORDS,
-       WORDS = LEAVES + 2 };
+/* A kept model: words, then the wood of the full mesh and of the reduced one and the twig, each as
+ * vertices and indices, then the leaves and the forms of their sets, packed by meshoptimizer's codecs
+ * (the sequence codec keeps the order of indices). */
+enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, FIGURES = 7 + 7 + BOUNDS,
+       SETS = 2 * WD_LEAF_SETS, SET_WORDS = 9, SET_AT = FIGURES + MESHES * MESH_WORDS,
+       LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
 static const uint32_t MAX_VERTICES = 1u << 26;
+static const uint32_t MAX_FORMS = 4; /* that a leaf can name */
 
 /* --- keys -------------------------------------------------------------------------------- */
 
@@ -86,6 +88,18 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
     figures[4] = &model->age_years;
     figures[5] = &model->leaf_area_m2;
     figures[6] = &model->spray_reach;
+    for (size_t k = 0; k < 3; k++) {
+        figures[7 + k] = &model->leaf_box.feet.least_m[k];
+        figures[10 + k] = &model->leaf_box.feet.step_m[k];
+    }
+    figures[13] = &model->leaf_box.size_step_m;
+    struct wd_tree_mesh *meshes[] = {&model->full, &model->reduced};
+    for (size_t i = 0; i < BOUNDS; i++) {
+        struct wd_tree_mesh *mesh = meshes[i / 7];
+        figures[14 + i] = i % 7 == 6  ? &mesh->reach_m
+                          : i % 7 < 3 ? &mesh->min_m[i % 7]
+                                      : &mesh->max_m[i % 7 - 3];
+    }
 }
 
 static void meshes_of(struct wd_tree_mesh *meshes[MESHES], struct wd_tree_model *model)
@@ -95,127 +109,221 @@ static void meshes_of(struct wd_tree_mesh *meshes[MESHES], struct wd_tree_model 
     meshes[2] = &model->spray;
 }
 
-/* Appends a mesh to `block` and describes it at `words`. */
-static size_t pack_mesh(uint8_t *block, size_t used, size_t capacity, uint8_t *words,
-                        const struct wd_tree_mesh *mesh)
+static uint32_t bits_of(float value)
 {
-    size_t vertex_bytes = meshopt_encodeVertexBuffer(block + used, capacity - used, mesh->vertices,
-                                                     mesh->vertex_count, sizeof *mesh->vertices);
-    size_t index_bytes =
-        meshopt_encodeIndexSequence(block + used + vertex_bytes, capacity - used - vertex_bytes,
-                                    mesh->indices, mesh->index_count);
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static float float_of(uint32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* A block that is being filled, or read. */
+struct block {
+    uint8_t *bytes;
+    size_t used, size;
+};
+
+static size_t pack_vertices(struct block *block, const void *items, size_t count, size_t size)
+{
+    size_t bytes = meshopt_encodeVertexBuffer(block->bytes + block->used, block->size - block->used,
+                                              items, count, size);
+    block->used += bytes;
+    return bytes;
+}
+
+static size_t pack_indices(struct block *block, const uint32_t *indices, size_t count)
+{
+    size_t bytes = meshopt_encodeIndexSequence(block->bytes + block->used,
+                                               block->size - block->used, indices, count);
+    block->used += bytes;
+    return bytes;
+}
+
+/* What the next `bytes` hold; NULL where they are not `count` items. */
+static void *unpack_vertices(struct block *block, size_t bytes, size_t count, size_t size)
+{
+    if (count > MAX_VERTICES || block->size - block->used < bytes)
+        return NULL;
+    void *items = wd_alloc_array(count + 1, size);
+    if (meshopt_decodeVertexBuffer(items, count, size, block->bytes + block->used, bytes) != 0) {
+        free(items);
+        return NULL;
+    }
+    block->used += bytes;
+    return items;
+}
+
+/* Likewise indices, which are below `below`. */
+static uint32_t *unpack_indices(struct block *block, size_t bytes, size_t count, uint32_t below)
+{
+    if (count > 6 * (size_t)MAX_VERTICES || block->size - block->used < bytes)
+        return NULL;
+    uint32_t *indices = wd_alloc_array(count + 1, sizeof *indices);
+    bool ok = meshopt_decodeIndexSequence(indices, count, sizeof *indices,
+                                          block->bytes + block->used, bytes) == 0;
+    for (size_t i = 0; i < count && ok; i++)
+        ok = indices[i] < below;
+    block->used += bytes;
+    if (ok)
+        return indices;
+    free(indices);
+    return NULL;
+}
+
+/* A mesh, described at `words`. */
+static void pack_mesh(struct block *block, uint8_t *words, const struct wd_tree_mesh *mesh)
+{
     put_word(words, 0, mesh->vertex_count);
     put_word(words, 1, mesh->index_count);
     put_word(words, 2, mesh->wood_index_count);
-    put_word(words, 3, (uint32_t)vertex_bytes);
-    put_word(words, 4, (uint32_t)index_bytes);
-    return used + vertex_bytes + index_bytes;
+    put_word(words, 3, (uint32_t)pack_vertices(block, mesh->vertices, mesh->vertex_count,
+                                               sizeof *mesh->vertices));
+    put_word(words, 4, (uint32_t)pack_indices(block, mesh->indices, mesh->index_count));
 }
 
-static size_t mesh_bound(const struct wd_tree_mesh *mesh)
+static bool unpack_mesh(struct wd_tree_mesh *mesh, const uint8_t *words, struct block *block)
 {
-    return meshopt_encodeVertexBufferBound(mesh->vertex_count, sizeof *mesh->vertices) +
-           meshopt_encodeIndexSequenceBound(mesh->index_count, mesh->vertex_count);
+    uint32_t vertices = get_word(words, 0), indices = get_word(words, 1);
+    mesh->vertices = unpack_vertices(block, get_word(words, 3), vertices, sizeof *mesh->vertices);
+    mesh->indices = mesh->vertices
+                        ? unpack_indices(block, get_word(words, 4), indices, vertices)
+                        : NULL;
+    mesh->vertex_count = mesh->vertex_capacity = vertices;
+    mesh->index_count = mesh->index_capacity = indices;
+    mesh->wood_index_count = get_word(words, 2);
+    return mesh->indices && mesh->wood_index_count <= indices;
 }
 
+static void pack_set(struct block *block, uint8_t *words, const struct wd_leaf_set *set)
+{
+    put_word(words, 0, set->forms);
+    put_word(words, 1, set->corner_count);
+    put_word(words, 2, set->index_count);
+    put_word(words, 3, set->leaf_count);
+    put_word(words, 4, bits_of(set->own));
+    put_word(words, 5, bits_of(set->arch_least));
+    put_word(words, 6, bits_of(set->arch_range));
+    put_word(words, 7, (uint32_t)pack_vertices(block, set->corners,
+                                               (size_t)set->forms * set->corner_count,
+                                               sizeof *set->corners));
+    put_word(words, 8, (uint32_t)pack_indices(block, set->indices, set->index_count));
+}
+
+static bool unpack_set(struct wd_leaf_set *set, const uint8_t *words, struct block *block,
+                       uint32_t leaves)
+{
+    *set = (struct wd_leaf_set){
+        .forms = get_word(words, 0),
+        .corner_count = get_word(words, 1),
+        .index_count = get_word(words, 2),
+        .leaf_count = get_word(words, 3),
+        .own = float_of(get_word(words, 4)),
+        .arch_least = float_of(get_word(words, 5)),
+        .arch_range = float_of(get_word(words, 6)),
+    };
+    if (set->forms > MAX_FORMS || set->corner_count > MAX_VERTICES || set->leaf_count > leaves ||
+        (set->leaf_count && !set->forms))
+        return false;
+    set->corners = unpack_vertices(block, get_word(words, 7),
+                                   (size_t)set->forms * set->corner_count, sizeof *set->corners);
+    set->indices = set->corners ? unpack_indices(block, get_word(words, 8), set->index_count,
+                                                 set->corner_count)
+                                : NULL;
+    return set->indices != NULL;
+}
+
+static size_t mesh_bound(size_t vertices, size_t size, size_t indices)
+{
+    return meshopt_encodeVertexBufferBound(vertices, size) +
+           meshopt_encodeIndexSequenceBound(indices, vertices);
+}
+
+static size_t model_bound(struct wd_tree_model *model)
+{
+    struct wd_tree_mesh *meshes[MESHES];
+    meshes_of(meshes, model);
+    size_t bound = 4 * WORDS + meshopt_encodeVertexBufferBound(
+                                   model->leaf_count + model->flower_count, sizeof *model->leaves);
+    for (int i = 0; i < MESHES; i++)
+        bound += mesh_bound(meshes[i]->vertex_count, sizeof *meshes[i]->vertices,
+                            meshes[i]->index_count);
+    for (int i = 0; i < SETS; i++) {
+        const struct wd_leaf_set *set = &model->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS];
+        bound += mesh_bound((size_t)set->forms * set->corner_count, sizeof *set->corners,
+                            set->index_count);
+    }
+    return bound;
+}
+
+/* The model has no triangles of leaves. */
 static void store_model(struct wd_bake_cache *cache, uint64_t key, struct wd_tree_model *model)
 {
     struct wd_tree_mesh *meshes[MESHES];
     meshes_of(meshes, model);
-    size_t used = 4 * WORDS;
-    size_t capacity =
-        used + meshopt_encodeVertexBufferBound(model->leaf_count, sizeof *model->leaves);
-    for (int i = 0; i < MESHES; i++)
-        capacity += mesh_bound(meshes[i]);
-    uint8_t *block = wd_alloc(capacity);
+    struct block block = {.used = 4 * WORDS, .size = model_bound(model)};
+    block.bytes = wd_alloc(block.size);
     float *figures[FIGURES];
     figures_of(figures, model);
-    for (size_t i = 0; i < FIGURES; i++) {
-        uint32_t bits;
-        memcpy(&bits, figures[i], sizeof bits);
-        put_word(block, i, bits);
-    }
+    for (size_t i = 0; i < FIGURES; i++)
+        put_word(block.bytes, i, bits_of(*figures[i]));
     for (int i = 0; i < MESHES; i++)
-        used = pack_mesh(block, used, capacity, block + 4 * (FIGURES + i * MESH_WORDS), meshes[i]);
-    size_t leaf_bytes = meshopt_encodeVertexBuffer(block + used, capacity - used, model->leaves,
-                                                   model->leaf_count, sizeof *model->leaves);
-    put_word(block, LEAVES, model->leaf_count);
-    put_word(block, LEAVES + 1, (uint32_t)leaf_bytes);
-    used += leaf_bytes;
-    wd_cache_store(cache, "growth", key, block, used);
-    free(block);
+        pack_mesh(&block, block.bytes + 4 * (FIGURES + i * MESH_WORDS), meshes[i]);
+    put_word(block.bytes, LEAVES, model->leaf_count);
+    put_word(block.bytes, LEAVES + 1, model->flower_count);
+    put_word(block.bytes, LEAVES + 2,
+             (uint32_t)pack_vertices(&block, model->leaves, model->leaf_count + model->flower_count,
+                                     sizeof *model->leaves));
+    for (int i = 0; i < SETS; i++)
+        pack_set(&block, block.bytes + 4 * (SET_AT + i * SET_WORDS),
+                 &model->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS]);
+    wd_cache_store(cache, "growth", key, block.bytes, block.used);
+    free(block.bytes);
 }
 
-/* False where the block holds anything else than a mesh. */
-static bool unpack_mesh(struct wd_tree_mesh *mesh, const uint8_t *words, const uint8_t *block,
-                        size_t size, size_t *used)
+static bool unpack_leaves(struct wd_tree_model *model, struct block *block)
 {
-    uint32_t vertices = get_word(words, 0), indices = get_word(words, 1);
-    size_t vertex_bytes = get_word(words, 3), index_bytes = get_word(words, 4);
-    if (vertices > MAX_VERTICES || indices > 6 * MAX_VERTICES || size - *used < vertex_bytes ||
-        size - *used - vertex_bytes < index_bytes)
+    const uint8_t *words = block->bytes;
+    uint32_t leaves = get_word(words, LEAVES), flowers = get_word(words, LEAVES + 1);
+    if (leaves > MAX_VERTICES || flowers > MAX_VERTICES)
         return false;
-    *mesh = (struct wd_tree_mesh){
-        .vertices = wd_alloc_array(vertices, sizeof *mesh->vertices),
-        .indices = wd_alloc_array(indices, sizeof *mesh->indices),
-        .vertex_count = vertices,
-        .vertex_capacity = vertices,
-        .index_count = indices,
-        .index_capacity = indices,
-        .wood_index_count = get_word(words, 2),
-    };
-    const uint8_t *at = block + *used;
-    *used += vertex_bytes + index_bytes;
-    bool ok = meshopt_decodeVertexBuffer(mesh->vertices, vertices, sizeof *mesh->vertices, at,
-                                         vertex_bytes) == 0 &&
-              meshopt_decodeIndexSequence(mesh->indices, indices, sizeof *mesh->indices,
-                                          at + vertex_bytes, index_bytes) == 0;
-    for (uint32_t i = 0; i < indices && ok; i++)
-        ok = mesh->indices[i] < vertices;
-    if (ok)
-        wd_tree_mesh_update_bounds(mesh);
+    model->leaves = unpack_vertices(block, get_word(words, LEAVES + 2), leaves + flowers,
+                                    sizeof *model->leaves);
+    model->leaf_count = leaves;
+    model->flower_count = flowers;
+    bool ok = model->leaves != NULL;
+    for (int i = 0; i < SETS && ok; i++)
+        ok = unpack_set(&model->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS],
+                        words + 4 * (SET_AT + i * SET_WORDS), block,
+                        i % WD_LEAF_SETS == WD_SET_FLOWERS ? flowers : leaves);
     return ok;
-}
-
-/* A model without leaves has no records; with them its full mesh names no others. */
-static bool unpack_leaves(struct wd_tree_model *model, const uint8_t *block, size_t size,
-                          size_t used)
-{
-    uint32_t count = get_word(block, LEAVES);
-    size_t bytes = get_word(block, LEAVES + 1);
-    if (count > MAX_VERTICES || size - used < bytes)
-        return false;
-    model->leaf_count = count;
-    model->leaves = count ? wd_alloc_array(count, sizeof *model->leaves) : NULL;
-    if (count && meshopt_decodeVertexBuffer(model->leaves, count, sizeof *model->leaves,
-                                            block + used, bytes) != 0)
-        return false;
-    for (uint32_t i = 0; i < model->full.vertex_count && count; i++)
-        if (model->full.vertices[i].kind >> WD_VERTEX_LEAF_SHIFT > count)
-            return false;
-    return true;
 }
 
 static bool load_model(struct wd_tree_model *model, struct wd_bake_cache *cache, uint64_t key)
 {
-    size_t size, used = 4 * WORDS;
-    uint8_t *block = wd_cache_load(cache, "growth", key, MAX_MODEL_BYTES, &size);
+    struct block block = {.used = 4 * WORDS};
+    block.bytes = wd_cache_load(cache, "growth", key, MAX_MODEL_BYTES, &block.size);
     *model = (struct wd_tree_model){0};
-    bool ok = block && size >= used;
+    bool ok = block.bytes && block.size >= block.used;
     if (ok) {
         float *figures[FIGURES];
         figures_of(figures, model);
-        for (size_t i = 0; i < FIGURES; i++) {
-            uint32_t bits = get_word(block, i);
-            memcpy(figures[i], &bits, sizeof bits);
-        }
+        for (size_t i = 0; i < FIGURES; i++)
+            *figures[i] = float_of(get_word(block.bytes, i));
         struct wd_tree_mesh *meshes[MESHES];
         meshes_of(meshes, model);
         for (int i = 0; i < MESHES && ok; i++)
-            ok = unpack_mesh(meshes[i], block + 4 * (FIGURES + i * MESH_WORDS), block, size, &used);
-        ok = ok && unpack_leaves(model, block, size, used);
+            ok = unpack_mesh(meshes[i], block.bytes + 4 * (FIGURES + i * MESH_WORDS), &block);
+        ok = ok && unpack_leaves(model, &block);
+        if (ok)
+            wd_tree_mesh_update_bounds(&model->spray);
     }
-    free(block);
+    free(block.bytes);
     if (!ok)
         wd_tree_model_finish(model);
     return ok;
@@ -231,6 +339,7 @@ bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_ca
         return true;
     if (!wd_variant_grow(model, scene, index, log))
         return false;
+    wd_tree_model_drop_leaves(model);
     if (species)
         store_model(cache, *key, model);
     else

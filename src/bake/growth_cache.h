@@ -10,8 +10,8 @@
  * 0 for imported models, which are not kept. */
 uint64_t wd_species_key(const struct wd_species *species);
 
-/* Individual `index` of a scene (wd_variant_grow), from the cache or into it. `*key` names its
- * content. */
+/* Individual `index` of a scene (wd_variant_grow), from the cache or into it, without triangles of
+ * leaves (wd_tree_model_add_leaves). `*key` names its content. */
 bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_cache *cache,
                    const struct wd_scene *scene, uint32_t index, const struct wd_log *log);
 

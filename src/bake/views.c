@@ -181,29 +181,30 @@ static uint64_t set_key(const struct wd_view_set_params *params, const struct wd
     return wd_cache_key(wd_cache_key(key, form, sizeof form), bounds, sizeof bounds);
 }
 
-bool wd_view_set_get(struct wd_view_set *set, struct wd_baker *baker,
-                     const struct wd_bake_mesh *mesh, const struct wd_view_model *model,
-                     const struct wd_view_atlas *atlas, const struct wd_view_set_params *params,
-                     struct wd_bake_cache *cache, uint64_t model_key, bool *from_cache)
+bool wd_view_set_load(struct wd_view_set *set, const struct wd_view_atlas *atlas,
+                      const struct wd_view_set_name *name)
 {
     size_t plane = wd_view_plane_bytes(atlas), size;
-    uint64_t key = set_key(params, model, model_key);
-    uint8_t *block = wd_cache_load(cache, "views", key, WD_PLANES * plane, &size);
-    *from_cache = block && size == WD_PLANES * plane;
-    if (*from_cache) {
-        init_set(set, atlas, model);
+    uint64_t key = set_key(name->params, name->model, name->model_key);
+    uint8_t *block = wd_cache_load(name->cache, "views", key, WD_PLANES * plane, &size);
+    bool found = block && size == WD_PLANES * plane;
+    *set = (struct wd_view_set){0};
+    if (found) {
+        init_set(set, atlas, name->model);
         for (int i = 0; i < WD_PLANES; i++)
             memcpy(set->planes[i], block + (size_t)i * plane, plane);
-        free(block);
-        return true;
     }
     free(block);
-    if (!wd_view_set_bake(set, baker, mesh, model, atlas, params))
-        return false;
-    block = wd_alloc(WD_PLANES * plane);
+    return found;
+}
+
+void wd_view_set_store(const struct wd_view_set *set, const struct wd_view_set_name *name)
+{
+    size_t plane = wd_view_plane_bytes(&set->atlas);
+    uint8_t *block = wd_alloc(WD_PLANES * plane);
     for (int i = 0; i < WD_PLANES; i++)
         memcpy(block + (size_t)i * plane, set->planes[i], plane);
-    wd_cache_store(cache, "views", key, block, WD_PLANES * plane);
+    wd_cache_store(name->cache, "views", set_key(name->params, name->model, name->model_key), block,
+                   WD_PLANES * plane);
     free(block);
-    return true;
 }

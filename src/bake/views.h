@@ -45,11 +45,17 @@ bool wd_view_set_bake(struct wd_view_set *set, struct wd_baker *baker,
                       const struct wd_view_atlas *atlas, const struct wd_view_set_params *params);
 void wd_view_set_finish(struct wd_view_set *set); /* accepts {0} */
 
-/* As wd_view_set_bake, from and into the cache; `model_key` names the model's content
- * (struct wd_forest_device.model_keys). `*from_cache` says which it was. */
-bool wd_view_set_get(struct wd_view_set *set, struct wd_baker *baker,
-                     const struct wd_bake_mesh *mesh, const struct wd_view_model *model,
-                     const struct wd_view_atlas *atlas, const struct wd_view_set_params *params,
-                     struct wd_bake_cache *cache, uint64_t model_key, bool *from_cache);
+/* What names a set in the cache; `model_key` names the model's content (struct
+ * wd_forest_device.model_keys). */
+struct wd_view_set_name {
+    struct wd_bake_cache *cache;
+    uint64_t model_key;
+    const struct wd_view_set_params *params;
+    const struct wd_view_model *model;
+};
+/* False, with {0}, where it is not there. */
+bool wd_view_set_load(struct wd_view_set *set, const struct wd_view_atlas *atlas,
+                      const struct wd_view_set_name *name);
+void wd_view_set_store(const struct wd_view_set *set, const struct wd_view_set_name *name);
 
 #endif

@@ -82,124 +82,6 @@ static bool make_card_pattern(struct wd_buffer *buffer, struct wd_gpu *gpu)
     return ok;
 }
 
-static const struct wd_tree_mesh *level_mesh(const struct wd_tree_model *model, int level)
-{
-    return level == WD_LEVEL_MESH ? &model->full : &model->reduced;
-}
-
-/* Whether a model has the very meshes of the one before: variants of an imported tree. */
-static bool repeats(const struct preparation *work, uint32_t index)
-{
-    return index > 0 && work->grown[index].borrowed &&
-           work->grown[index].full.vertices == work->grown[index - 1].full.vertices;
-}
-
-static float mean_leaf_m(const struct wd_tree_model *model)
-{
-    double sum = 0;
-    for (uint32_t i = 0; i < model->leaf_count; i++)
-        sum += (double)model->leaves[i].size_m;
-    return (float)(sum / (double)model->leaf_count);
-}
-
-/* Names the kites of a reduced mesh, which are the model's first leaves; returns their number. */
-static uint32_t name_kites(struct wd_tree_vertex *vertices, uint32_t count)
-{
-    uint32_t corners = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t kind = vertices[i].kind;
-        if (!(kind & WD_VERTEX_LEAF) || (kind & WD_VERTEX_FLOWER))
-            continue;
-        if (kind >> WD_VERTEX_LEAF_SHIFT)
-            return 0; /* fronds, which keep their form */
-        vertices[i].kind |= (corners++ / 4 + 1) << WD_VERTEX_LEAF_SHIFT;
-    }
-    return corners / 4;
-}
-
-/* Where the leaves of a mesh begin to be too many, step by step. */
-static void find_leaf_ends(struct wd_mesh_range *range, const struct wd_tree_vertex *vertices,
-                           const uint32_t *indices)
-{
-    for (int step = 0; step < WD_LEAF_STEPS; step++)
-        range->leaf_ends[step] = range->index_count;
-    for (uint32_t i = range->wood_index_count; range->leaf_count && i < range->index_count; i += 3) {
-        uint32_t name = vertices[indices[i]].kind >> WD_VERTEX_LEAF_SHIFT;
-        for (int step = 0; step < WD_LEAF_STEPS; step++)
-            if (range->leaf_ends[step] == range->index_count &&
-                (name == 0 || name - 1 > range->leaf_count >> step))
-                range->leaf_ends[step] = i;
-    }
-}
-
-/* How leaves of a model's meshes thin out with distance. `vertices` are those of the reduced one. */
-static void describe_leaves(struct wd_mesh_range ranges[2], const struct wd_tree_model *model,
-                            struct wd_tree_vertex *vertices)
-{
-    if (!model->leaf_count)
-        return;
-    struct wd_mesh_range *full = &ranges[WD_LEVEL_MESH], *reduced = &ranges[WD_LEVEL_REDUCED];
-    full->leaf_count = model->leaf_count;
-    full->leaf_m = mean_leaf_m(model);
-    reduced->leaf_count = name_kites(vertices, reduced->vertex_count);
-    if (reduced->leaf_count > 0)
-        reduced->leaf_m =
-            full->leaf_m * sqrtf((float)full->leaf_count / (float)reduced->leaf_count);
-}
-
-static bool upload_meshes(struct preparation *work, struct wd_gpu *gpu)
-{
-    struct wd_forest_device *forest = work->forest;
-    size_t vertex_count = 0, index_count = 0;
-    for (uint32_t i = 0; i < forest->model_count; i++) {
-        if (repeats(work, i)) {
-            memcpy(forest->ranges[i], forest->ranges[i - 1], sizeof forest->ranges[i]);
-            continue;
-        }
-        for (int level = 0; level < 2; level++) {
-            const struct wd_tree_mesh *mesh = level_mesh(&work->grown[i], level);
-            forest->ranges[i][level] =
-                (struct wd_mesh_range){(uint32_t)index_count, mesh->index_count,
-                                       (uint32_t)vertex_count, mesh->vertex_count,
-                                       mesh->wood_index_count,
-                                       0,
-                                       0,
-                                       {0}};
-            vertex_count += (mesh->vertex_count + WD_MESH_ALIGNMENT - 1) / WD_MESH_ALIGNMENT *
-                            WD_MESH_ALIGNMENT;
-            index_count += mesh->index_count;
-        }
-    }
-    struct wd_tree_vertex *vertices = wd_alloc_array(vertex_count, sizeof *vertices);
-    uint32_t *indices = wd_alloc_array(index_count, sizeof *indices);
-    for (uint32_t i = 0; i < forest->model_count; i++) {
-        for (int level = 0; level < 2 && !repeats(work, i); level++) {
-            const struct wd_tree_mesh *mesh = level_mesh(&work->grown[i], level);
-            const struct wd_mesh_range *range = &forest->ranges[i][level];
-            memcpy(vertices + range->first_vertex, mesh->vertices,
-                   mesh->vertex_count * sizeof *vertices);
-            memcpy(indices + range->first_index, mesh->indices,
-                   mesh->index_count * sizeof *indices);
-        }
-        if (!repeats(work, i))
-            describe_leaves(forest->ranges[i], &work->grown[i],
-                            vertices + forest->ranges[i][WD_LEVEL_REDUCED].first_vertex);
-        for (int level = 0; level < 2 && !repeats(work, i); level++) {
-            struct wd_mesh_range *range = &forest->ranges[i][level];
-            find_leaf_ends(range, vertices + range->first_vertex, indices + range->first_index);
-        }
-    }
-    bool ok =
-        make_buffer(&forest->vertices, gpu, "tree vertices", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                    vertices, vertex_count * sizeof *vertices) &&
-        make_buffer(&forest->indices, gpu, "tree indices",
-                    VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                    indices, index_count * sizeof *indices);
-    free(vertices);
-    free(indices);
-    return ok;
-}
-
 /* What cards and view sets span, and the name of each model's content. */
 static void describe_content(struct preparation *work, uint32_t index)
 {
@@ -290,8 +172,7 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     double grown = wd_clock_s();
     forest->grown_us = (uint64_t)((grown - start) * 1e6);
     struct wd_image *cards[WD_PLANES] = {&forest->card_albedo, &forest->card_normal};
-    bool ok = upload_meshes(work, gpu) &&
-              wd_forest_sprays_init(&forest->sprays, gpu, work->grown, forest->model_count) &&
+    bool ok = wd_forest_meshes_init(&forest->meshes, gpu, work->grown, forest->model_count) &&
               make_table(&forest->models, gpu, "tree models", forest->host_models,
                          forest->model_count * sizeof *forest->host_models) &&
               wd_looks_upload(&forest->looks, gpu, work->looks,
@@ -312,7 +193,6 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
         .scene = scene, .world = params->world, .variants = (uint32_t)scene->variants};
     forest->model_count = (uint32_t)scene->species_file_count * forest->variants;
     size_t slots = forest->model_count ? forest->model_count : 1;
-    forest->ranges = wd_alloc_array(slots, sizeof *forest->ranges);
     forest->host_models = wd_alloc_array(slots, sizeof *forest->host_models);
     forest->model_keys = wd_alloc_array(slots, sizeof *forest->model_keys);
     forest->cache.directory = params->cache_dir ? wd_strdup(params->cache_dir) : NULL;
@@ -323,6 +203,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
         .grown = wd_alloc_array(slots, sizeof *work.grown),
         .looks = wd_alloc_array(scene->species_file_count, WD_LOOK_BYTES),
     };
+    forest->grown = work.grown;
     bool ok = wd_ground_init(&forest->ground, gpu, params->world, params->log) &&
               upload_trees(forest, gpu) && upload_fades(forest, gpu) &&
               make_card_pattern(&forest->card_indices, gpu) &&
@@ -334,6 +215,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
         wd_tree_model_finish(&work.grown[i]);
     free(work.grown);
     free(work.looks);
+    forest->grown = NULL;
     if (!ok)
         wd_forest_device_finish(forest, gpu);
     return ok;
@@ -341,8 +223,8 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
 
 void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
-    struct wd_buffer *buffers[] = {&forest->trees, &forest->models,  &forest->vertices,
-                                   &forest->fades, &forest->indices, &forest->card_indices};
+    struct wd_buffer *buffers[] = {&forest->trees, &forest->models, &forest->fades,
+                                   &forest->card_indices};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
                                  &forest->card_normal};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
@@ -351,14 +233,13 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
         wd_image_finish(images[i], gpu);
     wd_pages_finish(&forest->pages, gpu);
     wd_ground_finish(&forest->ground, gpu);
-    wd_forest_sprays_finish(&forest->sprays, gpu);
+    wd_forest_meshes_finish(&forest->meshes, gpu);
     if (forest->look_sampler)
         vkDestroySampler(gpu->device, forest->look_sampler, NULL);
     if (forest->point_sampler)
         vkDestroySampler(gpu->device, forest->point_sampler, NULL);
     if (forest->card_sampler)
         vkDestroySampler(gpu->device, forest->card_sampler, NULL);
-    free(forest->ranges);
     free(forest->host_models);
     free(forest->model_keys);
     free((char *)forest->cache.directory);
@@ -368,25 +249,21 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
 
 void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
 {
-    struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->vertices,
-                                  &forest->fades};
-    struct wd_buffer *indices[] = {&forest->indices, &forest->card_indices};
+    struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->fades};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
                                  &forest->card_normal};
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
         if (tables[i]->buffer)
             wd_cmd_use_buffer(cmd, tables[i], WD_USE_SHADER_READ);
     }
-    for (size_t i = 0; i < sizeof indices / sizeof *indices; i++) {
-        if (indices[i]->buffer)
-            wd_cmd_use_buffer(cmd, indices[i], WD_USE_INDEX);
-    }
+    if (forest->card_indices.buffer)
+        wd_cmd_use_buffer(cmd, &forest->card_indices, WD_USE_INDEX);
     for (size_t i = 0; i < sizeof images / sizeof *images; i++) {
         if (images[i]->image)
             wd_cmd_use_image(cmd, images[i], WD_USE_SHADER_READ);
     }
     wd_ground_use(&forest->ground, cmd);
-    wd_forest_sprays_use(&forest->sprays, cmd);
+    wd_forest_meshes_use(&forest->meshes, cmd);
 }
 
 uint32_t wd_forest_fade_of(const struct wd_forest_device *forest, size_t tree)

@@ -4,27 +4,11 @@
 
 #include "bake/cards.h"
 #include "forest/ground.h"
+#include "forest/meshes.h"
 #include "forest/pages.h"
-#include "forest/sprays.h"
 #include "gpu/command.h"
 #include "shared/forest.h"
 #include "world/world.h"
-
-/* Where a mesh is in the common buffers. Its indices count from its own first vertex: the vertex
- * buffer is bound from there, since all of it may be more than a device binds at once. */
-enum { WD_LEAF_STEPS = 6 };
-struct wd_mesh_range {
-    uint32_t first_index, index_count;
-    uint32_t first_vertex, vertex_count; /* first: a multiple of WD_MESH_ALIGNMENT */
-    uint32_t wood_index_count; /* of index_count, these come first */
-    uint32_t leaf_count; /* drawn leaves that are named, in progressive order; 0 without records */
-    float leaf_m;        /* their mean length */
-    /* Indices that hold the wood and the first leaf_count >> step leaves; after leaf_ends[0] come
-     * flowers. */
-    uint32_t leaf_ends[WD_LEAF_STEPS];
-};
-/* Vertices; a multiple of every storage buffer alignment (256 bytes) that Vulkan allows. */
-#define WD_MESH_ALIGNMENT 64
 
 struct wd_forest_device {
     const struct wd_scene *scene;
@@ -33,16 +17,14 @@ struct wd_forest_device {
     struct wd_buffer trees;    /* struct wd_tree[], octree order, then pages; never empty */
     struct wd_pages pages;     /* of layers on demand */
     struct wd_buffer models;   /* struct wd_model[species * variants] */
-    struct wd_buffer vertices; /* struct wd_tree_vertex[] of all models and levels */
-    struct wd_buffer indices;  /* uint32_t[] */
     struct wd_buffer card_indices; /* two triangles a quad, for WD_CARD_BATCH trees */
     struct wd_buffer fades;    /* struct wd_layer_fade[1 + layers]; [0] is that of inventories */
     struct wd_image looks;     /* WD_LOOK_LAYERS of each species, sRGB */
     struct wd_image look_details; /* the same layers: normal, roughness, height (tree/look_map.h) */
     struct wd_image card_albedo, card_normal; /* WD_CARDS layers a model */
     VkSampler look_sampler, card_sampler, point_sampler; /* point: normals and shadows of cards */
-    struct wd_mesh_range (*ranges)[2]; /* [model][WD_LEVEL_MESH, WD_LEVEL_REDUCED] */
-    struct wd_forest_sprays sprays;
+    struct wd_forest_meshes meshes;
+    struct wd_tree_model *grown; /* while the forest is made, then NULL */
     struct wd_model *host_models;
     uint64_t *model_keys;      /* what names each model's content in the cache */
     struct wd_bake_cache cache;

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "bake/growth_cache.h"
 #include "base/clock.h"
 #include "base/memory.h"
 
@@ -9,21 +10,66 @@ static const VkFormat formats[WD_PLANES] = {
     VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM};
 static const char *const names[WD_PLANES] = {"albedo", "normal", "depth"};
 
-struct wd_bake_mesh wd_forest_bake_mesh(struct wd_forest_device *forest, uint32_t model)
+bool wd_forest_grow_model(struct wd_tree_model *grown, struct wd_forest_device *forest,
+                          uint32_t model, const struct wd_log *log)
 {
-    const struct wd_mesh_range *range = &forest->ranges[model][WD_LEVEL_MESH];
-    return (struct wd_bake_mesh){
-        .vertices = &forest->vertices,
-        .indices = &forest->indices,
-        .first_vertex = range->first_vertex,
-        .vertex_count = range->vertex_count,
-        .first_index = range->first_index,
-        .index_count = range->index_count,
-        .wood_index_count = range->wood_index_count,
+    uint64_t key;
+    if (!wd_growth_get(grown, &key, &forest->cache, forest->scene, model, log))
+        return false;
+    wd_tree_model_add_leaves(grown);
+    return true;
+}
+
+static bool upload_storage(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
+                           const void *data, size_t size)
+{
+    const struct wd_buffer_params params = {name, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                            WD_MEMORY_DEVICE};
+    return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
+}
+
+static bool upload_mesh(struct wd_model_mesh *mesh, struct wd_gpu *gpu,
+                        struct wd_forest_device *forest, uint32_t model,
+                        const struct wd_tree_mesh *full)
+{
+    mesh->mesh = (struct wd_bake_mesh){
+        .vertices = &mesh->vertices,
+        .indices = &mesh->indices,
+        .vertex_count = full->vertex_count,
+        .index_count = full->index_count,
+        .wood_index_count = full->wood_index_count,
         .looks = &forest->looks,
         .look_layer = forest->host_models[model].look_layer,
         .cut_out = forest->scene->species[model / forest->variants].imported ? 1 : 0,
     };
+    return upload_storage(&mesh->vertices, gpu, "model vertices", full->vertices,
+                          full->vertex_count * sizeof *full->vertices) &&
+           upload_storage(&mesh->indices, gpu, "model indices", full->indices,
+                          full->index_count * sizeof *full->indices);
+}
+
+bool wd_model_mesh_init(struct wd_model_mesh *mesh, struct wd_gpu *gpu,
+                        struct wd_forest_device *forest, uint32_t model)
+{
+    struct wd_tree_model own, *grown = forest->grown ? &forest->grown[model] : &own;
+    *mesh = (struct wd_model_mesh){0};
+    if (!forest->grown && !wd_forest_grow_model(&own, forest, model, gpu->log))
+        return false;
+    wd_tree_model_add_leaves(grown);
+    bool ok = upload_mesh(mesh, gpu, forest, model, &grown->full);
+    if (forest->grown)
+        wd_tree_model_drop_leaves(grown);
+    else
+        wd_tree_model_finish(&own);
+    if (!ok)
+        wd_model_mesh_finish(mesh, gpu);
+    return ok;
+}
+
+void wd_model_mesh_finish(struct wd_model_mesh *mesh, struct wd_gpu *gpu)
+{
+    wd_buffer_finish(&mesh->vertices, gpu);
+    wd_buffer_finish(&mesh->indices, gpu);
 }
 
 static bool make_image(struct wd_image *image, struct wd_gpu *gpu, struct wd_image_params params)
@@ -86,14 +132,16 @@ static bool get_cards(struct wd_cards *cards, struct wd_forest_device *forest, s
         ++*from_cache;
         return true;
     }
-    const struct wd_bake_mesh mesh = wd_forest_bake_mesh(forest, index);
     const struct wd_card_extent extent = {model->half_width_m, model->half_depth_m,
                                           model->bottom_m, model->top_m};
-    if ((!baker->gpu && !wd_baker_init(baker, gpu, gpu->log)) ||
-        !wd_cards_bake(cards, baker, &mesh, &extent, parts))
-        return false;
-    wd_cards_store(cards, &forest->cache, key, parts);
-    return true;
+    struct wd_model_mesh mesh = {0};
+    bool ok = (baker->gpu || wd_baker_init(baker, gpu, gpu->log)) &&
+              wd_model_mesh_init(&mesh, gpu, forest, index) &&
+              wd_cards_bake(cards, baker, &mesh.mesh, &extent, parts);
+    wd_model_mesh_finish(&mesh, gpu);
+    if (ok)
+        wd_cards_store(cards, &forest->cache, key, parts);
+    return ok;
 }
 
 bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
@@ -146,14 +194,19 @@ static bool get_set(struct wd_view_sets *sets, struct wd_gpu *gpu, struct wd_for
                     struct wd_baker *baker, uint32_t index, const struct wd_view_set_params *params,
                     const struct wd_view_model *model)
 {
-    const struct wd_bake_mesh mesh = wd_forest_bake_mesh(forest, index);
-    struct wd_view_set set;
-    bool from_cache;
-    if (!wd_view_set_get(&set, baker, &mesh, model, &sets->atlas, params, &forest->cache,
-                         forest->model_keys[index], &from_cache))
-        return false;
-    sets->from_cache += from_cache;
-    bool ok = upload_set(sets, gpu, &set);
+    const struct wd_view_set_name name = {&forest->cache, forest->model_keys[index], params, model};
+    struct wd_view_set set = {0};
+    struct wd_model_mesh mesh = {0};
+    bool ok = wd_view_set_load(&set, &sets->atlas, &name);
+    sets->from_cache += ok;
+    if (!ok) {
+        ok = wd_model_mesh_init(&mesh, gpu, forest, index) &&
+             wd_view_set_bake(&set, baker, &mesh.mesh, model, &sets->atlas, params);
+        wd_model_mesh_finish(&mesh, gpu);
+        if (ok)
+            wd_view_set_store(&set, &name);
+    }
+    ok = ok && upload_set(sets, gpu, &set);
     wd_view_set_finish(&set);
     return ok;
 }

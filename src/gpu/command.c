@@ -127,8 +127,13 @@ void wd_cmd_bind_vertices(struct wd_cmd *cmd, const struct wd_buffer *vertices)
 
 void wd_cmd_bind_indices(struct wd_cmd *cmd, const struct wd_buffer *indices)
 {
+    wd_cmd_bind_indices_of(cmd, indices, VK_INDEX_TYPE_UINT32);
+}
+
+void wd_cmd_bind_indices_of(struct wd_cmd *cmd, const struct wd_buffer *indices, VkIndexType type)
+{
     if (!cmd->failed)
-        vkCmdBindIndexBuffer(cmd->vk, indices->buffer, 0, VK_INDEX_TYPE_UINT32);
+        vkCmdBindIndexBuffer(cmd->vk, indices->buffer, 0, type);
 }
 
 void wd_cmd_draw_indexed(struct wd_cmd *cmd, const VkDrawIndexedIndirectCommand *draw)

@@ -116,6 +116,7 @@ void wd_cmd_draw(struct wd_cmd *cmd, uint32_t vertices, uint32_t instances);
 /* Vertices of the pipeline's layout, 32-bit indices; both in use as WD_USE_INDEX. */
 void wd_cmd_bind_vertices(struct wd_cmd *cmd, const struct wd_buffer *vertices);
 void wd_cmd_bind_indices(struct wd_cmd *cmd, const struct wd_buffer *indices);
+void wd_cmd_bind_indices_of(struct wd_cmd *cmd, const struct wd_buffer *indices, VkIndexType type);
 void wd_cmd_draw_indexed(struct wd_cmd *cmd, const VkDrawIndexedIndirectCommand *draw);
 void wd_cmd_draw_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer, VkDeviceSize offset,
                           uint32_t draws, uint32_t stride);

@@ -217,6 +217,7 @@ static void use_images(struct dissolve *dissolve, struct wd_cmd *cmd)
         wd_cmd_use_image(cmd, &dissolve->leaf_planes[plane], WD_USE_SHADER_READ);
         wd_cmd_use_image(cmd, &dissolve->wood_planes[plane], WD_USE_SHADER_READ);
     }
+    wd_cmd_use_buffer(cmd, &dissolve->order.vertices, WD_USE_SHADER_READ);
     wd_cmd_use_buffer(cmd, &dissolve->order.places, WD_USE_SHADER_READ);
     wd_cmd_use_buffer(cmd, &dissolve->order.indices, WD_USE_INDEX);
 }
@@ -248,7 +249,6 @@ static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_dra
     const struct wd_forest_device *forest = draw->forest;
     uint32_t model = dissolve->leafy[first].key / (LEAF_STEPS + 1);
     uint32_t step = dissolve->leafy[first].key % (LEAF_STEPS + 1);
-    const struct wd_mesh_range *range = &forest->ranges[model][WD_LEVEL_MESH];
     const struct wd_leaf_range *leaves = &dissolve->order.ranges[model];
     /* a leaf in the middle of the last step must not be cut: its rank decides */
     uint32_t indices = (leaves->index_count / LEAF_STEPS * step + 95) / 3 * 3;
@@ -259,9 +259,9 @@ static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_dra
     bool whole = step == LEAF_STEPS;
     const struct wd_pipeline *pipeline = &dissolve->leaves[whole];
     const struct wd_binding vertices = {
-        .buffer = &forest->vertices,
-        .offset = (VkDeviceSize)range->first_vertex * sizeof(struct wd_tree_vertex),
-        .size = (VkDeviceSize)range->vertex_count * sizeof(struct wd_tree_vertex),
+        .buffer = &dissolve->order.vertices,
+        .offset = (VkDeviceSize)leaves->first_vertex * sizeof(struct wd_tree_vertex),
+        .size = (VkDeviceSize)leaves->vertex_count * sizeof(struct wd_tree_vertex),
     };
     const struct wd_binding bindings[LEAF_BINDINGS] = {
         draw->uniforms,
@@ -278,7 +278,7 @@ static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_dra
                  .level = whole ? WD_LEVEL_MESH : WD_LEVEL_REDUCED,
                  .show = 1.0f,
                  .pixels_per_radian = draw->view->pixels_per_radian},
-        .first_place = leaves->first_place,
+        .first_place = leaves->first_vertex,
     };
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);

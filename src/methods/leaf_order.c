@@ -4,38 +4,16 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "forest/model_bakes.h"
 #include "tree/progressive.h"
 
-/* One full mesh on the host. */
+/* The leaves of a full mesh. */
 struct mesh {
-    struct wd_tree_vertex *vertices;
+    const struct wd_tree_vertex *vertices;
     uint32_t vertex_count;
-    uint32_t *indices; /* of its leaves */
+    const uint32_t *indices;
     uint32_t index_count;
 };
-
-static bool read_mesh(struct mesh *mesh, struct wd_gpu *gpu, struct wd_forest_device *forest,
-                      const struct wd_mesh_range *range)
-{
-    *mesh = (struct mesh){.vertex_count = range->vertex_count,
-                          .index_count = range->index_count - range->wood_index_count};
-    mesh->vertices = wd_alloc_array(mesh->vertex_count, sizeof *mesh->vertices);
-    mesh->indices = wd_alloc_array(mesh->index_count, sizeof *mesh->indices);
-    VkDeviceSize first = (VkDeviceSize)range->first_index + range->wood_index_count;
-    return wd_buffer_read(gpu, &forest->vertices,
-                          range->first_vertex * sizeof *mesh->vertices, mesh->vertices,
-                          mesh->vertex_count * sizeof *mesh->vertices) &&
-           (!mesh->index_count ||
-            wd_buffer_read(gpu, &forest->indices, first * sizeof *mesh->indices, mesh->indices,
-                           mesh->index_count * sizeof *mesh->indices));
-}
-
-static void mesh_finish(struct mesh *mesh)
-{
-    free(mesh->vertices);
-    free(mesh->indices);
-    *mesh = (struct mesh){0};
-}
 
 /* --- leaves ------------------------------------------------------------------------------ */
 
@@ -152,44 +130,77 @@ static bool upload(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *nam
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
 }
 
-static void lay_out(struct wd_leaf_order *order, const struct wd_forest_device *forest,
-                    size_t *index_count, size_t *place_count)
+/* The order of all models as it is gathered. */
+struct gathering {
+    struct wd_tree_vertex *vertices;
+    struct wd_leaf_place *places;
+    uint32_t *indices;
+    size_t vertex_count, index_count;
+};
+
+/* Makes room for a mesh, and for one element where there is nothing. */
+static void make_room(struct gathering *all, const struct mesh *mesh)
 {
-    for (uint32_t i = 0; i < forest->model_count; i++) {
-        const struct wd_mesh_range *range = &forest->ranges[i][WD_LEVEL_MESH];
-        order->ranges[i] = (struct wd_leaf_range){
-            (uint32_t)*index_count, range->index_count - range->wood_index_count,
-            (uint32_t)*place_count};
-        *index_count += order->ranges[i].index_count;
-        *place_count += range->vertex_count;
-    }
+    size_t vertices = all->vertex_count + mesh->vertex_count + WD_MESH_ALIGNMENT;
+    all->vertices = wd_realloc(all->vertices, vertices * sizeof *all->vertices);
+    all->places = wd_realloc(all->places, vertices * sizeof *all->places);
+    memset(all->places + all->vertex_count, 0,
+           (vertices - all->vertex_count) * sizeof *all->places);
+    memset(all->vertices + all->vertex_count, 0,
+           (vertices - all->vertex_count) * sizeof *all->vertices);
+    all->indices = wd_realloc(all->indices, (all->index_count + mesh->index_count + 1) *
+                                                sizeof *all->indices);
+    all->indices[all->index_count] = 0;
+}
+
+static void gather_model(struct gathering *all, struct wd_leaf_range *range,
+                         const struct wd_tree_mesh *full, uint32_t model)
+{
+    const struct mesh mesh = {full->vertices, full->vertex_count,
+                              full->indices + full->wood_index_count,
+                              full->index_count - full->wood_index_count};
+    make_room(all, &mesh);
+    *range = (struct wd_leaf_range){(uint32_t)all->index_count, mesh.index_count,
+                                    (uint32_t)all->vertex_count, mesh.vertex_count};
+    memcpy(all->vertices + all->vertex_count, mesh.vertices,
+           mesh.vertex_count * sizeof *mesh.vertices);
+    order_mesh(all->indices + all->index_count, all->places + all->vertex_count, &mesh, model);
+    all->vertex_count += (mesh.vertex_count + WD_MESH_ALIGNMENT - 1) / WD_MESH_ALIGNMENT *
+                         WD_MESH_ALIGNMENT;
+    all->index_count += mesh.index_count;
+}
+
+static bool upload_all(struct wd_leaf_order *order, struct wd_gpu *gpu, const struct gathering *all)
+{
+    const VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    return upload(&order->vertices, gpu, "leaf vertices", storage, all->vertices,
+                  (all->vertex_count + 1) * sizeof *all->vertices) &&
+           upload(&order->indices, gpu, "leaf indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
+                  all->indices, (all->index_count + 1) * sizeof *all->indices) &&
+           upload(&order->places, gpu, "leaf places", storage, all->places,
+                  (all->vertex_count + 1) * sizeof *all->places);
 }
 
 bool wd_leaf_order_init(struct wd_leaf_order *order, struct wd_gpu *gpu,
                         struct wd_forest_device *forest)
 {
-    size_t index_count = 0, place_count = 0;
     *order = (struct wd_leaf_order){
         .ranges = wd_alloc_array(forest->model_count, sizeof *order->ranges)};
-    lay_out(order, forest, &index_count, &place_count);
-    uint32_t *indices = wd_alloc_array(index_count + 1, sizeof *indices);
-    struct wd_leaf_place *places = wd_alloc_array(place_count + 1, sizeof *places);
+    struct gathering all = {0};
     bool ok = true;
+    make_room(&all, &(struct mesh){0});
     for (uint32_t i = 0; i < forest->model_count && ok; i++) {
-        struct mesh mesh;
-        ok = read_mesh(&mesh, gpu, forest, &forest->ranges[i][WD_LEVEL_MESH]);
-        if (ok)
-            order_mesh(indices + order->ranges[i].first_index,
-                       places + order->ranges[i].first_place, &mesh, i);
-        mesh_finish(&mesh);
+        struct wd_tree_model grown;
+        ok = wd_forest_grow_model(&grown, forest, i, gpu->log);
+        if (!ok)
+            break;
+        gather_model(&all, &order->ranges[i], &grown.full, i);
+        wd_tree_model_finish(&grown);
     }
-    ok = ok &&
-         upload(&order->indices, gpu, "leaf indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, indices,
-                (index_count + 1) * sizeof *indices) &&
-         upload(&order->places, gpu, "leaf places", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, places,
-                (place_count + 1) * sizeof *places);
-    free(indices);
-    free(places);
+    ok = ok && upload_all(order, gpu, &all);
+    free(all.vertices);
+    free(all.places);
+    free(all.indices);
     if (!ok)
         wd_leaf_order_finish(order, gpu);
     return ok;
@@ -197,6 +208,7 @@ bool wd_leaf_order_init(struct wd_leaf_order *order, struct wd_gpu *gpu,
 
 void wd_leaf_order_finish(struct wd_leaf_order *order, struct wd_gpu *gpu)
 {
+    wd_buffer_finish(&order->vertices, gpu);
     wd_buffer_finish(&order->indices, gpu);
     wd_buffer_finish(&order->places, gpu);
     free(order->ranges);

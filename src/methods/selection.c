@@ -201,7 +201,7 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
     for (uint32_t level = WD_LEVEL_MESH; level <= WD_LEVEL_REDUCED; level++) {
         if (levels.show[level] * fade > 0.0f) {
             uint32_t step =
-                leaf_step(forest, view, rule->pass, &forest->ranges[model][level], index, foot);
+                leaf_step(forest, view, rule->pass, &forest->meshes.ranges[model][level], index, foot);
             wd_selection_add_mesh(selection, &(struct wd_mesh_choice){model, level, step}, index,
                                   levels.show[level] * fade);
         }

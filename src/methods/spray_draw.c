@@ -29,7 +29,7 @@ bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .constants = {2, constants},
-        .push_size = sizeof(struct wd_tree_push),
+        .push_size = sizeof(struct wd_spray_push),
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
@@ -59,6 +59,7 @@ struct stand {
     uint32_t index;
     uint32_t triangles; /* of a twig */
     float foot[3], reach;
+    const struct wd_leaf_box *box;
     struct wd_tree_pose pose;
 };
 
@@ -68,17 +69,18 @@ static void gather_leaf(struct gather *gather, const struct wd_tree_draw *draw,
     const struct wd_tree_pose *pose = &stand->pose;
     const float *foot = stand->foot;
     const struct wd_tree *tree = &draw->forest->world->trees[stand->index];
-    float x = leaf->position_m[0] * pose->mirror, y = leaf->position_m[1];
+    const struct wd_vec3 in_tree = wd_leaf_foot(*leaf, *stand->box);
+    float x = in_tree.x * pose->mirror, y = in_tree.y;
     float at[3] = {foot[0] + (pose->turn_cos * x - pose->turn_sin * y) * pose->across,
                    foot[1] + (pose->turn_sin * x + pose->turn_cos * y) * pose->across,
-                   foot[2] + leaf->position_m[2] * pose->up};
+                   foot[2] + in_tree.z * pose->up};
     float square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
     if (square > WD_SPRAY_NONE_M * WD_SPRAY_NONE_M * stand->reach * stand->reach)
         return;
-    float distance_m = sqrtf(square), chance = wd_hash_unit(wd_hash2(leaf->random, tree->random));
+    float distance_m = sqrtf(square), chance = wd_hash_unit(wd_hash2(index, tree->random));
     if (chance >= wd_spray_share(distance_m, stand->reach))
         return;
-    float reach = 2 * leaf->size_m * fmaxf(pose->across, pose->up), min[3], max[3];
+    float reach = 2 * wd_leaf_size_m(*leaf, *stand->box) * fmaxf(pose->across, pose->up), min[3], max[3];
     for (int k = 0; k < 3; k++) {
         min[k] = at[k] - reach;
         max[k] = at[k] + reach;
@@ -99,24 +101,27 @@ static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, 
     const struct wd_forest_device *forest = draw->forest;
     const struct wd_tree *tree = &forest->world->trees[tree_index];
     const int32_t place_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
-    const struct wd_spray_range *range = &forest->sprays.ranges[model];
+    const struct wd_twig_range *range = &forest->meshes.twigs[model];
     struct stand stand = {.index = tree_index,
-                          .triangles = range->index_count / 3,
+                          .triangles = range->mesh.index_count / 3,
                           .reach = gather->scale * range->reach,
+                          .box = &range->box,
                           .pose = wd_tree_pose_of(*tree, forest->host_models[model])};
     for (int k = 0; k < 3; k++)
         stand.foot[k] = (float)(place_mm[k] * 0.001 - draw->view->eye_m[k]);
     float reach = 0.01f * (float)(tree->size >> 16) + WD_SPRAY_NONE_M * stand.reach;
     if (stand.foot[0] * stand.foot[0] + stand.foot[1] * stand.foot[1] > reach * reach)
         return;
-    for (uint32_t i = 0; i < range->leaf_count; i++)
-        gather_leaf(gather, draw, &stand, &forest->sprays.host_leaves[range->first_leaf + i], i);
+    uint32_t leaves = forest->meshes.ranges[model][WD_LEVEL_MESH].sets[WD_SET_LEAVES].leaf_count;
+    for (uint32_t i = 0; i < leaves; i++)
+        gather_leaf(gather, draw, &stand, &forest->meshes.host_leaves[range->first_leaf + i], i);
 }
 
-static void draw_range(const struct wd_tree_draw *draw, const struct wd_spray_range *range,
+static void draw_range(const struct wd_tree_draw *draw, const struct wd_twig_range *range,
                        const struct gather *gather)
 {
     const struct wd_forest_device *forest = draw->forest;
+    const struct wd_mesh_range *mesh = &range->mesh;
     struct wd_binding instances;
     void *memory = wd_cmd_upload(draw->cmd, gather->count * sizeof *gather->items, &instances);
     if (!memory)
@@ -126,30 +131,34 @@ static void draw_range(const struct wd_tree_draw *draw, const struct wd_spray_ra
         draw->uniforms,
         WD_BIND_BUFFER(&forest->trees),
         WD_BIND_BUFFER(&forest->models),
-        {.buffer = &forest->sprays.vertices,
-         .offset = (VkDeviceSize)range->first_vertex * sizeof(struct wd_tree_vertex),
-         .size = (VkDeviceSize)range->vertex_count * sizeof(struct wd_tree_vertex)},
+        {.buffer = &forest->meshes.vertices,
+         .offset = (VkDeviceSize)mesh->first_vertex * sizeof(struct wd_packed_vertex),
+         .size = (VkDeviceSize)mesh->vertex_count * sizeof(struct wd_packed_vertex)},
         instances,
         WD_BIND_IMAGE(&forest->looks, forest->look_sampler),
         WD_BIND_IMAGE(&forest->look_details, forest->look_sampler),
-        {.buffer = &forest->sprays.leaves,
+        {.buffer = &forest->meshes.leaves,
          .offset = (VkDeviceSize)range->first_leaf * sizeof(struct wd_tree_leaf),
          .size = (VkDeviceSize)range->leaf_count * sizeof(struct wd_tree_leaf)}};
-    const struct wd_tree_push push = {.variants = forest->variants, .level = WD_LEVEL_MESH};
+    const struct wd_spray_push push = {
+        .tree = {.variants = forest->variants, .level = WD_LEVEL_MESH},
+        .leaves = range->box,
+        .twig = mesh->box,
+    };
     wd_cmd_bind(draw->cmd, &draw->pipelines->spray, bindings);
     wd_cmd_push(draw->cmd, &draw->pipelines->spray, &push, sizeof push);
-    wd_cmd_bind_indices(draw->cmd, &forest->sprays.indices);
+    wd_cmd_bind_indices_of(draw->cmd, &forest->meshes.indices, mesh->index_type);
     wd_cmd_draw_indexed(draw->cmd,
-                        &(VkDrawIndexedIndirectCommand){range->index_count, (uint32_t)gather->count,
-                                                        range->first_index, 0, 0});
+                        &(VkDrawIndexedIndirectCommand){mesh->index_count, (uint32_t)gather->count,
+                                                        mesh->first_index, 0, 0});
     draw->stats->draw_calls++;
-    draw->stats->triangles += (uint64_t)range->index_count / 3 * gather->count;
+    draw->stats->triangles += (uint64_t)mesh->index_count / 3 * gather->count;
 }
 
 static bool has_sprays(const struct wd_tree_draw *draw, const struct wd_mesh_batch *batch)
 {
     return batch->level == WD_LEVEL_MESH && batch->leaf_step == 0 &&
-           draw->forest->sprays.ranges[batch->model].leaf_count > 0;
+           draw->forest->meshes.twigs[batch->model].mesh.index_count > 0;
 }
 
 static void gather_batch(struct gather *gather, const struct wd_tree_draw *draw,
@@ -194,7 +203,7 @@ void wd_spray_draw(const struct wd_tree_draw *draw, const struct wd_selection *s
         const struct wd_mesh_batch *batch = &selection->batches[i];
         gather_batch(&gather, draw, selection, batch);
         if (gather.count)
-            draw_range(draw, &draw->forest->sprays.ranges[batch->model], &gather);
+            draw_range(draw, &draw->forest->meshes.twigs[batch->model], &gather);
     }
     free(gather.items);
 }

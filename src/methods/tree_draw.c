@@ -8,6 +8,9 @@
 static const uint32_t tree_mesh_vert[] =
 #include "tree_mesh.vert.inc"
     ;
+static const uint32_t tree_leaf_vert[] =
+#include "tree_leaf.vert.inc"
+    ;
 static const uint32_t tree_mesh_frag[] =
 #include "tree_mesh.frag.inc"
     ;
@@ -46,12 +49,13 @@ static void set_targets(struct wd_graphics_params *params, enum wd_tree_pass pas
     }
 }
 
+/* Of wood, or of leaves. */
 static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tree_pass pass,
-                      uint32_t detail)
+                      struct wd_spirv vertex, uint32_t detail)
 {
     const uint32_t constants[] = {pass == WD_PASS_SHADOW, detail};
     struct wd_graphics_params params = {
-        .vertex = SPIRV(tree_mesh_vert),
+        .vertex = vertex,
         .bindings = {8,
                      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
@@ -64,6 +68,7 @@ static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
     const struct wd_spirv fragments[] = {SPIRV(tree_mesh_frag), SPIRV(tree_mesh_shadow_frag)};
     params.fragment = fragments[pass];
     set_targets(&params, pass);
+    params.push_size = sizeof(struct wd_mesh_push);
     return wd_pipeline_init_graphics(pipeline, gpu, &params);
 }
 
@@ -89,14 +94,17 @@ static bool init_card(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
 
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
+    const struct wd_spirv wood = SPIRV(tree_mesh_vert), leaf = SPIRV(tree_leaf_vert);
     *pipelines = (struct wd_tree_pipelines){0};
-    if (!init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, 1) ||
+    if (!init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, wood, 1) ||
+        !init_mesh(&pipelines->leaf_detail, gpu, WD_PASS_CAMERA, leaf, 1) ||
         !wd_spray_pipeline_init(&pipelines->spray, gpu)) {
         wd_tree_pipelines_finish(pipelines, gpu);
         return false;
     }
     for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
-        if (!init_mesh(&pipelines->mesh[pass], gpu, pass, 0) ||
+        if (!init_mesh(&pipelines->mesh[pass], gpu, pass, wood, 0) ||
+            !init_mesh(&pipelines->leaf[pass], gpu, pass, leaf, 0) ||
             !init_card(&pipelines->card_range[pass], gpu, pass, 0) ||
             !init_card(&pipelines->card_listed[pass], gpu, pass, 1)) {
             wd_tree_pipelines_finish(pipelines, gpu);
@@ -109,9 +117,11 @@ bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *
 void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
     wd_pipeline_finish(&pipelines->mesh_detail, gpu);
+    wd_pipeline_finish(&pipelines->leaf_detail, gpu);
     wd_pipeline_finish(&pipelines->spray, gpu);
     for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
         wd_pipeline_finish(&pipelines->mesh[pass], gpu);
+        wd_pipeline_finish(&pipelines->leaf[pass], gpu);
         wd_pipeline_finish(&pipelines->card_range[pass], gpu);
         wd_pipeline_finish(&pipelines->card_listed[pass], gpu);
     }
@@ -147,66 +157,147 @@ static void draw_indexed(const struct wd_tree_draw *draw, uint32_t indices, uint
     draw->stats->triangles += (uint64_t)indices / 3 * instances;
 }
 
+static struct wd_binding bind_vertices(const struct wd_forest_device *forest,
+                                       const struct wd_mesh_range *range)
+{
+    uint32_t count = range->vertex_count ? range->vertex_count : 1;
+    return (struct wd_binding){
+        .buffer = &forest->meshes.vertices,
+        .offset = (VkDeviceSize)range->first_vertex * sizeof(struct wd_packed_vertex),
+        .size = (VkDeviceSize)count * sizeof(struct wd_packed_vertex),
+    };
+}
+
 /* The leaves of a model, or something in their place. */
 static struct wd_binding bind_leaves(const struct wd_forest_device *forest, uint32_t model)
 {
-    const struct wd_spray_range *range = &forest->sprays.ranges[model];
+    const struct wd_twig_range *range = &forest->meshes.twigs[model];
     uint32_t count = range->leaf_count ? range->leaf_count : 1;
     return (struct wd_binding){
-        .buffer = &forest->sprays.leaves,
+        .buffer = &forest->meshes.leaves,
         .offset = (VkDeviceSize)range->first_leaf * sizeof(struct wd_tree_leaf),
         .size = (VkDeviceSize)count * sizeof(struct wd_tree_leaf),
     };
 }
 
-static void bind_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_batch *batch,
-                      struct wd_binding instances, float spray_scale)
+/* A batch that is being drawn. */
+struct meshes {
+    const struct wd_tree_draw *draw;
+    const struct wd_mesh_batch *batch;
+    const struct wd_mesh_range *range;
+    struct wd_binding instances;
+    float spray_scale;
+};
+
+static void bind_meshes(const struct meshes *meshes, const struct wd_pipeline *pipeline,
+                        struct wd_binding corners, const struct wd_mesh_push *push,
+                        VkIndexType index_type)
 {
+    const struct wd_tree_draw *draw = meshes->draw;
     const struct wd_forest_device *forest = draw->forest;
-    const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
-    const struct wd_pipeline *pipeline =
-        draw->pass == WD_PASS_CAMERA && batch->level == WD_LEVEL_MESH
-            ? &draw->pipelines->mesh_detail
-            : &draw->pipelines->mesh[draw->pass];
-    const struct wd_binding vertices = {
-        .buffer = &forest->vertices,
-        .offset = (VkDeviceSize)range->first_vertex * sizeof(struct wd_tree_vertex),
-        .size = (VkDeviceSize)range->vertex_count * sizeof(struct wd_tree_vertex),
-    };
     const struct wd_binding bindings[] = {draw->uniforms,
                                           WD_BIND_BUFFER(&forest->trees),
                                           WD_BIND_BUFFER(&forest->models),
-                                          vertices,
-                                          instances,
+                                          corners,
+                                          meshes->instances,
                                           WD_BIND_IMAGE(&forest->looks, forest->look_sampler),
                                           WD_BIND_IMAGE(&forest->look_details,
                                                         forest->look_sampler),
-                                          bind_leaves(forest, batch->model)};
-    struct wd_tree_push push = tree_push(draw, batch->level);
-    if (batch->level == WD_LEVEL_MESH)
-        push.spray_reach = spray_scale * forest->sprays.ranges[batch->model].reach;
-    push.pixels_per_radian = wd_leaf_pixels(draw->view, draw->pass);
-    push.leaf_m = range->leaf_m;
-    push.leaf_count = range->leaf_count;
+                                          bind_leaves(forest, meshes->batch->model)};
     wd_cmd_bind(draw->cmd, pipeline, bindings);
-    wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
-    wd_cmd_bind_indices(draw->cmd, &forest->indices);
+    wd_cmd_push(draw->cmd, pipeline, push, sizeof *push);
+    wd_cmd_bind_indices_of(draw->cmd, &forest->meshes.indices, index_type);
 }
 
-enum { WOOD = -1 };
-
-/* Instances of a mesh with its wood alone, or with the leaves of a step and flowers. */
-static void draw_mesh(const struct wd_tree_draw *draw, const struct wd_mesh_range *range, int step,
-                      const struct wd_range *instances)
+/* Of the camera's full meshes, or of all others. */
+static const struct wd_pipeline *choose(const struct meshes *meshes,
+                                        const struct wd_pipeline pipelines[2],
+                                        const struct wd_pipeline *detail)
 {
-    uint32_t count = instances->end - instances->begin, flowers = range->leaf_ends[0];
-    uint32_t end = step == WOOD ? range->wood_index_count : range->leaf_ends[step];
-    if (step == 0)
-        end = flowers = range->index_count; /* all at once */
-    draw_indexed(draw, end, count, range->first_index, 0, instances->begin);
-    if (step != WOOD && range->index_count > flowers)
-        draw_indexed(draw, range->index_count - flowers, count, range->first_index + flowers, 0,
-                     instances->begin);
+    bool detailed = meshes->draw->pass == WD_PASS_CAMERA && meshes->batch->level == WD_LEVEL_MESH;
+    return detailed ? detail : &pipelines[meshes->draw->pass];
+}
+
+/* Triangles: of grown trees their wood, of imported ones all, or with `wood` their wood alone. */
+static void draw_triangles(const struct meshes *meshes, bool wood)
+{
+    const struct wd_tree_draw *draw = meshes->draw;
+    const struct wd_mesh_range *range = meshes->range;
+    uint32_t count = wood ? range->wood_index_count : range->index_count;
+    struct wd_mesh_push push = {.tree = tree_push(draw, meshes->batch->level)};
+    push.box.feet = range->box;
+    if (!count)
+        return;
+    bind_meshes(meshes, choose(meshes, draw->pipelines->mesh, &draw->pipelines->mesh_detail),
+                bind_vertices(draw->forest, range), &push, range->index_type);
+    draw_indexed(draw, count, meshes->batch->count, range->first_index, 0, meshes->batch->first);
+}
+
+static struct wd_mesh_push leaf_push(const struct meshes *meshes, const struct wd_leaf_draw *set,
+                                     bool leaves)
+{
+    const struct wd_tree_draw *draw = meshes->draw;
+    const struct wd_twig_range *twig = &draw->forest->meshes.twigs[meshes->batch->model];
+    struct wd_mesh_push push = {
+        .tree = tree_push(draw, meshes->batch->level),
+        .box = twig->box,
+        .own = set->own,
+        .arch_least = set->arch_least,
+        .arch_range = set->arch_range,
+        .first_leaf = set->first_leaf,
+        .first_corner = set->first_corner,
+        .corner_count = set->corner_count,
+        .forms = set->forms,
+        .corner_bits = set->corner_bits,
+        .first_name = meshes->range->vertex_count,
+    };
+    push.tree.pixels_per_radian = wd_leaf_pixels(draw->view, draw->pass);
+    if (!leaves) { /* flowers are all drawn, and hide the numbers of leaves before them */
+        push.first_name += meshes->range->sets[WD_SET_LEAVES].leaf_count *
+                           meshes->range->sets[WD_SET_LEAVES].corner_count;
+        return push;
+    }
+    if (meshes->batch->level == WD_LEVEL_MESH)
+        push.tree.spray_reach = meshes->spray_scale * twig->reach;
+    push.tree.leaf_m = meshes->range->leaf_m;
+    push.tree.leaf_count = meshes->range->leaf_count;
+    return push;
+}
+
+/* The first `count` leaves of a set, as many with one draw as 16-bit indices can name. */
+static void draw_set(const struct meshes *meshes, int kind, uint32_t count)
+{
+    const struct wd_tree_draw *draw = meshes->draw;
+    const struct wd_leaf_draw *set = &meshes->range->sets[kind];
+    uint32_t most = WD_LEAF_DRAW_VERTICES >> set->corner_bits;
+    const struct wd_mesh_push push = leaf_push(meshes, set, kind == WD_SET_LEAVES);
+    if (!count)
+        return;
+    bind_meshes(meshes, choose(meshes, draw->pipelines->leaf, &draw->pipelines->leaf_detail),
+                WD_BIND_BUFFER(&draw->forest->meshes.corners), &push, VK_INDEX_TYPE_UINT16);
+    for (uint32_t at = 0; at < count; at += most) {
+        uint32_t leaves = count - at < most ? count - at : most;
+        draw_indexed(draw, leaves * set->index_count, meshes->batch->count, set->first_index,
+                     (int32_t)(at << set->corner_bits), meshes->batch->first);
+    }
+}
+
+/* Leaves of a step: at least those that the shader lets stand. */
+static uint32_t step_leaves(const struct wd_mesh_range *range, uint32_t step)
+{
+    uint32_t all = range->sets[WD_SET_LEAVES].leaf_count;
+    uint32_t some = (range->leaf_count >> step) + 1;
+    return range->leaf_count && step > 0 && some < all ? some : all;
+}
+
+static void draw_batch(const struct meshes *meshes, bool wood)
+{
+    const struct wd_mesh_range *range = meshes->range;
+    draw_triangles(meshes, wood);
+    if (wood)
+        return;
+    draw_set(meshes, WD_SET_LEAVES, step_leaves(range, meshes->batch->leaf_step));
+    draw_set(meshes, WD_SET_FLOWERS, range->sets[WD_SET_FLOWERS].leaf_count);
 }
 
 static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selection *selection,
@@ -218,16 +309,14 @@ static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selecti
         !upload_instances(draw, selection->meshes, selection->mesh_count, &instances))
         return;
     for (size_t i = 0; i < selection->batch_count; i++) {
-        const struct wd_mesh_batch *batch = &selection->batches[i];
-        const struct wd_mesh_range *range = &forest->ranges[batch->model][batch->level];
-        bind_mesh(draw, batch, instances, spray_scale);
-        draw->stats->trees[batch->level] += batch->count;
-        uint32_t draws = grouping == WD_DRAW_SINGLE ? batch->count : 1;
-        for (uint32_t k = 0; k < draws; k++) {
-            const struct wd_range part = {batch->first + k, batch->first + k + batch->count / draws,
-                                          0};
-            draw_mesh(draw, range, grouping == WD_DRAW_WOOD ? WOOD : (int)batch->leaf_step, &part);
-        }
+        struct wd_mesh_batch batch = selection->batches[i];
+        const struct meshes meshes = {draw, &batch, &forest->meshes.ranges[batch.model][batch.level],
+                                      instances, spray_scale};
+        uint32_t draws = grouping == WD_DRAW_SINGLE ? batch.count : 1;
+        draw->stats->trees[batch.level] += batch.count;
+        batch.count /= draws;
+        for (uint32_t k = 0; k < draws; k++, batch.first++)
+            draw_batch(&meshes, grouping == WD_DRAW_WOOD);
     }
 }
 

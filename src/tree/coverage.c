@@ -83,7 +83,7 @@ static float covered(struct fit *fit, const struct wd_tree_mesh *mesh)
 }
 
 /* Coverage grows with the factor, slower and slower: the secant through the last two tries. */
-static void find_factor(struct fit *fit, float wanted)
+static float find_factor(struct fit *fit, float wanted)
 {
     float factor = 1, found = covered(fit, fit->mesh), last_factor = 1, last_found = found;
     for (int step = 0; step < STEPS && fabsf(found - wanted) > 0.005f * wanted; step++) {
@@ -98,13 +98,14 @@ static void find_factor(struct fit *fit, float wanted)
         scale_leaves(fit, factor);
         found = covered(fit, fit->mesh);
     }
+    return factor;
 }
 
-void wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full)
+float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full)
 {
     static const struct wd_vec3 towards[VIEWS] = {{0.998f, 0, 0.07f}, {0, 0.77f, 0.64f}};
     if (reduced->wood_index_count == reduced->index_count)
-        return;
+        return 1;
     struct fit fit = {
         .mesh = reduced,
         .middles = wd_alloc_array(reduced->vertex_count, sizeof *fit.middles),
@@ -114,10 +115,11 @@ void wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tre
         wd_silhouette_init(&fit.views[i], full, towards[i]);
     find_middles(&fit);
     float wanted = covered(&fit, full);
-    find_factor(&fit, wanted);
+    float factor = find_factor(&fit, wanted);
     for (int i = 0; i < VIEWS; i++)
         wd_silhouette_finish(&fit.views[i]);
     free(fit.middles);
     free(fit.unscaled);
     wd_tree_mesh_update_bounds(reduced);
+    return factor;
 }

@@ -7,7 +7,7 @@
 /* Scales each leaf of `reduced` (triangles that share vertices are one) about its middle by one
  * factor, so that the mesh covers as much as `full` from the side and from half above. Keeping the area
  * of the leaves alone does not: fewer, larger ones overlap less. Bounds of `full` are set; those of
- * `reduced` are updated. */
-void wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full);
+ * `reduced` are updated. Returns the factor. */
+float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full);
 
 #endif

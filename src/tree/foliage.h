@@ -2,7 +2,7 @@
 #ifndef WD_TREE_FOLIAGE_H
 #define WD_TREE_FOLIAGE_H
 
-#include "tree/mesh.h"
+#include "tree/leaf_set.h"
 #include "tree/skeleton.h"
 
 struct wd_leaf {
@@ -40,15 +40,18 @@ float wd_leaf_unit_area(const struct wd_species *species);
 /* Triangles of a leaf or shoot where there are too many for outlines: 1 or more. */
 size_t wd_leaf_least_triangles(const struct wd_species *species);
 
-/* Appends every leaf as drawn near. */
-void wd_foliage_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
+/* Packs the leaves, then the flowers: foliage->count + foliage->flower_count of them. */
+void wd_foliage_pack(struct wd_tree_leaf *leaves, struct wd_leaf_box *box,
+                     const struct wd_foliage *foliage, const struct wd_species *species);
+
+/* Every leaf and flower as drawn near. */
+void wd_foliage_sets(struct wd_leaf_set sets[WD_LEAF_SETS], const struct wd_foliage *foliage,
                      const struct wd_species *species);
 
-/* The leaves as records for drawing them as twigs, foliage->count of them. */
-void wd_foliage_records(struct wd_tree_leaf *records, const struct wd_foliage *foliage);
-
-/* Appends the first leaves as `count` plain kites that together have the area of all. */
-void wd_foliage_mesh_reduced(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
-                             const struct wd_species *species, size_t count);
+/* The first leaves as `count` plain kites that together have the area of all, and flowers of few
+ * triangles; fronds keep their form. */
+void wd_foliage_sets_reduced(struct wd_leaf_set sets[WD_LEAF_SETS],
+                             const struct wd_foliage *foliage, const struct wd_species *species,
+                             size_t count);
 
 #endif

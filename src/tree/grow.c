@@ -40,7 +40,7 @@ static void fit_wood(struct wd_wood_style *style, const struct wd_skeleton *skel
         style->least_radius_m = 1.08f * style->least_radius_m + 1e-4f;
 }
 
-static void build_full(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
+static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                        const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
     float least = form->species->leaf.shape == WD_LEAF_NEEDLES ? 0.0055f : 0;
@@ -49,30 +49,109 @@ static void build_full(struct wd_tree_mesh *mesh, const struct wd_skeleton *skel
              (size_t)(FULL_WOOD_TRIANGLES * form->detail) + LEAST_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
-    wd_foliage_mesh(mesh, foliage, form->species);
 }
 
 /* The thickest branches that the budget allows, with few sides and a ring at every third node. */
-static void build_reduced(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
+static void build_reduced_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                           const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
     struct wd_wood_style style = {0.002f, 4, 5};
     fit_wood(&style, skeleton, form->species, REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
-    wd_foliage_mesh_reduced(mesh, foliage, form->species, REDUCED_LEAVES);
 }
 
-/* Fronds arch and plumes stand over them: their mesh is asked. */
+/* --- leaves ------------------------------------------------------------------------------ */
+
+static struct wd_tree_mesh *mesh_of(struct wd_tree_model *model, int level)
+{
+    return level ? &model->reduced : &model->full;
+}
+
+static void pack_leaves(struct wd_tree_model *model, const struct wd_foliage *foliage,
+                        const struct wd_species *species)
+{
+    model->leaf_count = (uint32_t)foliage->count;
+    model->flower_count = (uint32_t)foliage->flower_count;
+    model->leaves = wd_alloc_array(foliage->count + foliage->flower_count + 1,
+                                   sizeof *model->leaves);
+    wd_foliage_pack(model->leaves, &model->leaf_box, foliage, species);
+}
+
+/* Where a set's places begin. */
+static const struct wd_tree_leaf *set_leaves(const struct wd_tree_model *model, int kind)
+{
+    return model->leaves + (kind == WD_SET_FLOWERS ? model->leaf_count : 0);
+}
+
+static void add_sets(struct wd_tree_model *model, int level)
+{
+    struct wd_tree_mesh *mesh = mesh_of(model, level);
+    for (int kind = 0; kind < WD_LEAF_SETS; kind++) {
+        const struct wd_leaf_set *set = &model->sets[level][kind];
+        if (set->leaf_count)
+            wd_leaf_set_mesh(set, set_leaves(model, kind), &model->leaf_box, mesh);
+    }
+    wd_tree_mesh_update_bounds(mesh);
+}
+
+/* Wood's vertices come first. */
+static void drop_sets(struct wd_tree_model *model, int level)
+{
+    struct wd_tree_mesh *mesh = mesh_of(model, level);
+    for (int kind = 0; kind < WD_LEAF_SETS; kind++) {
+        const struct wd_leaf_set *set = &model->sets[level][kind];
+        mesh->vertex_count -= set->leaf_count * set->corner_count;
+    }
+    mesh->index_count = mesh->wood_index_count;
+    mesh->vertex_capacity = mesh->vertex_count + 1;
+    mesh->index_capacity = mesh->index_count + 1;
+    mesh->vertices = wd_realloc(mesh->vertices, mesh->vertex_capacity * sizeof *mesh->vertices);
+    mesh->indices = wd_realloc(mesh->indices, mesh->index_capacity * sizeof *mesh->indices);
+}
+
+static bool has_leaf_triangles(const struct wd_tree_model *model)
+{
+    return model->full.index_count > model->full.wood_index_count ||
+           model->reduced.index_count > model->reduced.wood_index_count;
+}
+
+void wd_tree_model_add_leaves(struct wd_tree_model *model)
+{
+    if (!model->leaves || has_leaf_triangles(model))
+        return;
+    add_sets(model, 0);
+    add_sets(model, 1);
+}
+
+void wd_tree_model_drop_leaves(struct wd_tree_model *model)
+{
+    for (int level = 0; level < 2 && model->leaves; level++)
+        if (mesh_of(model, level)->index_count > mesh_of(model, level)->wood_index_count)
+            drop_sets(model, level);
+}
+
+static float sets_top_m(const struct wd_tree_model *model)
+{
+    float top = 0;
+    for (int kind = 0; kind < WD_LEAF_SETS; kind++)
+        top = wd_maxf(top, wd_leaf_set_top_m(&model->sets[0][kind], set_leaves(model, kind),
+                                             &model->leaf_box));
+    return top;
+}
+
+/* --- sizes ------------------------------------------------------------------------------- */
+
+/* Fronds arch and plumes stand over them: their forms are asked. */
 static float foliage_top_m(const struct wd_foliage *foliage, const struct wd_species *species)
 {
     float top = 0;
     if (wd_species_has_fronds(species)) {
-        struct wd_tree_mesh mesh = {0};
-        wd_foliage_mesh(&mesh, foliage, species);
-        wd_tree_mesh_update_bounds(&mesh);
-        top = mesh.vertex_count ? mesh.max_m[2] : 0;
-        wd_tree_mesh_finish(&mesh);
+        struct wd_tree_model model = {0};
+        pack_leaves(&model, foliage, species);
+        wd_foliage_sets(model.sets[0], foliage, species);
+        top = sets_top_m(&model);
+        wd_tree_model_finish(&model);
         return top;
     }
     for (size_t i = 0; i < foliage->count; i++) {
@@ -134,22 +213,28 @@ static float crown_radius_m(const struct wd_foliage *foliage, const struct wd_sk
     return sum / SECTORS;
 }
 
-/* Records of the leaves and the twig they stand for, by their mean size. */
+/* The twig that a leaf of mean size stands for. */
 static void build_spray(struct wd_tree_model *model, const struct wd_foliage *foliage,
                         const struct wd_species *species)
 {
     double area = 0;
     for (size_t i = 0; i < foliage->count; i++)
         area += (double)(foliage->leaves[i].size_m * foliage->leaves[i].size_m);
-    if (foliage->count == 0 || foliage->count > UINT32_MAX >> (WD_VERTEX_LEAF_SHIFT + 1))
+    if (foliage->count == 0)
         return;
     wd_leaf_spray_mesh(&model->spray, species, (float)sqrt(area / (double)foliage->count));
-    if (model->spray.index_count == 0)
-        return;
-    model->leaves = wd_alloc_array(foliage->count, sizeof *model->leaves);
-    model->leaf_count = (uint32_t)foliage->count;
-    model->spray_reach = species->leaf.shape == WD_LEAF_NEEDLES ? 0.5f : 1;
-    wd_foliage_records(model->leaves, foliage);
+    if (model->spray.index_count > 0)
+        model->spray_reach = species->leaf.shape == WD_LEAF_NEEDLES ? 0.5f : 1;
+}
+
+/* Leaves of the reduced mesh get the size with which it covers as much as the full one. */
+static void fit_reduced(struct wd_tree_model *model)
+{
+    float factor = wd_tree_mesh_fit_coverage(&model->reduced, &model->full);
+    drop_sets(model, 1);
+    for (int kind = 0; kind < WD_LEAF_SETS; kind++)
+        wd_leaf_set_scale_parts(&model->sets[1][kind], factor);
+    add_sets(model, 1);
 }
 
 /* The mesh is brought to exactly the asked height: leaves end a little beside their axes. */
@@ -157,15 +242,14 @@ static void finish_model(struct wd_tree_model *model, const struct wd_skeleton *
                          const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
     wd_tree_mesh_update_bounds(&model->full);
-    float factor = form->clip ? 1 : form->height_m / model->full.max_m[2];
+    float top = wd_maxf(model->full.max_m[2], sets_top_m(model));
+    float factor = form->clip ? 1 : form->height_m / top;
     scale_mesh(&model->full, factor);
     scale_mesh(&model->reduced, factor);
-    wd_tree_mesh_fit_coverage(&model->reduced, &model->full);
-    for (uint32_t i = 0; i < model->leaf_count; i++) {
-        model->leaves[i].size_m *= factor;
-        for (int axis = 0; axis < 3; axis++)
-            model->leaves[i].position_m[axis] *= factor;
-    }
+    wd_leaf_box_scale(&model->leaf_box, factor);
+    wd_tree_model_add_leaves(model);
+    if (has_leaf_triangles(model))
+        fit_reduced(model);
     model->height_m = form->height_m;
     model->crown_radius_m = factor * crown_radius_m(foliage, skeleton);
     if (form->clip)
@@ -204,8 +288,11 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     wd_foliage_grow(&foliage, &skeleton, &form);
     fit_height(&skeleton, &foliage, &form);
     wd_skeleton_set_radii(&skeleton, &form);
-    build_full(&model->full, &skeleton, &foliage, &form);
-    build_reduced(&model->reduced, &skeleton, &foliage, &form);
+    build_full_wood(&model->full, &skeleton, &foliage, &form);
+    build_reduced_wood(&model->reduced, &skeleton, &foliage, &form);
+    pack_leaves(model, &foliage, species);
+    wd_foliage_sets(model->sets[0], &foliage, species);
+    wd_foliage_sets_reduced(model->sets[1], &foliage, species, REDUCED_LEAVES);
     build_spray(model, &foliage, form.species);
     finish_model(model, &skeleton, &foliage, &form);
     model->age_years = resolved.age_years;
@@ -220,6 +307,8 @@ void wd_tree_model_finish(struct wd_tree_model *model)
         wd_tree_mesh_finish(&model->full);
         wd_tree_mesh_finish(&model->reduced);
         wd_tree_mesh_finish(&model->spray);
+        for (int i = 0; i < 2 * WD_LEAF_SETS; i++)
+            wd_leaf_set_finish(&model->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS]);
         free(model->leaves);
     }
     *model = (struct wd_tree_model){0};

@@ -4,7 +4,7 @@
 
 #include "base/log.h"
 #include "scene/species.h"
-#include "tree/mesh.h"
+#include "tree/leaf_set.h"
 
 /* What a hedge is cut to, in metres from its foot: a box, or the inside of a closed mesh. The foot
  * should lie under it: one plant fills about as far as it is high. */
@@ -40,11 +40,15 @@ bool wd_grow_params_resolve(struct wd_grow_params *params, const struct wd_speci
 struct wd_tree_model {
     struct wd_tree_mesh full;
     struct wd_tree_mesh reduced;
-    struct wd_tree_leaf *leaves; /* as the full mesh's vertices name them; NULL where a drawn leaf
-                                    is one leaf */
-    uint32_t leaf_count;
-    float spray_reach;           /* of wd_spray_share; 0 without leaves */
-    struct wd_tree_mesh spray;   /* the twig that each stands for (tree/leaf_spray.h), or empty */
+    struct wd_tree_leaf *leaves; /* of both meshes: leaf_count leaves in progressive order, then
+                                    flower_count flowers; NULL of imported trees, whose leaves are
+                                    triangles only */
+    uint32_t leaf_count, flower_count;
+    struct wd_leaf_box leaf_box;
+    struct wd_leaf_set sets[2][WD_LEAF_SETS]; /* of the full mesh and of the reduced one */
+    float spray_reach;           /* of wd_spray_share; 0 without twigs */
+    struct wd_tree_mesh spray;   /* the twig that each leaf stands for (tree/leaf_spray.h), or
+                                    empty where it is one leaf */
     float height_m;       /* of the highest point */
     float crown_radius_m; /* mean horizontal reach of the crown */
     float crown_base_m;   /* height of the lowest living branch */
@@ -60,6 +64,11 @@ struct wd_tree_model {
 bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
                   const struct wd_grow_params *params, const struct wd_log *log);
 void wd_tree_model_finish(struct wd_tree_model *model);
+
+/* The meshes' leaves as triangles, or not: with them gone the meshes are wood alone, their bounds
+ * still those of the whole, and leaves are where `sets` say. Imported trees keep theirs. */
+void wd_tree_model_add_leaves(struct wd_tree_model *model); /* where they are not there already */
+void wd_tree_model_drop_leaves(struct wd_tree_model *model);
 
 /* Look textures, generated: `size` x `size` texels RGBA8 (sRGB colour, A = 255), tileable bark and
  * one leaf (or needle shoot) that fills the square. `rgba` holds size * size * 4 bytes. */

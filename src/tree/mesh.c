@@ -43,16 +43,54 @@ void wd_tree_mesh_add_triangle(struct wd_tree_mesh *mesh, uint32_t a, uint32_t b
 void wd_tree_mesh_update_bounds(struct wd_tree_mesh *mesh)
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+    float reach = 0;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+        const float *p = mesh->vertices[i].position_m;
+        float squared = p[0] * p[0] + p[1] * p[1];
+        reach = squared > reach ? squared : reach;
         for (int axis = 0; axis < 3; axis++) {
-            float p = mesh->vertices[i].position_m[axis];
-            low[axis] = p < low[axis] ? p : low[axis];
-            high[axis] = p > high[axis] ? p : high[axis];
+            low[axis] = p[axis] < low[axis] ? p[axis] : low[axis];
+            high[axis] = p[axis] > high[axis] ? p[axis] : high[axis];
         }
+    }
+    mesh->reach_m = sqrtf(reach);
     for (int axis = 0; axis < 3; axis++) {
         mesh->min_m[axis] = mesh->vertex_count ? low[axis] : 0;
         mesh->max_m[axis] = mesh->vertex_count ? high[axis] : 0;
     }
+}
+
+struct wd_mesh_box wd_mesh_box_of(const float least_m[3], const float most_m[3])
+{
+    struct wd_mesh_box box;
+    for (int axis = 0; axis < 3; axis++) {
+        box.least_m[axis] = least_m[axis];
+        box.step_m[axis] = (most_m[axis] - least_m[axis]) / WD_BOX_STEPS;
+    }
+    return box;
+}
+
+void wd_mesh_box_steps(uint32_t steps[3], const struct wd_mesh_box *box, const float position_m[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        float step = box->step_m[axis], from = position_m[axis] - box->least_m[axis];
+        float place = step > 0 ? from / step + 0.5f : 0;
+        steps[axis] = (uint32_t)(place < 0 ? 0 : place > WD_BOX_STEPS ? WD_BOX_STEPS : place);
+    }
+}
+
+struct wd_packed_vertex wd_vertex_pack(const struct wd_tree_vertex *vertex,
+                                       const struct wd_mesh_box *box)
+{
+    uint32_t steps[3];
+    wd_mesh_box_steps(steps, box, vertex->position_m);
+    return (struct wd_packed_vertex){
+        .xy = steps[0] | steps[1] << 16,
+        .z_kind = steps[2] | (vertex->kind & WD_VERTEX_KIND) << 16,
+        .normal = vertex->normal,
+        .uv = vertex->uv,
+        .tint = vertex->tint,
+    };
 }
 
 static uint32_t pack_snorm16(float value)

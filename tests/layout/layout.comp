@@ -20,10 +20,15 @@ layout(scalar, binding = 12) buffer SoupPushes { wd_card_soup_push soup; };
 layout(scalar, binding = 13) buffer Draws { wd_draw_indexed draw; };
 layout(scalar, binding = 14) buffer Leaves { wd_tree_leaf leaf; };
 layout(scalar, binding = 15) buffer Sprays { wd_spray_instance spray; };
+layout(scalar, binding = 16) buffer Packed { wd_packed_vertex packed; };
+layout(scalar, binding = 17) buffer Forms { wd_leaf_vertex form; };
+layout(scalar, binding = 18) buffer MeshPushes { wd_mesh_push mesh_push; };
+layout(scalar, binding = 19) buffer SprayPushes { wd_spray_push spray_push; };
 
 void main()
 {
     tree.id = vertex.uv + point.kind + model.card_layer + uint(fade.near_begin_m) + instance.tree + push.level
               + frame.width + chunk.first_tree + card.turn + corner.card + uint(cull.plane[0].x)
-              + soup.variants + draw.index_count + leaf.random + spray.leaf;
+              + soup.variants + draw.index_count + leaf.turn + spray.leaf
+              + packed.xy + form.kind + mesh_push.forms + spray_push.tree.level;
 }

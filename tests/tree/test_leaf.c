@@ -131,26 +131,116 @@ static void a_leaf_of_its_real_size_needs_no_twig(void **state)
     wd_arena_finish(&arena);
 }
 
-/* Every vertex of a full mesh's leaves names a leaf, whose record is near it. */
-static void vertices_name_their_leaves(void **state)
+static struct wd_leaf_stand any_stand(struct wd_random *random)
+{
+    struct wd_vec3 axis = wd_random_vec3(random), normal = wd_random_vec3(random);
+    axis = wd_v3_unit(axis);
+    return (struct wd_leaf_stand){
+        .position_m = WD_V3(wd_random_range(random, -9, 9), wd_random_range(random, -8, 8),
+                            wd_random_range(random, 3, 30)),
+        .axis = axis,
+        .normal = wd_v3_square(normal, axis),
+        .shading = wd_v3_unit(wd_random_vec3(random)),
+        .size_m = wd_random_range(random, 0.05f, 0.4f),
+        .flexibility = wd_random_range(random, 0, 255),
+        .arch = wd_random_unit(random),
+        .form = wd_hash1((uint32_t)wd_random_range(random, 0, 1e6f)) & 3,
+        .tint = 0x12345678,
+    };
+}
+
+static void assert_near(struct wd_vec3 a, struct wd_vec3 b, float distance)
+{
+    if (!(wd_v3_length(wd_v3_sub(a, b)) <= distance))
+        fail_msg("%g %g %g is not %g %g %g", (double)a.x, (double)a.y, (double)a.z, (double)b.x,
+                 (double)b.y, (double)b.z);
+}
+
+/* Places to half a millimetre in a large tree, directions to a quarter of a degree. */
+static void packed_leaves_stand_where_they_grew(void **state)
+{
+    (void)state;
+    enum { COUNT = 5000 };
+    static struct wd_leaf_stand stands[COUNT];
+    struct wd_random random = wd_random_of(7, 1);
+    for (int i = 0; i < COUNT; i++)
+        stands[i] = any_stand(&random);
+    const struct wd_leaf_box box = wd_leaf_box_of(stands, COUNT);
+    for (int i = 0; i < COUNT; i++) {
+        const struct wd_leaf_stand *stand = &stands[i];
+        const struct wd_tree_leaf leaf = wd_leaf_pack(stand, &box);
+        const struct wd_leaf_axes axes = wd_leaf_axes_of(leaf.turn);
+        assert_near(wd_leaf_foot(leaf, box), stand->position_m, 5e-4f);
+        assert_near(axes.along, stand->axis, 4.5e-3f);
+        assert_near(axes.above, stand->normal, 4.5e-3f);
+        assert_near(axes.across, wd_v3_cross(stand->axis, stand->normal), 4.5e-3f);
+        assert_near(wd_leaf_shading(leaf.shading), stand->shading, 0.02f);
+        assert_float_equal(wd_leaf_size_m(leaf, box), stand->size_m, 1e-5);
+        assert_float_equal(WD_LEAF_ARCH(leaf), stand->arch, 0.009);
+        assert_float_equal(WD_LEAF_FLEXIBILITY(leaf), stand->flexibility, 1);
+        assert_int_equal(WD_LEAF_FORM(leaf), stand->form);
+        assert_int_equal(leaf.tint, stand->tint);
+    }
+}
+
+/* A vertex on the device is within a step of where it was. */
+static void packed_vertices_stay_in_their_box(void **state)
+{
+    (void)state;
+    const float low[3] = {-10, -10, -0.5f}, high[3] = {10, 10, 35};
+    const struct wd_mesh_box box = wd_mesh_box_of(low, high);
+    struct wd_random random = wd_random_of(8, 1);
+    for (int i = 0; i < 1000; i++) {
+        const struct wd_tree_vertex vertex = {
+            .position_m = {wd_random_range(&random, -10, 10), i % 2 ? -10 : 10,
+                           wd_random_range(&random, -0.5f, 35)},
+            .normal = 1,
+            .uv = 2,
+            .tint = 3,
+            .kind = WD_VERTEX_LEAF | 77,
+        };
+        const struct wd_packed_vertex packed = wd_vertex_pack(&vertex, &box);
+        assert_near(wd_box_place(box, packed.xy, packed.z_kind), wd_v3_of(vertex.position_m), 4e-4f);
+        assert_int_equal(packed.z_kind >> 16, vertex.kind);
+        assert_int_equal(packed.normal + 10 * packed.uv + 100 * packed.tint, 321);
+    }
+}
+
+/* Every vertex of a full mesh's leaves is near the place that it comes from; without them the mesh
+ * is wood, and with them again it is the same. */
+static void leaves_come_from_their_places(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
     struct wd_species oak = test_species(&arena, "oak");
-    struct wd_tree_model model;
+    struct wd_tree_model model, other;
     const struct wd_grow_params params = {.seed = 3};
     assert_true(wd_tree_grow(&model, &oak, &params, NULL));
-    assert_non_null(model.leaves);
-    for (uint32_t i = model.full.wood_index_count; i < model.full.index_count; i++) {
-        const struct wd_tree_vertex *vertex = &model.full.vertices[model.full.indices[i]];
-        uint32_t name = vertex->kind >> WD_VERTEX_LEAF_SHIFT;
-        assert_in_range(name, 1, model.leaf_count);
-        const struct wd_tree_leaf *leaf = &model.leaves[name - 1];
-        float d = wd_v3_length(wd_v3_sub(wd_v3_of(vertex->position_m),
-                                         wd_v3_of(leaf->position_m)));
-        assert_true(d <= 1.6f * leaf->size_m);
+    assert_true(wd_tree_grow(&other, &oak, &params, NULL));
+    const struct wd_leaf_set *set = &model.sets[0][WD_SET_LEAVES];
+    assert_int_equal(set->leaf_count, model.leaf_count);
+    uint32_t first = model.full.vertex_count - set->leaf_count * set->corner_count;
+    for (uint32_t i = first; i < model.full.vertex_count; i++) {
+        const struct wd_tree_leaf leaf = model.leaves[(i - first) / set->corner_count];
+        assert_near(wd_v3_of(model.full.vertices[i].position_m),
+                    wd_leaf_foot(leaf, model.leaf_box),
+                    1.6f * wd_leaf_size_m(leaf, model.leaf_box));
     }
+    wd_tree_model_drop_leaves(&other);
+    assert_int_equal(other.full.index_count, model.full.wood_index_count);
+    assert_int_equal(other.full.vertex_count, first);
+    assert_int_equal(other.reduced.index_count, model.reduced.wood_index_count);
+    wd_tree_model_drop_leaves(&other);
+    assert_int_equal(other.full.vertex_count, first);
+    wd_tree_model_add_leaves(&other);
+    wd_tree_model_add_leaves(&other);
+    assert_int_equal(other.reduced.vertex_count, model.reduced.vertex_count);
+    assert_memory_equal(other.full.vertices, model.full.vertices,
+                        model.full.vertex_count * sizeof *model.full.vertices);
+    assert_memory_equal(other.reduced.vertices, model.reduced.vertices,
+                        model.reduced.vertex_count * sizeof *model.reduced.vertices);
     wd_tree_model_finish(&model);
+    wd_tree_model_finish(&other);
     wd_arena_finish(&arena);
 }
 
@@ -161,7 +251,9 @@ int main(void)
         cmocka_unit_test(both_forms_have_one_area),
         cmocka_unit_test(twigs_keep_the_area),
         cmocka_unit_test(a_leaf_of_its_real_size_needs_no_twig),
-        cmocka_unit_test(vertices_name_their_leaves),
+        cmocka_unit_test(packed_leaves_stand_where_they_grew),
+        cmocka_unit_test(packed_vertices_stay_in_their_box),
+        cmocka_unit_test(leaves_come_from_their_places),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,68 @@
+#version 460
+/* Leaves or flowers of a tree: each a form of its species in its own place. */
+#include "shared/frame.h"
+#include "shared/forest.h"
+#include "shared/hash.h"
+
+layout(constant_id = 0) const uint SHADOW = 0u;
+layout(constant_id = 1) const uint DETAIL = 0u;
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer Corners { wd_leaf_vertex corners[]; };
+layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_instance instances[]; };
+layout(scalar, set = 0, binding = 7) readonly buffer Leaves { wd_tree_leaf leaves[]; };
+layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
+
+#include "lib/tree.glsl"
+#include "lib/tree_vertex.glsl"
+#define push mesh.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
+#include "lib/tree_mesh.glsl"
+
+/* Factor on a leaf's size, 0 where it is not drawn: it may be drawn as a twig, or thinned out. */
+float settle_leaf(uint index, vec3 foot_m, wd_tree tree)
+{
+    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                            + WD_TREE_VARIANT(tree) % push.variants];
+    tree_pose pose = tree_pose_of(tree, model);
+    float far_m = length(tree_foot_rel(tree) + tree_offset(pose, foot_m));
+    if (DETAIL != 0u && push.spray_reach > 0.0
+        && wd_hash_unit(wd_hash2(index, tree.random)) < wd_spray_share(far_m, push.spray_reach))
+        return 0.0;
+    float share = wd_leaf_share(push.leaf_m * pose.across * push.pixels_per_radian / far_m);
+    return float(index) >= share * float(push.leaf_count) ? 0.0 : inversesqrt(share);
+}
+
+void main()
+{
+    wd_instance instance = instances[gl_InstanceIndex];
+    uint index = uint(gl_VertexIndex) >> mesh.corner_bits;
+    uint at = uint(gl_VertexIndex) & ((1u << mesh.corner_bits) - 1u);
+    wd_tree_leaf leaf = leaves[mesh.first_leaf + index];
+    uint form = mesh.forms > 1u ? WD_LEAF_FORM(leaf) : 0u;
+    wd_leaf_vertex v = corners[mesh.first_corner + form * mesh.corner_count + at];
+    vec3 foot = wd_leaf_foot(leaf, mesh.box);
+    float grown = 1.0;
+    if (push.leaf_count != 0u)
+        grown = settle_leaf(index, foot, trees[instance.tree]);
+    if (grown == 0.0) {
+        gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
+        return;
+    }
+    wd_leaf_axes axes = wd_leaf_axes_of(leaf.turn);
+    mat3 turn = mat3(axes.across, axes.along, axes.above);
+    vec3 place = v.place;
+    place.z *= mesh.arch_least + mesh.arch_range * WD_LEAF_ARCH(leaf);
+    place.y += 0.5 / grown - 0.5; /* it grows about its middle */
+    mesh_corner corner;
+    corner.position_m = foot + turn * place * (grown * wd_leaf_size_m(leaf, mesh.box));
+    vec3 shading = wd_leaf_shading(leaf.shading);
+    vec3 own = turn * octahedral_decode(unpackSnorm2x16(v.normal));
+    corner.normal = normalize(mix(shading, dot(own, shading) < 0.0 ? -own : own, mesh.own));
+    corner.uv = unpackHalf2x16(v.uv);
+    corner.tint = unpackUnorm4x8(leaf.tint);
+    corner.kind = (v.kind & ~0xffu) | min(WD_LEAF_FLEXIBILITY(leaf) + (v.kind & 0xffu), 255u);
+    corner.name = mesh.first_name + index * mesh.corner_count + at;
+    tree_mesh_vertex(instance, corner);
+}

@@ -1,0 +1,291 @@
+#include "tree/leaf_set.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+/* --- forms ------------------------------------------------------------------------------- */
+
+static struct wd_leaf_vertex pack_corner(const struct wd_leaf_corner *corner)
+{
+    const float normal[3] = {corner->n.x, corner->n.y, corner->n.z};
+    return (struct wd_leaf_vertex){
+        .place = {corner->p.x, corner->p.y, corner->p.z},
+        .normal = wd_pack_normal(normal),
+        .uv = wd_pack_uv(corner->u, corner->v),
+        .kind = corner->kind | (uint32_t)(45 * corner->stiff + 0.5f),
+    };
+}
+
+void wd_leaf_set_init(struct wd_leaf_set *set, const struct wd_leaf_template *templates,
+                      uint32_t forms)
+{
+    size_t corners = templates->corner_count;
+    *set = (struct wd_leaf_set){
+        .corners = wd_alloc_array(forms * corners + 1, sizeof *set->corners),
+        .indices = wd_alloc_array(templates->index_count + 1, sizeof *set->indices),
+        .forms = forms,
+        .corner_count = (uint32_t)corners,
+        .index_count = (uint32_t)templates->index_count,
+        .own = 0.4f,
+        .arch_least = 1,
+    };
+    for (uint32_t form = 0; form < forms; form++)
+        for (size_t i = 0; i < corners; i++)
+            set->corners[form * corners + i] = pack_corner(&templates[form].corners[i]);
+    for (uint32_t i = 0; i < set->index_count; i++)
+        set->indices[i] = templates->indices[i];
+}
+
+void wd_leaf_set_finish(struct wd_leaf_set *set)
+{
+    free(set->corners);
+    free(set->indices);
+    *set = (struct wd_leaf_set){0};
+}
+
+static uint32_t root_of(uint32_t *parents, uint32_t i)
+{
+    while (parents[i] != i)
+        i = parents[i] = parents[parents[i]];
+    return i;
+}
+
+/* parts[corner]: the least corner of what it hangs together with. */
+static void find_parts(uint32_t *parts, const struct wd_leaf_set *set)
+{
+    for (uint32_t i = 0; i < set->corner_count; i++)
+        parts[i] = i;
+    for (uint32_t i = 0; i < set->index_count; i++) {
+        uint32_t a = root_of(parts, set->indices[i / 3 * 3]), b = root_of(parts, set->indices[i]);
+        parts[a < b ? b : a] = a < b ? a : b;
+    }
+    for (uint32_t i = 0; i < set->corner_count; i++)
+        parts[i] = root_of(parts, i);
+}
+
+static void scale_form(struct wd_leaf_vertex *corners, uint32_t count, const uint32_t *parts,
+                       float factor)
+{
+    struct wd_vec3 *sums = wd_alloc_array(count + 1, sizeof *sums);
+    uint32_t *members = wd_alloc_array(count + 1, sizeof *members);
+    for (uint32_t i = 0; i < count; i++) {
+        sums[parts[i]] = wd_v3_add(sums[parts[i]], wd_v3_of(corners[i].place));
+        members[parts[i]]++;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        struct wd_vec3 middle = wd_v3_scale(sums[parts[i]], 1 / (float)members[parts[i]]);
+        struct wd_vec3 p = wd_v3_mix(middle, wd_v3_of(corners[i].place), factor);
+        corners[i].place[0] = p.x;
+        corners[i].place[1] = p.y;
+        corners[i].place[2] = p.z;
+    }
+    free(sums);
+    free(members);
+}
+
+void wd_leaf_set_scale_parts(struct wd_leaf_set *set, float factor)
+{
+    uint32_t *parts = wd_alloc_array(set->corner_count + 1, sizeof *parts);
+    find_parts(parts, set);
+    for (uint32_t form = 0; form < set->forms; form++)
+        scale_form(set->corners + form * set->corner_count, set->corner_count, parts, factor);
+    free(parts);
+}
+
+/* --- triangles --------------------------------------------------------------------------- */
+
+/* A form's corner, unpacked. */
+struct corner {
+    struct wd_vec3 p, n;
+    uint32_t uv, kind;
+};
+
+static struct corner *unpack_corners(const struct wd_leaf_set *set)
+{
+    uint32_t count = set->forms * set->corner_count;
+    struct corner *corners = wd_alloc_array(count + 1, sizeof *corners);
+    for (uint32_t i = 0; i < count; i++) {
+        float normal[3];
+        wd_unpack_normal(set->corners[i].normal, normal);
+        corners[i] = (struct corner){wd_v3_of(set->corners[i].place), wd_v3_of(normal),
+                                     set->corners[i].uv, set->corners[i].kind};
+    }
+    return corners;
+}
+
+static struct wd_vec3 to_tree(const struct wd_leaf_axes *axes, struct wd_vec3 v)
+{
+    struct wd_vec3 p = wd_v3_scale(axes->across, v.x);
+    return wd_v3_mad(wd_v3_mad(p, axes->along, v.y), axes->above, v.z);
+}
+
+static float arch_of(const struct wd_leaf_set *set, const struct wd_tree_leaf *leaf)
+{
+    return set->arch_least + set->arch_range * WD_LEAF_ARCH(*leaf);
+}
+
+static void add_leaf(struct wd_tree_mesh *mesh, const struct wd_leaf_set *set,
+                     const struct corner *corners, const struct wd_tree_leaf *leaf,
+                     const struct wd_leaf_box *box)
+{
+    const struct wd_leaf_axes axes = wd_leaf_axes_of(leaf->turn);
+    struct wd_vec3 foot = wd_leaf_foot(*leaf, *box), shading = wd_leaf_shading(leaf->shading);
+    float size_m = wd_leaf_size_m(*leaf, *box), arch = arch_of(set, leaf);
+    uint32_t flexibility = WD_LEAF_FLEXIBILITY(*leaf), first = mesh->vertex_count;
+    for (uint32_t i = 0; i < set->corner_count; i++) {
+        const struct corner *corner = &corners[i];
+        struct wd_vec3 p = WD_V3(corner->p.x, corner->p.y, arch * corner->p.z);
+        p = wd_v3_mad(foot, to_tree(&axes, p), size_m);
+        struct wd_vec3 n = to_tree(&axes, corner->n);
+        float side = wd_v3_dot(n, shading) < 0 ? -set->own : set->own;
+        n = wd_v3_unit_or(wd_v3_mad(wd_v3_scale(shading, 1 - set->own), n, side), shading);
+        uint32_t bend = flexibility + (corner->kind & 0xffu);
+        const float normal[3] = {n.x, n.y, n.z};
+        const struct wd_tree_vertex vertex = {
+            .position_m = {p.x, p.y, p.z},
+            .normal = wd_pack_normal(normal),
+            .uv = corner->uv,
+            .tint = leaf->tint,
+            .kind = (corner->kind & ~0xffu) | (bend < 255 ? bend : 255),
+        };
+        wd_tree_mesh_add_vertex(mesh, &vertex);
+    }
+    for (uint32_t i = 0; i < set->index_count; i += 3)
+        wd_tree_mesh_add_triangle(mesh, first + set->indices[i], first + set->indices[i + 1],
+                                  first + set->indices[i + 2]);
+}
+
+void wd_leaf_set_mesh(const struct wd_leaf_set *set, const struct wd_tree_leaf *leaves,
+                      const struct wd_leaf_box *box, struct wd_tree_mesh *mesh)
+{
+    struct corner *corners = unpack_corners(set);
+    for (uint32_t i = 0; i < set->leaf_count; i++) {
+        uint32_t form = WD_LEAF_FORM(leaves[i]) % set->forms;
+        add_leaf(mesh, set, corners + form * set->corner_count, &leaves[i], box);
+    }
+    free(corners);
+}
+
+float wd_leaf_set_top_m(const struct wd_leaf_set *set, const struct wd_tree_leaf *leaves,
+                        const struct wd_leaf_box *box)
+{
+    float top = 0;
+    for (uint32_t i = 0; i < set->leaf_count; i++) {
+        const struct wd_leaf_axes axes = wd_leaf_axes_of(leaves[i].turn);
+        uint32_t form = WD_LEAF_FORM(leaves[i]) % set->forms;
+        const struct wd_leaf_vertex *corners = set->corners + form * set->corner_count;
+        float arch = arch_of(set, &leaves[i]), highest = -INFINITY;
+        for (uint32_t k = 0; k < set->corner_count; k++)
+            highest = wd_maxf(highest, axes.across.z * corners[k].place[0] +
+                                           axes.along.z * corners[k].place[1] +
+                                           axes.above.z * arch * corners[k].place[2]);
+        top = wd_maxf(top, wd_leaf_foot(leaves[i], *box).z +
+                               highest * wd_leaf_size_m(leaves[i], *box));
+    }
+    return top;
+}
+
+/* --- packing ----------------------------------------------------------------------------- */
+
+struct wd_leaf_box wd_leaf_box_of(const struct wd_leaf_stand *places, size_t count)
+{
+    struct wd_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    float size_m = 0;
+    for (size_t i = 0; i < count; i++) {
+        struct wd_vec3 p = places[i].position_m;
+        low = WD_V3(wd_minf(low.x, p.x), wd_minf(low.y, p.y), wd_minf(low.z, p.z));
+        high = WD_V3(wd_maxf(high.x, p.x), wd_maxf(high.y, p.y), wd_maxf(high.z, p.z));
+        size_m = wd_maxf(size_m, places[i].size_m);
+    }
+    if (!count)
+        return (struct wd_leaf_box){0};
+    return (struct wd_leaf_box){
+        .feet = wd_mesh_box_of((float[3]){low.x, low.y, low.z}, (float[3]){high.x, high.y, high.z}),
+        .size_step_m = size_m / WD_BOX_STEPS,
+    };
+}
+
+void wd_leaf_box_scale(struct wd_leaf_box *box, float factor)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        box->feet.least_m[axis] *= factor;
+        box->feet.step_m[axis] *= factor;
+    }
+    box->size_step_m *= factor;
+}
+
+/* Parts w, x, y, z of the turn that brings x, y, z to across, along, above (Shepperd 1978). */
+static void quaternion_of(float q[4], struct wd_vec3 across, struct wd_vec3 along,
+                          struct wd_vec3 above)
+{
+    float squares[4] = {1 + across.x + along.y + above.z, 1 + across.x - along.y - above.z,
+                        1 - across.x + along.y - above.z, 1 - across.x - along.y + above.z};
+    int largest = 0;
+    for (int i = 1; i < 4; i++)
+        largest = squares[i] > squares[largest] ? i : largest;
+    /* products of two parts, four times */
+    float wx = along.z - above.y, wy = above.x - across.z, wz = across.y - along.x;
+    float xy = across.y + along.x, xz = across.z + above.x, yz = along.z + above.y;
+    const float products[4][4] = {{squares[0], wx, wy, wz},
+                                  {wx, squares[1], xy, xz},
+                                  {wy, xy, squares[2], yz},
+                                  {wz, xz, yz, squares[3]}};
+    float length = 0;
+    for (int i = 0; i < 4; i++)
+        length += products[largest][i] * products[largest][i];
+    for (int i = 0; i < 4; i++)
+        q[i] = products[largest][i] / sqrtf(length);
+}
+
+static uint32_t pack_turn(struct wd_vec3 axis, struct wd_vec3 normal)
+{
+    float q[4];
+    quaternion_of(q, wd_v3_cross(axis, normal), axis, normal);
+    uint32_t largest = 0, packed = 0, shift = 0;
+    for (uint32_t i = 1; i < 4; i++)
+        largest = fabsf(q[i]) > fabsf(q[largest]) ? i : largest;
+    for (uint32_t i = 0; i < 4; i++) {
+        if (i == largest)
+            continue;
+        float part = (q[largest] < 0 ? -q[i] : q[i]) / WD_QUATERNION_PART;
+        packed |= (uint32_t)(wd_clampf(0.5f * part + 0.5f, 0, 1) * 1023 + 0.5f) << shift;
+        shift += 10;
+    }
+    return packed | largest << 30;
+}
+
+/* Two 8-bit snorm of the 16-bit ones. */
+static uint32_t pack_shading(struct wd_vec3 v)
+{
+    const float normal[3] = {v.x, v.y, v.z};
+    uint32_t fine = wd_pack_normal(normal), packed = 0;
+    for (int i = 0; i < 2; i++) {
+        float part = (float)(int16_t)(fine >> (16 * i) & 0xffffu) / 32767;
+        packed |= ((uint32_t)(int32_t)floorf(part * 127 + 0.5f) & 0xffu) << (8 * i);
+    }
+    return packed;
+}
+
+struct wd_tree_leaf wd_leaf_pack(const struct wd_leaf_stand *place, const struct wd_leaf_box *box)
+{
+    const float p[3] = {place->position_m.x, place->position_m.y, place->position_m.z};
+    uint32_t steps[3];
+    wd_mesh_box_steps(steps, &box->feet, p);
+    uint32_t size = box->size_step_m > 0
+                        ? (uint32_t)wd_clampf(place->size_m / box->size_step_m + 0.5f, 0,
+                                              WD_BOX_STEPS)
+                        : 0;
+    return (struct wd_tree_leaf){
+        .xy = steps[0] | steps[1] << 16,
+        .z_size = steps[2] | size << 16,
+        .turn = pack_turn(place->axis, place->normal),
+        .shading = pack_shading(place->shading) |
+                   (uint32_t)wd_clampf(place->flexibility, 0, 255) << 16 |
+                   (uint32_t)(wd_clampf(place->arch, 0, 1) * 63 + 0.5f) << 24 |
+                   (place->form & 3u) << 30,
+        .tint = place->tint,
+    };
+}
