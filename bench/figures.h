@@ -30,6 +30,9 @@ bool bench_continuum_frame(const char *gpu);
 bool bench_continuum_vs_octree(const char *gpu);
 bool bench_continuum_floor(const char *gpu);
 bool bench_continuum_memory(const char *gpu);
+bool bench_scale_ratio(const char *gpu);
+bool bench_scale_memory(const char *gpu);
+bool bench_scale_flight(const char *gpu);
 
 /* Sorts and returns the middle one. */
 double bench_median(double *values, size_t count);

@@ -190,6 +190,8 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
     const struct wd_terrain *terrain = &forest->world.terrain;
     uint64_t most = max_trees ? max_trees : DEFAULT_MAX_TREES;
     struct scene_export export = {.forest = forest, .variants = (uint32_t)forest->scene.variants};
+    if (!wd_demand_is_none(&forest->world.demand, path, log))
+        return WD_ERROR_INPUT;
     if (has_ending(path, ".csv"))
         return wd_tree_list_write(forest, path, progress, log);
     if (!has_ending(path, ".glb")) {

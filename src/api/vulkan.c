@@ -41,12 +41,13 @@ static bool check_target(const struct wd_renderer *renderer, const struct wd_ren
 enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_render_params *params,
                                 const struct wd_vulkan_target *target)
 {
-    enum { LIVE_SAMPLES = 1 };
+    enum { LIVE_SAMPLES = 1, LIVE_PAGES = 256 };
     if (!check_target(renderer, params, target))
         return WD_ERROR_INPUT;
     enum wd_result result = wd_renderer_prepare(renderer, params, LIVE_SAMPLES);
     if (result != WD_OK)
         return result;
+    renderer->frame.params.page_budget = LIVE_PAGES;
     struct wd_cmd cmd;
     double start = wd_clock_s();
     if (!wd_frame_begin(&renderer->frame.ring, &cmd))

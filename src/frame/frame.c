@@ -93,6 +93,7 @@ static struct wd_tree_draw tree_draw_of(const struct recording *r, const struct 
         .uniforms = r->uniforms,
         .stats = stats,
         .view_mode = frame->params.view_mode,
+        .page_budget = frame->params.page_budget,
     };
 }
 

@@ -376,6 +376,7 @@ static void select_pages(struct continuum *c, const struct wd_tree_draw *draw)
         .pixels = view->pixels_per_radian,
         .orthographic = shadow,
         .whole_px = WD_WHOLE_TREE_PX,
+        .budget = shadow ? (draw->page_budget + 3) / 4 : draw->page_budget,
         .most = (uint32_t)((shadow ? CASCADE_SHARE : CAMERA_SHARE) * pages->capacity),
     };
     if (shadow) {

@@ -1,5 +1,6 @@
 #include "methods/method.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,13 +90,10 @@ void *wd_methods_open(struct wd_methods *open, struct wd_gpu *gpu, const struct 
 {
     _Static_assert(sizeof methods / sizeof *methods <= WD_METHODS_MAX, "a slot for each method");
     const struct wd_demand *demand = &forest->world->demand;
-    if (demand->count && !method->on_demand) {
-        wd_error(gpu->log,
-                 "method %s keeps every tree, and this world's %.0f are planted on demand: use "
-                 "--method continuum, fewer trees, or \"planting\": \"stored\"",
-                 method->name, demand->trees);
+    char who[64];
+    snprintf(who, sizeof who, "method %s", method->name);
+    if (!method->on_demand && !wd_demand_is_none(demand, who, gpu->log))
         return NULL;
-    }
     struct wd_method_slot *slot = open_slot(open, gpu, method);
     if (!slot)
         return NULL;

@@ -81,6 +81,8 @@ bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_mod
 {
     RTCDevice device = models->device;
     double origin_m[3];
+    if (!wd_demand_is_none(&world->demand, "the path tracer", log))
+        return false;
     *scene = (struct wd_trace_scene){
         .world = world, .scene = description, .models = models, .frame = frame};
     for (int k = 0; k < 3; k++)

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/log.h"
 #include "base/memory.h"
 
 /* The most trees that a device which binds 128 MiB at once can hold. */
@@ -102,6 +103,16 @@ double wd_demand_density(const struct wd_demand_layer *layer, const double min_m
         sum += (double)wd_place_odds_at(input, (int32_t)at_mm[0], (int32_t)at_mm[1], -1.0f).chance;
     }
     return planted * sum / ((double)points * points);
+}
+
+bool wd_demand_is_none(const struct wd_demand *demand, const char *who, const struct wd_log *log)
+{
+    return demand->count == 0 ||
+           wd_error(log,
+                    "%s needs all trees in memory, and some %.0f of this world are planted on "
+                    "demand: only the method continuum can do with that; ask for fewer trees, or "
+                    "set \"planting\" to \"stored\"",
+                    who, demand->trees);
 }
 
 /* --- trees -------------------------------------------------------------------------------- */

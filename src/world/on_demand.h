@@ -34,6 +34,10 @@ void wd_demand_add(struct wd_demand *demand, struct wd_placement *placement,
                    const struct wd_scene *scene, size_t layer, size_t stored);
 void wd_demand_finish(struct wd_demand *demand); /* accepts {0} */
 
+/* For `who` needs every tree of the world by itself: whether all of them are stored, or else one
+ * error. */
+bool wd_demand_is_none(const struct wd_demand *demand, const char *who, const struct wd_log *log);
+
 /* Mean probability, over `points` x `points` places of a rectangle of the ground, that a cell's tree
  * stands: density and rules. */
 double wd_demand_density(const struct wd_demand_layer *layer, const double min_m[2],
