@@ -10,9 +10,21 @@
 
 #include "args.h"
 
-static const struct bench_effort QUICK = {"quick", 9, 320, 240, 0.6, 2, 16, 128, 96, 6, 12, 128, 96};
-static const struct bench_effort FULL = {"full", 40,  800, 600, 60, 16, 256, 400,
-                                         300,    32, 128, 256, 192};
+/* Quick: fewer and smaller views than the papers', baking them takes most of a first run. */
+static const struct bench_effort QUICK = {
+    .name = "quick",
+    .frames = 9, .width = 320, .height = 240, .budget_s = 0.6, .least_frames = 1,
+    .samples = 2, .truth_samples = 12, .truth_width = 128, .truth_height = 96,
+    .steps = 6, .step_samples = 12, .step_width = 128, .step_height = 96,
+    .settings = {"methods.views.rows=5", "methods.views.columns=16", "methods.views.samples=2",
+                 "methods.zfield.rows=5", "methods.zfield.size=64", "methods.zfield.samples=2"},
+};
+static const struct bench_effort FULL = {
+    .name = "full",
+    .frames = 40, .width = 800, .height = 600, .budget_s = 60, .least_frames = 3,
+    .samples = 16, .truth_samples = 256, .truth_width = 400, .truth_height = 300,
+    .steps = 32, .step_samples = 128, .step_width = 256, .step_height = 192,
+};
 
 static const struct bench_suite suites[] = {
     {"seeds", "the scenes of the seed documents, every method: time, memory, image error",
@@ -236,19 +248,33 @@ static enum wd_result open_renderer(struct bench_stage *stage)
     return result;
 }
 
+/* The effort's, then the suite's, then the user's, which win. */
+static void gather_settings(const struct bench *bench, const char *of_suite, const char **settings)
+{
+    const struct cli_words *words = &bench->session->options->settings;
+    size_t count = 0;
+    for (size_t i = 0; bench->effort.settings[i]; i++)
+        settings[count++] = bench->effort.settings[i];
+    if (of_suite)
+        settings[count++] = of_suite;
+    for (uint32_t i = 0; i < words->count; i++)
+        settings[count++] = words->words[i];
+}
+
 static enum wd_result run_scene(struct bench *bench, const char *path, const char *label,
                                 const char *setting)
 {
-    const char *settings[] = {setting, NULL};
+    const char *settings[CLI_MAX_WORDS + 10] = {0};
     struct bench_stage stage = {.bench = bench, .scene = label};
     const struct wd_forest_params params = {
         .scene_path = path,
         .data_dir = bench->session->options->data,
-        .settings = setting ? settings : NULL,
+        .settings = settings,
         .threads = bench->session->options->threads,
         .progress = bench->session->progress,
         .log = bench->session->log,
     };
+    gather_settings(bench, setting, settings);
     double begin_s = cli_seconds();
     enum wd_result result = wd_forest_create(&stage.forest, &params);
     stage.start_s = cli_seconds() - begin_s;

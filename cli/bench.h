@@ -24,8 +24,12 @@ enum bench_column {
                                                   of 4 x 4 blocks, in percent of white */
     BENCH_POPPING_P999,
     BENCH_POPPING_STEP, /* the largest */
-    BENCH_COLUMNS,
+    BENCH_BOUNDARY_STEP, /* the largest where a tree changes its level: full to reduced mesh, reduced
+                            to billboard, full to billboard, billboard to canopy map */
+    BENCH_COLUMNS = BENCH_BOUNDARY_STEP + 4,
 };
+
+enum { BENCH_BOUNDARIES = BENCH_COLUMNS - BENCH_BOUNDARY_STEP };
 
 /* Names of the columns, BENCH_COLUMNS of them. */
 const char *bench_column_name(uint32_t column);
@@ -40,9 +44,11 @@ struct bench_row {
 struct bench_effort {
     const char *name; /* "quick", "full" */
     uint32_t frames, width, height;                    /* timing */
-    double budget_s;                                   /* frames end after so long, three at least */
+    double budget_s;       /* frames end after so long */
+    uint32_t least_frames; /* but not before there are so many */
     uint32_t samples, truth_samples, truth_width, truth_height; /* image error */
     uint32_t steps, step_samples, step_width, step_height;      /* popping */
+    const char *settings[8]; /* of every scene, ended by NULL */
 };
 
 struct bench_suite {

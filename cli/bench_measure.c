@@ -7,7 +7,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-enum { BLOCK = 4, MAX_FRAMES = 64, LEAST_FRAMES = 3 };
+enum { MAX_FRAMES = 64 };
 
 static int compare(const void *a, const void *b)
 {
@@ -86,7 +86,7 @@ enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_cam
     enum wd_result result = draw(stage, &params, &ignored); /* warms up */
     begin_s = cli_seconds();
     while (result == WD_OK && count < effort->frames && count < MAX_FRAMES &&
-           (count < LEAST_FRAMES || cli_seconds() - begin_s < effort->budget_s))
+           (count < effort->least_frames || cli_seconds() - begin_s < effort->budget_s))
         result = draw(stage, &params, &frames[count++]);
     params.timing = WD_TIME_PASSES;
     if (result == WD_OK)
@@ -224,121 +224,5 @@ enum wd_result bench_measure_error(struct bench_stage *stage, const struct wd_ca
         result = compare_pictures(stage, &truth, &picture, row);
     wd_picture_finish(&truth);
     wd_picture_finish(&picture);
-    return result;
-}
-
-/* --- popping -------------------------------------------------------------------------------------- */
-
-/* A slow walk ahead: two hundredths of a degree of change a frame for things 25 m off. */
-static struct wd_camera step_camera(const struct wd_camera *camera, uint32_t step)
-{
-    struct wd_camera moved = *camera;
-    double way_m = 0.25 * step, level = cos(camera->pitch_rad);
-    moved.position_m[0] += way_m * sin(camera->yaw_rad) * level;
-    moved.position_m[1] += way_m * cos(camera->yaw_rad) * level;
-    moved.position_m[2] += way_m * sin(camera->pitch_rad);
-    return moved;
-}
-
-/* Mean luma of blocks, 0..100. */
-static void block_luma(const struct wd_picture *picture, double *means)
-{
-    uint32_t columns = picture->width / BLOCK, rows = picture->height / BLOCK;
-    for (uint32_t i = 0; i < columns * rows; i++)
-        means[i] = 0;
-    for (uint32_t y = 0; y < rows * BLOCK; y++)
-        for (uint32_t x = 0; x < columns * BLOCK; x++) {
-            const uint8_t *p = picture->display + 4 * ((size_t)y * picture->width + x);
-            means[y / BLOCK * columns + x / BLOCK] +=
-                (0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2]) * (100.0 / 255 / (BLOCK * BLOCK));
-        }
-}
-
-struct popping {
-    size_t blocks;
-    double *truth[2], *drawn[2]; /* luma of the frame before and of this one */
-    double *excess;
-    size_t count;
-};
-
-static bool popping_init(struct popping *popping, const struct bench_effort *effort)
-{
-    *popping = (struct popping){
-        .blocks = (size_t)(effort->step_width / BLOCK) * (effort->step_height / BLOCK)};
-    for (int i = 0; i < 2; i++) {
-        popping->truth[i] = calloc(popping->blocks, sizeof(double));
-        popping->drawn[i] = calloc(popping->blocks, sizeof(double));
-    }
-    popping->excess = calloc(popping->blocks * effort->steps, sizeof(double));
-    return popping->truth[0] && popping->truth[1] && popping->drawn[0] && popping->drawn[1] &&
-           popping->excess;
-}
-
-static void popping_finish(struct popping *popping)
-{
-    for (int i = 0; i < 2; i++) {
-        free(popping->truth[i]);
-        free(popping->drawn[i]);
-    }
-    free(popping->excess);
-}
-
-static void add_step(struct popping *popping, uint32_t step)
-{
-    const double *truth = popping->truth[step % 2], *truth_before = popping->truth[1 - step % 2];
-    const double *drawn = popping->drawn[step % 2], *drawn_before = popping->drawn[1 - step % 2];
-    for (size_t i = 0; step > 0 && i < popping->blocks; i++)
-        popping->excess[popping->count++] =
-            fmax(fabs(drawn[i] - drawn_before[i]) - fabs(truth[i] - truth_before[i]), 0);
-}
-
-/* Both are shown at the exposure of the first true frame. */
-static enum wd_result take_step(struct bench_stage *stage, const struct wd_camera *camera,
-                                const struct bench_row *row, uint32_t step, struct popping *popping)
-{
-    const struct bench_effort *effort = &stage->bench->effort;
-    const uint32_t layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID;
-    const struct wd_camera moved = step_camera(camera, step);
-    const struct wd_reference_picture_params trace = {
-        .camera = moved, .width = effort->step_width, .height = effort->step_height,
-        .samples = effort->step_samples, .layers = layers};
-    const struct wd_render_params params = {
-        .camera = moved, .width = effort->step_width, .height = effort->step_height,
-        .samples = effort->samples, .method = row->method, .layers = layers};
-    struct wd_picture truth = {0}, picture = {0};
-    char name[96];
-    snprintf(name, sizeof name, "%s-step%u", row->camera, step);
-    enum wd_result result = bench_truth(stage, name, &trace, &truth);
-    if (result == WD_OK)
-        result = wd_renderer_render(stage->renderer, &params, &picture);
-    if (result == WD_OK)
-        result = wd_picture_expose_alike(&truth, &picture, &stage->bench->session->log);
-    if (result == WD_OK) {
-        block_luma(&truth, popping->truth[step % 2]);
-        block_luma(&picture, popping->drawn[step % 2]);
-        add_step(popping, step);
-    }
-    wd_picture_finish(&truth);
-    wd_picture_finish(&picture);
-    return cli_session_interrupted(stage->bench->session) ? WD_ERROR_INTERRUPTED : result;
-}
-
-enum wd_result bench_measure_popping(struct bench_stage *stage, const struct wd_camera *camera,
-                                     struct bench_row *row)
-{
-    const struct bench_effort *effort = &stage->bench->effort;
-    struct popping popping;
-    enum wd_result result = popping_init(&popping, effort) ? WD_OK : WD_ERROR_MEMORY;
-    for (uint32_t step = 0; step < effort->steps && result == WD_OK; step++)
-        result = take_step(stage, camera, row, step, &popping);
-    if (result == WD_OK) {
-        double sum = 0;
-        for (size_t i = 0; i < popping.count; i++)
-            sum += popping.excess[i];
-        row->values[BENCH_POPPING_MEAN] = popping.count ? sum / (double)popping.count : NAN;
-        row->values[BENCH_POPPING_P999] = bench_percentile(popping.excess, popping.count, 0.999);
-        row->values[BENCH_POPPING_STEP] = bench_percentile(popping.excess, popping.count, 1);
-    }
-    popping_finish(&popping);
     return result;
 }

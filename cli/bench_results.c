@@ -13,8 +13,9 @@ const char *bench_column_name(uint32_t column)
     static const char *const names[] = {
         "trees", "start_s", "frame_ms", "frame_p95_ms", "frame_p99_ms", "gpu_ms", "cpu_ms",
         "draw_calls", "triangles", "device_mb", "host_peak_mb"};
-    static const char *const popping[] = {"popping_mean_pct", "popping_p999_pct",
-                                          "popping_step_pct"};
+    static const char *const popping[] = {
+        "popping_mean_pct", "popping_p999_pct", "popping_step_pct", "step_full_reduced_pct",
+        "step_reduced_billboard_pct", "step_full_billboard_pct", "step_billboard_canopy_pct"};
     if (column < BENCH_COMPARISON)
         return names[column];
     if (column < BENCH_POPPING_MEAN)
@@ -25,9 +26,12 @@ const char *bench_column_name(uint32_t column)
 static void print_heads(const struct bench *bench, FILE *to)
 {
     const struct bench_effort *e = &bench->effort;
-    fprintf(to, "# weald bench %s %s %ux%u %u/%u samples %ux%u %u steps\n", bench->suite->name,
+    fprintf(to, "# weald bench %s %s %ux%u %u/%u samples %ux%u %u steps", bench->suite->name,
             e->name, e->width, e->height, e->samples, e->truth_samples, e->truth_width,
             e->truth_height, e->steps);
+    for (uint32_t i = 0; i < bench->session->options->settings.count; i++)
+        fprintf(to, " %s", bench->session->options->settings.words[i]);
+    fprintf(to, "\n");
     fprintf(to, "scene,camera,method");
     for (uint32_t i = 0; i < BENCH_COLUMNS; i++)
         fprintf(to, ",%s", bench_column_name(i));

@@ -48,9 +48,9 @@ static const struct wd_key continuum_keys[] = {
 static const struct wd_keys continuum_table = TABLE(continuum);
 
 static const struct wd_key lod_keys[] = {
-    {"full_m", WD_KEY_DOUBLE, OPTION(lod, full_m), 0, 1e6, "40",
+    {"full_m", WD_KEY_DOUBLE, OPTION(lod, full_m), 0, 1e6, "30",
      "Full meshes nearer than this, in metres.", .row = "O1"},
-    {"reduced_m", WD_KEY_DOUBLE, OPTION(lod, reduced_m), 0, 1e6, "140",
+    {"reduced_m", WD_KEY_DOUBLE, OPTION(lod, reduced_m), 0, 1e6, "80",
      "Reduced meshes nearer than this, in metres; billboards beyond.", .row = "O1"},
     {"blend", WD_KEY_DOUBLE, OPTION(lod, blend), 0, 0.9, "0.15",
      "Share of a distance over which levels blend.", .row = "O1"},

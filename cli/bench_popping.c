@@ -1,0 +1,240 @@
+/* Popping along a slow walk: how much more each block of the picture changes from frame to frame than
+ * the same block of the truth, over all, and where a tree changes its level of detail. */
+#include "bench.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK = 4 };
+
+/* Levels as WD_VIEW_LOD colours them: bits of what of a tree shows in a block. */
+enum level { FULL = 1, REDUCED = 2, BILLBOARD = 4, CANOPY = 8 };
+
+/* What of its nearest tree a block shows. */
+struct seen {
+    uint32_t tree; /* 0: none, or several */
+    uint32_t levels;
+};
+
+/* One frame in blocks. */
+struct frame {
+    double *truth, *drawn; /* luma, 0..100 */
+    struct seen *seen;
+};
+
+struct popping {
+    uint32_t columns, rows;
+    struct frame frames[2]; /* the frame before and this one, by step % 2 */
+    double *excess;
+    size_t count;
+    double step[BENCH_BOUNDARIES]; /* NaN where no tree crossed that boundary */
+};
+
+/* --- blocks --------------------------------------------------------------------------------------- */
+
+static void add_luma(const struct wd_picture *picture, const struct popping *popping, double *means)
+{
+    memset(means, 0, (size_t)popping->columns * popping->rows * sizeof *means);
+    for (uint32_t y = 0; y < popping->rows * BLOCK; y++)
+        for (uint32_t x = 0; x < popping->columns * BLOCK; x++) {
+            const uint8_t *p = picture->display + 4 * ((size_t)y * picture->width + x);
+            means[y / BLOCK * popping->columns + x / BLOCK] +=
+                (0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2]) * (100.0 / 255 / (BLOCK * BLOCK));
+        }
+}
+
+/* The level whose colour is nearest in hue; 0 for what has none, as continuum's discs. */
+static uint32_t level_of(const float color[3])
+{
+    static const struct {
+        float color[3];
+        uint32_t level;
+    } known[] = {
+        {{0.85f, 0.08f, 0.05f}, FULL},      {{0.85f, 0.65f, 0.05f}, REDUCED},
+        {{0.05f, 0.25f, 0.85f}, BILLBOARD}, {{0.45f, 0.10f, 0.55f}, CANOPY},
+        {{0.50f, 0.30f, 0.10f}, 0},         {{0.10f, 0.60f, 0.15f}, 0},
+    };
+    float sum = color[0] + color[1] + color[2], least = INFINITY;
+    uint32_t level = 0;
+    for (size_t i = 0; sum > 0 && i < sizeof known / sizeof *known; i++) {
+        const float *c = known[i].color;
+        float total = c[0] + c[1] + c[2], distance = 0;
+        for (int k = 0; k < 3; k++)
+            distance += fabsf(color[k] / sum - c[k] / total);
+        if (distance < least) {
+            least = distance;
+            level = known[i].level;
+        }
+    }
+    return level;
+}
+
+/* A block counts for the tree that fills most of it. */
+static struct seen see_block(const struct wd_picture *levels, uint32_t column, uint32_t row)
+{
+    struct seen seen = {0};
+    uint32_t pixels = 0;
+    for (uint32_t i = 0; i < BLOCK * BLOCK && pixels <= BLOCK * BLOCK / 2; i++) {
+        size_t first = (size_t)(row * BLOCK + i / BLOCK) * levels->width + column * BLOCK + i % BLOCK;
+        seen = (struct seen){levels->tree_id[first], 0};
+        pixels = 0;
+        for (uint32_t k = 0; k < BLOCK * BLOCK; k++) {
+            size_t at = (size_t)(row * BLOCK + k / BLOCK) * levels->width + column * BLOCK + k % BLOCK;
+            if (levels->tree_id[at] != seen.tree)
+                continue;
+            pixels++;
+            seen.levels |= level_of(levels->color + 3 * at);
+        }
+    }
+    return pixels > BLOCK * BLOCK / 2 ? seen : (struct seen){0};
+}
+
+static void see_blocks(const struct wd_picture *levels, const struct popping *popping,
+                       struct seen *seen)
+{
+    for (uint32_t i = 0; i < popping->columns * popping->rows; i++)
+        seen[i] = see_block(levels, i % popping->columns, i / popping->columns);
+}
+
+/* --- steps ---------------------------------------------------------------------------------------- */
+
+static bool popping_init(struct popping *popping, const struct bench_effort *effort)
+{
+    *popping = (struct popping){.columns = effort->step_width / BLOCK,
+                                .rows = effort->step_height / BLOCK};
+    size_t blocks = (size_t)popping->columns * popping->rows;
+    bool ok = (popping->excess = calloc(blocks * effort->steps, sizeof(double)));
+    for (int i = 0; i < 2; i++) {
+        struct frame *frame = &popping->frames[i];
+        frame->truth = calloc(blocks, sizeof *frame->truth);
+        frame->drawn = calloc(blocks, sizeof *frame->drawn);
+        frame->seen = calloc(blocks, sizeof *frame->seen);
+        ok = ok && frame->truth && frame->drawn && frame->seen;
+    }
+    for (int i = 0; i < BENCH_BOUNDARIES; i++)
+        popping->step[i] = NAN;
+    return ok;
+}
+
+static void popping_finish(struct popping *popping)
+{
+    for (int i = 0; i < 2; i++) {
+        free(popping->frames[i].truth);
+        free(popping->frames[i].drawn);
+        free(popping->frames[i].seen);
+    }
+    free(popping->excess);
+}
+
+/* A tree crosses a boundary where it shows both sides of it in two frames one after the other. */
+static void add_crossing(struct popping *popping, const struct seen *before, const struct seen *now,
+                         double excess)
+{
+    static const uint32_t sides[BENCH_BOUNDARIES] = {FULL | REDUCED, REDUCED | BILLBOARD,
+                                                     FULL | BILLBOARD, BILLBOARD | CANOPY};
+    uint32_t levels = before->levels | now->levels;
+    if (!now->tree || before->tree != now->tree)
+        return;
+    for (int i = 0; i < BENCH_BOUNDARIES; i++)
+        if (levels == sides[i])
+            popping->step[i] = fmax(popping->step[i], excess);
+}
+
+static void add_step(struct popping *popping, uint32_t step)
+{
+    const struct frame *now = &popping->frames[step % 2], *before = &popping->frames[1 - step % 2];
+    for (size_t i = 0; step > 0 && i < (size_t)popping->columns * popping->rows; i++) {
+        double excess = fmax(fabs(now->drawn[i] - before->drawn[i]) -
+                                 fabs(now->truth[i] - before->truth[i]),
+                             0);
+        popping->excess[popping->count++] = excess;
+        add_crossing(popping, &before->seen[i], &now->seen[i], excess);
+    }
+}
+
+/* A slow walk ahead: half a degree of change a frame for things 25 m to the side. */
+static struct wd_camera step_camera(const struct wd_camera *camera, uint32_t step)
+{
+    struct wd_camera moved = *camera;
+    double way_m = 0.25 * step, level = cos(camera->pitch_rad);
+    moved.position_m[0] += way_m * sin(camera->yaw_rad) * level;
+    moved.position_m[1] += way_m * cos(camera->yaw_rad) * level;
+    moved.position_m[2] += way_m * sin(camera->pitch_rad);
+    return moved;
+}
+
+/* Both are shown at the exposure of the true frame. */
+static enum wd_result draw_step(struct bench_stage *stage, const struct wd_render_params *params,
+                                struct wd_picture *truth, struct popping *popping,
+                                struct frame *frame)
+{
+    struct wd_render_params by_level = *params;
+    struct wd_picture picture = {0}, levels = {0};
+    by_level.view = WD_VIEW_LOD;
+    by_level.samples = 1;
+    enum wd_result result = wd_renderer_render(stage->renderer, params, &picture);
+    if (result == WD_OK)
+        result = wd_renderer_render(stage->renderer, &by_level, &levels);
+    if (result == WD_OK)
+        result = wd_picture_expose_alike(truth, &picture, &stage->bench->session->log);
+    if (result == WD_OK) {
+        add_luma(truth, popping, frame->truth);
+        add_luma(&picture, popping, frame->drawn);
+        see_blocks(&levels, popping, frame->seen);
+    }
+    wd_picture_finish(&picture);
+    wd_picture_finish(&levels);
+    return result;
+}
+
+static enum wd_result take_step(struct bench_stage *stage, const struct wd_camera *camera,
+                                const struct bench_row *row, uint32_t step, struct popping *popping)
+{
+    const struct bench_effort *effort = &stage->bench->effort;
+    const uint32_t layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID;
+    const struct wd_camera moved = step_camera(camera, step);
+    const struct wd_reference_picture_params trace = {
+        .camera = moved, .width = effort->step_width, .height = effort->step_height,
+        .samples = effort->step_samples, .layers = layers};
+    const struct wd_render_params params = {
+        .camera = moved, .width = effort->step_width, .height = effort->step_height,
+        .samples = effort->samples, .method = row->method, .layers = layers};
+    struct wd_picture truth = {0};
+    char name[96];
+    snprintf(name, sizeof name, "%s-step%u", row->camera, step);
+    enum wd_result result = bench_truth(stage, name, &trace, &truth);
+    if (result == WD_OK)
+        result = draw_step(stage, &params, &truth, popping, &popping->frames[step % 2]);
+    if (result == WD_OK)
+        add_step(popping, step);
+    wd_picture_finish(&truth);
+    return cli_session_interrupted(stage->bench->session) ? WD_ERROR_INTERRUPTED : result;
+}
+
+static void describe_popping(const struct popping *popping, struct bench_row *row)
+{
+    double sum = 0;
+    for (size_t i = 0; i < popping->count; i++)
+        sum += popping->excess[i];
+    row->values[BENCH_POPPING_MEAN] = popping->count ? sum / (double)popping->count : NAN;
+    row->values[BENCH_POPPING_P999] = bench_percentile(popping->excess, popping->count, 0.999);
+    row->values[BENCH_POPPING_STEP] = bench_percentile(popping->excess, popping->count, 1);
+    for (uint32_t i = 0; i < BENCH_BOUNDARIES; i++)
+        row->values[BENCH_BOUNDARY_STEP + i] = popping->step[i];
+}
+
+enum wd_result bench_measure_popping(struct bench_stage *stage, const struct wd_camera *camera,
+                                     struct bench_row *row)
+{
+    const struct bench_effort *effort = &stage->bench->effort;
+    struct popping popping;
+    enum wd_result result = popping_init(&popping, effort) ? WD_OK : WD_ERROR_MEMORY;
+    for (uint32_t step = 0; step < effort->steps && result == WD_OK; step++)
+        result = take_step(stage, camera, row, step, &popping);
+    if (result == WD_OK)
+        describe_popping(&popping, row);
+    popping_finish(&popping);
+    return result;
+}
