@@ -2,6 +2,8 @@
 #ifndef CLI_BENCH_H
 #define CLI_BENCH_H
 
+#include <stdio.h>
+
 #include "cli.h"
 #include "weald/compare.h"
 #include "weald/reference.h"
@@ -96,6 +98,12 @@ enum wd_result bench_measure_error(struct bench_stage *stage, const struct wd_ca
 enum wd_result bench_measure_popping(struct bench_stage *stage, const struct wd_camera *camera,
                                      struct bench_row *row);
 
+/* Keeps DIRECTORY/pictures/SCENE-CAMERA-WHAT as PNG and small as JPEG. */
+enum wd_result bench_keep_picture(struct bench_stage *stage, const struct wd_picture *picture,
+                                  const struct bench_row *row, const char *what);
+/* Replaces what the picture shows by its errors, 0..1. */
+void bench_map_error(struct wd_picture *picture, const float *error);
+
 /* The path-traced picture, from DIRECTORY/reference if it has been traced before. */
 enum wd_result bench_truth(struct bench_stage *stage, const char *name,
                            const struct wd_reference_picture_params *params,
@@ -104,6 +112,11 @@ enum wd_result bench_truth(struct bench_stage *stage, const char *name,
 void bench_print_table(const struct bench *bench);
 bool bench_write_json(const struct bench *bench);
 bool bench_write_html(const struct bench *bench);
+
+/* Parts of the report. */
+void bench_print_plot(FILE *to, const struct bench *bench, const struct bench_row *place);
+const char *bench_method_color(const struct bench *bench, const char *method);
+bool bench_same_place(const struct bench_row *a, const struct bench_row *b);
 
 /* DIRECTORY/NAME as printf's; free() it. */
 __attribute__((format(printf, 2, 3))) char *bench_path(const struct bench *bench,

@@ -25,7 +25,8 @@ double bench_percentile(double *values, size_t count, double share)
     return values[low] + (at - (double)low) * (values[high] - values[low]);
 }
 
-/* --- time ---------------------------------------------------------------------------------------- */
+/* --- time ----------------------------------------------------------------------------------------
+ */
 
 static void describe_passes(const struct wd_frame_stats *stats, struct bench_row *row)
 {
@@ -36,9 +37,9 @@ static void describe_passes(const struct wd_frame_stats *stats, struct bench_row
         gpu_ms += pass->gpu_ms;
         cpu_ms += pass->cpu_ms;
         if (used < sizeof row->passes)
-            used += (size_t)snprintf(row->passes + used, sizeof row->passes - used,
-                                     "%s%s=%.3f+%.3f", i ? ";" : "", pass->name, pass->gpu_ms,
-                                     pass->cpu_ms);
+            used +=
+                (size_t)snprintf(row->passes + used, sizeof row->passes - used, "%s%s=%.3f+%.3f",
+                                 i ? ";" : "", pass->name, pass->gpu_ms, pass->cpu_ms);
     }
     row->values[BENCH_GPU_MS] = gpu_ms;
     row->values[BENCH_CPU_MS] = cpu_ms;
@@ -100,14 +101,14 @@ enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_cam
     return WD_OK;
 }
 
-/* --- truth --------------------------------------------------------------------------------------- */
+/* --- truth ---------------------------------------------------------------------------------------
+ */
 
 static enum wd_result open_reference(struct bench_stage *stage)
 {
     struct cli_session *session = stage->bench->session;
-    const struct wd_reference_params params = {.threads = session->options->threads,
-                                               .progress = session->progress,
-                                               .log = session->log};
+    const struct wd_reference_params params = {
+        .threads = session->options->threads, .progress = session->progress, .log = session->log};
     return stage->reference ? WD_OK
                             : wd_reference_create(&stage->reference, stage->forest, &params);
 }
@@ -121,12 +122,18 @@ enum wd_result bench_truth(struct bench_stage *stage, const char *name,
     struct wd_forest_info info;
     struct stat status;
     wd_forest_get_info(stage->forest, &info);
-    char *path = bench_path(bench, "reference/%s-%s-%016llx-%ux%u-%u.exr", stage->scene, name,
-                            (unsigned long long)info.hash, params->width, params->height,
-                            params->samples);
+    char *path =
+        bench_path(bench, "reference/%s-%s-%016llx-%ux%u-%u.exr", stage->scene, name,
+                   (unsigned long long)info.hash, params->width, params->height, params->samples);
     enum wd_result result = WD_OK;
     if (stat(path, &status) == 0) {
         result = wd_picture_read_exr(picture, path, &bench->session->log);
+        if (result == WD_OK &&
+            (picture->width != params->width || picture->height != params->height)) {
+            cli_fail(bench->session, "%s: holds %u x %u pixels, not %u x %u; remove it", path,
+                     picture->width, picture->height, params->width, params->height);
+            result = WD_ERROR_INPUT;
+        }
     } else {
         struct wd_reference_picture_params trace = *params;
         char *checkpoint = NULL;
@@ -144,31 +151,8 @@ enum wd_result bench_truth(struct bench_stage *stage, const char *name,
     return result;
 }
 
-/* --- image error ---------------------------------------------------------------------------------- */
-
-/* From black over violet and orange to pale yellow. */
-static void map_error(struct wd_picture *picture, const float *error)
-{
-    static const float ramp[5][3] = {
-        {0, 0, 4}, {81, 18, 124}, {183, 55, 121}, {252, 137, 97}, {252, 253, 191}};
-    size_t pixels = (size_t)picture->width * picture->height;
-    for (size_t i = 0; i < pixels; i++) {
-        float at = fminf(fmaxf(error[i], 0), 1) * 4;
-        int low = at < 3 ? (int)at : 3;
-        for (size_t k = 0; k < 3; k++)
-            picture->display[4 * i + k] =
-                (uint8_t)(ramp[low][k] + (at - (float)low) * (ramp[low + 1][k] - ramp[low][k]));
-    }
-}
-
-static enum wd_result keep_picture(struct bench_stage *stage, const struct wd_picture *picture,
-                                   const struct bench_row *row, const char *what)
-{
-    char *path = bench_path(stage->bench, "pictures/%s-%s-%s.png", row->scene, row->camera, what);
-    enum wd_result result = wd_picture_write(picture, path, &stage->bench->session->log);
-    free(path);
-    return result;
-}
+/* --- image error
+ * ---------------------------------------------------------------------------------- */
 
 static enum wd_result compare_pictures(struct bench_stage *stage, struct wd_picture *truth,
                                        struct wd_picture *picture, struct bench_row *row)
@@ -185,13 +169,13 @@ static enum wd_result compare_pictures(struct bench_stage *stage, struct wd_pict
     if (result == WD_OK)
         result = wd_picture_expose_alike(truth, picture, log);
     if (result == WD_OK)
-        result = keep_picture(stage, truth, row, "reference");
+        result = bench_keep_picture(stage, truth, row, "reference");
     if (result == WD_OK)
-        result = keep_picture(stage, picture, row, row->method);
+        result = bench_keep_picture(stage, picture, row, row->method);
     if (result == WD_OK) {
-        map_error(picture, error);
+        bench_map_error(picture, error);
         snprintf(what, sizeof what, "%s-error", row->method);
-        result = keep_picture(stage, picture, row, what);
+        result = bench_keep_picture(stage, picture, row, what);
     }
     free(error);
     return result;

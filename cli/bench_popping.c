@@ -1,5 +1,5 @@
-/* Popping along a slow walk: how much more each block of the picture changes from frame to frame than
- * the same block of the truth, over all, and where a tree changes its level of detail. */
+/* Popping along a slow walk: how much more each block of the picture changes from frame to frame
+ * than the same block of the truth, over all, and where a tree changes its level of detail. */
 #include "bench.h"
 
 #include <math.h>
@@ -32,7 +32,8 @@ struct popping {
     double step[BENCH_BOUNDARIES]; /* NaN where no tree crossed that boundary */
 };
 
-/* --- blocks --------------------------------------------------------------------------------------- */
+/* --- blocks
+ * --------------------------------------------------------------------------------------- */
 
 static void add_luma(const struct wd_picture *picture, const struct popping *popping, double *means)
 {
@@ -77,11 +78,13 @@ static struct seen see_block(const struct wd_picture *levels, uint32_t column, u
     struct seen seen = {0};
     uint32_t pixels = 0;
     for (uint32_t i = 0; i < BLOCK * BLOCK && pixels <= BLOCK * BLOCK / 2; i++) {
-        size_t first = (size_t)(row * BLOCK + i / BLOCK) * levels->width + column * BLOCK + i % BLOCK;
+        size_t first =
+            (size_t)(row * BLOCK + i / BLOCK) * levels->width + column * BLOCK + i % BLOCK;
         seen = (struct seen){levels->tree_id[first], 0};
         pixels = 0;
         for (uint32_t k = 0; k < BLOCK * BLOCK; k++) {
-            size_t at = (size_t)(row * BLOCK + k / BLOCK) * levels->width + column * BLOCK + k % BLOCK;
+            size_t at =
+                (size_t)(row * BLOCK + k / BLOCK) * levels->width + column * BLOCK + k % BLOCK;
             if (levels->tree_id[at] != seen.tree)
                 continue;
             pixels++;
@@ -98,7 +101,8 @@ static void see_blocks(const struct wd_picture *levels, const struct popping *po
         seen[i] = see_block(levels, i % popping->columns, i / popping->columns);
 }
 
-/* --- steps ---------------------------------------------------------------------------------------- */
+/* --- steps
+ * ---------------------------------------------------------------------------------------- */
 
 static bool popping_init(struct popping *popping, const struct bench_effort *effort)
 {
@@ -146,9 +150,8 @@ static void add_step(struct popping *popping, uint32_t step)
 {
     const struct frame *now = &popping->frames[step % 2], *before = &popping->frames[1 - step % 2];
     for (size_t i = 0; step > 0 && i < (size_t)popping->columns * popping->rows; i++) {
-        double excess = fmax(fabs(now->drawn[i] - before->drawn[i]) -
-                                 fabs(now->truth[i] - before->truth[i]),
-                             0);
+        double excess = fmax(
+            fabs(now->drawn[i] - before->drawn[i]) - fabs(now->truth[i] - before->truth[i]), 0);
         popping->excess[popping->count++] = excess;
         add_crossing(popping, &before->seen[i], &now->seen[i], excess);
     }
@@ -195,12 +198,17 @@ static enum wd_result take_step(struct bench_stage *stage, const struct wd_camer
     const struct bench_effort *effort = &stage->bench->effort;
     const uint32_t layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID;
     const struct wd_camera moved = step_camera(camera, step);
-    const struct wd_reference_picture_params trace = {
-        .camera = moved, .width = effort->step_width, .height = effort->step_height,
-        .samples = effort->step_samples, .layers = layers};
-    const struct wd_render_params params = {
-        .camera = moved, .width = effort->step_width, .height = effort->step_height,
-        .samples = effort->samples, .method = row->method, .layers = layers};
+    const struct wd_reference_picture_params trace = {.camera = moved,
+                                                      .width = effort->step_width,
+                                                      .height = effort->step_height,
+                                                      .samples = effort->step_samples,
+                                                      .layers = layers};
+    const struct wd_render_params params = {.camera = moved,
+                                            .width = effort->step_width,
+                                            .height = effort->step_height,
+                                            .samples = effort->samples,
+                                            .method = row->method,
+                                            .layers = layers};
     struct wd_picture truth = {0};
     char name[96];
     snprintf(name, sizeof name, "%s-step%u", row->camera, step);

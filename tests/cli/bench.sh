@@ -34,6 +34,20 @@ run '1 results are there already'
 check 'all rows again' [ "$(grep -c '^tiny,' "$out/results.csv")" -eq "$rows" ]
 expect 1 'another suite' bench "$tiny" --suite scale --quick -o "$out"
 
+# a report that cannot be written
+mv "$out/report.html" "$scratch/report.html"
+mkdir "$out/report.html"
+expect 1 'report.html cannot be written' bench "$tiny" --suite quality --quick \
+    --methods octree,separate --gpu software -o "$out"
+rmdir "$out/report.html"
+mv "$scratch/report.html" "$out/report.html"
+cp "$out/results.csv" "$scratch/results.csv"
+rm "$out/results.csv"
+mkdir "$out/results.csv"
+expect 1 'results.csv' bench "$tiny" --suite quality --quick --gpu software -o "$out"
+rmdir "$out/results.csv"
+mv "$scratch/results.csv" "$out/results.csv"
+
 # a reference picture of another size is refused
 set -- "$out"/reference/*.exr
 if [ "$weald" ]; then
@@ -41,13 +55,32 @@ if [ "$weald" ]; then
     cp "$scratch/other.exr" "$1"
     head -n 2 "$out/results.csv" >"$scratch/heads"
     cp "$scratch/heads" "$out/results.csv"
-    expect 1 'same size' bench "$tiny" --suite quality --quick --methods octree --gpu software -o "$out"
+    expect 1 'reference/tiny-.* 40 x 30 pixels, not 128 x 96' bench "$tiny" --suite quality --quick --methods octree --gpu software -o "$out"
 fi
 
+# trees that change their level at once pop more at that boundary than those that blend
+pops() {
+    dir=$scratch/popping-$1
+    mkdir "$dir"
+    [ ! -e "$scratch/truths" ] || mv "$scratch/truths" "$dir/reference"
+    expect 0 'report.html' bench "$tiny" --suite popping --quick --methods lod --gpu software \
+        --set methods.lod.full_m=0 --set methods.lod.reduced_m=40 --set "methods.lod.$2" -o "$dir"
+    step=$(jq '[.rows[] | .step_reduced_billboard_pct] | max' "$dir/results.json")
+    mv "$dir/reference" "$scratch/truths"
+}
+pops blended blend=0.9
+blended=$step
+pops at-once faithful=true
+check "popping at the boundary: $step at once, $blended blended" \
+    jq -ne "$step > 1.1 * $blended and $blended >= 0"
+
 if command -v chromium >/dev/null; then
-    dots=$(timeout 60 chromium --headless --no-sandbox --disable-gpu --dump-dom \
-        "file://$out/report.html" 2>/dev/null | grep -c 'class="method"' || true)
+    timeout 60 chromium --headless --no-sandbox --disable-gpu --dump-dom \
+        "file://$out/report.html" 2>/dev/null >"$scratch/dom" || true
+    dots=$(grep -c 'class="method"' "$scratch/dom" || true)
     check "a dot a method in Chromium ($dots)" [ "$dots" -ge 2 ]
+    check 'strips of pictures and error maps' \
+        [ "$(grep -o '<img alt="[a-z-]*" src="data:image/jpeg' "$scratch/dom" | wc -l)" -ge 5 ]
     timeout 60 chromium --headless --no-sandbox --disable-gpu --window-size=800,600 \
         "--screenshot=$scratch/report.png" "file://$out/report.html" >"$scratch/output" 2>&1 || true
     check 'the report can be seen' [ -s "$scratch/report.png" ]
