@@ -36,7 +36,7 @@ struct wd_reference_picture_params {
 };
 
 /* Traces one picture of what wd_renderer_render draws with the same camera: the same sun, sky, haze,
- * water, ground and trees, every tree with its full mesh; trees lean in the wind, their leaves do
+ * water, ground, trees and depth of field, every tree with its full mesh; trees lean in the wind, their leaves do
  * not flutter. Each sample is a path from a random place of its pixel (a box filter, as that of the
  * renderer's samples). The picture is a function of the forest and these parameters, the same for
  * any number of threads and interruptions.

@@ -52,7 +52,7 @@ wd_card_flat billboard_flat(wd_billboard board, wd_model model, tree_pose pose, 
 {
     card_flat constants;
     constants.turn = pose.turn;
-    constants.tint = tree_tint(tree);
+    constants.tint = tree_tint(tree, model);
     constants.show = show;
     constants.normal = board.normal;
     constants.behind = board.behind;

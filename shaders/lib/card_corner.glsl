@@ -197,7 +197,7 @@ wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show
 {
     card_flat result;
     result.turn = t.pose.turn;
-    result.tint = tree_tint(t.tree);
+    result.tint = tree_tint(t.tree, t.model);
     result.show = show * t.show * card.share;
     result.normal = card.normal;
     result.behind = dot(card.normal, t.toward) < 0.0;

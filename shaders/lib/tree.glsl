@@ -55,9 +55,9 @@ vec3 tree_sway(wd_tree tree, float flexibility, float height_m, float time_s)
     return vec3(shift.x_m, shift.y_m, shift.z_m);
 }
 
-vec3 tree_tint(wd_tree tree)
+vec3 tree_tint(wd_tree tree, wd_model model)
 {
-    return wd_tree_tint(tree);
+    return wd_tree_tint(tree, model);
 }
 
 vec3 level_color(uint level)

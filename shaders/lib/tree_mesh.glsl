@@ -46,7 +46,7 @@ void tree_mesh_vertex(wd_instance instance, mesh_corner v)
     out_uv = vec3(v.uv, float(model.look_layer + wd_vertex_layer(v.kind)));
     out_tint = v.tint;
     if (leaf)
-        out_tint.rgb *= tree_tint(tree);
+        out_tint.rgb *= tree_tint(tree, model);
     out_flat = uvec3(instance.tree + 1u, (leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
                          | (pose.mirror.x < 0.0 ? 4u : 0u),
                      wd_hash2(v.name, tree.random));

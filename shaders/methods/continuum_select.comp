@@ -228,7 +228,7 @@ void select_tree(uint index, float share)
     splats.offset = wd_hash_mix(tree.random) + frame.sample_index * splats.per_stratum;
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
-    splats.tint = packUnorm4x8(vec4(tree_tint(tree) * 0.5, 0.0));
+    splats.tint = packUnorm4x8(vec4(tree_tint(tree, model) * 0.5, 0.0));
     vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
                              : vec2(0.0);
     fill_rows(splats, pose, model_index, foot, slope);

@@ -53,7 +53,8 @@ void main()
     vec4 tint = unpackUnorm4x8(v.tint), leaf_tint = unpackUnorm4x8(leaf.tint);
     out_normal = normal;
     out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + wd_vertex_layer(kind)));
-    out_tint = vec4(blade ? tint.rgb * leaf_tint.rgb * tree_tint(tree) : tint.rgb, leaf_tint.a);
+    out_tint = vec4(blade ? tint.rgb * leaf_tint.rgb * tree_tint(tree, model) : tint.rgb,
+                    leaf_tint.a);
     out_flat = uvec3(instance.tree + 1u, (blade ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
                                              | (pose.mirror.x < 0.0 ? 4u : 0u), 0u);
     out_show = 1.0;

@@ -85,7 +85,7 @@ void main()
     out_eye = eye;
     out_pose = vec4(pose.turn, pose.mirror.x * pose.across, pose.up);
     out_foot = vec4(foot, lod);
-    out_tint = vec4(tree_tint(tree), show);
+    out_tint = vec4(tree_tint(tree, model), show);
     out_flat = uvec4(instance.tree + 1u, tree.random, index,
                      blend.view[0] | blend.view[1] << 10 | blend.view[2] << 20);
     for (uint i = 0u; i < 3u; i++) {

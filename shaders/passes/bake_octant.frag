@@ -112,7 +112,7 @@ void main()
         discard;
     vec4 normal = textureLod(card_normal, card.uv, lod - float(WD_CARD_NORMAL_MIP));
     vec3 turned = world_normal(t, card, normal.xyz * 2.0 - 1.0);
-    out_albedo = vec4(albedo.rgb * wd_tree_tint(t.tree), 1.0);
+    out_albedo = vec4(albedo.rgb * wd_tree_tint(t.tree, t.model), 1.0);
     out_normal = vec4(normalize(turned + vec3(0.0, 0.0, 1e-5)) * 0.5 + 0.5, normal.a);
     gl_FragDepth = (toward_m - from_m) / slice_m * 0.999 + 0.001;
 }

@@ -53,6 +53,16 @@ float footprint_of(float distance_m, vec2 slope)
     return distance_m * view.pixel_rad / sqrt(max(facing, 0.02));
 }
 
+float woods_about(vec2 local_m, float lod)
+{
+    const vec2 ways[4] = {vec2(WD_WOODS_M, 0.0), vec2(-WD_WOODS_M, 0.0), vec2(0.0, WD_WOODS_M),
+                          vec2(0.0, -WD_WOODS_M)};
+    float sum = 0.0;
+    for (int i = 0; i < 4; i++)
+        sum += textureLod(cover_map, (local_m + ways[i]) * view.cover_scale, lod).x;
+    return 0.25 * sum;
+}
+
 void main()
 {
     vec2 local_m = in_rel.xy + view.camera_m;
@@ -65,6 +75,7 @@ void main()
     float cover = textureLod(cover_map, local_m * view.cover_scale,
                              level - log2(view.cover_texel_m)).x;
     wd_ground_look look = wd_ground_cover(in_rel, slope.x, slope.y, cover,
+                                          woods_about(local_m, level - log2(view.cover_texel_m)),
                                           footprint_of(distance_m, slope));
     if (in_curtain > 0.0) {
         look.albedo = frame.soil * (0.75 + 0.25 * cos(in_rel.z * 1.3));

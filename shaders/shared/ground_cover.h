@@ -157,18 +157,20 @@ WD_FUNC float wd_snow_share(WD_FRAME_IN float height_m, float steep, WD_STRUCT w
     return lies * (1.0f - WD_SMOOTH(0.9f, 1.4f, steep + 0.3f * n.small_ + 0.2f * n.middle));
 }
 
-/* 0 in the open .. 1 on the floor of a forest. */
-WD_FUNC float wd_floor_share(float cover, WD_STRUCT wd_ground_noise n)
+/* 0 in the open .. 1 on the floor of a forest; below single trees grass goes on. */
+WD_FUNC float wd_floor_share(float cover, float woods, WD_STRUCT wd_ground_noise n)
 {
-    return WD_SMOOTH(0.15f, 0.6f, cover + 0.3f * n.small_ + 0.15f * n.middle + 0.1f * n.fine);
+    float shaded = cover * WD_CLAMP(0.25f + 1.6f * woods, 0.0f, 1.0f);
+    return WD_SMOOTH(0.15f, 0.6f, shaded + 0.3f * n.small_ + 0.15f * n.middle + 0.1f * n.fine);
 }
 
 /* Grass, forest floor and worn earth, before rock, water's edge and snow. */
 WD_FUNC WD_VECTOR wd_soil_albedo(WD_FRAME_IN float height_m, float steep, float cover,
-                                 WD_STRUCT wd_ground_noise n, WD_STRUCT wd_ground_strewn strewn)
+                                 float floor_share, WD_STRUCT wd_ground_noise n,
+                                 WD_STRUCT wd_ground_strewn strewn)
 {
     WD_VECTOR albedo = wd_grass_albedo(WD_FRAME_PASS height_m, steep, n, strewn);
-    albedo = wd_v3_mix(albedo, wd_floor_albedo(WD_FRAME_PASS n, strewn), wd_floor_share(cover, n));
+    albedo = wd_v3_mix(albedo, wd_floor_albedo(WD_FRAME_PASS n, strewn), floor_share);
     float worn = WD_SMOOTH(0.55f, 1.0f, steep / WD_FRAME(rock_slope) + 0.5f * n.middle
                                         + 0.25f * n.small_);
     worn = WD_MAX(worn, 0.45f * WD_SMOOTH(0.30f, 0.55f, n.middle + n.small_ * 0.8f - cover));
@@ -178,35 +180,47 @@ WD_FUNC WD_VECTOR wd_soil_albedo(WD_FRAME_IN float height_m, float steep, float 
 }
 
 WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float steep, float cover,
-                                   WD_STRUCT wd_ground_noise n, WD_STRUCT wd_ground_strewn strewn,
-                                   float footprint_m)
+                                   float floor_share, WD_STRUCT wd_ground_noise n,
+                                   WD_STRUCT wd_ground_strewn strewn, float footprint_m)
 {
-    WD_VECTOR albedo = wd_soil_albedo(WD_FRAME_PASS height_m, steep, cover, n, strewn);
+    WD_VECTOR albedo = wd_soil_albedo(WD_FRAME_PASS height_m, steep, cover, floor_share, n,
+                                      strewn);
     float over = (height_m - WD_FRAME(tree_line_m)) / 500.0f;
     float bare = WD_SMOOTH(0.85f, 1.15f, steep / WD_FRAME(rock_slope) + 0.30f * n.middle
                                          + 0.15f * n.small_ + WD_CLAMP(over, 0.0f, 0.9f));
     albedo = wd_v3_mix(albedo, wd_rock_albedo(WD_FRAME_PASS height_m, n, footprint_m), bare);
     float above_water_m = height_m - WD_FRAME(water_level_m);
-    float beach = 1.0f - WD_SMOOTH(0.4f, 1.6f, WD_ABS(above_water_m - 0.3f) + n.small_);
-    albedo = wd_v3_mix(albedo, wd_v3_scale(WD_FRAME_V3(soil), 1.25f), 0.8f * beach);
+    /* sedges on wet ground, then mud and sand; narrow, however level the shore is */
+    float damp = 1.0f - WD_SMOOTH(0.3f, 1.1f, above_water_m + 0.8f * n.small_ + 0.4f * n.middle);
+    albedo = wd_v3_mix(albedo, wd_v3_mul(WD_FRAME_V3(grass), WD_V3(0.72f, 0.85f, 0.75f)),
+                       0.7f * damp * (1.0f - bare));
+    float flat_shore = 0.08f + 0.5f * WD_MIN(steep * 8.0f, 1.0f);
+    float beach = 1.0f - WD_SMOOTH(0.5f, 1.0f, (above_water_m + 0.25f * n.small_
+                                                + 0.1f * n.fine) / flat_shore);
+    albedo = wd_v3_mix(albedo, wd_v3_scale(WD_FRAME_V3(soil), 1.15f), 0.8f * beach);
     float wet = 1.0f - WD_SMOOTH(0.0f, 0.35f, above_water_m);
     albedo = wd_v3_scale(albedo, 1.0f - 0.45f * wet);
     return albedo;
 }
 
-/* `rel`: the place; `slope`: rise over run east and north; `cover`: of the canopy, 0..1. */
+/* A forest's mean cover is taken this far to each side of a place, in metres. */
+#define WD_WOODS_M 14.0f
+
+/* `rel`: the place; `slope`: rise over run east and north; `cover`: of the canopy, 0..1; `woods`: the
+ * mean of it WD_WOODS_M to the east, west, north and south. */
 WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, float slope_east,
-                                                 float slope_north, float cover,
+                                                 float slope_north, float cover, float woods,
                                                  float footprint_m)
 {
     float height_m = rel.z + WD_FLOAT(WD_FRAME(camera_mm[2])) * 0.001f;
     WD_STRUCT wd_ground_noise n = wd_ground_noise_at(WD_FRAME_PASS rel.x, rel.y, footprint_m);
-    WD_STRUCT wd_ground_strewn strewn = wd_ground_strewn_at(
-        WD_FRAME_PASS rel.x, rel.y, wd_floor_share(cover, n), footprint_m);
+    float floor_share = wd_floor_share(cover, woods, n);
+    WD_STRUCT wd_ground_strewn strewn =
+        wd_ground_strewn_at(WD_FRAME_PASS rel.x, rel.y, floor_share, footprint_m);
     float steep = WD_SQRT(slope_east * slope_east + slope_north * slope_north);
     float snow = wd_snow_share(WD_FRAME_PASS height_m, steep, n);
-    WD_VECTOR albedo =
-        wd_ground_albedo(WD_FRAME_PASS height_m, steep, cover, n, strewn, footprint_m);
+    WD_VECTOR albedo = wd_ground_albedo(WD_FRAME_PASS height_m, steep, cover, floor_share, n,
+                                        strewn, footprint_m);
     WD_STRUCT wd_ground_look look;
     look.albedo = wd_v3_clamp(wd_v3_mix(albedo, WD_SNOW_ALBEDO, snow), 0.0f, 1.0f);
     float rough = 1.0f + WD_SMOOTH(0.7f, 1.2f, steep / WD_FRAME(rock_slope)) * 1.5f;

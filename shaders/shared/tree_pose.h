@@ -7,6 +7,12 @@
 #include "shared/vec.h"
 #include "shared/wind.h"
 
+#ifdef __STDC_VERSION__
+#define WD_MODEL_V3(model, member) wd_v3_of((model).member)
+#else
+#define WD_MODEL_V3(model, member) (model).member
+#endif
+
 /* offset = (turn (mirror x, y) across, z up) */
 struct wd_tree_pose {
     float turn_cos, turn_sin;
@@ -26,13 +32,29 @@ WD_FUNC WD_STRUCT wd_tree_pose wd_tree_pose_of(WD_STRUCT wd_tree tree, WD_STRUCT
     return pose;
 }
 
-/* Each tree's own brightness and hue about the species' colour. */
-WD_FUNC WD_VECTOR wd_tree_tint(WD_STRUCT wd_tree tree)
+/* How far a tree's leaves are ahead of its species' in the season, -1..1: by its individual's, for
+ * neighbours alike (their soil and their frosts are), and by chance. */
+WD_FUNC float wd_tree_phase(WD_STRUCT wd_tree tree, WD_STRUCT wd_model model)
 {
+    float x = WD_FLOAT(tree.x_mm) * 0.001f, y = WD_FLOAT(tree.y_mm) * 0.001f;
+    float place = WD_SIN(x * 0.043f + 2.1f * WD_SIN(y * 0.031f)) * WD_SIN(y * 0.037f + 1.7f);
+    float own = WD_FLOAT((tree.random >> 12) & 0xffu) * (1.0f / 127.5f) - 1.0f;
+    return WD_CLAMP(0.6f * model.phase + 0.35f * place + 0.4f * own, -1.0f, 1.0f);
+}
+
+/* Each tree's own brightness and hue about the species' colour. */
+WD_FUNC WD_VECTOR wd_tree_tint(WD_STRUCT wd_tree tree, WD_STRUCT wd_model model)
+{
+    float phase = wd_tree_phase(tree, model);
+    WD_VECTOR season = wd_v3_mix(WD_V3(1.0f, 1.0f, 1.0f),
+                                 phase < 0.0f ? WD_MODEL_V3(model, behind)
+                                              : WD_MODEL_V3(model, ahead),
+                                 WD_ABS(phase));
     float spread = WD_FLOAT((tree.look >> 16) & 0xffu) * (1.0f / 128.0f) - 1.0f;
     float other = WD_FLOAT(tree.random >> 24) * (1.0f / 128.0f) - 1.0f;
-    return WD_V3(1.0f + 0.30f * spread + 0.10f * other * WD_ABS(spread), 1.0f + 0.22f * spread,
-                 1.0f + 0.16f * spread - 0.08f * other * WD_ABS(spread));
+    return wd_v3_mul(season, WD_V3(1.0f + 0.30f * spread + 0.10f * other * WD_ABS(spread),
+                                   1.0f + 0.22f * spread,
+                                   1.0f + 0.16f * spread - 0.08f * other * WD_ABS(spread)));
 }
 
 /* What the wind needs to know of a tree. */

@@ -129,7 +129,8 @@ static uint64_t picture_key(const struct work *work)
     const struct wd_trace_models *models = &work->reference->models;
     const double numbers[] = {camera->position_m[0], camera->position_m[1], camera->position_m[2],
                               camera->yaw_rad, camera->pitch_rad, camera->fov_rad,
-                              work->tracer.bounces};
+                              work->tracer.bounces, (double)work->job.view.lens_m,
+                              (double)work->job.view.focus_m};
     uint64_t key = wd_world_hash(&work->reference->forest->world);
     key = XXH64(&work->frame, sizeof work->frame, key);
     key = XXH64(numbers, sizeof numbers, key);
@@ -162,6 +163,8 @@ static bool prepare(struct work *work)
     wd_surroundings_set_camera(&work->frame, params->camera.position_m);
     wd_surroundings_fill(&work->frame, &forest->scene, &forest->world.terrain);
     work->job.view = wd_trace_view_of(&params->camera, params->width, params->height);
+    work->job.view.lens_m = (float)wd_scene_lens_radius_m(&forest->scene, params->camera.fov_rad);
+    work->job.view.focus_m = (float)forest->scene.lens.focus_m;
     work->tracer = (struct wd_tracer){
         .scene = &work->scene,
         .sky = wd_sky_toward,

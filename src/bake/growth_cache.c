@@ -332,7 +332,8 @@ static bool load_model(struct wd_tree_model *model, struct wd_bake_cache *cache,
 bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_cache *cache,
                    const struct wd_scene *scene, uint32_t index, const struct wd_log *log)
 {
-    uint64_t species = wd_species_key(&scene->species[index / (uint32_t)scene->variants]);
+    const struct wd_species grown = wd_variant_species(scene, index);
+    uint64_t species = wd_species_key(&grown);
     const struct wd_grow_params params = wd_variant_params(scene, index);
     *key = params_key(species, &params);
     if (species && load_model(model, cache, *key))

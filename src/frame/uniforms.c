@@ -9,7 +9,6 @@
 static const float NEAR_M = 0.1f;
 
 /* Height of the film, which together with the field of view gives the focal length. */
-static const double FILM_M = 0.024;
 
 /* What sample i of a picture stands for: a place in the pixel, on the lens and in the time that the
  * shutter is open, each -0.5..0.5. */
@@ -61,7 +60,7 @@ static void move_on_lens(struct wd_view_params *view, const struct wd_scene *sce
     double half_height = tan(view->camera.fov_rad * 0.5), disc[2];
     double right[3], forward[3], up[3];
     disc_of(lens, disc);
-    double radius_m = 0.5 * (0.5 * FILM_M / half_height) / scene->lens.f_number;
+    double radius_m = wd_scene_lens_radius_m(scene, view->camera.fov_rad);
     double px_per_m = 0.5 * view->height / (half_height * scene->lens.focus_m);
     wd_camera_axes(&view->camera, right, forward, up);
     for (int k = 0; k < 3; k++)

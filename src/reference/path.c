@@ -214,14 +214,14 @@ static struct wd_vec3 through_haze(const struct path *path, struct wd_vec3 direc
     return wd_fog_apply(frame, path->radiance, direction, path->seen_m, shaded ? 0.0f : 1.0f);
 }
 
-struct wd_vec3 wd_path_radiance(const struct wd_tracer *tracer, struct wd_vec3 direction,
-                                struct wd_sampler sampler, struct wd_trace_counts *counts)
+struct wd_vec3 wd_path_radiance(const struct wd_tracer *tracer, struct wd_vec3 from,
+                                struct wd_vec3 direction, struct wd_sampler sampler, struct wd_trace_counts *counts)
 {
     struct path path = {
         .tracer = tracer,
         .counts = counts,
         .sampler = sampler,
-        .ray = {{0, 0, 0}, direction, INFINITY},
+        .ray = {from, direction, INFINITY},
         .throughput = {1, 1, 1},
         .left_tree = UINT32_MAX,
         .seen_m = INFINITY,

@@ -22,8 +22,8 @@ struct wd_trace_counts {
     uint64_t self_hits;   /* of the triangle that the ray has just left: none may happen */
 };
 
-/* `direction` from the camera, of unit length. With haze. Adds to `*counts`. Thread-safe. */
-struct wd_vec3 wd_path_radiance(const struct wd_tracer *tracer, struct wd_vec3 direction,
-                                struct wd_sampler sampler, struct wd_trace_counts *counts);
+/* `from` a place on the camera's lens, `direction` of unit length. With haze. Adds to `*counts`. Thread-safe. */
+struct wd_vec3 wd_path_radiance(const struct wd_tracer *tracer, struct wd_vec3 from,
+                                struct wd_vec3 direction, struct wd_sampler sampler, struct wd_trace_counts *counts);
 
 #endif

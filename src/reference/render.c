@@ -60,6 +60,16 @@ static struct wd_vec3 view_ray(const struct wd_trace_view *view, float x, float 
     return wd_v3_mad(wd_v3_mad(view->forward, view->right, across), view->up, -down);
 }
 
+/* A place on the lens, evenly over its disc. */
+static struct wd_vec3 lens_place(const struct wd_trace_view *view, struct wd_sampler *sampler)
+{
+    float point[2];
+    wd_sampler_next(sampler, point);
+    float r = view->lens_m * sqrtf(point[0]), turn = 6.2831853f * point[1];
+    struct wd_vec3 across = wd_v3_scale(wd_v3_unit(view->right), r * cosf(turn));
+    return wd_v3_mad(across, wd_v3_unit(view->up), r * sinf(turn));
+}
+
 /* --- tiles ----------------------------------------------------------------------------------- */
 
 /* What the threads of one pass share. */
@@ -100,8 +110,13 @@ static void trace_pixel(struct pass *pass, uint32_t x, uint32_t y, uint32_t from
         float place[2];
         wd_sampler_next(&sampler, place);
         struct wd_vec3 ray = view_ray(view, (float)x + place[0], (float)y + place[1]);
+        struct wd_vec3 eye = {0, 0, 0};
+        if (view->lens_m > 0) {
+            eye = lens_place(view, &sampler);
+            ray = wd_v3_sub(wd_v3_scale(ray, view->focus_m), eye);
+        }
         struct wd_vec3 radiance =
-            wd_path_radiance(pass->job->tracer, wd_v3_unit(ray), sampler, counts);
+            wd_path_radiance(pass->job->tracer, eye, wd_v3_unit(ray), sampler, counts);
         sum[0] += radiance.x;
         sum[1] += radiance.y;
         sum[2] += radiance.z;

@@ -21,8 +21,9 @@ void wd_trace_sums_finish(struct wd_trace_sums *sums);
 struct wd_trace_view {
     struct wd_vec3 right, up, forward; /* to the picture's right and upper edge; of unit length */
     uint32_t width, height;
+    float lens_m, focus_m; /* radius of the lens, distance of what is sharp; 0: a pinhole */
 };
-/* The view through a camera; its place is the origin. */
+/* The view through a camera; its place is the origin, its lens a pinhole. */
 struct wd_trace_view wd_trace_view_of(const struct wd_camera *camera, uint32_t width,
                                       uint32_t height);
 /* Angle that a pixel in the picture's middle spans. */

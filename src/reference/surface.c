@@ -120,7 +120,7 @@ static void tree_surface(struct wd_surface *surface, const struct wd_trace_scene
         leaf_surface(surface, model, hit, eye, &texel);
     struct wd_vec3 look = wd_v3_mul(texel_color(model, &texel), vertex_tint(&corners));
     if (leaf)
-        look = wd_v3_mul(look, wd_tree_tint(*tree));
+        look = wd_v3_mul(look, wd_tree_tint(*tree, model->model));
     surface->albedo = wd_v3_clamp(look, 0, 1);
     if (wd_v3_dot(surface->outward, eye) > 0)
         surface->albedo = wd_snow_on(scene->frame, surface->albedo, surface->outward,
@@ -187,6 +187,13 @@ static float canopy_cover(const struct wd_world *world, double x_m, double y_m)
     return wd_mixf(wd_mixf(south[0], south[right], u), wd_mixf(north[0], north[right], u), v) / 255;
 }
 
+static float woods_about(const struct wd_world *world, double x_m, double y_m)
+{
+    const double d = (double)WD_WOODS_M;
+    return 0.25f * (canopy_cover(world, x_m + d, y_m) + canopy_cover(world, x_m - d, y_m) +
+                    canopy_cover(world, x_m, y_m + d) + canopy_cover(world, x_m, y_m - d));
+}
+
 static void ground_surface(struct wd_surface *surface, const struct wd_trace_scene *scene,
                            const struct wd_trace_hit *hit, struct wd_vec3 direction,
                            float pixel_rad)
@@ -210,7 +217,8 @@ static void ground_surface(struct wd_surface *surface, const struct wd_trace_sce
     }
     struct wd_ground_look look =
         wd_ground_cover(scene->frame, surface->place, slope[0], slope[1],
-                        canopy_cover(scene->world, x_m, y_m), footprint_m);
+                        canopy_cover(scene->world, x_m, y_m), woods_about(scene->world, x_m, y_m),
+                        footprint_m);
     surface->albedo = look.albedo;
     surface->outward = look.normal;
     surface->flat = hit->normal;

@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,4 +54,11 @@ int wd_scene_find_species(const struct wd_scene *scene, const char *name)
             return (int)i;
     }
     return -1;
+}
+
+double wd_scene_lens_radius_m(const struct wd_scene *scene, double fov_rad)
+{
+    const double film_m = 0.024;
+    double focal_m = 0.5 * film_m / tan(fov_rad * 0.5);
+    return scene->lens.f_number > 0 ? 0.5 * focal_m / scene->lens.f_number : 0;
 }

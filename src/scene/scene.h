@@ -234,6 +234,9 @@ bool wd_scene_load(struct wd_scene *scene, const char *path, const struct wd_log
 void wd_scene_finish(struct wd_scene *scene);
 
 const struct wd_scene_camera *wd_scene_find_camera(const struct wd_scene *scene, const char *name);
+/* Radius of the opening of the scene's lens, behind which film of 36 x 24 mm sees `fov_rad` from top
+ * to bottom, in metres; 0: a pinhole. */
+double wd_scene_lens_radius_m(const struct wd_scene *scene, double fov_rad);
 /* Index into scene->species, or -1. */
 int wd_scene_find_species(const struct wd_scene *scene, const char *name);
 

@@ -127,6 +127,9 @@ struct wd_species {
         float gloss;          /* of the upper side: 0 dull .. 1 waxed */
         bool evergreen;
         float months[2];      /* when leaves unfold and when the last fall: 4.5 is mid-April */
+        /* of wd_species_in_month: what trees late (0) and early (1) in the season have over `color`
+         * and `count`; 0: all are alike */
+        float season_color[2][3], season_count[2];
         float flexibility;    /* turn of a leaf in a wind of 10 m/s, radians */
     } leaf;
     struct {

@@ -61,6 +61,23 @@ static void turn_colors(struct wd_species *leafy, const struct season *season)
     }
 }
 
+/* Trees of a stand turn over some four weeks. */
+static void spread_season(struct wd_species *leafy, const struct wd_species *species, double month)
+{
+    static const double apart[2] = {-0.5, 0.5};
+    double own = fmax(season_of(species, month).leaves, 1e-3);
+    for (int i = 0; i < 2; i++) {
+        struct season season = season_of(species, fmin(fmax(month + apart[i], 1), 13));
+        struct wd_species other = *species;
+        turn_colors(&other, &season);
+        for (int k = 0; k < 3; k++) {
+            double change = (double)other.leaf.color[k] / fmax((double)leafy->leaf.color[k], 1e-3);
+            leafy->leaf.season_color[i][k] = (float)fmin(fmax(change, 0.3), 1.8);
+        }
+        leafy->leaf.season_count[i] = (float)fmin(season.leaves / own, 1 / own);
+    }
+}
+
 bool wd_species_in_month(struct wd_species *seasonal, const struct wd_species *species,
                          double month, const struct wd_log *log)
 {
@@ -70,6 +87,7 @@ bool wd_species_in_month(struct wd_species *seasonal, const struct wd_species *s
     struct season season = season_of(species, month);
     *seasonal = *species;
     turn_colors(seasonal, &season);
+    spread_season(seasonal, species, month);
     seasonal->leaf.count = (int64_t)(season.leaves * (double)species->leaf.count);
     seasonal->leaf.area_index *= (float)season.leaves;
     seasonal->flower.count = (int64_t)(season.flowers * (double)species->flower.count);

@@ -25,11 +25,32 @@ struct wd_grow_params wd_variant_params(const struct wd_scene *scene, uint32_t i
     };
 }
 
+/* How far an individual is ahead of its species' mean in the season, -1..1. */
+static float variant_phase(const struct wd_scene *scene, uint32_t index)
+{
+    float variants = (float)scene->variants;
+    return 2 * ((float)(index % (uint32_t)scene->variants) + 0.5f) / variants - 1;
+}
+
+struct wd_species wd_variant_species(const struct wd_scene *scene, uint32_t index)
+{
+    struct wd_species species = scene->species[index / (uint32_t)scene->variants];
+    float phase = variant_phase(scene, index);
+    float other = species.leaf.season_count[phase > 0];
+    if (other <= 0 && species.leaf.season_count[phase < 0] <= 0)
+        return species; /* no season */
+    float share = 1 + (other - 1) * fabsf(phase);
+    species.leaf.count = (int64_t)((float)species.leaf.count * share);
+    species.leaf.area_index *= share;
+    return species;
+}
+
 bool wd_variant_grow(struct wd_tree_model *model, const struct wd_scene *scene, uint32_t index,
                      const struct wd_log *log)
 {
     const struct wd_grow_params params = wd_variant_params(scene, index);
-    return wd_tree_grow(model, &scene->species[index / (uint32_t)scene->variants], &params, log);
+    const struct wd_species species = wd_variant_species(scene, index);
+    return wd_tree_grow(model, &species, &params, log);
 }
 
 void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, uint32_t index,
@@ -45,8 +66,13 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         .crown_base_m = grown->crown_base_m,
         .roughness = wd_leaf_roughness(species),
         .moss = species->bark.moss,
+        .phase = variant_phase(scene, index),
     };
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++) {
+        float late = species->leaf.season_color[0][k], early = species->leaf.season_color[1][k];
+        model->behind[k] = late > 0 ? late : 1;
+        model->ahead[k] = early > 0 ? early : 1;
         model->transmittance[k] =
             species->leaf.transmittance[k] / fmaxf(species->leaf.color[k], 1e-3f);
+    }
 }

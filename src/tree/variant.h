@@ -7,7 +7,10 @@
 #include "shared/forest.h"
 #include "tree/grow.h"
 
-/* How individual `index` of the scene is grown. */
+/* How individual `index` of the scene is grown, and from what: its species with as many leaves as it
+ * has at this time, for taller individuals are ahead in the season. Shares the lists of the scene's
+ * species. */
+struct wd_species wd_variant_species(const struct wd_scene *scene, uint32_t index);
 struct wd_grow_params wd_variant_params(const struct wd_scene *scene, uint32_t index);
 
 /* Grows individual `index` of the scene; false, logged, where its species file does not allow it. */

@@ -24,7 +24,11 @@ void made_scene_init(struct made_scene *made)
     made->models.device = rtcNewDevice("threads=1");
     made->models.models = &made->model;
     made->models.count = made->models.variants = 1;
-    made->model.model = (struct wd_model){.height_m = 1, .crown_m = 1, .roughness = 0.6f};
+    made->model.model = (struct wd_model){.height_m = 1,
+                                          .crown_m = 1,
+                                          .roughness = 0.6f,
+                                          .behind = {1, 1, 1},
+                                          .ahead = {1, 1, 1}};
     made->model.look = &made->look;
     made->look.albedo = wd_alloc(WD_LOOK_LAYERS * WD_TRACE_MAP_BYTES);
     made->look.detail = wd_alloc(WD_LOOK_LAYERS * WD_TRACE_MAP_BYTES);
@@ -105,7 +109,7 @@ struct wd_vec3 made_scene_look(const struct made_scene *made, struct wd_vec3 dir
     struct wd_trace_counts counts = {0};
     struct wd_vec3 sum = {0};
     for (uint32_t i = 0; i < samples; i++) {
-        struct wd_vec3 radiance = wd_path_radiance(&made->tracer, wd_v3_unit(direction),
+        struct wd_vec3 radiance = wd_path_radiance(&made->tracer, WD_V3(0, 0, 0), wd_v3_unit(direction),
                                                    wd_sampler_of(3, 7, i), &counts);
         sum = wd_v3_mad(sum, radiance, 1 / (float)samples);
     }
