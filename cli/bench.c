@@ -255,6 +255,8 @@ static void gather_settings(const struct bench *bench, const char *of_suite, con
     size_t count = 0;
     for (size_t i = 0; bench->effort.settings[i]; i++)
         settings[count++] = bench->effort.settings[i];
+    if (!bench->session->options->operand_count)
+        settings[count++] = "planting=stored"; /* for methods that keep every tree */
     if (of_suite)
         settings[count++] = of_suite;
     for (uint32_t i = 0; i < words->count; i++)
