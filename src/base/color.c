@@ -10,7 +10,8 @@ float wd_srgb_decode(uint8_t value)
 
 uint8_t wd_unorm_encode(float value)
 {
-    return (uint8_t)(fminf(fmaxf(value, 0.0f), 1.0f) * 255.0f + 0.5f);
+    float above = value > 0.0f ? value : 0.0f; /* 0 for NaN */
+    return (uint8_t)((above < 1.0f ? above : 1.0f) * 255.0f + 0.5f);
 }
 
 uint8_t wd_srgb_encode(float linear)

@@ -1,6 +1,7 @@
 #include "tree/coverage.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "tree/silhouette.h"
@@ -8,12 +9,15 @@
 enum { VIEWS = 2, STEPS = 3 };
 /* Beyond these, leaves would no longer look like leaves. */
 static const float LEAST = 0.25f, MOST = 4;
+/* How much of a leaf's growth is seen in a crown, mostly: the rest hides behind other leaves. */
+#define FIRST_SLOPE 0.62f
 
 struct fit {
     struct wd_tree_mesh *mesh;
     struct wd_vec3 *middles; /* [vertex] of its leaf */
     struct wd_vec3 *unscaled; /* [vertex] */
     struct wd_silhouette views[VIEWS];
+    uint8_t *wood[VIEWS]; /* what the reduced wood covers, whatever the size of leaves */
 };
 
 static struct wd_vec3 position(const struct wd_tree_mesh *mesh, uint32_t vertex)
@@ -71,12 +75,31 @@ static void scale_leaves(struct fit *fit, float factor)
     }
 }
 
-static float covered(struct fit *fit, const struct wd_tree_mesh *mesh)
+static size_t covered_by(struct wd_silhouette *view, const struct wd_tree_mesh *mesh)
 {
-    size_t sum = 0;
+    wd_silhouette_clear(view);
+    wd_silhouette_cover(view, mesh, 0, mesh->index_count);
+    return wd_silhouette_count(view);
+}
+
+static void cover_wood(struct fit *fit)
+{
+    size_t size = (size_t)WD_SILHOUETTE * WD_SILHOUETTE;
     for (int i = 0; i < VIEWS; i++) {
         wd_silhouette_clear(&fit->views[i]);
-        wd_silhouette_cover(&fit->views[i], mesh, 0, mesh->index_count);
+        wd_silhouette_cover(&fit->views[i], fit->mesh, 0, fit->mesh->wood_index_count);
+        fit->wood[i] = wd_alloc(size);
+        memcpy(fit->wood[i], fit->views[i].covered, size);
+    }
+}
+
+static float covered(struct fit *fit)
+{
+    size_t sum = 0, size = (size_t)WD_SILHOUETTE * WD_SILHOUETTE;
+    for (int i = 0; i < VIEWS; i++) {
+        memcpy(fit->views[i].covered, fit->wood[i], size);
+        wd_silhouette_cover(&fit->views[i], fit->mesh, fit->mesh->wood_index_count,
+                            fit->mesh->index_count);
         sum += wd_silhouette_count(&fit->views[i]);
     }
     return (float)sum;
@@ -85,18 +108,18 @@ static float covered(struct fit *fit, const struct wd_tree_mesh *mesh)
 /* Coverage grows with the factor, slower and slower: the secant through the last two tries. */
 static float find_factor(struct fit *fit, float wanted)
 {
-    float factor = 1, found = covered(fit, fit->mesh), last_factor = 1, last_found = found;
+    float factor = 1, found = covered(fit), last_factor = 1, last_found = found;
     for (int step = 0; step < STEPS && fabsf(found - wanted) > 0.005f * wanted; step++) {
         float slope = (found - last_found) / (factor - last_factor);
         if (step == 0 || !(slope > 0.1f * found / factor))
-            slope = found / factor;
+            slope = FIRST_SLOPE * found / factor;
         last_factor = factor;
         last_found = found;
         factor = wd_clampf(factor + (wanted - found) / slope, LEAST, MOST);
         if (factor == last_factor)
             break;
         scale_leaves(fit, factor);
-        found = covered(fit, fit->mesh);
+        found = covered(fit);
     }
     return factor;
 }
@@ -111,13 +134,18 @@ float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tr
         .middles = wd_alloc_array(reduced->vertex_count, sizeof *fit.middles),
         .unscaled = wd_alloc_array(reduced->vertex_count, sizeof *fit.unscaled),
     };
-    for (int i = 0; i < VIEWS; i++)
+    size_t wanted = 0;
+    for (int i = 0; i < VIEWS; i++) {
         wd_silhouette_init(&fit.views[i], full, towards[i]);
+        wanted += covered_by(&fit.views[i], full);
+    }
     find_middles(&fit);
-    float wanted = covered(&fit, full);
-    float factor = find_factor(&fit, wanted);
-    for (int i = 0; i < VIEWS; i++)
+    cover_wood(&fit);
+    float factor = find_factor(&fit, (float)wanted);
+    for (int i = 0; i < VIEWS; i++) {
         wd_silhouette_finish(&fit.views[i]);
+        free(fit.wood[i]);
+    }
     free(fit.middles);
     free(fit.unscaled);
     wd_tree_mesh_update_bounds(reduced);

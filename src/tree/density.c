@@ -148,14 +148,21 @@ static void fill_transmission(const struct wd_tree_density *density, float lengt
 
 /* Light that reaches a cell along one direction is what leaves the cell before it, times what that
  * cell lets through; half of the cell's own leaves shade its middle. */
-static void sweep_row(float *sky, float *light, const float *half, const float *from, int size,
-                      int step, float weight)
+static void sweep_row(float *sky, float *restrict light, const float *restrict half,
+                      const float *restrict from, int size, int step, float weight)
 {
+    int first = step < 0 ? -step : 0, end = step > 0 ? size - step : size;
+    if (!from || first > end)
+        first = end = 0;
+    for (int x = first; x < end; x++)
+        light[x] = from[x + step] * half[x];
+    for (int x = 0; x < first; x++)
+        light[x] = half[x];
+    for (int x = end; x < size; x++)
+        light[x] = half[x];
     for (int x = 0; x < size; x++) {
-        bool inside = from && x + step >= 0 && x + step < size;
-        float in = (inside ? from[x + step] : 1) * half[x];
-        sky[x] += weight * in;
-        light[x] = in * half[x];
+        sky[x] += weight * light[x];
+        light[x] *= half[x];
     }
 }
 

@@ -72,6 +72,13 @@ float wd_tree_envelope_m(const struct wd_tree_form *form, struct wd_vec3 p)
            (1 + 2 * form->species->crown_lobes * bulge);
 }
 
+/* Where the envelope has no bulges it is narrowest. */
+static float least_envelope_m(const struct wd_tree_form *form, float share)
+{
+    float lobes = wd_clampf(form->species->crown_lobes, 0, 1);
+    return 0.999f * (1 - lobes) * form->crown_radius_m * profile(form->species, share);
+}
+
 float wd_tree_envelope_share(const struct wd_tree_form *form, struct wd_vec3 p)
 {
     float t = crown_share(form, p.z), beyond = 0;
@@ -81,12 +88,15 @@ float wd_tree_envelope_share(const struct wd_tree_form *form, struct wd_vec3 p)
         beyond = (t - 1) * 8;
     if (t < 0)
         beyond = -t * 3;
+    float out = sqrtf(p.x * p.x + p.y * p.y);
+    if (t >= 0 && t <= 1 && out <= least_envelope_m(form, t))
+        return 1;
     struct wd_vec3 at = WD_V3(p.x, p.y, form->crown_base_m +
                                             wd_clampf(t, 0, 1) *
                                                 (form->height_m - form->crown_base_m));
     float radius = wd_tree_envelope_m(form, at);
     float least = 0.04f * form->crown_radius_m;
-    return sqrtf(p.x * p.x + p.y * p.y) / (radius > least ? radius : least) + beyond;
+    return out / (radius > least ? radius : least) + beyond;
 }
 
 float wd_tree_envelope_reach_m(const struct wd_tree_form *form, struct wd_vec3 p,

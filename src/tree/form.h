@@ -36,8 +36,8 @@ bool wd_tree_is_cut(const struct wd_tree_form *form, struct wd_vec3 p);
  * 0 above and below the crown. */
 float wd_tree_envelope_m(const struct wd_tree_form *form, struct wd_vec3 p);
 
-/* Distance of p from the axis over the envelope's radius there: below 1 inside the crown. Large
- * above the top; under the crown's base it grows softly. */
+/* Distance of p from the axis over the envelope's radius there, beyond the crown; at most 1 inside.
+ * Large above the top; under the crown's base it grows softly. */
 float wd_tree_envelope_share(const struct wd_tree_form *form, struct wd_vec3 p);
 
 /* How far one can go from p along d inside the envelope, at most `limit_m`. */

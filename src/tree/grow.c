@@ -16,37 +16,15 @@ enum {
     LEAST_WOOD_TRIANGLES = 1000,
     REDUCED_WOOD_TRIANGLES = 1600,
     REDUCED_LEAVES = 2600, /* two triangles each */
-    LEAST_SIDES = 3,
-    MOST_STEP = 32,
 };
-#define MOST_RADIUS_M 20.0f /* no branch is thicker */
-
-/* Leaves out the thinnest branches until the rest fits the budget. Stems are never left out: where
- * they alone are too much they get fewer sides and rings. */
-static void fit_wood(struct wd_wood_style *style, const struct wd_skeleton *skeleton,
-                     const struct wd_species *species, size_t triangles)
-{
-    struct wd_wood_style stems = *style;
-    stems.least_radius_m = INFINITY;
-    while (wd_wood_triangles(skeleton, species, &stems) > triangles &&
-           (stems.most_sides > LEAST_SIDES || stems.node_step < MOST_STEP)) {
-        stems.node_step *= stems.most_sides > LEAST_SIDES ? 1 : 2;
-        stems.most_sides -= stems.most_sides > LEAST_SIDES;
-    }
-    style->most_sides = stems.most_sides;
-    style->node_step = stems.node_step;
-    while (style->least_radius_m < MOST_RADIUS_M &&
-           wd_wood_triangles(skeleton, species, style) > triangles)
-        style->least_radius_m = 1.08f * style->least_radius_m + 1e-4f;
-}
 
 static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                        const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
     float least = form->species->leaf.shape == WD_LEAF_NEEDLES ? 0.0055f : 0;
     struct wd_wood_style style = {least * fminf(form->scale, 1), 1, 12};
-    fit_wood(&style, skeleton, form->species,
-             (size_t)(FULL_WOOD_TRIANGLES * form->detail) + LEAST_WOOD_TRIANGLES);
+    wd_wood_style_fit(&style, skeleton, form->species,
+                      (size_t)(FULL_WOOD_TRIANGLES * form->detail) + LEAST_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
 }
@@ -56,7 +34,7 @@ static void build_reduced_wood(struct wd_tree_mesh *mesh, const struct wd_skelet
                           const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
     struct wd_wood_style style = {0.002f, 4, 5};
-    fit_wood(&style, skeleton, form->species, REDUCED_WOOD_TRIANGLES);
+    wd_wood_style_fit(&style, skeleton, form->species, REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     mesh->wood_index_count = mesh->index_count;
 }
@@ -187,11 +165,21 @@ static void scale_mesh(struct wd_tree_mesh *mesh, float factor)
 
 enum { SECTORS = 16 };
 
+/* One of sixteen parts of the circle round the axis: quadrant, half, quarter. */
+static int sector_of(float x, float y)
+{
+    float ax = fabsf(x), ay = fabsf(y);
+    bool steep = ay > ax;
+    float least = steep ? ax : ay, most = steep ? ay : ax;
+    int quarter = least > 0.41421356f * most; /* tan 22.5 degrees */
+    int sector = steep ? 3 - quarter : quarter;
+    return sector | (x < 0 ? 4 : 0) | (y < 0 ? 8 : 0);
+}
+
 static void add_reach(float reach_m[SECTORS], struct wd_vec3 p)
 {
-    double turn = wd_datan2((double)p.y, (double)p.x) / (2 * WD_PI) + 0.5;
-    int sector = (int)(turn * SECTORS) % SECTORS;
-    reach_m[sector] = fmaxf(reach_m[sector], sqrtf(p.x * p.x + p.y * p.y));
+    int sector = sector_of(p.x, p.y);
+    reach_m[sector] = wd_maxf(reach_m[sector], sqrtf(p.x * p.x + p.y * p.y));
 }
 
 /* Mean over sixteen sectors of how far leaves and, where these have fallen, branches reach out. */

@@ -13,7 +13,17 @@ static void *make_room(void *items, uint32_t count, uint32_t more, uint32_t *cap
     if (count + more <= *capacity)
         return items;
     *capacity = *capacity ? *capacity * 2 : FIRST_CAPACITY;
+    if (*capacity < count + more)
+        *capacity = count + more;
     return wd_realloc(items, *capacity * size);
+}
+
+void wd_tree_mesh_reserve(struct wd_tree_mesh *mesh, uint32_t vertices, uint32_t indices)
+{
+    mesh->vertices = make_room(mesh->vertices, mesh->vertex_count, vertices,
+                               &mesh->vertex_capacity, sizeof *mesh->vertices);
+    mesh->indices = make_room(mesh->indices, mesh->index_count, indices, &mesh->index_capacity,
+                              sizeof *mesh->indices);
 }
 
 void wd_tree_mesh_finish(struct wd_tree_mesh *mesh)
@@ -21,23 +31,6 @@ void wd_tree_mesh_finish(struct wd_tree_mesh *mesh)
     free(mesh->vertices);
     free(mesh->indices);
     *mesh = (struct wd_tree_mesh){0};
-}
-
-uint32_t wd_tree_mesh_add_vertex(struct wd_tree_mesh *mesh, const struct wd_tree_vertex *vertex)
-{
-    mesh->vertices = make_room(mesh->vertices, mesh->vertex_count, 1, &mesh->vertex_capacity,
-                               sizeof *mesh->vertices);
-    mesh->vertices[mesh->vertex_count] = *vertex;
-    return mesh->vertex_count++;
-}
-
-void wd_tree_mesh_add_triangle(struct wd_tree_mesh *mesh, uint32_t a, uint32_t b, uint32_t c)
-{
-    mesh->indices = make_room(mesh->indices, mesh->index_count, 3, &mesh->index_capacity,
-                              sizeof *mesh->indices);
-    mesh->indices[mesh->index_count++] = a;
-    mesh->indices[mesh->index_count++] = b;
-    mesh->indices[mesh->index_count++] = c;
 }
 
 void wd_tree_mesh_update_bounds(struct wd_tree_mesh *mesh)
@@ -91,25 +84,6 @@ struct wd_packed_vertex wd_vertex_pack(const struct wd_tree_vertex *vertex,
         .uv = vertex->uv,
         .tint = vertex->tint,
     };
-}
-
-static uint32_t pack_snorm16(float value)
-{
-    float clamped = value < -1 ? -1 : value > 1 ? 1 : value;
-    int32_t scaled = (int32_t)(clamped * 32767 + 32768.5f) - 32768; /* to nearest */
-    return (uint32_t)scaled & 0xffffu;
-}
-
-uint32_t wd_pack_normal(const float normal[3])
-{
-    float sum = fabsf(normal[0]) + fabsf(normal[1]) + fabsf(normal[2]);
-    float x = sum > 0 ? normal[0] / sum : 0, y = sum > 0 ? normal[1] / sum : 0;
-    if (normal[2] < 0) {
-        float folded = (1 - fabsf(y)) * (x < 0 ? -1.0f : 1.0f);
-        y = (1 - fabsf(x)) * (y < 0 ? -1.0f : 1.0f);
-        x = folded;
-    }
-    return pack_snorm16(x) | pack_snorm16(y) << 16;
 }
 
 void wd_unpack_normal(uint32_t packed, float normal[3])

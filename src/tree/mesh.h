@@ -20,8 +20,29 @@ struct wd_tree_mesh {
 };
 
 void wd_tree_mesh_finish(struct wd_tree_mesh *mesh); /* accepts {0} */
-uint32_t wd_tree_mesh_add_vertex(struct wd_tree_mesh *mesh, const struct wd_tree_vertex *vertex);
-void wd_tree_mesh_add_triangle(struct wd_tree_mesh *mesh, uint32_t a, uint32_t b, uint32_t c);
+
+/* Makes room for so many more. */
+void wd_tree_mesh_reserve(struct wd_tree_mesh *mesh, uint32_t vertices, uint32_t indices);
+
+static inline uint32_t wd_tree_mesh_add_vertex(struct wd_tree_mesh *mesh,
+                                               const struct wd_tree_vertex *vertex)
+{
+    if (mesh->vertex_count == mesh->vertex_capacity)
+        wd_tree_mesh_reserve(mesh, 1, 0);
+    mesh->vertices[mesh->vertex_count] = *vertex;
+    return mesh->vertex_count++;
+}
+
+static inline void wd_tree_mesh_add_triangle(struct wd_tree_mesh *mesh, uint32_t a, uint32_t b,
+                                             uint32_t c)
+{
+    if (mesh->index_count + 3 > mesh->index_capacity)
+        wd_tree_mesh_reserve(mesh, 0, 3);
+    mesh->indices[mesh->index_count++] = a;
+    mesh->indices[mesh->index_count++] = b;
+    mesh->indices[mesh->index_count++] = c;
+}
+
 void wd_tree_mesh_update_bounds(struct wd_tree_mesh *mesh);
 
 /* The box between two corners. */
@@ -32,8 +53,25 @@ void wd_mesh_box_steps(uint32_t steps[3], const struct wd_mesh_box *box, const f
 struct wd_packed_vertex wd_vertex_pack(const struct wd_tree_vertex *vertex,
                                        const struct wd_mesh_box *box);
 
-/* Packing as struct wd_tree_vertex wants it. `normal` is of unit length. */
-uint32_t wd_pack_normal(const float normal[3]);
+/* Packing as struct wd_tree_vertex wants it. `normal` is of any length above 0. */
+static inline uint32_t wd_pack_snorm16(float value)
+{
+    float clamped = value < -1 ? -1 : value > 1 ? 1 : value;
+    int32_t scaled = (int32_t)(clamped * 32767 + 32768.5f) - 32768; /* to nearest */
+    return (uint32_t)scaled & 0xffffu;
+}
+
+static inline uint32_t wd_pack_normal(const float normal[3])
+{
+    float sum = fabsf(normal[0]) + fabsf(normal[1]) + fabsf(normal[2]);
+    float over = sum > 0 ? 1 / sum : 0, x = normal[0] * over, y = normal[1] * over;
+    if (normal[2] < 0) {
+        float folded = (1 - fabsf(y)) * (x < 0 ? -1.0f : 1.0f);
+        y = (1 - fabsf(x)) * (y < 0 ? -1.0f : 1.0f);
+        x = folded;
+    }
+    return wd_pack_snorm16(x) | wd_pack_snorm16(y) << 16;
+}
 void wd_unpack_normal(uint32_t packed, float normal[3]);
 uint32_t wd_pack_uv(float u, float v);
 void wd_unpack_uv(uint32_t packed, float uv[2]);

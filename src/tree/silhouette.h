@@ -11,7 +11,7 @@
 struct wd_silhouette {
     struct wd_vec3 right, up, toward;
     float low[2], scale; /* metres at pixel 0; pixels a metre */
-    uint8_t *covered;    /* 0 or 1 */
+    uint8_t *covered;    /* 0 or 1; three more behind the last */
 };
 
 /* An empty picture that frames `frame` (its bounds are set), at the same scale from all sides. */
@@ -30,7 +30,13 @@ void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p
 /* First pixel whose middle is at x or beyond, within the picture; 0 for NaN. */
 static inline int wd_silhouette_pixel(float x)
 {
-    return x > 0.5f ? (x < WD_SILHOUETTE ? (int)ceilf(x - 0.5f) : WD_SILHOUETTE) : 0;
+    if (!(x > 0.5f))
+        return 0;
+    if (!(x < WD_SILHOUETTE))
+        return WD_SILHOUETTE;
+    float from = x - 0.5f;
+    int pixel = (int)from; /* rounded up, without a call of the library */
+    return pixel + ((float)pixel < from);
 }
 
 #endif

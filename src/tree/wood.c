@@ -1,10 +1,14 @@
 #include "tree/wood.h"
 
+#include <stdlib.h>
+
+#include "base/memory.h"
 #include "tree/buttress.h"
 #include "tree/look.h"
 #include "tree/look_map.h"
 
-enum { MAX_RINGS = 48, MAX_SIDES = 64 };
+enum { MAX_RINGS = 48, MAX_SIDES = 64, LEAST_SIDES = 3, MOST_STEP = 32 };
+#define MOST_RADIUS_M 20.0f /* no branch is thicker */
 
 struct ring {
     struct wd_vec3 center_m, direction;
@@ -305,17 +309,55 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
     }
 }
 
-size_t wd_wood_triangles(const struct wd_skeleton *skeleton, const struct wd_species *species,
-                         const struct wd_wood_style *style)
+static size_t branch_triangles(const struct wd_skeleton *skeleton, const struct wd_branch *branch,
+                               const struct wd_species *species, const struct wd_wood_style *style)
+{
+    size_t last = branch->node_count - 1, step = (size_t)style->node_step;
+    size_t segments = (last + step - 1) / step + (branch->order == WD_TRUNK ? 5 : 0);
+    return (2 * segments - 1) * (size_t)branch_sides(skeleton, branch, species, style);
+}
+
+static size_t stem_triangles(const struct wd_skeleton *skeleton, const struct wd_species *species,
+                             const struct wd_wood_style *style)
 {
     size_t triangles = 0;
+    for (size_t b = 0; b < skeleton->branch_count; b++)
+        if (skeleton->branches[b].order == WD_TRUNK)
+            triangles += branch_triangles(skeleton, &skeleton->branches[b], species, style);
+    return triangles;
+}
+
+/* What a branch costs, and the radius below which it is left out. */
+struct cost {
+    float radius_m;
+    uint32_t triangles;
+};
+
+static size_t costs_from(const struct cost *costs, size_t count, float least_radius_m)
+{
+    size_t triangles = 0;
+    for (size_t i = 0; i < count; i++)
+        triangles += costs[i].radius_m >= least_radius_m ? costs[i].triangles : 0;
+    return triangles;
+}
+
+void wd_wood_style_fit(struct wd_wood_style *style, const struct wd_skeleton *skeleton,
+                       const struct wd_species *species, size_t triangles)
+{
+    while (stem_triangles(skeleton, species, style) > triangles &&
+           (style->most_sides > LEAST_SIDES || style->node_step < MOST_STEP)) {
+        style->node_step *= style->most_sides > LEAST_SIDES ? 1 : 2;
+        style->most_sides -= style->most_sides > LEAST_SIDES;
+    }
+    struct cost *costs = wd_alloc_array(skeleton->branch_count, sizeof *costs);
     for (size_t b = 0; b < skeleton->branch_count; b++) {
         const struct wd_branch *branch = &skeleton->branches[b];
-        if (!is_drawn(skeleton, branch, style))
-            continue;
-        size_t last = branch->node_count - 1, step = (size_t)style->node_step;
-        size_t segments = (last + step - 1) / step + (branch->order == WD_TRUNK ? 5 : 0);
-        triangles += (2 * segments - 1) * (size_t)branch_sides(skeleton, branch, species, style);
+        bool stem = branch->order == WD_TRUNK;
+        costs[b].radius_m = stem ? INFINITY : skeleton->nodes[branch->first_node].radius_m;
+        costs[b].triangles = (uint32_t)branch_triangles(skeleton, branch, species, style);
     }
-    return triangles;
+    while (style->least_radius_m < MOST_RADIUS_M &&
+           costs_from(costs, skeleton->branch_count, style->least_radius_m) > triangles)
+        style->least_radius_m = 1.08f * style->least_radius_m + 1e-4f;
+    free(costs);
 }

@@ -16,8 +16,9 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                   const struct wd_tree_form *form, const struct wd_tree_density *crown,
                   const struct wd_wood_style *style);
 
-/* Triangles that wd_wood_mesh would make. */
-size_t wd_wood_triangles(const struct wd_skeleton *skeleton, const struct wd_species *species,
-                         const struct wd_wood_style *style);
+/* Leaves out the thinnest branches until the rest has no more than `triangles`. Stems are never left
+ * out: where they alone are too much they get fewer sides and rings. */
+void wd_wood_style_fit(struct wd_wood_style *style, const struct wd_skeleton *skeleton,
+                       const struct wd_species *species, size_t triangles);
 
 #endif

@@ -38,7 +38,7 @@ bool suite_logged(const struct suite *suite, const char *part)
 
 const char *suite_path(struct suite *suite, const char *name)
 {
-    static char paths[4][256];
+    static char paths[4][512];
     static unsigned next;
     char *path = paths[next++ % 4];
     snprintf(path, sizeof paths[0], "%s/%s", suite->scratch, name);
