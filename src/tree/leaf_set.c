@@ -141,7 +141,7 @@ static void add_leaf(struct wd_tree_mesh *mesh, const struct wd_leaf_set *set,
         p = wd_v3_mad(foot, to_tree(&axes, p), size_m);
         struct wd_vec3 n = to_tree(&axes, corner->n);
         float side = wd_v3_dot(n, shading) < 0 ? -set->own : set->own;
-        n = wd_v3_unit_or(wd_v3_mad(wd_v3_scale(shading, 1 - set->own), n, side), shading);
+        n = wd_v3_mad(wd_v3_scale(shading, 1 - set->own), n, side); /* packed at any length */
         uint32_t bend = flexibility + (corner->kind & 0xffu);
         const float normal[3] = {n.x, n.y, n.z};
         const struct wd_tree_vertex vertex = {
@@ -264,7 +264,7 @@ static uint32_t pack_shading(struct wd_vec3 v)
     uint32_t fine = wd_pack_normal(normal), packed = 0;
     for (int i = 0; i < 2; i++) {
         float part = (float)(int16_t)(fine >> (16 * i) & 0xffffu) / 32767;
-        packed |= ((uint32_t)(int32_t)floorf(part * 127 + 0.5f) & 0xffu) << (8 * i);
+        packed |= ((uint32_t)((int32_t)(part * 127 + 128.5f) - 128) & 0xffu) << (8 * i);
     }
     return packed;
 }
