@@ -117,6 +117,7 @@ enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct
     renderer->stopped = false;
     if (!wd_forest_device_init(&renderer->device, &renderer->gpu, &params))
         return renderer->stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_DEVICE;
+    renderer->device.progress = progress;
     renderer->forest = forest;
     return WD_OK;
 }
@@ -180,7 +181,10 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
         .velocity = params->layers & WD_LAYER_VELOCITY ? WD_VELOCITY_ON : WD_VELOCITY_OFF,
     };
     renderer->frame.ring.timing = params->timing == WD_TIME_PASSES ? WD_TIMING_ON : WD_TIMING_OFF;
-    return wd_frame_prepare(&renderer->frame, &frame) ? WD_OK : WD_ERROR_DEVICE;
+    renderer->stopped = false; /* a method may bake first */
+    if (wd_frame_prepare(&renderer->frame, &frame))
+        return WD_OK;
+    return renderer->stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_DEVICE;
 }
 
 /* Takes the finished sample's times as those per sample. */

@@ -197,6 +197,7 @@ static bool impostor_use_forest(void *state, struct wd_gpu *gpu, struct wd_fores
         .cluster_size = (uint32_t)options->cluster_size,
         .least_alpha = (float)options->least_alpha,
         .average = options->faithful ? WD_OCTANT_PLAIN : WD_OCTANT_LAYERED,
+        .progress = &forest->progress,
         .log = gpu->log,
     };
     struct wd_octant_colors colors = {0};

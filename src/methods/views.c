@@ -16,6 +16,7 @@ static bool views_use_forest(void *state, struct wd_gpu *gpu, struct wd_forest_d
 {
     const struct wd_views_options *options = &forest->scene->methods.views;
     const struct wd_view_sets_params params = {
+        .progress = &forest->progress,
         .views = {.hemisphere = {(uint32_t)options->layout, (uint32_t)options->rows,
                                  (uint32_t)options->columns},
                   .size = (uint32_t)options->size,

@@ -28,6 +28,7 @@ static bool zfield_use_forest(void *state, struct wd_gpu *gpu, struct wd_forest_
     struct zfield *zfield = state;
     const struct wd_zfield_options *options = &forest->scene->methods.zfield;
     const struct wd_view_sets_params params = {
+        .progress = &forest->progress,
         .views = {.hemisphere = {WD_VIEWS_EVEN, (uint32_t)options->rows, 0},
                   .size = (uint32_t)options->size,
                   .samples = (uint32_t)options->samples},
