@@ -11,18 +11,25 @@
 
 enum { MAX_TREES = 64 };
 
+#define MESHES "quality.mesh_distance_m=1000000", "quality.reduced_distance_m=1000000"
+#define REDUCED "quality.mesh_distance_m=0", "quality.reduced_distance_m=1000000"
+#define NO_MESHES "quality.mesh_distance_m=0", "quality.reduced_distance_m=0"
 const struct bias_form bias_forms[BIAS_FORMS] = {
-    {"full", "method=octree", "quality.mesh_distance_m=1000000",
-     "quality.reduced_distance_m=1000000", {false, false, false, false}},
-    {"reduced", "method=octree", "quality.mesh_distance_m=0",
-     "quality.reduced_distance_m=1000000", {false, true, false, false}},
-    {"cards", "method=octree", "quality.mesh_distance_m=0", "quality.reduced_distance_m=0",
+    {"reference", {"method=octree", MESHES, "quality.leaf_px=0"}, {false, false, false, false}},
+    {"full", {"method=octree", MESHES}, {true, false, false, false}},
+    {"reduced", {"method=octree", REDUCED}, {false, true, false, false}},
+    {"cards", {"method=octree", NO_MESHES}, {false, false, true, true}},
+    {"billboard", {"method=dissolve", "methods.dissolve.billboard_m=0", NO_MESHES},
      {false, false, true, true}},
-    {"splats", "method=continuum", "quality.mesh_distance_m=0", "quality.reduced_distance_m=0",
-     {false, true, true, true}},
+    {"views", {"method=views", "methods.views.near_m=0", NO_MESHES}, {false, true, true, true}},
+    {"zfield", {"method=zfield", "methods.zfield.near_m=0", "methods.zfield.range_m=1000000",
+                NO_MESHES}, {false, true, true, true}},
+    {"octants", {"method=impostor", "methods.impostor.area_px=1000000",
+                 "methods.impostor.cluster_size=1", "methods.octree.leaf_trees=1", NO_MESHES}, {false, false, false, true}},
+    {"splats", {"method=continuum", NO_MESHES}, {false, true, true, true}},
 };
 const int bias_height_px[BIAS_HEIGHTS] = {512, 128, 32, 8};
-static const int tree_counts[BIAS_HEIGHTS] = {1, 8, 32, MAX_TREES};
+static const int tree_counts[BIAS_HEIGHTS] = {1, 4, 24, MAX_TREES};
 /* 64 samples a pixel of the reference: squares of pictures that are so many times as fine. */
 static const int reference_zoom[BIAS_HEIGHTS] = {4, 8, 8, 8};
 static const int reference_shifts[BIAS_HEIGHTS] = {2, 1, 1, 1};
@@ -204,8 +211,8 @@ bool bias_stand_init(struct bias_stand *stand, const char *path)
 
 struct wd_forest *bias_forest(const struct bias_stand *stand, const struct bias_form *form)
 {
-    const char *const settings[] = {form->method, form->mesh_m, form->reduced_m, NULL};
-    const struct wd_forest_params params = {.scene_path = stand->scene, .settings = settings};
+    const struct wd_forest_params params = {.scene_path = stand->scene,
+                                            .settings = form->settings};
     struct wd_forest *forest = NULL;
     return wd_forest_create(&forest, &params) == WD_OK ? forest : NULL;
 }

@@ -4,16 +4,16 @@
 
 #include "weald/renderer.h"
 
-enum { BIAS_HEIGHTS = 4, BIAS_VIEWS = 2, BIAS_FORMS = 4 };
+enum { BIAS_HEIGHTS = 4, BIAS_VIEWS = 2, BIAS_FORMS = 9 };
 extern const int bias_height_px[BIAS_HEIGHTS];
 extern const double bias_elevation_deg[BIAS_VIEWS];
 
 struct bias_form {
     const char *name;
-    const char *method, *mesh_m, *reduced_m; /* settings of the forest */
+    const char *settings[8]; /* of the forest, NULL after the last */
     bool used[BIAS_HEIGHTS];                 /* drawn there by default */
 };
-extern const struct bias_form bias_forms[BIAS_FORMS]; /* the first is the full mesh */
+extern const struct bias_form bias_forms[BIAS_FORMS]; /* the first is the reference */
 
 /* A row of trees of one species, as a scene in a folder of its own. */
 struct bias_stand {

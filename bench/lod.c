@@ -2,9 +2,10 @@
  *
  * Rows of one species, tall enough for each height in pixels, are drawn by the renderer itself in
  * each form, with one light for all (no cast shadows), from a low and a high viewpoint. The
- * reference is the full mesh with 64 samples a pixel. Forms are drawn one sample a pixel, several
- * times with the camera shifted by parts of a pixel, so that the bias is not lost in noise. */
-#include "figures.h"
+ * reference is the full mesh, none of its leaves left out, with 64 samples a pixel. Forms are drawn
+ * one sample a pixel, several times with the camera shifted by parts of a pixel, so that the bias is
+ * not lost in noise. */
+#include "lod.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -13,11 +14,13 @@
 #include <string.h>
 
 #include "bias.h"
+#include "figures.h"
 
 struct lod_bench {
+    const struct lod_choice *choice;
     struct wd_renderer *renderer;
     struct bias_shown reference[BIAS_HEIGHTS][BIAS_VIEWS];
-    struct bias worst; /* of forms where they are used */
+    struct lod_worst worst;
 };
 
 static void keep_worst(double *worst, double found)
@@ -26,42 +29,40 @@ static void keep_worst(double *worst, double found)
         *worst = found;
 }
 
-/* One species of each kind is measured at all heights, the others where two forms meet. */
-static bool is_measured(const char *species, int height)
+static void note(struct lod_bench *bench, const char *species, const char *form, int height,
+                 int view, const struct bias *bias, bool used)
 {
-    static const char *const whole[] = {"oak", "beech", "pine", "spruce", "coconut"};
-    for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
-        if (strcmp(whole[i], species) == 0)
-            return true;
-    return bias_height_px[height] == 128 || bias_height_px[height] == 32;
+    printf("%-14s %-9s %4d px %3.0f deg  coverage %+6.1f%%  radiance %+6.1f%%  error %5.1f%%%s\n",
+           species, form, bias_height_px[height], bias_elevation_deg[view], bias->coverage_pct,
+           bias->radiance_pct, bias->error_pct, used ? "  used" : "");
+    fflush(stdout);
+    keep_worst(&bench->worst.any.coverage_pct, bias->coverage_pct);
+    keep_worst(&bench->worst.any.radiance_pct, bias->radiance_pct);
+    if (used) {
+        keep_worst(&bench->worst.used.coverage_pct, bias->coverage_pct);
+        keep_worst(&bench->worst.used.radiance_pct, bias->radiance_pct);
+    }
 }
 
 static bool measure_form(struct lod_bench *bench, const struct bias_stand *stand,
                          const char *species, int form)
 {
-    for (int height = 0; height < BIAS_HEIGHTS; height++)
-        for (int view = 0; view < BIAS_VIEWS; view++) {
-            struct bias_shown *reference = &bench->reference[height][view];
-            struct bias bias;
-            if (!is_measured(species, height))
-                continue;
-            if (form == 0) {
-                if (!bias_show_reference(reference, bench->renderer, stand, height, view))
-                    return false;
-                continue;
-            }
-            if (!bias_measure(&bias, bench->renderer, stand, height, view, reference))
+    for (int i = 0; i < BIAS_HEIGHTS * BIAS_VIEWS; i++) {
+        int height = i / BIAS_VIEWS, view = i % BIAS_VIEWS;
+        struct bias_shown *reference = &bench->reference[height][view];
+        struct bias bias;
+        if (!(bench->choice->heights >> height & 1))
+            continue;
+        if (form == 0) {
+            if (!bias_show_reference(reference, bench->renderer, stand, height, view))
                 return false;
-            bool used = bias_forms[form].used[height];
-            printf("%-14s %-8s %4d px %3.0f deg  coverage %+6.1f%%  radiance %+6.1f%%  "
-                   "error %5.1f%%%s\n",
-                   species, bias_forms[form].name, bias_height_px[height], bias_elevation_deg[view],
-                   bias.coverage_pct, bias.radiance_pct, bias.error_pct, used ? "  used" : "");
-            if (used) {
-                keep_worst(&bench->worst.coverage_pct, bias.coverage_pct);
-                keep_worst(&bench->worst.radiance_pct, bias.radiance_pct);
-            }
+            continue;
         }
+        if (!bias_measure(&bias, bench->renderer, stand, height, view, reference))
+            return false;
+        note(bench, species, bias_forms[form].name, height, view, &bias,
+             bias_forms[form].used[height]);
+    }
     return true;
 }
 
@@ -76,23 +77,15 @@ static bool run_form(struct lod_bench *bench, const struct bias_stand *stand, co
     return ok;
 }
 
-/* The name of a species' file without its ending. */
-static void name_of(char name[64], const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    snprintf(name, 64, "%.63s", slash ? slash + 1 : path);
-    name[strcspn(name, ".")] = 0;
-}
-
-static bool run_species(struct lod_bench *bench, const char *path)
+static bool run_species(struct lod_bench *bench, const char *species)
 {
     struct bias_stand stand;
-    char name[64];
-    name_of(name, path);
+    char path[300];
+    snprintf(path, sizeof path, "species/%s.json", species);
     bool ok = bias_stand_init(&stand, path);
     for (int form = 0; form < BIAS_FORMS && ok; form++)
-        ok = run_form(bench, &stand, name, form);
-    fflush(stdout);
+        if (form == 0 || bench->choice->forms >> form & 1)
+            ok = run_form(bench, &stand, species, form);
     for (int i = 0; i < BIAS_HEIGHTS * BIAS_VIEWS; i++) {
         free(bench->reference[i / BIAS_VIEWS][i % BIAS_VIEWS].luminance);
         bench->reference[i / BIAS_VIEWS][i % BIAS_VIEWS] = (struct bias_shown){0};
@@ -108,44 +101,59 @@ static int is_species(const struct dirent *entry)
     return dot && strcmp(dot, ".json") == 0;
 }
 
-static bool run(struct bias *worst, const char *gpu)
+/* Every species in ./species. */
+static bool run_all(struct lod_bench *bench)
 {
-    const struct wd_renderer_params params = {.gpu = gpu};
-    struct lod_bench bench = {0};
     struct dirent **entries;
     int count = scandir("species", &entries, is_species, alphasort);
-    if (count <= 0) {
+    bool ok = count > 0;
+    if (!ok)
         fprintf(stderr, "bench: no species files in ./species\n");
-        return false;
-    }
-    bool ok = wd_renderer_create(&bench.renderer, &params) == WD_OK;
     for (int i = 0; i < count; i++) {
-        char path[300];
-        snprintf(path, sizeof path, "species/%s", entries[i]->d_name);
-        fprintf(stderr, "%d of %d: %s\n", i + 1, count, path);
-        ok = ok && run_species(&bench, path);
+        entries[i]->d_name[strlen(entries[i]->d_name) - strlen(".json")] = 0;
+        ok = ok && run_species(bench, entries[i]->d_name);
         free(entries[i]);
     }
-    free(entries);
+    free(count >= 0 ? entries : NULL);
+    return ok;
+}
+
+bool lod_run(struct lod_worst *worst, const struct lod_choice *choice)
+{
+    const struct wd_renderer_params params = {.gpu = choice->gpu};
+    struct lod_bench bench = {.choice = choice};
+    bool ok = wd_renderer_create(&bench.renderer, &params) == WD_OK;
+    if (ok && !choice->species[0])
+        ok = run_all(&bench);
+    for (const char *const *species = choice->species; ok && *species; species++)
+        ok = run_species(&bench, *species);
     wd_renderer_destroy(&bench.renderer);
     *worst = bench.worst;
     return ok;
 }
 
+/* One of each kind: broad leaves, small ones, brushes of needles, feathers, fronds, blades. */
+static const char *const kinds[] = {"oak", "birch", "pine", "spruce", "coconut", "grass", NULL};
+
+static bool run_kinds(struct lod_worst *worst, const char *gpu)
+{
+    return lod_run(worst, &(struct lod_choice){gpu, kinds, ~0u, ~0u});
+}
+
 bool bench_lod_coverage(const char *gpu)
 {
-    struct bias worst;
-    bool ok = run(&worst, gpu);
+    struct lod_worst worst;
+    bool ok = run_kinds(&worst, gpu);
     if (ok)
-        printf("lod-coverage-bias-pct %.1f %%\n", fabs(worst.coverage_pct));
+        printf("lod-coverage-bias-pct %.1f %%\n", fabs(worst.used.coverage_pct));
     return ok;
 }
 
 bool bench_lod_radiance(const char *gpu)
 {
-    struct bias worst;
-    bool ok = run(&worst, gpu);
+    struct lod_worst worst;
+    bool ok = run_kinds(&worst, gpu);
     if (ok)
-        printf("lod-radiance-bias-pct %.1f %%\n", fabs(worst.radiance_pct));
+        printf("lod-radiance-bias-pct %.1f %%\n", fabs(worst.used.radiance_pct));
     return ok;
 }

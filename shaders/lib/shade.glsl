@@ -93,6 +93,29 @@ wd_place ground_place(wd_pixel pixel)
     return place;
 }
 
+/* What a tree's own leaves leave of the sun: `mapped` of their shade is in the shadow map, the rest
+ * follows from depth in the crown, behind which the map is then asked. */
+void shade_by_crown(inout wd_place place, wd_crown crown, float openness, float mapped,
+                    uint cascade)
+{
+    float path_m = crown_path_m(crown, place.rel);
+    float through = crown_through(crown, path_m) * min(openness * 1.2, 1.0);
+    place.own = mix(through, 1.0, mapped);
+    place.ahead_m = mapped > 0.0 ? 0.0 : path_m + frame.cascade_texel_m[min(cascade, 3u)];
+}
+
+/* Wood within a crown is in its shade as leaves are. */
+wd_place wood_place(wd_pixel pixel, uint cascade)
+{
+    wd_tree tree = trees[pixel.surface - 1u];
+    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                            + WD_TREE_VARIANT(tree) % push.variants];
+    wd_place place = ground_place(pixel);
+    shade_by_crown(place, crown_of(tree, model), pixel.openness, cascade == 0u ? 1.0 : 0.0,
+                   cascade);
+    return place;
+}
+
 /* Near, the maps hold each leaf and the crown's depth adds little; far, they hold crowns only: the
  * crown is left behind before the map is asked, and depth along the sun does the rest. A crown is no
  * even cloud: what sees little of the sky sees little of the sun. Both factors are set so that
@@ -109,10 +132,7 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     float mapped = cascade == 0u && !card ? 0.75 : 0.0;
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
-    float path_m = crown_path_m(crown, place.rel);
-    float through = crown_through(crown, path_m) * min(pixel.openness * 1.2, 1.0);
-    place.own = mix(through, 1.0, mapped);
-    place.ahead_m = mapped > 0.0 ? 0.0 : path_m + frame.cascade_texel_m[min(cascade, 3u)];
+    shade_by_crown(place, crown, pixel.openness, mapped, cascade);
     vec3 outward = crown_normal(crown, place.rel);
     float cosine = dot(eye, frame.sun_direction);
     place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.normal, eye), near);
@@ -150,8 +170,12 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     float openness = pixel.openness;
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u)
         openness *= forest_openness(pixel);
-    if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u && pixel.material >= WD_MATERIAL_LEAF)
-        place = leaf_place(pixel, cascade);
+    if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u) {
+        if (pixel.material >= WD_MATERIAL_LEAF)
+            place = leaf_place(pixel, cascade);
+        else
+            place = wood_place(pixel, cascade);
+    }
     ground_share = ground_shadow(place.rel);
     vec3 ahead = place.rel + frame.sun_direction * place.ahead_m;
     sun_share = place.own * ground_share * tree_shadow(ahead, place.normal, cascade, noise);

@@ -64,7 +64,7 @@ void main()
             continue;
         bool wood = item.first + i >= tree.per_stratum * WD_LEAF_STRATA;
         vec3 normal = splat_normal(disc);
-        float facing = dot(normal, tree.toward) * inversesqrt(dot(normal, normal));
+        float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
         float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0))
                              : tree.radius * sqrt(abs(facing))) * inverse;
         vec2 at = (clip.xy * inverse * 0.5 + 0.5) * size;

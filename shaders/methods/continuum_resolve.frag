@@ -117,8 +117,11 @@ void main()
     uint index = splat_trees[seen.tree].tree;
     vec2 turn = unpackHalf2x16(splat_trees[seen.tree].turn);
     vec2 shape = unpackHalf2x16(splat_trees[seen.tree].shape);
+    vec4 tint = unpackUnorm4x8(splat_trees[seen.tree].tint) * 2.0;
     if (!seen.wood)
-        seen.albedo *= unpackUnorm4x8(splat_trees[seen.tree].tint).rgb * 2.0;
+        seen.albedo *= tint.rgb;
+    if (WOOD == 0u)
+        seen.openness = min(seen.openness * tint.a, 1.0);
     if (frame.view_mode == WD_MODE_LOD)
         seen.albedo = (seen.wood ? vec3(0.5, 0.3, 0.1) : vec3(0.1, 0.6, 0.15))
                       * (0.3 + 0.7 * seen.openness);

@@ -47,11 +47,12 @@ float covered_px(wd_tree tree, vec3 toward, float pixels_per_m)
     return seen * pixels_per_m * pixels_per_m;
 }
 
-/* A direction of the world in the model's axes. */
-vec3 model_direction(tree_pose pose, vec3 v)
+/* What a unit of surface shows along a direction of the world: its dot product with a normal in the
+ * model's axes. The pose stretches areas by its cofactors. */
+vec3 model_facing(tree_pose pose, vec3 v)
 {
     vec2 turned = vec2(pose.turn.x * v.x + pose.turn.y * v.y, pose.turn.x * v.y - pose.turn.y * v.x);
-    return normalize(vec3(turned * pose.mirror, v.z));
+    return pose.across * vec3(pose.up * turned * pose.mirror, pose.across * v.z);
 }
 
 /* Clip coordinates of an offset. */
@@ -144,8 +145,7 @@ void add_wood(uint slot, uint count)
 }
 
 /* wd_point_gain, without copies of its tables. */
-#define GAIN(gains, k)                                                                             \
-    mix(splat_models[model].gains.level[k], splat_models[model].gains.above[k], sine * sine)
+#define GAIN(kind, k) WD_POINT_GAIN(splat_models[model].kind, k, sine)
 
 /* Where a count lies in the tables: index of an entry and share of the next. */
 vec2 gain_place(float count)
@@ -165,6 +165,17 @@ vec2 disc_radii(uint model, vec2 count, float sine)
     vec2 gain = vec2(mix(GAIN(leaf, i), GAIN(leaf, i + 1u), leaf.y),
                      mix(GAIN(wood, k), GAIN(wood, k + 1u), wood.y));
     return sqrt(gain * area_m2 / (3.14159265 * count));
+}
+
+/* Factors of what leaves show: those whose lower side is seen, and how open few discs look. */
+uint leaf_tint(wd_tree tree, uint model, float count, float sine)
+{
+    float lower = wd_side_mix(splat_models[model].lower[0], splat_models[model].lower[1],
+                              splat_models[model].lower[2], sine);
+    vec3 tint = tree_tint(tree, models[model]) * mix(vec3(1.0), splat_models[model].lower_over_upper, lower);
+    vec2 place = gain_place(count);
+    uint k = uint(place.x);
+    return packUnorm4x8(vec4(tint, mix(GAIN(light, k), GAIN(light, k + 1u), place.y)) * 0.5);
 }
 
 /* Triangles of wood for a tree that tall: few of the largest while it is small. */
@@ -207,28 +218,36 @@ void select_tree(uint index, float share)
                        float(view.min_splats));
     wd_splat_tree splats;
     splats.per_stratum = min(uint(ceil(wanted / float(WD_SPLAT_STRATA))), WD_STRATUM_SPLATS);
-    float size = sqrt(pose.across * mix(pose.across, pose.up, 0.5) / share) * view.pixels;
+    /* discs that grow cover more of each other */
+    float grown = min(pow(share, -0.25), 1.2) / share;
+    float size = sqrt(grown) * view.pixels;
     vec2 radii = disc_radii(model_index, float(splats.per_stratum) * vec2(WD_LEAF_STRATA, 1.0),
                             toward.z);
     splats.radius = size * radii.x;
     splats.wood_radius = size * radii.y;
+    uint triangles = wood ? wood_triangles(model_index, tall_px) : 0u;
+    /* Discs stand for the wood that is not there as triangles: few large ones are most of it. */
+    float missing = 1.0 - pow(float(triangles) / float(max(splat_models[model_index].wood_count, 1u)),
+                              splat_models[model_index].wood_spread);
+    splats.wood_radius *= sqrt(max(missing, 0.0));
+    uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
+    splats.facing = model_facing(pose, toward);
     float own_across = pose.across;
     pose.across *= stretch;
-    uint strata = wood ? WD_LEAF_STRATA : WD_SPLAT_STRATA;
     if (view.has_history != 0u)
         strata = seen_strata(tree, foot, toward, pose, model_index, sway,
-                             max(splats.radius, splats.wood_radius), strata);
+                             max(splats.radius, splats.wood_radius) * max(own_across, pose.up),
+                             strata);
     if (strata == 0u)
         return;
 
-    splats.toward = model_direction(pose, toward);
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
     splats.first_wood = splat_models[model_index].wood_first;
     splats.offset = wd_hash_mix(tree.random) + frame.sample_index * splats.per_stratum;
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
-    splats.tint = packUnorm4x8(vec4(tree_tint(tree, model) * 0.5, 0.0));
+    splats.tint = leaf_tint(tree, model_index, float(splats.per_stratum * WD_SPLAT_STRATA), toward.z);
     vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
                              : vec2(0.0);
     fill_rows(splats, pose, model_index, foot, slope);
@@ -240,7 +259,7 @@ void select_tree(uint index, float share)
     splat_trees[slot] = splats;
     add_splats(slot, splats.per_stratum * strata);
     if (wood)
-        add_wood(slot, wood_triangles(model_index, tall_px));
+        add_wood(slot, triangles);
 }
 
 /* How many times over a cluster's crowns may cover what is seen of it: what lies deeper is hidden all

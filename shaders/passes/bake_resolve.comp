@@ -36,9 +36,7 @@ void add_surface(inout bake_sum sum, wd_bake_shot shot, uint triangle, vec2 plac
     vec4 tint = share.x * unpackUnorm4x8(u.tint) + share.y * unpackUnorm4x8(v.tint)
                 + share.z * unpackUnorm4x8(w.tint);
     bool leaf = triangle >= push.wood_triangles;
-    /* Pictures are lit as the crown's outside; wood within, seen through gaps, gets little. */
-    float inside = leaf ? 1.0 : clamp(1.6 * tint.a, 0.15, 1.0);
-    sum.color += bake_look_at(bake_look_of(u, v, w, area), bc).rgb * tint.rgb * inside;
+    sum.color += bake_look_at(bake_look_of(u, v, w, area), bc).rgb * tint.rgb;
     sum.normal += normalize(normal + vec3(0.0, 0.0, 1e-6));
     sum.openness += tint.a;
     sum.leaf += leaf ? 1.0 : 0.0;

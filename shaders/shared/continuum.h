@@ -55,6 +55,11 @@ struct wd_splat_model {
     float leaf_area_m2, wood_area_m2;     /* of the surface that the splats stand for */
     float strata_top_m[WD_SPLAT_STRATA];  /* height below which a stratum's splats lie */
     WD_GAINS_STRUCT wood, leaf;           /* what keeps the mesh's coverage */
+    WD_GAINS_STRUCT light;                /* and the openness of what is seen */
+    WD_VEC3(lower_over_upper);            /* albedo of leaves' lower sides over that of upper ones */
+    float lower[WD_GAIN_SIDES];           /* share of the leaves seen that show the lower side */
+    float wood_spread;                    /* the first n of N triangles have (n / N)^this of all
+                                             bark's area */
     uint32_t wood_first, wood_count;      /* triangles, large ones first */
 };
 
@@ -126,7 +131,7 @@ struct wd_splat_groups {
 struct wd_splat_tree {
     WD_VEC4(clip_x); WD_VEC4(clip_y); WD_VEC4(clip_w); /* clip_w: w, or z of a cascade */
     WD_VEC3(sway);
-    WD_VEC3(toward);       /* unit, to the eye, in the model's axes */
+    WD_VEC3(facing);       /* dot normal of the model: what a m^2 of it shows the eye, in m^2 */
     float radius, wood_radius; /* of a disc of leaves and of wood in pixels at w = 1 */
     uint32_t tree;         /* in octree order */
     uint32_t first_splat;  /* of the model */
@@ -135,7 +140,7 @@ struct wd_splat_tree {
     uint32_t first_wood;   /* triangle of the model */
     uint32_t turn;         /* cosine and sine of the tree's yaw, half floats */
     uint32_t shape;        /* 1 or -1 mirrored, vertical over horizontal scale, half floats */
-    uint32_t tint;         /* half of each factor of the leaves' colour, unorm 8 */
+    uint32_t tint;         /* half of each factor of the leaves' colour and of openness, unorm 8 */
 };
 
 struct wd_splat_item {

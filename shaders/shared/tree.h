@@ -185,11 +185,12 @@ WD_STATIC_ASSERT_SIZE(wd_tree_point, 24);
 
 /* Points drawn as discs: pi r^2 = gain * facing * (area of all points) / count, where facing is the
  * cosine between normal and view: its size for leaves, 0 for one-sided points seen from behind.
- * Gains are calibrated for counts WD_POINT_LEAST << k, seen level and from straight above. */
-#define WD_POINT_LEAST 32
-#define WD_POINT_GAINS 10
+ * Gains are found for counts WD_POINT_LEAST << k, seen level, from half above and from above. */
+#define WD_POINT_LEAST 8
+#define WD_POINT_GAINS 12
+#define WD_GAIN_SIDES 3
 struct wd_point_gains {
-    float level[WD_POINT_GAINS], above[WD_POINT_GAINS];
+    float gains[WD_GAIN_SIDES][WD_POINT_GAINS];
 };
 #ifdef __STDC_VERSION__
 #define WD_GAINS_STRUCT struct wd_point_gains
@@ -197,17 +198,27 @@ struct wd_point_gains {
 #define WD_GAINS_STRUCT wd_point_gains
 #endif
 
-/* Gain for `count` points seen from elevation asin(sine). */
-WD_FUNC float wd_point_gain(WD_GAINS_STRUCT gains, float count, float sine)
+/* What is known of three sides, as seen from elevation asin(sine). */
+WD_FUNC float wd_side_mix(float level, float half_above, float above, float sine)
+{
+    float t = 2.0f * sine * sine;
+    return t < 1.0f ? level + (half_above - level) * t
+                    : half_above + (above - half_above) * (t - 1.0f);
+}
+
+#define WD_POINT_GAIN(table, k, sine)                                                              \
+    wd_side_mix((table).gains[0][k], (table).gains[1][k], (table).gains[2][k], sine)
+
+/* Gain for `count` points. */
+WD_FUNC float wd_point_gain(WD_GAINS_STRUCT table, float count, float sine)
 {
     float at = count / WD_FLOAT(WD_POINT_LEAST);
     int k = 0;
     for (; k < WD_POINT_GAINS - 2 && at > 2.0f; k++)
         at *= 0.5f;
     float part = at < 1.0f ? 0.0f : (at > 2.0f ? 1.0f : at - 1.0f);
-    float level = gains.level[k] + (gains.level[k + 1] - gains.level[k]) * part;
-    float above = gains.above[k] + (gains.above[k + 1] - gains.above[k]) * part;
-    return level + (above - level) * sine * sine;
+    float gain = WD_POINT_GAIN(table, k, sine);
+    return gain + (WD_POINT_GAIN(table, k + 1, sine) - gain) * part;
 }
 
 #endif

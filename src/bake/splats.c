@@ -80,9 +80,10 @@ static void find_tops(const struct wd_tree_points *points, uint32_t leaf, uint32
 }
 
 /* Fills one stratum with the points of its kind between the heights, in their order and round
- * again. False where there are none. */
+ * again, and `drawn` with the points themselves, `step` apart. False where there are none. */
 static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *points,
-                         uint32_t leaf, uint32_t stratum, float top, float bottom)
+                         uint32_t leaf, uint32_t stratum, float top, float bottom,
+                         struct wd_tree_point *drawn, uint32_t step)
 {
     struct wd_splat *to = splats->splats + stratum * WD_STRATUM_SPLATS;
     uint32_t *looks = splats->looks + stratum * WD_STRATUM_SPLATS, used = 0;
@@ -91,17 +92,21 @@ static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *
         if ((point->kind & WD_POINT_LEAF) != leaf || point->position_m[2] > top ||
             point->position_m[2] <= bottom)
             continue;
+        drawn[used * step] = *point;
         to[used] = splat_at(&splats->model, point->position_m, point->normal);
         looks[used++] = point_look(point);
     }
     for (uint32_t i = used; used && i < WD_STRATUM_SPLATS; i++) {
+        drawn[i * step] = drawn[(i - used) * step];
         to[i] = to[i - used];
         looks[i] = looks[i - used];
     }
     return used > 0;
 }
 
-static void fill_strata(struct wd_splats *splats, const struct wd_tree_points *points)
+/* `leaves` and `wood` get the points of the splats: strata in turn, as a tree's window takes them. */
+static void fill_strata(struct wd_splats *splats, const struct wd_tree_points *points,
+                        struct wd_tree_point *leaves, struct wd_tree_point *wood)
 {
     struct wd_splat_model *model = &splats->model;
     const uint32_t last = WD_SPLAT_STRATA - 1;
@@ -110,15 +115,33 @@ static void fill_strata(struct wd_splats *splats, const struct wd_tree_points *p
     for (uint32_t s = 0; s < last; s++) {
         float top = s ? model->strata_top_m[s] : INFINITY;
         float bottom = s + 1 < last ? model->strata_top_m[s + 1] : -INFINITY;
-        if (!fill_stratum(splats, points, kind, s, top, bottom))
-            fill_stratum(splats, points, kind, s, INFINITY, -INFINITY);
+        if (!fill_stratum(splats, points, kind, s, top, bottom, leaves + s, last))
+            fill_stratum(splats, points, kind, s, INFINITY, -INFINITY, leaves + s, last);
     }
-    if (!fill_stratum(splats, points, 0, last, INFINITY, -INFINITY))
-        fill_stratum(splats, points, kind, last, INFINITY, -INFINITY);
+    if (!fill_stratum(splats, points, 0, last, INFINITY, -INFINITY, wood, 1))
+        fill_stratum(splats, points, kind, last, INFINITY, -INFINITY, wood, 1);
     /* of the wood, the part under the crown's thick is what is seen */
     float tops[4];
     find_tops(points, points->wood_area_m2 > 0.0f ? 0 : kind, 4, tops);
     model->strata_top_m[last] = tops[1];
+}
+
+static void make_discs(struct wd_splats *splats, const struct wd_tree_points *points,
+                       const struct wd_tree_mesh *mesh)
+{
+    size_t leaf_count = (size_t)WD_LEAF_STRATA * WD_STRATUM_SPLATS;
+    struct wd_tree_point *leaves = wd_alloc_array(leaf_count, sizeof *leaves);
+    struct wd_tree_point *wood = wd_alloc_array(WD_STRATUM_SPLATS, sizeof *wood);
+    fill_strata(splats, points, leaves, wood);
+    struct wd_disc_fit fits;
+    wd_disc_fit(&fits, &(struct wd_disc_class){wood, WD_STRATUM_SPLATS, points->wood_area_m2},
+                &(struct wd_disc_class){leaves, leaf_count, points->leaf_area_m2}, mesh);
+    splats->model.wood = fits.wood;
+    splats->model.leaf = fits.leaf;
+    splats->model.light = fits.light;
+    memcpy(splats->model.lower, fits.lower, sizeof fits.lower);
+    free(leaves);
+    free(wood);
 }
 
 /* --- wood -------------------------------------------------------------------------------- */
@@ -178,7 +201,38 @@ static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh)
     for (uint32_t i = 0; i < count; i++)
         splats->wood[i] =
             wood_triangle(&splats->model, mesh, mesh->indices + 3 * order[i].triangle);
+    float all = 0, large = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        all += order[i].area;
+        large += i < count / 8 ? order[i].area : 0;
+    }
+    float spread = large > 0 ? logf(large / all) / logf((float)(count / 8) / (float)count) : 1;
+    splats->model.wood_spread = fminf(fmaxf(spread, 0.05f), 1.0f);
     free(order);
+}
+
+/* Mean colour of a look's texels that show. */
+static void mean_albedo(const struct wd_point_look *look, uint32_t layer, float color[3])
+{
+    size_t count = (size_t)look->size * look->size;
+    double sum[3] = {0}, shown = 1e-9;
+    const uint8_t *texels = look->rgba + 4 * count * layer;
+    for (size_t i = 0; i < count; i++) {
+        shown += texels[4 * i + 3];
+        for (size_t k = 0; k < 3; k++)
+            sum[k] += (double)wd_srgb_decode(texels[4 * i + k]) * texels[4 * i + 3];
+    }
+    for (int k = 0; k < 3; k++)
+        color[k] = (float)(sum[k] / shown);
+}
+
+static void compare_sides(struct wd_splat_model *model, const struct wd_point_look *look)
+{
+    float upper[3], lower[3];
+    mean_albedo(look, WD_LOOK_LEAF, upper);
+    mean_albedo(look, WD_LOOK_LEAF_BACK, lower);
+    for (int k = 0; k < 3; k++)
+        model->lower_over_upper[k] = upper[k] > 0 ? fminf(lower[k] / upper[k], 4.0f) : 1.0f;
 }
 
 /* --- the whole --------------------------------------------------------------------------- */
@@ -198,10 +252,9 @@ bool wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
         splats->model.min_m[k] = model->full.min_m[k];
         splats->model.extent_m[k] = fmaxf(model->full.max_m[k] - model->full.min_m[k], 1e-3f);
     }
-    splats->model.wood = points.wood;
-    splats->model.leaf = points.leaf;
-    fill_strata(splats, &points);
+    make_discs(splats, &points, &model->full);
     make_wood(splats, &model->reduced);
+    compare_sides(&splats->model, look);
     wd_tree_points_finish(&points);
     return true;
 }

@@ -35,9 +35,12 @@ struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
     return rule;
 }
 
-float wd_leaf_pixels(const struct wd_view *view, enum wd_tree_pass pass)
+float wd_leaf_pixels(const struct wd_forest_device *forest, const struct wd_view *view,
+                     enum wd_tree_pass pass)
 {
-    return (pass == WD_PASS_SHADOW ? 0.55f : 1) * view->pixels_per_radian;
+    float least_px = fmaxf((float)forest->scene->quality.leaf_px, 1e-6f);
+    return (pass == WD_PASS_SHADOW ? 0.55f : 1) * view->pixels_per_radian *
+           (WD_LEAF_WHOLE_PX / least_px);
 }
 
 /* Shares of a nearer and a farther level about the distance where they change. */
@@ -156,7 +159,7 @@ static uint32_t leaf_step(const struct wd_forest_device *forest, const struct wd
     }
     float leaf_m = range->leaf_m * WD_TREE_CROWN_M(*tree) / model->crown_m;
     float share =
-        wd_leaf_share(leaf_m * wd_leaf_pixels(view, pass) / fmaxf(sqrtf(squared), 0.01f));
+        wd_leaf_share(leaf_m * wd_leaf_pixels(forest, view, pass) / fmaxf(sqrtf(squared), 0.01f));
     uint32_t step = 0;
     for (; range->leaf_count && step < WD_LEAF_STEPS - 1 && share <= 0.5f; step++)
         share *= 2;

@@ -25,8 +25,10 @@ struct wd_level_rule {
 };
 struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
                                       const struct wd_view *view, enum wd_tree_pass pass);
-/* Pixels of a radian, as far as leaves thin out by them: shadows hold fewer and larger ones. */
-float wd_leaf_pixels(const struct wd_view *view, enum wd_tree_pass pass);
+/* Pixels of a radian, as far as leaves thin out by them: shadows hold fewer and larger ones, and the
+ * scene may want them longer or shorter than WD_LEAF_WHOLE_PX. */
+float wd_leaf_pixels(const struct wd_forest_device *forest, const struct wd_view *view,
+                     enum wd_tree_pass pass);
 struct wd_levels wd_levels_at(const struct wd_level_rule *rule, float height_m, float distance_m);
 /* Distance beyond which every tree up to `height_m` is a card and nothing else. */
 float wd_level_card_distance(const struct wd_level_rule *rule, float height_m);

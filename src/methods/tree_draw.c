@@ -251,7 +251,7 @@ static struct wd_mesh_push leaf_push(const struct meshes *meshes, const struct w
         .corner_bits = set->corner_bits,
         .first_name = meshes->range->vertex_count,
     };
-    push.tree.pixels_per_radian = wd_leaf_pixels(draw->view, draw->pass);
+    push.tree.pixels_per_radian = wd_leaf_pixels(draw->forest, draw->view, draw->pass);
     if (!leaves) { /* flowers are all drawn, and hide the numbers of leaves before them */
         push.first_name += meshes->range->sets[WD_SET_LEAVES].leaf_count *
                            meshes->range->sets[WD_SET_LEAVES].corner_count;

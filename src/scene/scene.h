@@ -206,6 +206,7 @@ struct wd_scene {
         double mesh_distance_m;    /* full meshes nearer than this, for a tree of 20 m */
         double reduced_distance_m; /* reduced meshes nearer than this */
         double blend;              /* share of a distance over which levels blend */
+        double leaf_px;            /* leaves of meshes shorter than this thin out; 0: none */
         int64_t shadow_size;       /* texels a side of a cascade */
         double shadow_distance_m;
         int64_t shadow_taps;

@@ -170,7 +170,6 @@ bool wd_tree_points_build(struct wd_tree_points *points, const struct wd_tree_me
         for (size_t i = 0; i < count; i++)
             sample_point(&points->points[i], &surface, look, (uint32_t)i,
                          (float)(area / (double)count));
-        wd_tree_points_calibrate(points, mesh);
     }
     surface_finish(&surface);
     return points->count > 0;

@@ -14,9 +14,6 @@ struct wd_tree_points {
     struct wd_tree_point *points;
     size_t count;
     float leaf_area_m2, wood_area_m2; /* one side; of wood the outer */
-    /* Discs of wood cover what the mesh's wood covers; discs of leaves with them, or with wood
-     * drawn as triangles, cover what the whole mesh covers. */
-    struct wd_point_gains wood, leaf;
 };
 
 /* A species' look textures: WD_LOOK_LAYERS of size x size RGBA8 (sRGB) texels, one after the
@@ -26,13 +23,30 @@ struct wd_point_look {
     uint32_t size;
 };
 
-/* Samples `count` points of the mesh and calibrates the gains. False, with {0}, for a mesh without
- * area or count 0. `mesh` has its bounds set. The same mesh gives the same points on any machine. */
+/* Samples `count` points of the mesh. False, with {0}, for a mesh without area or count 0. `mesh` has
+ * its bounds set. The same mesh gives the same points on any machine. */
 bool wd_tree_points_build(struct wd_tree_points *points, const struct wd_tree_mesh *mesh,
                           const struct wd_point_look *look, size_t count);
 void wd_tree_points_finish(struct wd_tree_points *points); /* accepts {0} */
 
-/* Fills the gains; called by wd_tree_points_build. */
-void wd_tree_points_calibrate(struct wd_tree_points *points, const struct wd_tree_mesh *mesh);
+/* Points of one kind, in an order of which windows are drawn, and the surface that all stand for. */
+struct wd_disc_class {
+    const struct wd_tree_point *points;
+    size_t count;
+    float area_m2;
+};
+
+/* What discs of a tree need to show what its mesh shows, seen from the sides of struct
+ * wd_point_gains. */
+struct wd_disc_fit {
+    struct wd_point_gains wood, leaf; /* of their areas */
+    struct wd_point_gains light;      /* of the openness to the sky of those that are seen */
+    float lower[WD_GAIN_SIDES];       /* share of the leaves seen that show their lower side */
+};
+
+/* Finds the gains with which discs of both classes together cover as many pixels as the mesh, and as
+ * many of them with wood, on average over windows that begin anywhere. */
+void wd_disc_fit(struct wd_disc_fit *fits, const struct wd_disc_class *wood,
+                 const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh);
 
 #endif

@@ -1,56 +1,162 @@
-/* Gains: how large discs must be so that n of them cover as much of a picture as the mesh does.
+/* Gains: how large discs must be so that n of them show as much of a tree as the mesh does.
  *
  * Discs of area A/n each cover too much: leaves overlap in depth and lie at a slant, and a disc
- * wider than the branch it stands for covers what is beside it. Discs of one count differ by their
- * facing alone, so that a pixel is covered when the least of squared distance over facing is below
- * the squared radius; the radius that covers as many pixels as the mesh is a quantile of that. */
+ * wider than the branch it stands for covers what is beside it. Both gains of a count are found by
+ * drawing: the mesh and windows of discs from the same sides, with depth, until discs cover as many
+ * pixels as the mesh and show as much wood between the leaves. */
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/dmath.h"
 #include "base/memory.h"
+#include "shared/hash.h"
 #include "tree/points.h"
 #include "tree/silhouette.h"
 
-enum { MAX_BINS = 1 << 12, LEVEL_TURNS = 4 };
+enum { PIXELS = WD_SILHOUETTE * WD_SILHOUETTE, ROUNDS = 4, MOST_VIEWS = 3 };
+/* Discs much larger than their share of the surface would be a tree's only look. */
+static const float LEAST_GAIN = 0.02f, MOST_GAIN = 4;
 
-struct plan {
-    struct wd_silhouette tree, wood; /* of the whole mesh, of its wood */
-    uint8_t *wood_discs;             /* covered by them */
-    float *distance; /* pixels squared over facing: to the nearest point of the class at hand */
+/* What a picture shows: pixels, those of them that are wood or the lower side of leaves, and the
+ * sum of their openness to the sky. */
+struct shown {
+    double covered, wood, lower, openness;
+};
+enum { NOTHING, LEAF, LEAF_BELOW, WOOD };
+
+/* A picture with depth. */
+struct canvas {
+    struct wd_silhouette frame;
+    float *nearest; /* along frame.toward */
+    uint8_t *kind;
+    uint8_t *openness;
 };
 
-static void plan_init(struct plan *plan, const struct wd_tree_mesh *mesh, struct wd_vec3 toward)
+struct plan {
+    const struct wd_disc_class *classes[2]; /* wood, leaves */
+    struct canvas views[MOST_VIEWS];
+    int view_count;
+    struct shown mesh; /* over all views */
+};
+
+static void clear(struct canvas *canvas)
 {
-    size_t pixels = (size_t)WD_SILHOUETTE * WD_SILHOUETTE;
-    wd_silhouette_init(&plan->tree, mesh, toward);
-    wd_silhouette_init(&plan->wood, mesh, toward);
-    wd_silhouette_cover(&plan->tree, mesh, 0, mesh->index_count);
-    wd_silhouette_cover(&plan->wood, mesh, 0, mesh->wood_index_count);
-    plan->wood_discs = wd_alloc(pixels);
-    plan->distance = wd_alloc_array(pixels, sizeof(float));
+    memset(canvas->kind, 0, PIXELS);
+    for (int i = 0; i < PIXELS; i++)
+        canvas->nearest[i] = -1e30f;
 }
 
-static void plan_finish(struct plan *plan)
+static void add_shown(struct shown *shown, const struct canvas *canvas, double weight)
 {
-    wd_silhouette_finish(&plan->tree);
-    wd_silhouette_finish(&plan->wood);
-    free(plan->wood_discs);
-    free(plan->distance);
-}
-
-static void spread_point(float *distance, const float at[2], float facing, float reach)
-{
-    int x0 = wd_silhouette_pixel(at[0] - reach), x1 = wd_silhouette_pixel(at[0] + reach);
-    int y0 = wd_silhouette_pixel(at[1] - reach), y1 = wd_silhouette_pixel(at[1] + reach);
-    float scale = 1 / facing;
-    for (int y = y0; y < y1; y++) {
-        float dy = (float)y + 0.5f - at[1];
-        float *row = distance + y * WD_SILHOUETTE;
-        for (int x = x0; x < x1; x++) {
-            float dx = (float)x + 0.5f - at[0], d = (dx * dx + dy * dy) * scale;
-            row[x] = d < row[x] ? d : row[x];
-        }
+    size_t counts[WOOD + 1] = {0}, openness = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        counts[canvas->kind[i]]++;
+        openness += canvas->kind[i] != NOTHING ? canvas->openness[i] : 0;
     }
+    shown->covered += weight * (double)(PIXELS - counts[NOTHING]);
+    shown->wood += weight * (double)counts[WOOD];
+    shown->lower += weight * (double)counts[LEAF_BELOW];
+    shown->openness += weight * (double)openness;
+}
+
+/* --- the mesh ---------------------------------------------------------------------------- */
+
+struct corner {
+    float at[2], toward, uv[2];
+    uint32_t openness;
+};
+
+static float across(const struct corner *a, const struct corner *b, float x, float y)
+{
+    return (b->at[0] - a->at[0]) * (y - a->at[1]) - (b->at[1] - a->at[1]) * (x - a->at[0]);
+}
+
+static float least(float a, float b, float c)
+{
+    return fminf(a, fminf(b, c));
+}
+
+static float most(float a, float b, float c)
+{
+    return fmaxf(a, fmaxf(b, c));
+}
+
+/* Which side of a leaf is seen: as shaders/lib/look.glsl has it, in a picture that is mirrored. */
+static uint8_t side_of(const struct corner *a, const struct corner *b, const struct corner *c,
+                       float area)
+{
+    float turn = (b->uv[0] - a->uv[0]) * (c->uv[1] - a->uv[1]) -
+                 (b->uv[1] - a->uv[1]) * (c->uv[0] - a->uv[0]);
+    return turn * area < 0 ? LEAF : LEAF_BELOW;
+}
+
+static void draw_triangle(struct canvas *canvas, const struct corner *a, const struct corner *b,
+                          const struct corner *c, bool wood)
+{
+    float area = across(a, b, c->at[0], c->at[1]);
+    uint8_t kind = wood ? WOOD : side_of(a, b, c, area);
+    uint8_t openness = (uint8_t)((a->openness + b->openness + c->openness) / 3);
+    int x0 = wd_silhouette_pixel(least(a->at[0], b->at[0], c->at[0]));
+    int x1 = wd_silhouette_pixel(most(a->at[0], b->at[0], c->at[0]));
+    int y0 = wd_silhouette_pixel(least(a->at[1], b->at[1], c->at[1]));
+    int y1 = wd_silhouette_pixel(most(a->at[1], b->at[1], c->at[1]));
+    if (x0 >= x1 || y0 >= y1 || !(fabsf(area) > 1e-9f))
+        return;
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) {
+            float px = (float)x + 0.5f, py = (float)y + 0.5f;
+            float of_c = across(a, b, px, py) / area, of_a = across(b, c, px, py) / area;
+            float of_b = 1 - of_a - of_c;
+            float toward = of_a * a->toward + of_b * b->toward + of_c * c->toward;
+            int i = y * WD_SILHOUETTE + x;
+            if (of_a < 0 || of_b < 0 || of_c < 0 || toward <= canvas->nearest[i])
+                continue;
+            canvas->nearest[i] = toward;
+            canvas->kind[i] = kind;
+            canvas->openness[i] = openness;
+        }
+}
+
+static struct corner corner_of(const struct canvas *canvas, const float p[3])
+{
+    struct corner corner;
+    wd_silhouette_project(&canvas->frame, p, corner.at);
+    corner.toward = wd_v3_dot(WD_V3(p[0], p[1], p[2]), canvas->frame.toward);
+    return corner;
+}
+
+static void draw_mesh(struct canvas *canvas, const struct wd_tree_mesh *mesh)
+{
+    struct corner *corners = wd_alloc_array((size_t)mesh->vertex_count + 1, sizeof *corners);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+        corners[i] = corner_of(canvas, mesh->vertices[i].position_m);
+        corners[i].openness = mesh->vertices[i].tint >> 24;
+        wd_unpack_uv(mesh->vertices[i].uv, corners[i].uv);
+    }
+    for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3)
+        draw_triangle(canvas, &corners[mesh->indices[i]], &corners[mesh->indices[i + 1]],
+                      &corners[mesh->indices[i + 2]], i < mesh->wood_index_count);
+    free(corners);
+}
+
+/* --- discs ------------------------------------------------------------------------------- */
+
+/* Drawn as the squares of equal area that shaders/lib/splat_draw.glsl draws. */
+static void draw_disc(struct canvas *canvas, const struct corner *middle, float radius,
+                      uint8_t kind, uint8_t openness)
+{
+    float half = radius * 0.886227f;
+    int x0 = wd_silhouette_pixel(middle->at[0] - half);
+    int x1 = wd_silhouette_pixel(middle->at[0] + half);
+    int y0 = wd_silhouette_pixel(middle->at[1] - half);
+    int y1 = wd_silhouette_pixel(middle->at[1] + half);
+    for (int y = y0; y < y1; y++)
+        for (int i = y * WD_SILHOUETTE + x0; i < y * WD_SILHOUETTE + x1; i++)
+            if (middle->toward > canvas->nearest[i]) {
+                canvas->nearest[i] = middle->toward;
+                canvas->kind[i] = kind;
+                canvas->openness[i] = openness;
+            }
 }
 
 static float facing_of(const struct wd_tree_point *point, struct wd_vec3 toward)
@@ -58,123 +164,141 @@ static float facing_of(const struct wd_tree_point *point, struct wd_vec3 toward)
     float n[3];
     wd_unpack_normal(point->normal, n);
     float cosine = wd_v3_dot(WD_V3(n[0], n[1], n[2]), toward);
-    return point->kind & WD_POINT_ONE_SIDED ? cosine : fabsf(cosine);
+    return point->kind & WD_POINT_ONE_SIDED ? fmaxf(cosine, 0) : fabsf(cosine);
 }
 
-static void measure_distances(struct plan *plan, const struct wd_tree_point *points, size_t count,
-                              uint32_t class, float reach)
+static size_t disc_count(const struct plan *plan, int class, size_t count)
 {
-    for (size_t i = 0; i < (size_t)WD_SILHOUETTE * WD_SILHOUETTE; i++)
-        plan->distance[i] = 1e12f;
-    for (size_t i = 0; i < count; i++) {
-        float at[2], facing = facing_of(&points[i], plan->tree.toward);
-        if (!(points[i].kind & class) || !(facing > 1e-3f))
-            continue;
-        wd_silhouette_project(&plan->tree, points[i].position_m, at);
-        spread_point(plan->distance, at, facing, reach * sqrtf(facing));
+    const struct wd_disc_class *discs = plan->classes[class];
+    float all = plan->classes[0]->area_m2 + plan->classes[1]->area_m2;
+    size_t wanted = (size_t)((float)count * discs->area_m2 / all + 0.5f);
+    wanted = wanted > 0 ? wanted : 1;
+    return discs->area_m2 > 0 ? wanted < discs->count ? wanted : discs->count : 0;
+}
+
+/* A window of one class that begins anywhere. */
+static void draw_window(struct canvas *canvas, const struct plan *plan, int class, size_t count,
+                        float gain, uint32_t window)
+{
+    const struct wd_disc_class *discs = plan->classes[class];
+    size_t wanted = disc_count(plan, class, count);
+    if (!wanted)
+        return;
+    float squared = gain * discs->area_m2 / (float)WD_PI / (float)wanted;
+    size_t first = wd_hash2(window, (uint32_t)count) % discs->count;
+    for (size_t i = 0; i < wanted; i++) {
+        const struct wd_tree_point *point = &discs->points[(first + i) % discs->count];
+        struct corner middle = corner_of(canvas, point->position_m);
+        float facing = facing_of(point, canvas->frame.toward);
+        draw_disc(canvas, &middle, sqrtf(squared * facing) * canvas->frame.scale,
+                  class == 0 ? WOOD : LEAF, (uint8_t)(point->albedo >> 24));
     }
 }
 
-/* Distances of the pixels that discs have to cover, in bins. */
-struct quantile {
-    uint32_t bins[MAX_BINS + 1];
-    size_t wanted;
-};
-
-/* Leaves have what wood leaves free. */
-static void count_distances(struct quantile *quantile, const struct plan *plan, uint32_t class,
-                            float scale)
+/* Few discs differ more from window to window. */
+static uint32_t window_count(size_t count)
 {
-    const struct wd_silhouette *wanted = class == WD_POINT_LEAF ? &plan->tree : &plan->wood;
-    for (size_t i = 0; i < (size_t)WD_SILHOUETTE * WD_SILHOUETTE; i++) {
-        quantile->wanted += wanted->covered[i];
-        if (class == WD_POINT_LEAF && plan->wood_discs[i]) {
-            quantile->wanted -= quantile->wanted > 0;
-            continue;
+    return count < 100 ? 8 : count < 1000 ? 3 : 1;
+}
+
+static struct shown show_discs(struct plan *plan, size_t count, const float gains[2])
+{
+    struct shown shown = {0};
+    uint32_t windows = window_count(count);
+    for (int view = 0; view < plan->view_count; view++)
+        for (uint32_t i = 0; i < windows; i++) {
+            struct canvas *canvas = &plan->views[view];
+            clear(canvas);
+            for (int class = 0; class < 2; class++)
+                draw_window(canvas, plan, class, count, gains[class],
+                            i * MOST_VIEWS + (uint32_t)view);
+            add_shown(&shown, canvas, 1.0 / windows);
         }
-        float bin = sqrtf(plan->distance[i]) * scale;
-        quantile->bins[bin < MAX_BINS ? (int)bin : MAX_BINS]++;
+    return shown;
+}
+
+/* --- fitting ----------------------------------------------------------------------------- */
+
+static float nearer(float gain, double wanted, double found, float power)
+{
+    float ratio = found > 0 ? wd_clampf((float)(wanted / found), 0.5f, 2) : 2;
+    return wd_clampf(gain * wd_clampf(1 + power * (ratio - 1), 0.4f, 2.5f), LEAST_GAIN, MOST_GAIN);
+}
+
+/* Coverage grows with about the root of a gain. Without leaves wood has to cover all. */
+static void fit(struct plan *plan, size_t count, float gains[2])
+{
+    bool leaves = plan->classes[1]->area_m2 > 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        struct shown discs = show_discs(plan, count, gains);
+        gains[0] = nearer(gains[0], plan->mesh.wood, discs.wood, 1.2f);
+        if (leaves)
+            gains[1] = nearer(gains[1], plan->mesh.covered, discs.covered, 1.6f);
     }
 }
 
-/* The radius in pixels, or 0 where points within reach do not suffice. */
-static float quantile_radius(const struct quantile *quantile, float scale)
+/* Few discs hide less of the dark within. */
+static float light_gain(struct plan *plan, size_t count, const float gains[2])
 {
-    size_t below = 0;
-    for (int bin = 0; bin < MAX_BINS; bin++) {
-        if (below + quantile->bins[bin] >= quantile->wanted) {
-            float part = (float)(quantile->wanted - below) / fmaxf((float)quantile->bins[bin], 1);
-            return ((float)bin + part) / scale;
-        }
-        below += quantile->bins[bin];
-    }
-    return 0;
+    struct shown discs = show_discs(plan, count, gains);
+    double wanted = plan->mesh.openness * discs.covered, found = discs.openness * plan->mesh.covered;
+    return found > 0 ? wd_clampf((float)(wanted / found), 0.5f, 2) : 1;
 }
 
-/* Gain of a class for the first `count` points over all plans of one view; 0 where they do not cover
- * as much as the mesh however far discs reach: few points of stems, seen from straight above. */
-static float calibrate_class(const struct wd_tree_points *points, struct plan *plans,
-                             int plan_count, size_t count, uint32_t class)
+/* From many discs to few: what suits twice as many is where to begin. */
+static void fit_side(struct plan *plan, struct wd_disc_fit *fits, int side)
 {
-    struct quantile *quantile = wd_alloc(sizeof *quantile);
-    float each = (points->leaf_area_m2 + points->wood_area_m2) / (float)count / (float)WD_PI;
-    float most = 1.5f, radius = 0, pixels_per_m = plans[0].tree.scale;
-    for (; radius == 0 && most < 40; most *= 3) {
-        float reach = sqrtf(most * each) * pixels_per_m, scale = (float)MAX_BINS / reach;
-        *quantile = (struct quantile){0};
-        for (int i = 0; i < plan_count; i++) {
-            size_t window = (size_t)i * count; /* another sample for every plan */
-            if (window + count > points->count)
-                window = 0;
-            measure_distances(&plans[i], points->points + window, count, class, reach);
-            count_distances(quantile, &plans[i], class, scale);
-        }
-        radius = quantile->wanted ? quantile_radius(quantile, scale) : 1e-3f;
-    }
-    free(quantile);
-    for (int i = 0; class == WD_POINT_ONE_SIDED && i < plan_count; i++)
-        for (size_t pixel = 0; pixel < (size_t)WD_SILHOUETTE * WD_SILHOUETTE; pixel++)
-            plans[i].wood_discs[pixel] = plans[i].distance[pixel] <= radius * radius;
-    return radius > 0 ? radius * radius / (pixels_per_m * pixels_per_m * each) : 0;
-}
-
-/* Counts without a gain take that of the next larger one, the largest that of the next smaller. */
-static void fill_gaps(float *gains)
-{
-    for (int k = WD_POINT_GAINS - 2; k >= 0; k--)
-        gains[k] = gains[k] > 0 ? gains[k] : gains[k + 1];
-    gains[0] = gains[0] > 0 ? gains[0] : 1;
-    for (int k = 1; k < WD_POINT_GAINS; k++)
-        gains[k] = gains[k] > 0 ? gains[k] : gains[k - 1];
-}
-
-static void calibrate_view(struct wd_tree_points *points, struct plan *plans, int plan_count,
-                           float *wood, float *leaf)
-{
-    for (int k = 0; k < WD_POINT_GAINS; k++) {
+    float gains[2] = {1, 1};
+    double leaves = plan->mesh.covered - plan->mesh.wood;
+    for (int k = WD_POINT_GAINS - 1; k >= 0; k--) {
         size_t count = (size_t)WD_POINT_LEAST << k;
-        wood[k] = leaf[k] = 0;
-        if (k > 0 && count > points->count) /* never drawn */
-            continue;
-        count = count < points->count ? count : points->count;
-        wood[k] = calibrate_class(points, plans, plan_count, count, WD_POINT_ONE_SIDED);
-        leaf[k] = calibrate_class(points, plans, plan_count, count, WD_POINT_LEAF);
+        fit(plan, count, gains);
+        fits->wood.gains[side][k] = gains[0];
+        fits->leaf.gains[side][k] = gains[1];
+        fits->light.gains[side][k] = light_gain(plan, count, gains);
     }
-    fill_gaps(wood);
-    fill_gaps(leaf);
+    fits->lower[side] = leaves > 0 ? (float)(plan->mesh.lower / leaves) : 0;
 }
 
-void wd_tree_points_calibrate(struct wd_tree_points *points, const struct wd_tree_mesh *mesh)
+static void plan_init(struct plan *plan, const struct wd_tree_mesh *mesh, float elevation_deg,
+                      int view_count)
 {
-    static const struct wd_vec3 turns[LEVEL_TURNS] = {
-        {1, 0, 0}, {0.6f, 0.8f, 0}, {0, 1, 0}, {-0.8f, 0.6f, 0}};
-    struct plan level[LEVEL_TURNS], above;
-    for (int i = 0; i < LEVEL_TURNS; i++)
-        plan_init(&level[i], mesh, turns[i]);
-    plan_init(&above, mesh, WD_V3(0, 0, 1));
-    calibrate_view(points, level, LEVEL_TURNS, points->wood.level, points->leaf.level);
-    calibrate_view(points, &above, 1, points->wood.above, points->leaf.above);
-    for (int i = 0; i < LEVEL_TURNS; i++)
-        plan_finish(&level[i]);
-    plan_finish(&above);
+    double elevation = (double)elevation_deg * WD_PI / 180;
+    float level = (float)wd_dcos(elevation), up = (float)wd_dsin(elevation);
+    plan->view_count = view_count;
+    plan->mesh = (struct shown){0};
+    for (int i = 0; i < view_count; i++) {
+        struct canvas *canvas = &plan->views[i];
+        double turn = 0.4 + 2 * WD_PI * i / view_count;
+        wd_silhouette_init(&canvas->frame, mesh,
+                           WD_V3(level * (float)wd_dcos(turn), level * (float)wd_dsin(turn), up));
+        canvas->nearest = wd_alloc_array(PIXELS, sizeof *canvas->nearest);
+        canvas->kind = wd_alloc(PIXELS);
+        canvas->openness = wd_alloc(PIXELS);
+        clear(canvas);
+        draw_mesh(canvas, mesh);
+        add_shown(&plan->mesh, canvas, 1);
+    }
+}
+
+static void plan_finish(struct plan *plan)
+{
+    for (int i = 0; i < plan->view_count; i++) {
+        wd_silhouette_finish(&plan->views[i].frame);
+        free(plan->views[i].nearest);
+        free(plan->views[i].kind);
+        free(plan->views[i].openness);
+    }
+}
+
+void wd_disc_fit(struct wd_disc_fit *fits, const struct wd_disc_class *wood,
+                 const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh)
+{
+    static const float elevations_deg[WD_GAIN_SIDES] = {4, 45, 90};
+    struct plan plan = {.classes = {wood, leaves}};
+    for (int side = 0; side < WD_GAIN_SIDES; side++) {
+        plan_init(&plan, mesh, elevations_deg[side], side < 2 ? MOST_VIEWS : 1);
+        fit_side(&plan, fits, side);
+        plan_finish(&plan);
+    }
 }

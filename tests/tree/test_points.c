@@ -12,7 +12,28 @@ struct sampled {
     struct wd_species species;
     struct wd_tree_model model;
     struct wd_tree_points points;
+    struct wd_disc_fit fits; /* where asked for */
 };
+
+/* Points of each kind in their order. */
+static void fit_gains(struct sampled *sampled)
+{
+    const struct wd_tree_points *points = &sampled->points;
+    struct wd_tree_point *kinds[2];
+    struct wd_disc_class classes[2];
+    for (int kind = 0; kind < 2; kind++) {
+        size_t count = 0;
+        kinds[kind] = malloc(points->count * sizeof *kinds[kind]);
+        for (size_t i = 0; i < points->count; i++)
+            if (!(points->points[i].kind & WD_POINT_LEAF) == !kind)
+                kinds[kind][count++] = points->points[i];
+        classes[kind] = (struct wd_disc_class){
+            kinds[kind], count, kind ? points->leaf_area_m2 : points->wood_area_m2};
+    }
+    wd_disc_fit(&sampled->fits, &classes[0], &classes[1], &sampled->model.full);
+    free(kinds[0]);
+    free(kinds[1]);
+}
 
 static void sample_species(struct sampled *sampled, const char *name)
 {
@@ -224,8 +245,8 @@ static void cover(const struct sampled *sampled, size_t first, size_t count, dou
     float scale = 0.9f * N / fmaxf(full->max_m[2], full->max_m[0] - full->min_m[0]);
     uint8_t *hit = calloc(2, (size_t)N * N);
     float each = (points->leaf_area_m2 + points->wood_area_m2) / (float)count / (float)WD_PI;
-    float leaf = scale * sqrtf(each * wd_point_gain(points->leaf, (float)count, 0));
-    float wood = scale * sqrtf(each * wd_point_gain(points->wood, (float)count, 0));
+    float leaf = scale * sqrtf(each * wd_point_gain(sampled->fits.leaf, (float)count, 0));
+    float wood = scale * sqrtf(each * wd_point_gain(sampled->fits.wood, (float)count, 0));
     for (size_t i = first; i < first + count; i++) {
         const float *p = points->points[i].position_m;
         float n[3], x = 0.5f * N + scale * wd_v3_dot(WD_V3(p[0], p[1], 0), right);
@@ -278,6 +299,7 @@ static void discs_cover_what_the_mesh_covers(void **state)
     for (int s = 0; s < MANY_LEAVES; s++) {
         struct sampled sampled;
         sample_species(&sampled, test_species_names[s]);
+        fit_gains(&sampled);
         for (size_t count = 64; count <= POINTS; count *= 4) {
             double discs = 0, mesh = 0;
             for (size_t window = 0; window < 4 && (window + 1) * count <= POINTS; window++) {

@@ -1,0 +1,22 @@
+/* lod.h: errors of reduced forms, species by species. */
+#ifndef WD_BENCH_LOD_H
+#define WD_BENCH_LOD_H
+
+#include "bias.h"
+
+struct lod_choice {
+    const char *gpu;
+    const char *const *species; /* names, NULL after the last; none: all in ./species */
+    unsigned forms;             /* bit i: bias_forms[i] */
+    unsigned heights;           /* bit i: bias_height_px[i] */
+};
+
+struct lod_worst {
+    struct bias any;  /* of every form and height */
+    struct bias used; /* of forms where they are drawn by default */
+};
+
+/* Prints a line for each species, form, height and view. */
+bool lod_run(struct lod_worst *worst, const struct lod_choice *choice);
+
+#endif
