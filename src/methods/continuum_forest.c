@@ -111,6 +111,7 @@ static void sample_model(void *user, size_t index)
         atomic_store(&work->failed, true);
         return;
     }
+    wd_tree_model_add_leaves(&model);
     const struct wd_point_look look = {
         work->looks + index / work->forest->variants * WD_LOOK_BYTES, WD_LOOK_SIZE};
     if (!wd_splats_init(&work->splats[index], &model, &look, work->log))
