@@ -13,12 +13,19 @@
 
 void frame_test_init(struct frame_test *test, const char *root, uint32_t disabled)
 {
+    frame_test_init_with(test, root, disabled, NULL);
+}
+
+void frame_test_init_with(struct frame_test *test, const char *root, uint32_t disabled,
+                          const char *const *settings)
+{
+    const struct wd_scene_params scene = {.settings = settings};
     char *path = wd_format("%s/tests/api/small.json", root);
     const struct wd_gpu_params gpu = {.name = "software",
                                       .validation = WD_GPU_VALIDATION_ON,
                                       .disabled_features = disabled};
     *test = (struct frame_test){0};
-    assert_true(wd_scene_load(&test->scene, path, &test->log));
+    assert_true(wd_scene_load_with(&test->scene, path, &scene, &test->log));
     assert_true(wd_world_init(&test->world, &test->scene,
                               &(struct wd_world_params){.log = &test->log}));
     assert_true(wd_gpu_init(&test->gpu, &gpu, &test->log));
@@ -68,6 +75,7 @@ void frame_test_draw(struct frame_test *test, const char *method, uint32_t camer
         .width = 320,
         .height = 240,
         .samples = 1,
+        .page_budget = test->page_budget,
     };
     params.camera.position_m[2] += (double)wd_terrain_height(
         &test->world.terrain, params.camera.position_m[0], params.camera.position_m[1]);

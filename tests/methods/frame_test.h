@@ -11,11 +11,15 @@ struct frame_test {
     struct wd_world world;
     struct wd_forest_device forest;
     struct wd_frame frame;
+    uint32_t page_budget; /* as in struct wd_frame_params */
 };
 
 /* Opens the scene of the API's tests; `root` is the source folder. `disabled`: wd_gpu_feature bits
  * that the device is to lack. Validation is on. */
 void frame_test_init(struct frame_test *test, const char *root, uint32_t disabled);
+/* The same with settings in place of the scene's; NULL: none. */
+void frame_test_init_with(struct frame_test *test, const char *root, uint32_t disabled,
+                          const char *const *settings);
 void frame_test_finish(struct frame_test *test);
 
 /* What one frame left in the G-buffer. */
