@@ -136,6 +136,7 @@ struct wd_species {
         int64_t count;        /* 0: none to be seen; on a tree of typical height */
         float size_cm;        /* diameter of a flower, length of a panicle or plume */
         int64_t petals;       /* 0: a panicle, catkin or plume */
+        float hang;           /* of a panicle: 0 stands up .. 1 hangs as a catkin */
         float color[3], center_color[3]; /* linear albedo */
         float months[2];      /* first and last; may run over the new year: [11, 4] */
     } flower;

@@ -144,6 +144,8 @@ static const struct wd_key flower_keys[] = {
      .flags = WD_KEY_EXCLUSIVE_MIN},
     {"petals", WD_KEY_INTEGER, IN(flower, petals), 0, 60, "5",
      "Petals; 0 for a panicle, catkin or plume."},
+    {"hang", WD_KEY_FLOAT, IN(flower, hang), 0, 1, "0",
+     "Of what has no petals: 0 a panicle that stands up, 1 a slender catkin that hangs."},
     {"color", WD_KEY_COLOR, IN(flower, color), .fallback = "[0.7, 0.68, 0.62]",
      .doc = "Colour of the petals (linear albedo)."},
     {"center_color", WD_KEY_COLOR, IN(flower, center_color), .fallback = "[0.55, 0.38, 0.05]",

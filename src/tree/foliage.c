@@ -200,7 +200,7 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
     leaf->size_m = wd_mixf(1.2f, 0.85f, wd_clampf(1.5f * leaf->sky, 0, 1)) *
                    wd_random_range(&random, 0.8f, 1.15f);
     float gap = form->species->orders[form->species->order_count - 1].spacing_m;
-    float loose = needles ? 0.02f : 0.3f * gap;
+    float loose = needles ? 0.02f : form->species->leaf.count == 0 ? 0 : 0.15f * gap;
     if (needles) /* a spire ends in short shoots */
         leaf->size_m *= wd_clampf(2.2f * wd_tree_envelope_m(form, WD_V3(0, 0, p.z)) /
                                       form->crown_radius_m, 0.62f, 1);

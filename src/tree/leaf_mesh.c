@@ -26,7 +26,8 @@ static struct wd_leaf_stand leaf_stand(const struct wd_leaf *leaf)
     };
 }
 
-/* A flower stands before a leaf that light reaches, turned to it; a panicle stands upright. */
+/* A flower stands before a leaf that light reaches, turned to it; a panicle stands upright, a
+ * catkin hangs from the twig. */
 static struct wd_leaf_stand flower_stand(const struct wd_leaf *leaf,
                                          const struct wd_species *species)
 {
@@ -35,12 +36,15 @@ static struct wd_leaf_stand flower_stand(const struct wd_leaf *leaf,
     float up = species->flower.petals > 0 ? 0.35f : 2.5f;
     struct wd_leaf_stand place = leaf_stand(leaf);
     struct wd_vec3 facing = wd_v3_mad(leaf->shading, WD_V3(0, 0, 1), up);
+    float hang = species->flower.hang;
+    facing = wd_v3_mix(facing, WD_V3(0, 0, -2.5f), hang);
     place.normal = wd_v3_unit(wd_v3_mad(facing, wd_random_vec3(&random), 0.35f));
     place.axis = wd_v3_square(leaf->axis, place.normal);
     place.size_m = 0.01f * species->flower.size_cm * wd_random_range(&random, 0.75f, 1.1f);
     if (species->leaf.shape == WD_LEAF_BLADE) /* a plume grows with its tuft */
         place.size_m *= fminf(leaf->size_m / (0.01f * species->leaf.length_cm), 1);
-    place.position_m = wd_v3_mad(leaf->position_m, leaf->shading, 0.3f * leaf->size_m);
+    place.position_m = wd_v3_mad(leaf->position_m, leaf->shading,
+                                 0.3f * leaf->size_m * (1 - hang));
     place.tint = wd_pack_tint(white, leaf->sky);
     return place;
 }

@@ -103,6 +103,21 @@ static void add_petals(struct wd_leaf_template *flower, int petals, enum wd_leaf
     }
 }
 
+/* Overlapping scales around an axis that hangs by its foot (z goes down): a slender spindle. */
+static void add_catkin(struct wd_leaf_template *flower, int scales)
+{
+    float longer = 26 / (float)scales;
+    for (int i = 0; i < scales; i++) {
+        float t = ((float)i + 0.5f) / (float)scales, angle = (float)i * 2.3999632f;
+        float radius = 0.075f * (1 - 0.5f * t * t);
+        struct wd_vec3 out = wd_v3_turn(WD_V3(1, 0, 0), WD_V3(0, 1, 0), angle);
+        struct wd_vec3 p = wd_v3_add(wd_v3_scale(out, 0.3f * radius), WD_V3(0, 0, 0.9f * t));
+        struct wd_vec3 d = wd_v3_unit(wd_v3_add(wd_v3_scale(out, 0.45f), WD_V3(0, 0, 1)));
+        wd_leaf_add_needle(flower, p, d, wd_v3_unit(wd_v3_cross(d, out)), 0.16f * longer,
+                           2.2f * radius);
+    }
+}
+
 /* Florets in a spiral around an upright axis, a cone in all; of grass on a stalk. */
 static void add_panicle(struct wd_leaf_template *flower, float stalk, int florets)
 {
@@ -127,6 +142,8 @@ void wd_flower_template_init(struct wd_leaf_template *flower, const struct wd_sp
     *flower = (struct wd_leaf_template){0};
     if (species->flower.petals > 0)
         add_petals(flower, (int)species->flower.petals, form);
+    else if (species->flower.hang > 0.5f)
+        add_catkin(flower, form == WD_LEAF_AS_KITE ? 6 : 26);
     else
         add_panicle(flower, grass ? 0.5f * species->leaf.length_cm / species->flower.size_cm : 0,
                     form == WD_LEAF_AS_KITE ? 6 : 26);

@@ -125,8 +125,10 @@ static void set_branch(struct wd_skeleton *skeleton, const struct wd_tree_form *
     if (form->species->form == WD_FORM_SNAG) /* it no longer bears what made it thick */
         shrink = most * (0.55f + 0.45f * wd_hash_unit(branch->key)) / wanted;
     for (size_t i = 0; i < branch->node_count; i++) {
-        float tip = 1 - 0.35f * (float)i / (float)branch->node_count;
+        float share = (float)i / (float)branch->node_count, tip = 1 - 0.35f * share;
         float radius = base * sqrtf(nodes[i].load / foot->load) * shrink * tip;
+        if (form->species->form == WD_FORM_SNAG) /* broken off where it was still thick */
+            radius = wanted * shrink * (1 - 0.45f * share);
         nodes[i].radius_m = wd_clampf(radius, wd_minf(TIP_RADIUS_M, 0.9f * joint), joint);
     }
 }

@@ -9,6 +9,8 @@
 
 enum { MAX_RINGS = 48, MAX_SIDES = 64, LEAST_SIDES = 3, MOST_STEP = 32 };
 #define MOST_RADIUS_M 20.0f /* no branch is thicker */
+/* Turns of the bark's tile a metre: what repeats up the stem comes to stand beside itself. */
+#define BARK_DRIFT 0.23f
 
 struct ring {
     struct wd_vec3 center_m, direction;
@@ -182,7 +184,8 @@ static uint32_t add_ring(const struct tube *tube, const struct ring *ring, struc
         struct wd_tree_vertex vertex = {
             .position_m = {p.x, p.y, p.z},
             .normal = wd_pack_normal(normal),
-            .uv = wd_pack_uv(tube->turns * (float)i / (float)tube->sides,
+            .uv = wd_pack_uv(tube->turns * (float)i / (float)tube->sides +
+                                 BARK_DRIFT * ring->along_m,
                              ring->along_m),
             .tint = tint,
             .kind = (uint32_t)ring->flexibility & 0xffu,
@@ -208,7 +211,7 @@ static void close_tip(const struct tube *tube, const struct ring *ring, uint32_t
     struct wd_tree_vertex vertex = {
         .position_m = {p.x, p.y, p.z},
         .normal = wd_pack_normal(normal),
-        .uv = wd_pack_uv(0.5f * tube->turns, ring->along_m),
+        .uv = wd_pack_uv(0.5f * tube->turns + BARK_DRIFT * ring->along_m, ring->along_m),
         .tint = ring_tint(tube, ring),
         .kind = (uint32_t)ring->flexibility & 0xffu,
     };
@@ -234,7 +237,7 @@ static void add_tube(const struct tube *tube, const struct ring *rings, int coun
     struct wd_vec3 side = wd_v3_side(rings[0].direction);
     uint32_t low = add_ring(tube, &rings[0], side);
     float end = rings[count - 1].radius_m;
-    int tubes = end > 0.02f ? count : count - 1;
+    int tubes = end > 0.02f || rings[count - 1].jag_m > 0 ? count : count - 1;
     for (int i = 1; i < tubes; i++) {
         side = wd_v3_square(side, rings[i].direction);
         uint32_t high = add_ring(tube, &rings[i], side);
