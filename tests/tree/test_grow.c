@@ -69,12 +69,12 @@ static void same_parameters_same_bytes(void **state)
 static void known_hashes(void **state)
 {
     static const uint64_t expected[SPECIES_COUNT] = {
-        0x1bd8a954ef8ceaf6u, 0x46cdfb362537cafau, 0xc309cc86cc002c7cu,
-        0xadee5955d1aae361u, 0x297a9952061d2250u, 0xc69ddabefcc25f62u,
-        0x8b54b84e2777319bu, 0x4666d595bc326ae1u, 0x3c687872458f7acau,
-        0x533be87cc80dd0a9u, 0xf317083f617f470bu, 0xc455902fafa85ef3u,
-        0xd60255886d4b15ceu, 0x8380da9c9d41ad83u, 0x972a03da742439f5u,
-        0x4d0410590ef196e5u, 0xb0d17166902a3187u};
+        0x10af978ba350848au, 0xa9e5e3f5df17ed22u, 0x0894c0fbb5e3f291u,
+        0xced069baf013c5f2u, 0x6a601a86e561dd01u, 0x95980ac2ef75a8dcu,
+        0x0274f424ba0bb642u, 0x5475ec3816689751u, 0xd9506eb41bf675ffu,
+        0x0be914cbc927d9ddu, 0x1b14bd1e264cb84eu, 0x884f086e485beb06u,
+        0x93ef30334eb6f54fu, 0x7b95ae13511b084du, 0x2b6d9b4a5807739au,
+        0x4e720c131f1d4543u, 0x6e578d8c9039cbeau};
     struct wd_arena arena = {0};
     int wrong = 0;
     (void)state;
