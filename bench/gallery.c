@@ -29,7 +29,7 @@ static const struct entry {
     {"lake", "scenes/gallery/lake.json", "shore", 1},
     {"hedge-rows", "scenes/gallery/hedge-rows.json", "rows", 1},
     {"winter-spruce", "scenes/gallery/winter-spruce.json", "glade", 1},
-    {"leaves", "scenes/gallery/leaves.json", "near", 3},
+    {"leaves", "scenes/gallery/leaves.json", "near", 2},
     {"understory", "scenes/gallery/understory.json", "floor", 1},
     {"bei", "scenes/bei.json", "stand", 1},
     {"quesnel", "scenes/quesnel.json", "air", 1},

@@ -19,6 +19,7 @@ layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 #include "lib/tree_vertex.glsl"
 #define push mesh.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
 #include "lib/tree_mesh.glsl"
+#include "lib/fall.glsl"
 
 /* Factor on a leaf's size, 0 where it is not drawn: it may be drawn as a twig, or thinned out. */
 float settle_leaf(uint index, vec3 foot_m, wd_tree tree)
@@ -64,5 +65,10 @@ void main()
     corner.tint = unpackUnorm4x8(leaf.tint);
     corner.kind = (v.kind & ~0xffu) | min(WD_LEAF_FLEXIBILITY(leaf) + (v.kind & 0xffu), 255u);
     corner.name = mesh.first_name + index * mesh.corner_count + at;
+    wd_tree tree = trees[instance.tree];
+    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                            + WD_TREE_VARIANT(tree) % push.variants];
+    if (model.fall_mps > 0.0)
+        leaf_falls(corner, foot, model, tree_pose_of(tree, model), wd_hash2(index, tree.random));
     tree_mesh_vertex(instance, corner);
 }

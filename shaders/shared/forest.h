@@ -50,6 +50,7 @@ struct wd_model {
     float crown_base_m;     /* height of the lowest living branch */
     float roughness;        /* of leaves, the root of GGX's alpha */
     float moss;             /* share of the stem's foot that moss covers */
+    float fall_mps;         /* speed of leaves on their way down; 0: they hang */
     float phase;            /* how far the individual is ahead in the season: -1..1 */
     WD_VEC3(behind);        /* factors on the leaves' colour of trees that are late in the season */
     WD_VEC3(ahead);         /* or early */

@@ -12,6 +12,7 @@ enum wd_species_form {
     WD_FORM_GRASS,   /* a tuft of blades: no orders */
     WD_FORM_BRAMBLE, /* arching canes from one stool */
     WD_FORM_SNAG,    /* dead: no leaves, stem and limbs broken */
+    WD_FORM_FALLING, /* air with leaves on their way down: no orders */
 };
 enum wd_phyllotaxis { WD_PHYLLOTAXIS_ALTERNATE, WD_PHYLLOTAXIS_OPPOSITE, WD_PHYLLOTAXIS_WHORLED };
 enum wd_leaf_shape {

@@ -5,7 +5,7 @@
 #define SIZE(group) sizeof(((struct wd_species *)0)->group)
 
 static const char *const forms[] = {"broadleaf", "conifer", "palm", "shrub", "fern", "grass",
-                                    "bramble", "snag", NULL};
+                                    "bramble", "snag", "falling", NULL};
 static const char *const phyllotaxes[] = {"alternate", "opposite", "whorled", NULL};
 static const char *const leaf_shapes[] = {"ovate", "lobed", "triangular", "palmate", "lanceolate",
                                           "heart", "elliptic", "blade", "needles", NULL};
@@ -271,8 +271,8 @@ static const struct wd_key species_keys[] = {
     {"decay", WD_KEY_OBJECT, FIELD(decay), .table = &decay_table,
      .doc = "What a dead tree has lost."},
     {"orders", WD_KEY_LIST, FIELD(orders), .table = &order_table,
-     .doc = "One entry for each order of branches: limbs, branches, twigs; palms, ferns and "
-            "grasses have none.",
+     .doc = "One entry for each order of branches: limbs, branches, twigs; palms, ferns, "
+            "grasses and falling leaves have none.",
      .count_offset = FIELD(order_count)},
     {"leaf", WD_KEY_OBJECT, FIELD(leaf), .table = &leaf_table, .doc = "Leaves or needle shoots."},
     {"flower", WD_KEY_OBJECT, FIELD(flower), .table = &flower_table, .doc = "Flowers."},
@@ -290,7 +290,7 @@ static const struct wd_key species_keys[] = {
 static bool check_orders(const struct wd_species *species, const struct wd_keys_place *place)
 {
     bool bare = species->form == WD_FORM_PALM || species->form == WD_FORM_FERN ||
-                species->form == WD_FORM_GRASS;
+                species->form == WD_FORM_GRASS || species->form == WD_FORM_FALLING;
     if (bare && species->order_count > 0)
         return wd_keys_error(place, "orders", "found %zu orders of branches; a %s has none",
                              species->order_count, forms[species->form]);

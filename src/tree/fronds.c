@@ -6,7 +6,7 @@
 bool wd_species_has_fronds(const struct wd_species *species)
 {
     return species->form == WD_FORM_PALM || species->form == WD_FORM_FERN ||
-           species->form == WD_FORM_GRASS;
+           species->form == WD_FORM_GRASS || species->form == WD_FORM_FALLING;
 }
 
 enum { MAX_FRONDS = 600 };
@@ -76,6 +76,23 @@ static struct wd_vec3 level(float azimuth_rad)
     return WD_V3(wd_dcos((double)azimuth_rad), wd_dsin((double)azimuth_rad), 0);
 }
 
+/* A leaf on its way down, as it hangs in the air before it moves (shaders/lib/fall.glsl). */
+static void place_falling(struct wd_leaf *leaf, const struct wd_tree_form *form, float share,
+                          struct wd_random *random)
+{
+    const struct wd_species *species = form->species;
+    float out = species->stems.spread_m * sqrtf(wd_random_unit(random));
+    struct wd_vec3 way = level(2 * (float)WD_PI * wd_random_unit(random));
+    leaf->size_m = 0.01f * species->leaf.length_cm * wd_random_range(random, 0.7f, 1.1f);
+    leaf->position_m = wd_v3_mad(WD_V3(0, 0, share * (form->height_m - leaf->size_m)), way, out);
+    struct wd_vec3 side = level(2 * (float)WD_PI * wd_random_unit(random));
+    leaf->axis = side;
+    leaf->normal = wd_v3_turn(WD_V3(0, 0, 1), wd_v3_cross(side, WD_V3(0, 0, 1)),
+                              (float)WD_PI * wd_random_signed(random));
+    leaf->shading = WD_V3(0, 0, 1);
+    leaf->flexibility = 0;
+}
+
 static void tint_frond(struct wd_leaf *leaf, float age, struct wd_random *random)
 {
     float bright = WD_LEAF_TINT_MEAN * (1.06f - 0.14f * age + 0.1f * wd_random_signed(random));
@@ -89,6 +106,13 @@ static void place_frond(struct wd_leaf *leaf, const struct wd_skeleton *skeleton
                         const struct wd_tree_form *form, int n, int of)
 {
     const struct wd_branch *stem = &skeleton->branches[0];
+    struct wd_random air = wd_random_of(wd_hash3(form->key, 0xf209d, (uint32_t)n), 2);
+    if (form->species->form == WD_FORM_FALLING) {
+        leaf->key = wd_hash3(form->key, 0xf209d, (uint32_t)n);
+        place_falling(leaf, form, (float)n / (float)(of > 1 ? of - 1 : 1), &air);
+        tint_frond(leaf, wd_random_unit(&air), &air);
+        return;
+    }
     bool palm = form->species->form == WD_FORM_PALM, fern = form->species->form == WD_FORM_FERN;
     leaf->key = wd_hash3(form->key, 0xf209d, (uint32_t)n);
     struct wd_random random = wd_random_of(leaf->key, 1);

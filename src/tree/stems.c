@@ -150,7 +150,8 @@ static void grow_palm(struct wd_skeleton *skeleton, const struct wd_tree_form *f
 /* The rootstock of a fern, the foot of a tuft of grass. */
 static void grow_rootstock(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
-    struct lean lean = {.steps = 2, .top_m = 0.03f * form->height_m};
+    bool air = form->species->form == WD_FORM_FALLING; /* a straw on the ground */
+    struct lean lean = {.steps = 2, .top_m = air ? 0.02f : 0.03f * form->height_m};
     grow_leaning(skeleton, form, &lean, wd_hash2(form->key, 0x5700));
 }
 
@@ -162,6 +163,7 @@ void wd_skeleton_grow_stems(struct wd_skeleton *skeleton, const struct wd_tree_f
         break;
     case WD_FORM_FERN:
     case WD_FORM_GRASS:
+    case WD_FORM_FALLING:
         grow_rootstock(skeleton, form);
         break;
     case WD_FORM_SHRUB:

@@ -66,6 +66,7 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         .crown_base_m = grown->crown_base_m,
         .roughness = wd_leaf_roughness(species),
         .moss = species->bark.moss,
+        .fall_mps = species->form == WD_FORM_FALLING ? 1.0f : 0,
         .phase = variant_phase(scene, index),
     };
     for (int k = 0; k < 3; k++) {
