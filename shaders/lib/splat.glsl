@@ -1,11 +1,17 @@
 /* Where a visible tree's splats lie on screen. Expects `splats` (wd_splat[]). */
 
-/* Index among all splats of the tree's splat number `at`. */
-uint splat_index(wd_splat_tree tree, uint at)
+/* Stratum (x) of the tree's splat number `at`, and which of that stratum's window it is (y). */
+uvec2 splat_turn(wd_splat_tree tree, uint at)
 {
-    uint stratum = at / tree.per_stratum, i = at - stratum * tree.per_stratum;
-    return tree.first_splat + stratum * WD_STRATUM_SPLATS
-           + ((tree.offset + i) & (WD_STRATUM_SPLATS - 1u));
+    uint turn = uint((float(at) + 0.5) / float(tree.strata)); /* exact: at is less than 2^17 */
+    return uvec2(at - turn * tree.strata, turn);
+}
+
+/* Index among all splats of the one in turn. */
+uint splat_index(wd_splat_tree tree, uvec2 turn)
+{
+    return tree.first_splat + turn.x * WD_STRATUM_SPLATS
+           + ((tree.offset + turn.y) & (WD_STRATUM_SPLATS - 1u));
 }
 
 vec3 splat_place(wd_splat splat)

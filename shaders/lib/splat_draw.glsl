@@ -53,7 +53,8 @@ void main()
     wd_splat_tree tree = splat_trees[item.tree];
     vec2 size = vec2(view.width, view.height);
     for (uint i = first; i < item.count; i += step_size) {
-        wd_splat disc = splats[splat_index(tree, item.first + i)];
+        uvec2 turn = splat_turn(tree, item.first + i);
+        wd_splat disc = splats[splat_index(tree, turn)];
         vec3 clip = splat_clip(tree, splat_place(disc));
         float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
         if (w < view.near_m)
@@ -62,7 +63,7 @@ void main()
         float depth = ORTHOGRAPHIC != 0u ? clip.z : view.near_m * inverse;
         if (depth <= 0.0)
             continue;
-        bool wood = item.first + i >= tree.per_stratum * WD_LEAF_STRATA;
+        bool wood = turn.x == WD_LEAF_STRATA;
         vec3 normal = splat_normal(disc);
         float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
         float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0))

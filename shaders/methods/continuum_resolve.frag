@@ -43,7 +43,8 @@ vec3 look_albedo(uint look)
 wd_seen seen_splat(uint id)
 {
     wd_splat_item item = items[id / WD_ITEM_SPLATS];
-    uint index = splat_index(splat_trees[item.tree], item.first + id % WD_ITEM_SPLATS);
+    wd_splat_tree tree = splat_trees[item.tree];
+    uint index = splat_index(tree, splat_turn(tree, item.first + id % WD_ITEM_SPLATS));
     wd_seen seen;
     seen.tree = item.tree;
     seen.normal = splat_normal(splats[index]);

@@ -210,19 +210,20 @@ void select_tree(uint index, float share)
     float distance_m = view.orthographic != 0u ? 1.0 : max(length(middle), 0.1);
     vec3 toward = view.orthographic != 0u ? frame.sun_direction : -normalize(middle);
 
-    vec3 sway = tree_sway(tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
+    wd_wind wind = tree_wind();
+    wind.gust = view.calm != 0u ? 0.0 : wind.gust;
+    vec3 sway = tree_sway_in(wind, tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
     float pixels_per_m = view.pixels / distance_m;
     float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m;
     bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(tree.random));
     float wanted = max(view.density * covered_px(tree, toward, pixels_per_m),
                        float(view.min_splats));
     wd_splat_tree splats;
-    splats.per_stratum = min(uint(ceil(wanted / float(WD_SPLAT_STRATA))), WD_STRATUM_SPLATS);
+    float each = min(wanted / float(WD_SPLAT_STRATA), float(WD_STRATUM_SPLATS));
     /* discs that grow cover more of each other */
     float grown = min(pow(share, -0.25), 1.2) / share;
     float size = sqrt(grown) * view.pixels;
-    vec2 radii = disc_radii(model_index, float(splats.per_stratum) * vec2(WD_LEAF_STRATA, 1.0),
-                            toward.z);
+    vec2 radii = disc_radii(model_index, each * vec2(WD_LEAF_STRATA, 1.0), toward.z);
     splats.radius = size * radii.x;
     splats.wood_radius = size * radii.y;
     uint triangles = wood ? wood_triangles(model_index, tall_px) : 0u;
@@ -244,12 +245,13 @@ void select_tree(uint index, float share)
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
     splats.first_wood = splat_models[model_index].wood_first;
-    splats.offset = wd_hash_mix(tree.random) + frame.sample_index * splats.per_stratum;
+    splats.offset = wd_hash_mix(tree.random) + frame.sample_index * uint(ceil(each));
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
-    splats.tint = leaf_tint(tree, model_index, float(splats.per_stratum * WD_SPLAT_STRATA), toward.z);
+    splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);
     vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
                              : vec2(0.0);
+    splats.strata = strata;
     fill_rows(splats, pose, model_index, foot, slope);
     splats.sway = clip_of(view.clip_from_rel * vec4(sway, 0.0));
 
@@ -257,7 +259,7 @@ void select_tree(uint index, float share)
     if (slot >= view.tree_capacity)
         return;
     splat_trees[slot] = splats;
-    add_splats(slot, splats.per_stratum * strata);
+    add_splats(slot, uint(ceil(each * float(strata))));
     if (wood)
         add_wood(slot, triangles);
 }

@@ -97,6 +97,7 @@ struct wd_splat_view {
     WD_VEC4(planes[WD_SPLAT_PLANES]); /* see struct wd_frustum */
     uint32_t plane_count;
     uint32_t orthographic;   /* 1: a cascade; depth is z, not z / w */
+    uint32_t calm;           /* 1: trees stand as the mean wind bends them */
     float pixels;            /* of a metre at w = 1 */
     float near_m;
     float typical_m;         /* height of a tree, to tell how many a far cluster needs */
@@ -136,7 +137,7 @@ struct wd_splat_tree {
     uint32_t tree;         /* in octree order */
     uint32_t first_splat;  /* of the model */
     uint32_t offset;       /* of the window in each stratum */
-    uint32_t per_stratum;  /* splats of the window */
+    uint32_t strata;       /* of how many, from the top, it has splats */
     uint32_t first_wood;   /* triangle of the model */
     uint32_t turn;         /* cosine and sine of the tree's yaw, half floats */
     uint32_t shape;        /* 1 or -1 mirrored, vertical over horizontal scale, half floats */
@@ -145,7 +146,7 @@ struct wd_splat_tree {
 
 struct wd_splat_item {
     uint32_t tree; /* index of a wd_splat_tree */
-    uint32_t first, count; /* splats of its window, or triangles of its wood */
+    uint32_t first, count; /* splats of its strata in turn, or triangles of its wood */
 };
 
 #endif

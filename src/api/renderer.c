@@ -187,15 +187,35 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
     return renderer->stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_DEVICE;
 }
 
+/* The pass to count a scope in: one of the same name within the same scope, or a new one. */
+static struct wd_pass_time *pass_of(struct wd_renderer *renderer, uint32_t depths[WD_MAX_PASSES],
+                                    const struct wd_scope_time *scope)
+{
+    for (uint32_t i = renderer->pass_count; i-- > 0 && depths[i] >= scope->depth;) {
+        if (depths[i] == scope->depth && !strcmp(renderer->passes[i].name, scope->name))
+            return &renderer->passes[i];
+    }
+    if (renderer->pass_count == WD_MAX_PASSES)
+        return NULL;
+    depths[renderer->pass_count] = scope->depth;
+    struct wd_pass_time *pass = &renderer->passes[renderer->pass_count++];
+    *pass = (struct wd_pass_time){.name = scope->name};
+    return pass;
+}
+
 /* Takes the finished sample's times as those per sample. */
 void wd_renderer_keep_times(struct wd_renderer *renderer)
 {
     const struct wd_frames *ring = &renderer->frame.ring;
+    uint32_t depths[WD_MAX_PASSES];
     renderer->pass_count = 0;
-    for (uint32_t i = 0; i < ring->last_scope_count && renderer->pass_count < WD_MAX_PASSES; i++) {
+    for (uint32_t i = 0; i < ring->last_scope_count; i++) {
         const struct wd_scope_time *scope = &ring->last_scopes[i];
-        renderer->passes[renderer->pass_count++] = (struct wd_pass_time){
-            .name = scope->name, .gpu_ms = scope->gpu_us * 1e-3, .cpu_ms = scope->cpu_us * 1e-3};
+        struct wd_pass_time *pass = pass_of(renderer, depths, scope);
+        if (!pass)
+            continue;
+        pass->gpu_ms += scope->gpu_us * 1e-3;
+        pass->cpu_ms += scope->cpu_us * 1e-3;
     }
 }
 

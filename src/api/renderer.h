@@ -6,7 +6,7 @@
 #include "frame/frame.h"
 #include "weald/renderer.h"
 
-enum { WD_MAX_PASSES = 16 };
+enum { WD_MAX_PASSES = 32 };
 
 struct wd_renderer {
     struct wd_gpu gpu;

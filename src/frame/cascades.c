@@ -8,31 +8,23 @@ static const double CASCADE_RATIO = 0.28;
 /* Penumbras and the offsets of shadow look-ups reach this far. */
 static const float CASTER_MARGIN_M = 3.0f;
 
-struct sun_axes {
-    double right[3], up[3], toward[3]; /* of the shadow map, in the local frame */
-};
-
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static struct sun_axes sun_axes(const float direction[3])
+static void sun_axes(struct wd_cascade_box *box, const float direction[3])
 {
-    struct sun_axes axes = {.toward = {direction[0], direction[1], direction[2]}};
+    double *t = box->toward, *r = box->right;
+    for (int k = 0; k < 3; k++)
+        t[k] = direction[k];
     /* Any axis across the sun's direction does, so long as it does not turn with the camera. */
-    double length = hypot(direction[0], direction[1]);
-    if (length < 1e-4) {
-        axes.right[0] = 1.0;
-    } else {
-        axes.right[0] = -direction[1] / length;
-        axes.right[1] = direction[0] / length;
-    }
-    const double *t = axes.toward, *r = axes.right;
-    axes.up[0] = t[1] * r[2] - t[2] * r[1];
-    axes.up[1] = t[2] * r[0] - t[0] * r[2];
-    axes.up[2] = t[0] * r[1] - t[1] * r[0];
-    return axes;
+    double length = hypot(t[0], t[1]);
+    r[0] = length < 1e-4 ? 1.0 : -t[1] / length;
+    r[1] = length < 1e-4 ? 0.0 : t[0] / length;
+    box->up[0] = t[1] * r[2] - t[2] * r[1];
+    box->up[1] = t[2] * r[0] - t[0] * r[2];
+    box->up[2] = t[0] * r[1] - t[1] * r[0];
 }
 
 /* The sphere round the slice [near, far] of the view: centre on the axis at `*center` metres. */
@@ -48,46 +40,58 @@ static double slice_sphere(const struct wd_view *view, double near, double far, 
     return sqrt((far - middle) * (far - middle) + corner * far * far);
 }
 
-struct box {
-    double center[3]; /* along right, up, toward; local frame */
-    double radius;
-    double depth;     /* extent along toward */
-};
+/* Moves the centre by whole texels, calm maps by large steps that they have room for, so that a
+ * camera that moves or turns changes little. */
+static void snap(struct wd_cascade_box *box, const struct wd_cascades_params *params,
+                 double center[3])
+{
+    const double *axes[3] = {box->right, box->up, box->toward};
+    double step = 2.0 * box->radius / params->size;
+    box->calm = params->calm_m > 0.0 && step >= params->calm_m;
+    if (box->calm) {
+        step = box->radius / 8.0;
+        box->radius += step;
+    }
+    for (int k = 0; k < 3; k++) {
+        box->center[k] = dot(center, axes[k]);
+        if (box->calm || k < 2)
+            box->center[k] = floor(box->center[k] / step + 0.5) * step;
+    }
+    for (int k = 0; k < 3 && box->calm; k++)
+        center[k] = axes[0][k] * box->center[0] + axes[1][k] * box->center[1] +
+                    axes[2][k] * box->center[2];
+}
 
-static struct box cascade_box(const struct wd_cascades_params *params, const struct sun_axes *axes,
-                              double near, double far)
+static void cascade_box(struct wd_cascade_box *box, const struct wd_cascades_params *params,
+                        double near, double far)
 {
     const struct wd_view *view = params->view;
     double distance, center[3];
-    double radius = slice_sphere(view, near, far, &distance);
+    *box = (struct wd_cascade_box){.radius = slice_sphere(view, near, far, &distance)};
     double sp = sin(view->camera.pitch_rad), cp = cos(view->camera.pitch_rad);
     const double forward[3] = {sin(view->camera.yaw_rad) * cp, cos(view->camera.yaw_rad) * cp, sp};
     for (int k = 0; k < 3; k++)
         center[k] = view->eye_m[k] + forward[k] * distance;
-    /* Whole texels, and a radius rounded up, so that a turning camera changes nothing. */
-    radius = ceil(radius * 16.0) / 16.0;
-    double texel = 2.0 * radius / params->size;
-    struct box box = {.radius = radius};
-    box.center[0] = floor(dot(center, axes->right) / texel + 0.5) * texel;
-    box.center[1] = floor(dot(center, axes->up) / texel + 0.5) * texel;
+    /* Rounded up, so that a turning camera changes nothing. */
+    box->radius = ceil(box->radius * 16.0) / 16.0;
+    sun_axes(box, params->sun_direction);
+    snap(box, params, center);
     /* Casters stand between the slice and the sun, no higher than the highest of all. */
-    double rise = axes->toward[2] > 0.05 ? axes->toward[2] : 0.05;
-    double low = dot(center, axes->toward) - radius;
-    double reach = (params->max_z_m - (center[2] - radius)) / rise;
-    double extent = fmin(fmax(reach, 2.0 * radius), 2.0 * radius + 20000.0);
-    box.depth = extent + 64.0;
-    box.center[2] = low - 32.0;
-    return box;
+    double rise = box->toward[2] > 0.05 ? box->toward[2] : 0.05;
+    double reach = (params->max_z_m - (center[2] - box->radius)) / rise;
+    double extent = fmin(fmax(reach, 2.0 * box->radius), 2.0 * box->radius + 20000.0);
+    box->depth = extent + 64.0;
+    box->center[2] -= box->radius + 32.0;
 }
 
-static void cascade_view(struct wd_view *cascade, const struct wd_view *view, const struct box *box,
-                         const struct sun_axes *axes)
+static void cascade_view(struct wd_view *cascade, const struct wd_view *view)
 {
+    const struct wd_cascade_box *box = &cascade->box;
     cascade->camera = view->camera;
     memcpy(cascade->eye_m, view->eye_m, sizeof cascade->eye_m);
     cascade->pixels_per_radian = view->pixels_per_radian;
     cascade->lod_scale = view->lod_scale;
-    const double *rows[3] = {axes->right, axes->up, axes->toward};
+    const double *rows[3] = {box->right, box->up, box->toward};
     const double scale[3] = {1.0 / box->radius, 1.0 / box->radius, 1.0 / box->depth};
     for (int row = 0; row < 3; row++) {
         double origin = (dot(view->eye_m, rows[row]) - box->center[row]) * scale[row];
@@ -153,15 +157,16 @@ static void keep_to_slice(struct wd_view *cascade, const struct wd_cascades_para
 void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,
                       const struct wd_cascades_params *params)
 {
-    struct sun_axes axes = sun_axes(params->sun_direction);
     double near = fmax(params->near_m, 0.66 * params->nearest_m);
     for (int i = 0; i < WD_CASCADES; i++) {
         double far = cascade_end(params, i);
-        struct box box = cascade_box(params, &axes, near, far);
         cascades[i] = (struct wd_view){
             .width = params->size, .height = params->size, .cascade = (uint32_t)i};
-        cascade_view(&cascades[i], params->view, &box, &axes);
-        keep_to_slice(&cascades[i], params, near, far);
+        const struct wd_cascade_box *box = &cascades[i].box;
+        cascade_box(&cascades[i].box, params, near, far);
+        cascade_view(&cascades[i], params->view);
+        if (!box->calm)
+            keep_to_slice(&cascades[i], params, near, far);
         memcpy(uniforms->shadow_from_rel[i], cascades[i].clip_from_rel,
                sizeof uniforms->shadow_from_rel[i]);
         for (int column = 0; column < 4; column++) {
@@ -171,8 +176,8 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
         uniforms->shadow_from_rel[i][3][0] += 0.5f;
         uniforms->shadow_from_rel[i][3][1] += 0.5f;
         uniforms->cascade_far_m[i] = (float)far;
-        uniforms->cascade_texel_m[i] = (float)(2.0 * box.radius / params->size);
-        uniforms->cascade_depth_m[i] = (float)box.depth;
+        uniforms->cascade_texel_m[i] = (float)(2.0 * box->radius / params->size);
+        uniforms->cascade_depth_m[i] = (float)box->depth;
         near = far * 0.9; /* slices overlap where one fades into the next */
     }
 }

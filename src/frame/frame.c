@@ -1,5 +1,6 @@
 #include "frame/frame.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "frame/uniforms.h"
@@ -54,6 +55,7 @@ bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *para
         if (!wd_frames_wait(&frame->ring))
             return false;
         wd_targets_finish(targets, frame->gpu);
+        memset(frame->kept, 0, sizeof frame->kept);
         if (!wd_targets_init(targets, frame->gpu, params->width, params->height, shadow_size))
             return false;
     }
@@ -64,6 +66,7 @@ bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *para
 
 void wd_frame_drop_forest(struct wd_frame *frame)
 {
+    memset(frame->kept, 0, sizeof frame->kept);
     wd_methods_drop_forest(&frame->methods, frame->gpu);
     wd_light_pass_drop_forest(&frame->light, frame->gpu);
 }
@@ -126,6 +129,15 @@ static void record_trees(const struct recording *r, const struct wd_view *view,
         frame->camera_stats = stats;
 }
 
+static bool is_kept(const struct wd_kept_cascade *kept, const struct wd_method *method,
+                    const struct wd_cascade_box *box)
+{
+    const struct wd_cascade_box *old = &kept->box;
+    return kept->method == method && box->calm && box->radius == old->radius &&
+           box->depth == old->depth && !memcmp(box->center, old->center, sizeof box->center) &&
+           !memcmp(box->toward, old->toward, sizeof box->toward);
+}
+
 /* The maps hold what stands on the ground; the ground's own shadows are in the light pass. */
 static void record_shadows(const struct recording *r)
 {
@@ -139,12 +151,17 @@ static void record_shadows(const struct recording *r)
             .depth_view = targets->shadow_layers[i],
             .depth_load = WD_LOAD_CLEAR,
         };
+        const struct wd_method *method = r->frame->params.method;
+        struct wd_kept_cascade *kept = &r->frame->kept[i];
+        if (is_kept(kept, method, &r->cascades[i].box))
+            continue;
         record_trees(r, &r->cascades[i], WD_PASS_SHADOW, &rendering);
+        *kept = (struct wd_kept_cascade){method, r->cascades[i].box};
     }
     wd_cmd_scope_end(r->cmd);
 }
 
-static void record_terrain(const struct recording *r)
+static void record_terrain(const struct recording *r, enum wd_load load)
 {
     struct wd_frame *frame = r->frame;
     const struct wd_terrain_params terrain = {
@@ -154,7 +171,7 @@ static void record_terrain(const struct recording *r)
         .error_px = (float)frame->params.forest->scene->quality.terrain_error_px,
     };
     wd_cmd_scope_begin(r->cmd, "terrain");
-    const struct wd_rendering targets = wd_targets_gbuffer(&frame->targets, WD_LOAD_CLEAR);
+    const struct wd_rendering targets = wd_targets_gbuffer(&frame->targets, load);
     wd_cmd_begin_rendering(r->cmd, &targets);
     wd_terrain_pass_record(&frame->terrain, r->cmd, &terrain);
     wd_cmd_end_rendering(r->cmd);
@@ -165,11 +182,25 @@ static void record_terrain(const struct recording *r)
 
 static void record_gbuffer(const struct recording *r)
 {
-    record_terrain(r);
+    struct wd_frame *frame = r->frame;
+    const struct wd_method *method = frame->params.method;
+    bool last = method->ground == WD_GROUND_LAST;
+    if (!last)
+        record_terrain(r, WD_LOAD_CLEAR);
     wd_cmd_scope_begin(r->cmd, "trees");
-    const struct wd_rendering targets = wd_targets_gbuffer(&r->frame->targets, WD_LOAD_KEEP);
+    const struct wd_rendering targets =
+        wd_targets_gbuffer(&frame->targets, last ? WD_LOAD_CLEAR : WD_LOAD_KEEP);
     record_trees(r, &r->view, WD_PASS_CAMERA, &targets);
     wd_cmd_scope_end(r->cmd);
+    if (last)
+        record_terrain(r, WD_LOAD_KEEP);
+    if (method->keep && wd_world_has_trees(frame->params.forest->world)) {
+        struct wd_draw_stats stats = {0};
+        const struct wd_tree_draw draw = tree_draw_of(r, &r->view, WD_PASS_CAMERA, &stats);
+        wd_cmd_scope_begin(r->cmd, "keep");
+        method->keep(frame->method_state, &draw);
+        wd_cmd_scope_end(r->cmd);
+    }
 }
 
 static bool blends(const struct recording *r)
@@ -248,6 +279,20 @@ static void record_display(const struct recording *r)
     wd_cmd_scope_end(r->cmd);
 }
 
+/* Trees on demand come in as they are planted; their maps are not kept. Else gusts and ringing move the crowns of the tallest trees by about half of this from where the mean
+ * wind bends them; less cannot be told from the grain of the shadow maps. */
+static double calm_m(const struct wd_forest_device *forest)
+{
+    const struct wd_scene *scene = forest->scene;
+    float flexibility = 0.0f;
+    if (forest->pages.capacity)
+        return 0.0;
+    for (uint32_t i = 0; i < forest->model_count; i++)
+        flexibility = fmaxf(flexibility, forest->host_models[i].flexibility);
+    double bend_m = 0.1 * scene->wind.speed_mps * (double)(flexibility * forest->max_tree_height_m);
+    return fmax(0.5 * scene->wind.gust * bend_m, 1e-6);
+}
+
 static void prepare_recording(struct recording *r, uint32_t index)
 {
     const struct wd_frame_params *params = &r->frame->params;
@@ -263,6 +308,7 @@ static void prepare_recording(struct recording *r, uint32_t index)
         .sample_index = index,
         .sample_count = params->samples,
         .view_mode = params->view_mode,
+        .calm_m = params->method->cascades == WD_CASCADES_KEPT ? calm_m(params->forest) : 0.0,
     };
     wd_uniforms_init(&r->values, &r->view, r->cascades, &uniforms);
     r->frame->near_m = r->values.near_m;
@@ -285,4 +331,6 @@ void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index)
     record_light(&r);
     if (index + 1 == frame->params.samples)
         record_display(&r);
+    if (cmd->failed)
+        memset(frame->kept, 0, sizeof frame->kept);
 }

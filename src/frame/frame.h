@@ -37,6 +37,10 @@ struct wd_frame {
     struct wd_post_pass post;
     struct wd_methods methods;       /* states of those used so far */
     void *method_state;              /* of params.method */
+    struct wd_kept_cascade {         /* what the shadow maps hold, as far as it may be kept */
+        const struct wd_method *method; /* NULL: unknown */
+        struct wd_cascade_box box;
+    } kept[WD_CASCADES];
     struct wd_draw_stats camera_stats; /* of the last sample: what the camera sees */
     struct wd_draw_stats stats;      /* of the last sample, shadows too */
     struct wd_frame_params params;

@@ -131,6 +131,7 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
         .size = params->shadow_size,
         .max_z_m = forest->world->terrain.max_m + forest->max_tree_height_m,
         .max_height_m = forest->max_tree_height_m,
+        .calm_m = params->calm_m,
     };
     memcpy(sun.sun_direction, uniforms->sun_direction, sizeof sun.sun_direction);
     wd_cascades_init(cascades, uniforms, &sun);

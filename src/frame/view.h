@@ -30,6 +30,12 @@ struct wd_view {
     uint32_t width, height;
     uint32_t cascade;           /* for shadow views: 0..WD_CASCADES - 1 */
     float lod_scale;            /* factor on the distances of the levels of detail */
+    struct wd_cascade_box {     /* of shadow views: what the map holds */
+        double right[3], up[3], toward[3]; /* its axes, local frame */
+        double center[3];       /* along them, metres; the last: where depth begins */
+        double radius, depth;   /* along right and up; along toward */
+        bool calm;              /* see wd_cascades_params.calm_m */
+    } box;
 };
 
 struct wd_view_params {
@@ -52,6 +58,10 @@ struct wd_cascades_params {
     uint32_t size;           /* texels a side */
     double max_z_m;          /* of everything that casts, local frame */
     double max_height_m;     /* of a tree */
+    /* Cascades with texels at least so large are calm: they show trees as the mean wind bends them, hold
+     * all of their box, and move in steps of a sixteenth of it: a camera that moves little changes
+     * nothing, and the map can be kept. 0: none is. */
+    double calm_m;
 };
 /* Fills the shadow members of `*uniforms` and one view a cascade. */
 void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,

@@ -322,6 +322,7 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
     *values = (struct wd_splat_view){
         .plane_count = view->frustum.count,
         .orthographic = shadow,
+        .calm = shadow && view->box.calm,
         .pixels = view->pixels_per_radian,
         .near_m = 0.1f,
         .typical_m = 0.7f * draw->forest->max_tree_height_m,
@@ -498,29 +499,6 @@ static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
     }
 }
 
-/* Keeps what this frame sees for the next one. */
-static void record_pyramid(struct continuum *c, const struct wd_tree_draw *draw)
-{
-    struct wd_cmd *cmd = draw->cmd;
-    const struct wd_view *view = draw->view;
-    wd_cmd_use_image(cmd, &draw->targets->depth, WD_USE_COMPUTE_READ);
-    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_READ);
-    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
-                                          WD_BIND_IMAGE(&draw->targets->depth, c->nearest),
-                                          WD_BIND_BUFFER(&c->history.pyramid)};
-    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
-        uint32_t texels = 8 * (4u << i); /* pixels of a workgroup */
-        wd_cmd_use_buffer(cmd, &c->history.pyramid, WD_USE_COMPUTE_WRITE);
-        wd_cmd_bind(cmd, &c->pyramid[i], bindings);
-        wd_cmd_dispatch(cmd, (view->width + texels - 1) / texels,
-                        (view->height + texels - 1) / texels, 1);
-    }
-    c->history.width = view->width;
-    c->history.height = view->height;
-    memcpy(c->history.eye_m, view->eye_m, sizeof c->history.eye_m);
-    memcpy(c->history.clip_from_rel, view->clip_from_rel, sizeof c->history.clip_from_rel);
-}
-
 static void continuum_select(void *state, const struct wd_tree_draw *draw)
 {
     struct continuum *c = state;
@@ -540,11 +518,6 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     wd_cmd_scope_begin(cmd, "splat");
     record_draws(c, draw);
     wd_cmd_scope_end(cmd);
-    if (draw->pass == WD_PASS_CAMERA) {
-        wd_cmd_scope_begin(cmd, "pyramid");
-        record_pyramid(c, draw);
-        wd_cmd_scope_end(cmd);
-    }
     wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_GRAPHICS_READ);
     wd_cmd_use_buffer(cmd, &c->trees, WD_USE_GRAPHICS_READ);
     wd_cmd_use_buffer(cmd, &c->items, WD_USE_GRAPHICS_READ);
@@ -592,9 +565,37 @@ static void continuum_draw(void *state, const struct wd_tree_draw *draw)
         draw_cascade(state, draw);
 }
 
+/* The depth pyramid of what this frame sees. */
+static void continuum_keep(void *state, const struct wd_tree_draw *draw)
+{
+    struct continuum *c = state;
+    struct wd_cmd *cmd = draw->cmd;
+    const struct wd_view *view = draw->view;
+    if (cmd->failed)
+        return;
+    wd_cmd_use_image(cmd, &draw->targets->depth, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_READ);
+    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
+                                          WD_BIND_IMAGE(&draw->targets->depth, c->nearest),
+                                          WD_BIND_BUFFER(&c->history.pyramid)};
+    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
+        uint32_t texels = 8 * (4u << i); /* pixels of a workgroup */
+        wd_cmd_use_buffer(cmd, &c->history.pyramid, WD_USE_COMPUTE_WRITE);
+        wd_cmd_bind(cmd, &c->pyramid[i], bindings);
+        wd_cmd_dispatch(cmd, (view->width + texels - 1) / texels,
+                        (view->height + texels - 1) / texels, 1);
+    }
+    c->history.width = view->width;
+    c->history.height = view->height;
+    memcpy(c->history.eye_m, view->eye_m, sizeof c->history.eye_m);
+    memcpy(c->history.clip_from_rel, view->clip_from_rel, sizeof c->history.clip_from_rel);
+}
+
 const struct wd_method wd_method_continuum = {
     .name = "continuum",
     .on_demand = true,
+    .cascades = WD_CASCADES_KEPT,
+    .ground = WD_GROUND_LAST,
     .state_size = sizeof(struct continuum),
     .init = continuum_init,
     .finish = continuum_finish,
@@ -602,4 +603,5 @@ const struct wd_method wd_method_continuum = {
     .drop_forest = continuum_drop_forest,
     .select = continuum_select,
     .draw = continuum_draw,
+    .keep = continuum_keep,
 };

@@ -10,6 +10,12 @@
 struct wd_method {
     const char *name;
     bool on_demand;    /* draws worlds whose trees are planted on demand */
+    /* Cascades that are calm (struct wd_cascade_box) are drawn without wind but its mean, as a function
+     * of their box alone, and kept for later frames. */
+    enum wd_cascade_use { WD_CASCADES_DRAWN, WD_CASCADES_KEPT } cascades;
+    /* Whether the camera's view has the ground before trees are drawn; after them, what they hide of
+     * it is not shaded. */
+    enum wd_ground_order { WD_GROUND_FIRST, WD_GROUND_LAST } ground;
     size_t state_size; /* bytes of what one renderer keeps for it; zeroed before `init` */
     /* Pipelines and the like. On failure `finish` is called all the same. */
     bool (*init)(void *state, struct wd_gpu *gpu);
@@ -23,6 +29,8 @@ struct wd_method {
     /* Inside the open rendering of the view's targets: the G-buffer over the terrain that is there
      * already, or one cascade's depth. */
     void (*draw)(void *state, const struct wd_tree_draw *draw);
+    /* Outside of any rendering, with the camera's depth complete: what it saw, for the next frame. */
+    void (*keep)(void *state, const struct wd_tree_draw *draw);
     /* Of methods that blend, and only when pixels show light: outside of any rendering, with the
      * camera's G-buffer complete: draws lit trees into targets->overlay, all of it. */
     void (*blend)(void *state, const struct wd_tree_draw *draw,

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -145,6 +146,49 @@ static void large_trees_have_the_ids_of_octree(void **state)
     frame_test_finish(&test);
 }
 
+static void *read_cascade(struct frame_test *test, uint32_t layer)
+{
+    struct wd_image *shadow = &test->frame.targets.shadow;
+    size_t size = (size_t)4 * shadow->width * shadow->height;
+    void *data = wd_alloc(size);
+    assert_true(wd_image_read(&test->gpu, shadow, layer, 0, data, size));
+    return data;
+}
+
+/* A map that is kept is the one that would be drawn. */
+static void kept_cascades_are_as_if_drawn(void **state)
+{
+    (void)state;
+    struct frame_test test;
+    frame_test_init(&test, root, 0);
+    test.scene.wind.speed_mps = 6.0;
+    test.scene.wind.gust = 0.5;
+    void *maps[2][WD_CASCADES];
+    uint32_t calm = 0;
+    for (int i = 0; i < 2; i++) {
+        for (int frame = 0; frame < 2; frame++) { /* the second one keeps what it may */
+            struct frame_picture picture;
+            test.time_s = 0.5 * i + 0.3 * frame;
+            frame_test_draw(&test, "continuum", WALK, &picture);
+            frame_picture_finish(&picture);
+        }
+        for (uint32_t k = 0; k < WD_CASCADES; k++)
+            maps[i][k] = read_cascade(&test, k);
+        if (i == 0)
+            memset(test.frame.kept, 0, sizeof test.frame.kept);
+    }
+    size_t size = (size_t)4 * test.frame.targets.shadow_size * test.frame.targets.shadow_size;
+    for (uint32_t k = 0; k < WD_CASCADES; k++) {
+        bool same = !memcmp(maps[0][k], maps[1][k], size);
+        calm += test.frame.kept[k].box.calm;
+        assert_true(same || !test.frame.kept[k].box.calm);
+        free(maps[0][k]);
+        free(maps[1][k]);
+    }
+    assert_true(calm > 0);
+    frame_test_finish(&test);
+}
+
 int main(int argc, char **argv)
 {
     root = argc > 1 ? argv[1] : ".";
@@ -152,6 +196,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(every_tree_is_in_one_cluster_and_its_bounds),
         cmocka_unit_test(two_passes_give_the_picture_of_one),
         cmocka_unit_test(nothing_seen_is_left_out),
+        cmocka_unit_test(kept_cascades_are_as_if_drawn),
         cmocka_unit_test(large_trees_have_the_ids_of_octree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

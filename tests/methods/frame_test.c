@@ -76,6 +76,8 @@ void frame_test_draw(struct frame_test *test, const char *method, uint32_t camer
         .height = 240,
         .samples = 1,
         .page_budget = test->page_budget,
+        .time_s = test->time_s,
+        .previous_time_s = test->time_s,
     };
     params.camera.position_m[2] += (double)wd_terrain_height(
         &test->world.terrain, params.camera.position_m[0], params.camera.position_m[1]);

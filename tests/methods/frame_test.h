@@ -12,6 +12,7 @@ struct frame_test {
     struct wd_forest_device forest;
     struct wd_frame frame;
     uint32_t page_budget; /* as in struct wd_frame_params */
+    double time_s; /* of the wind, in the frames to come */
 };
 
 /* Opens the scene of the API's tests; `root` is the source folder. `disabled`: wd_gpu_feature bits
