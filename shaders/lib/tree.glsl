@@ -55,6 +55,11 @@ vec3 tree_sway_in(wd_wind wind, wd_tree tree, float flexibility, float height_m,
     return vec3(shift.x_m, shift.y_m, shift.z_m);
 }
 
+vec3 tree_sway(wd_tree tree, float flexibility, float height_m, float time_s)
+{
+    return tree_sway_in(tree_wind(), tree, flexibility, height_m, time_s);
+}
+
 vec3 tree_tint(wd_tree tree, wd_model model)
 {
     return wd_tree_tint(tree, model);
