@@ -26,7 +26,7 @@
 #define WD_LEVEL_CARD_SINE 0.25 /* of the angle above or below, at which the level card begins */
 /* For the sun: one card that faces it. */
 #define WD_SHADOW_CARD_VERTICES 4
-/* Trees that one draw of cards may hold: the length of the index pattern. */
+/* Trees that one draw of cards may hold at most. */
 #define WD_CARD_BATCH 131072
 
 #define WD_LEVEL_MESH 0

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bake/blocks.h"
 #include "bake/pyramid.h"
 #include "base/dmath.h"
 #include "base/memory.h"
@@ -14,22 +15,34 @@ void wd_card_size(uint32_t mip, uint32_t *width, uint32_t *height)
     *height = WD_CARD_HEIGHT >> mip ? WD_CARD_HEIGHT >> mip : 1;
 }
 
-size_t wd_card_offset(uint32_t card, uint32_t mip)
+uint32_t wd_card_first_mip(int plane)
 {
-    size_t one = 0, before = 0;
-    for (uint32_t i = 0; i < WD_CARD_MIPS; i++) {
-        uint32_t width, height;
-        wd_card_size(i, &width, &height);
-        if (i == mip)
-            before = one;
-        one += (size_t)4 * width * height;
-    }
-    return card * one + (mip < WD_CARD_MIPS ? before : 0);
+    return plane == WD_PLANE_NORMAL ? WD_CARD_NORMAL_MIP : 0;
 }
 
-size_t wd_cards_bytes(void)
+static size_t mip_bytes(enum wd_card_texels texels, uint32_t mip)
 {
-    return wd_card_offset(WD_CARDS, WD_CARD_MIPS);
+    uint32_t width, height;
+    wd_card_size(mip, &width, &height);
+    return texels == WD_CARD_BLOCKS ? wd_blocks_bytes(width, height) : (size_t)4 * width * height;
+}
+
+size_t wd_card_offset(const struct wd_card_form *form, int plane, uint32_t card, uint32_t mip)
+{
+    size_t one = 0, before = 0;
+    for (uint32_t i = wd_card_first_mip(plane); i < WD_CARD_MIPS; i++) {
+        if (i == mip)
+            before = one;
+        one += mip_bytes(form->planes[plane], i);
+    }
+    return card * one + before;
+}
+
+size_t wd_card_plane_bytes(const struct wd_card_form *form, int plane)
+{
+    return form->planes[plane] == WD_CARD_NOTHING
+               ? 0
+               : wd_card_offset(form, plane, WD_CARDS, wd_card_first_mip(plane));
 }
 
 void wd_cards_finish(struct wd_cards *cards)
@@ -39,10 +52,12 @@ void wd_cards_finish(struct wd_cards *cards)
     *cards = (struct wd_cards){0};
 }
 
-static void init_cards(struct wd_cards *cards)
+static void init_cards(struct wd_cards *cards, const struct wd_card_form *form)
 {
+    *cards = (struct wd_cards){.form = *form};
     for (int plane = 0; plane < WD_PLANES; plane++)
-        cards->planes[plane] = wd_alloc(wd_cards_bytes());
+        if (form->planes[plane] != WD_CARD_NOTHING)
+            cards->planes[plane] = wd_alloc(wd_card_plane_bytes(form, plane));
 }
 
 /* How far the model reaches from its axis: along a card, and in any direction along x or y. */
@@ -85,42 +100,53 @@ static struct wd_bake_shot card_shot(const struct wd_card_extent *extent, uint32
 struct taking {
     struct wd_cards *cards;
     struct wd_pyramid pyramid;
+    uint8_t *texels; /* of one mip */
 };
+
+static void take_mip(struct taking *taking, uint32_t card, uint32_t mip, int plane)
+{
+    uint32_t width, height;
+    const struct wd_card_form *form = &taking->cards->form;
+    uint8_t *out = taking->cards->planes[plane] + wd_card_offset(form, plane, card, mip);
+    bool blocks = form->planes[plane] == WD_CARD_BLOCKS;
+    wd_card_size(mip, &width, &height);
+    wd_pyramid_get(&taking->pyramid, mip, plane, blocks ? taking->texels : out, (size_t)4 * width);
+    if (blocks)
+        wd_blocks_pack(out, taking->texels, width, height);
+}
 
 static void take_card(void *user, uint32_t card, const uint8_t *planes)
 {
     struct taking *taking = user;
     wd_pyramid_set(&taking->pyramid, planes);
-    for (uint32_t mip = 0; mip < WD_CARD_MIPS; mip++) {
-        uint32_t width, height;
-        wd_card_size(mip, &width, &height);
-        for (int plane = 0; plane < WD_PLANES; plane++)
-            wd_pyramid_get(&taking->pyramid, mip, plane,
-                           taking->cards->planes[plane] + wd_card_offset(card, mip),
-                           (size_t)4 * width);
-    }
+    for (int plane = 0; plane < WD_PLANES; plane++)
+        for (uint32_t mip = wd_card_first_mip(plane);
+             mip < WD_CARD_MIPS && taking->cards->planes[plane]; mip++)
+            take_mip(taking, card, mip, plane);
 }
 
 bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct wd_bake_mesh *mesh,
-                   const struct wd_card_extent *extent, enum wd_bake_parts parts)
+                   const struct wd_card_extent *extent, const struct wd_card_form *form)
 {
     struct wd_bake_shot shots[WD_CARDS];
     for (uint32_t card = 0; card < WD_CARDS; card++)
         shots[card] = card_shot(extent, card);
     const struct wd_bake_job job = {
         .mesh = *mesh,
-        .parts = parts,
+        .parts = form->parts,
         .shots = shots,
         .shot_count = WD_CARDS,
         .width = WD_CARD_WIDTH,
         .height = WD_CARD_HEIGHT,
         .samples = WD_CARD_SUPERSAMPLING,
     };
-    struct taking taking = {.cards = cards};
-    init_cards(cards);
+    struct taking taking = {.cards = cards,
+                            .texels = wd_alloc((size_t)4 * WD_CARD_WIDTH * WD_CARD_HEIGHT)};
+    init_cards(cards, form);
     wd_pyramid_init(&taking.pyramid, WD_CARD_WIDTH, WD_CARD_HEIGHT, WD_CARD_MIPS);
     bool ok = wd_baker_run(baker, &job, take_card, &taking);
     wd_pyramid_finish(&taking.pyramid);
+    free(taking.texels);
     if (!ok)
         wd_cards_finish(cards);
     return ok;
@@ -128,37 +154,49 @@ bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct 
 
 /* --- cache ------------------------------------------------------------------------------- */
 
-static uint64_t cards_key(uint64_t model_key, enum wd_bake_parts parts)
+static uint64_t cards_key(uint64_t model_key, const struct wd_card_form *form)
 {
-    const uint32_t form[] = {WD_CARD_WIDTH, WD_CARD_HEIGHT, WD_CARD_MIPS, WD_CARDS,
-                             (uint32_t)parts};
-    return wd_cache_key(model_key, form, sizeof form);
+    const uint32_t words[] = {WD_CARD_WIDTH, WD_CARD_HEIGHT, WD_CARD_MIPS, WD_CARDS,
+                              (uint32_t)form->parts, form->planes[0], form->planes[1],
+                              form->planes[2]};
+    return wd_cache_key(model_key, words, sizeof words);
+}
+
+static size_t kept_bytes(const struct wd_card_form *form)
+{
+    size_t bytes = 0;
+    for (int plane = 0; plane < WD_PLANES; plane++)
+        bytes += wd_card_plane_bytes(form, plane);
+    return bytes;
 }
 
 bool wd_cards_load(struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t model_key,
-                   enum wd_bake_parts parts)
+                   const struct wd_card_form *form)
 {
-    size_t plane = wd_cards_bytes(), size;
-    uint8_t *block = wd_cache_load(cache, "cards", cards_key(model_key, parts),
-                                   WD_PLANES * plane, &size);
-    bool found = block && size == WD_PLANES * plane;
+    size_t bytes = kept_bytes(form), size, at = 0;
+    uint8_t *block = wd_cache_load(cache, "cards", cards_key(model_key, form), bytes, &size);
+    bool found = block && size == bytes;
     *cards = (struct wd_cards){0};
-    if (found) {
-        init_cards(cards);
-        for (int i = 0; i < WD_PLANES; i++)
-            memcpy(cards->planes[i], block + (size_t)i * plane, plane);
-    }
+    if (found)
+        init_cards(cards, form);
+    for (int plane = 0; plane < WD_PLANES && found; plane++)
+        if (cards->planes[plane]) {
+            memcpy(cards->planes[plane], block + at, wd_card_plane_bytes(form, plane));
+            at += wd_card_plane_bytes(form, plane);
+        }
     free(block);
     return found;
 }
 
-void wd_cards_store(const struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t model_key,
-                    enum wd_bake_parts parts)
+void wd_cards_store(const struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t model_key)
 {
-    size_t plane = wd_cards_bytes();
-    uint8_t *block = wd_alloc(WD_PLANES * plane);
-    for (int i = 0; i < WD_PLANES; i++)
-        memcpy(block + (size_t)i * plane, cards->planes[i], plane);
-    wd_cache_store(cache, "cards", cards_key(model_key, parts), block, WD_PLANES * plane);
+    size_t bytes = kept_bytes(&cards->form), at = 0;
+    uint8_t *block = wd_alloc(bytes);
+    for (int plane = 0; plane < WD_PLANES; plane++)
+        if (cards->planes[plane]) {
+            memcpy(block + at, cards->planes[plane], wd_card_plane_bytes(&cards->form, plane));
+            at += wd_card_plane_bytes(&cards->form, plane);
+        }
+    wd_cache_store(cache, "cards", cards_key(model_key, &cards->form), block, bytes);
     free(block);
 }

@@ -22,26 +22,35 @@ struct wd_card_extent {
 };
 struct wd_card_extent wd_card_extent_of(const struct wd_tree_mesh *mesh);
 
-/* The cards of one model, card after card, mip after mip, 4 bytes a texel. What a plane
- * (WD_PLANE_*) holds is in shared/view_set.h; depth 1 is a half width before the card (of the level card: at
- * the top), 0 as far behind it (at the bottom). */
-struct wd_cards {
-    uint8_t *planes[WD_PLANES]; /* wd_cards_bytes() each */
+/* What is kept of cards: of each plane (WD_PLANE_*) nothing, 4 bytes a texel, or blocks.h's. */
+enum wd_card_texels { WD_CARD_NOTHING, WD_CARD_TEXELS, WD_CARD_BLOCKS };
+struct wd_card_form {
+    enum wd_bake_parts parts;
+    enum wd_card_texels planes[WD_PLANES];
 };
-size_t wd_cards_bytes(void);
-/* Byte offset of a mip of a card, and its size in texels. */
-size_t wd_card_offset(uint32_t card, uint32_t mip);
+
+/* The cards of one model, card after card, mip after mip: of normals from WD_CARD_NORMAL_MIP on. What
+ * a plane holds is in shared/view_set.h; depth 1 is a half width before the card (of the level card:
+ * at the top), 0 as far behind it (at the bottom). */
+struct wd_cards {
+    struct wd_card_form form;
+    uint8_t *planes[WD_PLANES]; /* wd_card_plane_bytes() each, or NULL */
+};
+/* The finest mip of a plane that is kept. */
+uint32_t wd_card_first_mip(int plane);
+size_t wd_card_plane_bytes(const struct wd_card_form *form, int plane);
+/* Byte offset of a mip of a card in a plane, and its size in texels. */
+size_t wd_card_offset(const struct wd_card_form *form, int plane, uint32_t card, uint32_t mip);
 void wd_card_size(uint32_t mip, uint32_t *width, uint32_t *height);
 void wd_cards_finish(struct wd_cards *cards); /* accepts {0} */
 
 /* Renders the cards of `mesh` at 4 x 4 samples a texel. */
 bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct wd_bake_mesh *mesh,
-                   const struct wd_card_extent *extent, enum wd_bake_parts parts);
+                   const struct wd_card_extent *extent, const struct wd_card_form *form);
 
 /* From the cache, and into it; `model_key` names mesh and looks. */
 bool wd_cards_load(struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t model_key,
-                   enum wd_bake_parts parts);
-void wd_cards_store(const struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t model_key,
-                    enum wd_bake_parts parts);
+                   const struct wd_card_form *form);
+void wd_cards_store(const struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t model_key);
 
 #endif

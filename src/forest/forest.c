@@ -14,7 +14,7 @@
 #include "tree/variant.h"
 
 /* Layers that seven bits can tell apart, inventories included. */
-enum { MAX_FADES = 128 };
+enum { MAX_FADES = 128, LEAST_CARD_BATCH = 1024 };
 
 /* Everything made on the CPU before it is uploaded. */
 struct preparation {
@@ -69,15 +69,19 @@ static bool make_table(struct wd_buffer *buffer, struct wd_gpu *gpu, const char 
 }
 
 /* Two triangles a card: corners 0 1 2, 2 1 3. */
-static bool make_card_pattern(struct wd_buffer *buffer, struct wd_gpu *gpu)
+static bool make_card_pattern(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
     static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
-    size_t cards = (size_t)WD_CARD_BATCH * WD_CARD_VERTICES / 4;
+    VkDeviceSize trees = forest->trees.size / sizeof(struct wd_tree);
+    trees = trees < LEAST_CARD_BATCH ? LEAST_CARD_BATCH
+                                     : trees < WD_CARD_BATCH ? trees : WD_CARD_BATCH;
+    size_t cards = (size_t)trees * WD_CARD_VERTICES / 4;
+    forest->quads_a_draw = (uint32_t)cards;
     uint32_t *indices = wd_alloc_array(cards * 6, sizeof *indices);
     for (size_t i = 0; i < cards * 6; i++)
         indices[i] = (uint32_t)(i / 6 * 4) + corners[i % 6];
-    bool ok = make_buffer(buffer, gpu, "card indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, indices,
-                          cards * 6 * sizeof *indices);
+    bool ok = make_buffer(&forest->card_indices, gpu, "card indices",
+                          VK_BUFFER_USAGE_INDEX_BUFFER_BIT, indices, cards * 6 * sizeof *indices);
     free(indices);
     return ok;
 }
@@ -206,13 +210,14 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
     forest->grown = work.grown;
     bool ok = wd_ground_init(&forest->ground, gpu, params->world, params->log) &&
               upload_trees(forest, gpu) && upload_fades(forest, gpu) &&
-              make_card_pattern(&forest->card_indices, gpu) &&
+              make_card_pattern(forest, gpu) &&
               wd_sampler_init(&forest->look_sampler, gpu, WD_SAMPLER_TRILINEAR_REPEAT) &&
               wd_sampler_init(&forest->card_sampler, gpu, WD_SAMPLER_MAGNIFY_CLAMP) &&
               wd_sampler_init(&forest->point_sampler, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
               (forest->model_count == 0 || prepare(&work, gpu));
     for (uint32_t i = 0; i < forest->model_count; i++)
         wd_tree_model_finish(&work.grown[i]);
+    wd_transfer_drop_staging(gpu);
     free(work.grown);
     free(work.looks);
     forest->grown = NULL;

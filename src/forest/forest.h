@@ -17,7 +17,8 @@ struct wd_forest_device {
     struct wd_buffer trees;    /* struct wd_tree[], octree order, then pages; never empty */
     struct wd_pages pages;     /* of layers on demand */
     struct wd_buffer models;   /* struct wd_model[species * variants] */
-    struct wd_buffer card_indices; /* two triangles a quad, for WD_CARD_BATCH trees */
+    struct wd_buffer card_indices; /* two triangles a quad */
+    uint32_t quads_a_draw;         /* of those: enough for all trees, or for WD_CARD_BATCH of them */
     struct wd_buffer fades;    /* struct wd_layer_fade[1 + layers]; [0] is that of inventories */
     struct wd_image looks;     /* WD_LOOK_LAYERS of each species, sRGB */
     struct wd_image look_details; /* the same layers: normal, roughness, height (tree/look_map.h) */

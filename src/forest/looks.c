@@ -108,21 +108,25 @@ bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *
     for (int i = 0; i < 256; i++)
         linear[i] = wd_srgb_decode((uint8_t)i);
     uint8_t *levels[2] = {wd_alloc(WD_LOOK_MAP_BYTES), wd_alloc(WD_LOOK_MAP_BYTES)};
+    uint8_t *mips = wd_alloc(wd_image_layer_bytes(image));
     bool ok = true;
     for (uint32_t layer = 0; layer < image->layers && ok; layer++) {
         memcpy(levels[0], layer_of(rgba, layer), WD_LOOK_MAP_BYTES);
         float covered = coverage(levels[0], WD_LOOK_SIZE);
-        for (uint32_t mip = 0; mip < image->mips && ok; mip++) {
+        for (uint32_t mip = 0, at = 0; mip < image->mips; mip++) {
             uint32_t size = WD_LOOK_SIZE >> mip;
             if (mip > 0) {
                 halve(levels[mip & 1], levels[(mip - 1) & 1], size, linear);
                 keep_coverage(levels[mip & 1], size, covered);
             }
-            ok = wd_image_upload(gpu, image, layer, mip, levels[mip & 1], (size_t)4 * size * size);
+            memcpy(mips + at, levels[mip & 1], (size_t)4 * size * size);
+            at += 4 * size * size;
         }
+        ok = wd_image_upload_layers(gpu, image, layer, 1, mips);
     }
     free(levels[0]);
     free(levels[1]);
+    free(mips);
     if (!ok)
         wd_image_finish(image, gpu);
     return ok;
@@ -134,18 +138,22 @@ bool wd_look_details_upload(struct wd_image *image, struct wd_gpu *gpu, const ui
     if (!make_image(image, gpu, "look details", VK_FORMAT_R8G8B8A8_UNORM, species_count))
         return false;
     uint8_t *levels[2] = {wd_alloc(WD_LOOK_MAP_BYTES), wd_alloc(WD_LOOK_MAP_BYTES)};
+    uint8_t *mips = wd_alloc(wd_image_layer_bytes(image));
     bool ok = true;
     for (uint32_t layer = 0; layer < image->layers && ok; layer++) {
         memcpy(levels[0], layer_of(rgba, layer) + WD_LOOK_HALF_BYTES, WD_LOOK_MAP_BYTES);
-        for (uint32_t mip = 0; mip < image->mips && ok; mip++) {
+        for (uint32_t mip = 0, at = 0; mip < image->mips; mip++) {
             uint32_t size = WD_LOOK_SIZE >> mip;
             if (mip > 0)
                 halve_linear(levels[mip & 1], levels[(mip - 1) & 1], size);
-            ok = wd_image_upload(gpu, image, layer, mip, levels[mip & 1], (size_t)4 * size * size);
+            memcpy(mips + at, levels[mip & 1], (size_t)4 * size * size);
+            at += 4 * size * size;
         }
+        ok = wd_image_upload_layers(gpu, image, layer, 1, mips);
     }
     free(levels[0]);
     free(levels[1]);
+    free(mips);
     if (!ok)
         wd_image_finish(image, gpu);
     return ok;

@@ -87,48 +87,53 @@ static bool make_image(struct wd_image *image, struct wd_gpu *gpu, struct wd_ima
 
 /* --- cards ------------------------------------------------------------------------------- */
 
-/* The finest mip of a plane that is kept. */
-static uint32_t first_mip(int plane)
+/* Normals are read once a pixel, and blocks do. Albedo's opacity is read for every card that a pixel
+ * may show: software devices unpack blocks at 4% of a frame, others in no time. */
+static struct wd_card_form card_form(const struct wd_gpu *gpu, enum wd_bake_parts parts,
+                                     struct wd_image *images[WD_PLANES])
 {
-    return plane == WD_PLANE_NORMAL ? WD_CARD_NORMAL_MIP : 0;
+    bool blocks = gpu->features & WD_GPU_FEATURE_BLOCKS;
+    const bool small[WD_PLANES] = {
+        [WD_PLANE_ALBEDO] = blocks && !gpu->software,
+        [WD_PLANE_NORMAL] = blocks,
+    };
+    struct wd_card_form form = {.parts = parts};
+    for (int plane = 0; plane < WD_PLANES; plane++)
+        form.planes[plane] = !images[plane] ? WD_CARD_NOTHING
+                             : small[plane] ? WD_CARD_BLOCKS
+                                            : WD_CARD_TEXELS;
+    return form;
 }
 
-static bool make_card_plane(struct wd_image *image, struct wd_gpu *gpu, int plane, uint32_t models)
+static VkFormat card_format(const struct wd_card_form *form, int plane)
 {
-    uint32_t width, height, first = first_mip(plane);
+    if (form->planes[plane] == WD_CARD_TEXELS)
+        return formats[plane];
+    return plane == WD_PLANE_ALBEDO ? VK_FORMAT_BC3_SRGB_BLOCK : VK_FORMAT_BC3_UNORM_BLOCK;
+}
+
+static bool make_card_plane(struct wd_image *image, struct wd_gpu *gpu,
+                            const struct wd_card_form *form, int plane, uint32_t models)
+{
+    uint32_t width, height, first = wd_card_first_mip(plane);
     wd_card_size(first, &width, &height);
     return make_image(image, gpu,
                       (struct wd_image_params){.name = names[plane],
-                                               .format = formats[plane],
+                                               .format = card_format(form, plane),
                                                .width = width,
                                                .height = height,
                                                .layers = WD_CARDS * models,
                                                .mips = WD_CARD_MIPS - first});
 }
 
-static bool upload_card_plane(struct wd_image *image, struct wd_gpu *gpu, uint32_t model,
-                              const uint8_t *plane, uint32_t first)
-{
-    for (uint32_t card = 0; card < WD_CARDS; card++) {
-        for (uint32_t mip = first; mip < WD_CARD_MIPS; mip++) {
-            uint32_t width, height;
-            wd_card_size(mip, &width, &height);
-            if (!wd_image_upload(gpu, image, model * WD_CARDS + card, mip - first,
-                                 plane + wd_card_offset(card, mip), (size_t)4 * width * height))
-                return false;
-        }
-    }
-    return true;
-}
-
 /* The baker is made when the first model is not in the cache. */
 static bool get_cards(struct wd_cards *cards, struct wd_forest_device *forest, struct wd_gpu *gpu,
-                      struct wd_baker *baker, uint32_t index, enum wd_bake_parts parts,
+                      struct wd_baker *baker, uint32_t index, const struct wd_card_form *form,
                       uint32_t *from_cache)
 {
     const struct wd_model *model = &forest->host_models[index];
     uint64_t key = forest->model_keys[index];
-    if (wd_cards_load(cards, &forest->cache, key, parts)) {
+    if (wd_cards_load(cards, &forest->cache, key, form)) {
         ++*from_cache;
         return true;
     }
@@ -137,10 +142,10 @@ static bool get_cards(struct wd_cards *cards, struct wd_forest_device *forest, s
     struct wd_model_mesh mesh = {0};
     bool ok = (baker->gpu || wd_baker_init(baker, gpu, gpu->log)) &&
               wd_model_mesh_init(&mesh, gpu, forest, index) &&
-              wd_cards_bake(cards, baker, &mesh.mesh, &extent, parts);
+              wd_cards_bake(cards, baker, &mesh.mesh, &extent, form);
     wd_model_mesh_finish(&mesh, gpu);
     if (ok)
-        wd_cards_store(cards, &forest->cache, key, parts);
+        wd_cards_store(cards, &forest->cache, key);
     return ok;
 }
 
@@ -148,18 +153,19 @@ bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
                           enum wd_bake_parts parts, struct wd_image *images[WD_PLANES],
                           const struct wd_progress *progress, uint32_t *from_cache)
 {
+    const struct wd_card_form form = card_form(gpu, parts, images);
     struct wd_baker baker = {0};
     bool ok = true;
     *from_cache = 0;
     for (int k = 0; k < WD_PLANES && ok; k++)
-        ok = !images[k] || make_card_plane(images[k], gpu, k, forest->model_count);
+        ok = !images[k] || make_card_plane(images[k], gpu, &form, k, forest->model_count);
     for (uint32_t i = 0; i < forest->model_count && ok; i++) {
         struct wd_cards cards = {0};
         ok = wd_progress_report(progress, "baking trees", i, forest->model_count) &&
-             get_cards(&cards, forest, gpu, &baker, i, parts, from_cache);
+             get_cards(&cards, forest, gpu, &baker, i, &form, from_cache);
         for (int k = 0; k < WD_PLANES && ok; k++)
             ok = !images[k] ||
-                 upload_card_plane(images[k], gpu, i, cards.planes[k], first_mip(k));
+                 wd_image_upload_layers(gpu, images[k], i * WD_CARDS, WD_CARDS, cards.planes[k]);
         wd_cards_finish(&cards);
     }
     wd_baker_finish(&baker);

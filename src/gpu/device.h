@@ -46,6 +46,7 @@ enum wd_gpu_feature {
     WD_GPU_FEATURE_ANISOTROPY = 1 << 4,
     WD_GPU_FEATURE_TIMESTAMPS = 1 << 5, /* and they are true: never set on software devices */
     WD_GPU_FEATURE_DEBUG_LABELS = 1 << 6,
+    WD_GPU_FEATURE_BLOCKS = 1 << 7, /* textureCompressionBC */
 };
 
 struct wd_gpu {

@@ -30,6 +30,7 @@ static const struct feature all_features[] = {
     FEATURE(v12, drawIndirectCount, WD_GPU_FEATURE_DRAW_INDIRECT_COUNT),
     FEATURE(base.features, depthClamp, WD_GPU_FEATURE_DEPTH_CLAMP),
     FEATURE(base.features, samplerAnisotropy, WD_GPU_FEATURE_ANISOTROPY),
+    FEATURE(base.features, textureCompressionBC, WD_GPU_FEATURE_BLOCKS),
 };
 enum { FEATURE_COUNT = sizeof all_features / sizeof all_features[0] };
 

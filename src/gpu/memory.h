@@ -101,7 +101,18 @@ bool wd_image_upload(struct wd_gpu *gpu, struct wd_image *image, uint32_t layer,
 bool wd_image_read(struct wd_gpu *gpu, struct wd_image *image, uint32_t layer, uint32_t mip,
                    void *data, size_t size);
 
-/* Bytes of one texel; 0 for formats the renderer does not use. */
+/* Whole layers at once: each is its mips, finest first, tightly packed. One submission for as many as
+ * the staging holds. */
+bool wd_image_upload_layers(struct wd_gpu *gpu, struct wd_image *image, uint32_t first,
+                            uint32_t count, const void *data);
+size_t wd_image_layer_bytes(const struct wd_image *image);
+
+/* Gives the staging's memory back; the next transfer makes it anew. */
+void wd_transfer_drop_staging(struct wd_gpu *gpu);
+
+/* Bytes of one texel, or of one block of block_side x block_side texels; 0 for formats the renderer
+ * does not use. */
 uint32_t wd_format_texel_bytes(VkFormat format);
+uint32_t wd_format_block_side(VkFormat format);
 
 #endif

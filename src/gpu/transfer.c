@@ -167,41 +167,56 @@ bool wd_buffer_read(struct wd_gpu *gpu, struct wd_buffer *buffer, VkDeviceSize o
     return true;
 }
 
-/* One mip of one layer, moved in bands of whole rows. */
+/* One mip of one layer, moved in bands of whole rows: of texels, or of blocks of them. */
 struct bands {
-    uint32_t layer, mip, width, height;
+    uint32_t layer, mip, width, height, block_side, rows;
     size_t row_bytes;
     uint32_t rows_per_band;
 };
+
+static struct bands bands_of(const struct wd_image *image, uint32_t layer, uint32_t mip)
+{
+    uint32_t width = image->width >> mip, height = image->height >> mip;
+    struct bands bands = {layer, mip, width ? width : 1, height ? height : 1,
+                          wd_format_block_side(image->format), 0, 0, 1};
+    bands.rows = (bands.height + bands.block_side - 1) / bands.block_side;
+    bands.row_bytes = (size_t)((bands.width + bands.block_side - 1) / bands.block_side) *
+                      wd_format_texel_bytes(image->format);
+    return bands;
+}
 
 static bool plan_bands(struct wd_gpu *gpu, const struct wd_image *image, uint32_t layer,
                        uint32_t mip, size_t size, struct bands *bands)
 {
     assert(layer < image->layers && mip < image->mips);
-    uint32_t width = image->width >> mip, height = image->height >> mip;
-    *bands = (struct bands){layer, mip, width ? width : 1, height ? height : 1, 0, 1};
-    bands->row_bytes = (size_t)bands->width * wd_format_texel_bytes(image->format);
-    if (bands->row_bytes == 0 || size != bands->row_bytes * bands->height) {
+    *bands = bands_of(image, layer, mip);
+    if (bands->row_bytes == 0 || size != bands->row_bytes * bands->rows) {
         return wd_error(gpu->log, "image data of %zu bytes where %ux%u texels of %u bytes are due",
                         size, bands->width, bands->height, wd_format_texel_bytes(image->format));
     }
     if (bands->row_bytes < chunk_bytes)
         bands->rows_per_band = (uint32_t)(chunk_bytes / bands->row_bytes);
-    if (bands->rows_per_band > bands->height)
-        bands->rows_per_band = bands->height;
+    if (bands->rows_per_band > bands->rows)
+        bands->rows_per_band = bands->rows;
     return true;
 }
 
 static VkBufferImageCopy band_copy(const struct wd_image *image, const struct bands *bands,
                                    uint32_t row)
 {
-    uint32_t left = bands->height - row;
+    uint32_t first = row * bands->block_side, most = bands->rows_per_band * bands->block_side;
+    uint32_t left = bands->height - first;
     return (VkBufferImageCopy){
         .imageSubresource = {image->aspect, bands->mip, bands->layer, 1},
-        .imageOffset = {0, (int32_t)row, 0},
-        .imageExtent = {bands->width,
-                        left < bands->rows_per_band ? left : bands->rows_per_band, 1},
+        .imageOffset = {0, (int32_t)first, 0},
+        .imageExtent = {bands->width, left < most ? left : most, 1},
     };
+}
+
+static size_t band_bytes(const struct bands *bands, const VkBufferImageCopy *copy)
+{
+    return bands->row_bytes *
+           ((copy->imageExtent.height + bands->block_side - 1) / bands->block_side);
 }
 
 bool wd_image_upload(struct wd_gpu *gpu, struct wd_image *image, uint32_t layer, uint32_t mip,
@@ -210,9 +225,9 @@ bool wd_image_upload(struct wd_gpu *gpu, struct wd_image *image, uint32_t layer,
     struct bands bands;
     if (!plan_bands(gpu, image, layer, mip, size, &bands))
         return false;
-    for (uint32_t row = 0; row < bands.height; row += bands.rows_per_band) {
+    for (uint32_t row = 0; row < bands.rows; row += bands.rows_per_band) {
         VkBufferImageCopy copy = band_copy(image, &bands, row);
-        size_t part = bands.row_bytes * copy.imageExtent.height;
+        size_t part = band_bytes(&bands, &copy);
         if (!begin(gpu, WD_MEMORY_UPLOAD, part))
             return false;
         struct wd_buffer *staging = &gpu->transfer->upload;
@@ -226,15 +241,67 @@ bool wd_image_upload(struct wd_gpu *gpu, struct wd_image *image, uint32_t layer,
     return true;
 }
 
+size_t wd_image_layer_bytes(const struct wd_image *image)
+{
+    size_t bytes = 0;
+    for (uint32_t mip = 0; mip < image->mips; mip++) {
+        const struct bands bands = bands_of(image, 0, mip);
+        bytes += bands.row_bytes * bands.rows;
+    }
+    return bytes;
+}
+
+/* Records the copies of one layer's mips from `offset` of the staging on. */
+static void copy_layer(struct wd_gpu *gpu, struct wd_image *image, uint32_t layer, size_t offset)
+{
+    for (uint32_t mip = 0; mip < image->mips; mip++) {
+        struct bands bands = bands_of(image, layer, mip);
+        bands.rows_per_band = bands.rows;
+        VkBufferImageCopy copy = band_copy(image, &bands, 0);
+        copy.bufferOffset = offset;
+        vkCmdCopyBufferToImage(gpu->transfer->commands, gpu->transfer->upload.buffer, image->image,
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+        offset += bands.row_bytes * bands.rows;
+    }
+}
+
+bool wd_image_upload_layers(struct wd_gpu *gpu, struct wd_image *image, uint32_t first,
+                            uint32_t count, const void *data)
+{
+    size_t bytes = wd_image_layer_bytes(image);
+    assert(first + count <= image->layers && bytes <= chunk_bytes);
+    uint32_t most = (uint32_t)(chunk_bytes / bytes);
+    for (uint32_t done = 0; done < count; done += most) {
+        uint32_t part = count - done < most ? count - done : most;
+        if (!begin(gpu, WD_MEMORY_UPLOAD, part * bytes))
+            return false;
+        memcpy(gpu->transfer->upload.mapped, (const char *)data + done * bytes, part * bytes);
+        use_image(gpu, image, WD_USE_TRANSFER_WRITE);
+        for (uint32_t i = 0; i < part; i++)
+            copy_layer(gpu, image, first + done + i, i * bytes);
+        if (!submit_and_wait(gpu))
+            return false;
+    }
+    return true;
+}
+
+void wd_transfer_drop_staging(struct wd_gpu *gpu)
+{
+    if (!gpu->transfer)
+        return;
+    wd_buffer_finish(&gpu->transfer->upload, gpu);
+    wd_buffer_finish(&gpu->transfer->readback, gpu);
+}
+
 bool wd_image_read(struct wd_gpu *gpu, struct wd_image *image, uint32_t layer, uint32_t mip,
                    void *data, size_t size)
 {
     struct bands bands;
     if (!plan_bands(gpu, image, layer, mip, size, &bands))
         return false;
-    for (uint32_t row = 0; row < bands.height; row += bands.rows_per_band) {
+    for (uint32_t row = 0; row < bands.rows; row += bands.rows_per_band) {
         VkBufferImageCopy copy = band_copy(image, &bands, row);
-        size_t part = bands.row_bytes * copy.imageExtent.height;
+        size_t part = band_bytes(&bands, &copy);
         if (!begin(gpu, WD_MEMORY_READBACK, part))
             return false;
         struct wd_buffer *staging = &gpu->transfer->readback;

@@ -36,7 +36,7 @@ static const uint32_t card_resolve_frag[] =
 
 enum {
     GROUP = 64,
-    MAX_CARDS = WD_CARD_BATCH * WD_CARD_VERTICES / 4, /* what the index pattern reaches */
+    MAX_CARDS = WD_CARD_BATCH * WD_CARD_VERTICES / 4,
     CORNERS_BYTES = 4 * sizeof(struct wd_card_vertex),
 };
 static const VkDescriptorType IMAGE = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
@@ -147,14 +147,14 @@ static void add_chunks(struct wd_card_soup *soup, uint32_t begin, uint32_t end, 
 
 /* Moves ranges into chunks. */
 static void take_ranges(struct wd_card_soup *soup, struct wd_selection *selection,
-                        enum wd_tree_pass pass)
+                        enum wd_tree_pass pass, uint32_t most_cards)
 {
     size_t taken = 0;
     soup->chunk_count = soup->tree_count = soup->most_cards = 0;
     for (; taken < selection->range_count; taken++) {
         struct wd_range *range = &selection->ranges[taken];
         uint32_t slots = pass == WD_PASS_SHADOW ? 1 : range->card_vertices / 4;
-        uint32_t room = (MAX_CARDS - soup->most_cards) / slots, trees = range->end - range->begin;
+        uint32_t room = (most_cards - soup->most_cards) / slots, trees = range->end - range->begin;
         uint32_t count = trees < room ? trees : room;
         add_chunks(soup, range->begin, range->begin + count, slots);
         soup->most_cards += count * slots;
@@ -299,7 +299,7 @@ void wd_card_soup_make(struct wd_card_soup *soup, const struct wd_tree_draw *dra
     soup->chunk_count = 0;
     if (!selection->range_count || draw->cmd->failed)
         return;
-    take_ranges(soup, selection, draw->pass);
+    take_ranges(soup, selection, draw->pass, draw->forest->quads_a_draw);
     uint32_t cards = soup->most_cards;
     struct wd_binding planes, chunks;
     bool ok = make_room(&soup->firsts, draw, "card counts", soup->chunk_count, sizeof(uint32_t),

@@ -332,7 +332,7 @@ static void draw_billboards(const struct dissolve *dissolve, const struct wd_tre
         .pixels_per_radian = draw->view->pixels_per_radian,
         .one_view = forest->scene->methods.dissolve.faithful,
     };
-    const uint32_t most = WD_CARD_BATCH * WD_CARD_VERTICES / 4;
+    const uint32_t most = forest->quads_a_draw;
     wd_cmd_bind(draw->cmd, &dissolve->cards, bindings);
     wd_cmd_push(draw->cmd, &dissolve->cards, &push, sizeof push);
     wd_cmd_bind_indices(draw->cmd, &forest->card_indices);

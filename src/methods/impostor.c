@@ -325,7 +325,7 @@ static void draw_impostors(const struct wd_tree_draw *draw, const struct wd_pipe
                            struct wd_impostor_push *push, uint32_t first, uint32_t count)
 {
     uint32_t vertices = push->cubes ? WD_CUBE_VERTICES : WD_SPRITE_VERTICES;
-    uint32_t most = WD_CARD_BATCH * WD_CARD_VERTICES / vertices;
+    uint32_t most = draw->forest->quads_a_draw * 4 / vertices;
     for (uint32_t at = 0; at < count; at += most) {
         uint32_t part = count - at < most ? count - at : most;
         push->first = first + at;

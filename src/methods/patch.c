@@ -31,7 +31,7 @@ static const uint32_t tree_card_frag[] =
         words, sizeof words, #words                                                                \
     }
 
-enum { BINDINGS = 11, QUADS_A_DRAW = WD_CARD_BATCH * WD_CARD_VERTICES / 4 };
+enum { BINDINGS = 11 };
 
 /* A patch on the device. */
 struct resident {
@@ -381,8 +381,8 @@ static void draw_quads(const struct drawing *d, struct wd_binding table, uint32_
     wd_cmd_bind(cmd, d->pipeline, bindings);
     wd_cmd_push(cmd, d->pipeline, &d->push, sizeof d->push);
     wd_cmd_bind_indices(cmd, &forest->card_indices);
-    for (uint32_t at = 0; at < quads; at += QUADS_A_DRAW) {
-        uint32_t count = quads - at < QUADS_A_DRAW ? quads - at : QUADS_A_DRAW;
+    for (uint32_t at = 0; at < quads; at += forest->quads_a_draw) {
+        uint32_t count = quads - at < forest->quads_a_draw ? quads - at : forest->quads_a_draw;
         wd_cmd_draw_indexed(cmd, &(VkDrawIndexedIndirectCommand){count * 6, 1, 0,
                                                                  (int32_t)(at * 4), 0});
         d->draw->stats->draw_calls++;

@@ -338,6 +338,11 @@ static void bind_cards(const struct wd_tree_draw *draw, const struct wd_pipeline
     wd_cmd_bind_indices(draw->cmd, &forest->card_indices);
 }
 
+static uint32_t card_batch(const struct wd_tree_draw *draw)
+{
+    return draw->forest->quads_a_draw * 4 / WD_CARD_VERTICES;
+}
+
 /* Trees (or list slots) of a range as cards, in draws of at most `batch`. */
 static void draw_card_range(const struct wd_tree_draw *draw, const struct wd_pipeline *pipeline,
                             const struct wd_range *range, uint32_t batch)
@@ -364,7 +369,7 @@ void wd_tree_draw_card_ranges(const struct wd_tree_draw *draw, const struct wd_r
     /* octree order reads no instances; the slot is filled all the same */
     bind_cards(draw, pipeline, WD_BIND_BUFFER(list ? list : &draw->forest->trees));
     for (size_t i = 0; i < count; i++)
-        draw_card_range(draw, pipeline, &ranges[i], WD_CARD_BATCH);
+        draw_card_range(draw, pipeline, &ranges[i], card_batch(draw));
 }
 
 static void draw_cards(const struct wd_tree_draw *draw, const struct wd_selection *selection,
@@ -377,7 +382,8 @@ static void draw_cards(const struct wd_tree_draw *draw, const struct wd_selectio
         const struct wd_pipeline *pipeline = &draw->pipelines->card_listed[draw->pass];
         const struct wd_range list = {0, (uint32_t)selection->card_count, WD_CARD_VERTICES};
         bind_cards(draw, pipeline, instances);
-        draw_card_range(draw, pipeline, &list, grouping == WD_DRAW_GROUPED ? WD_CARD_BATCH : 1);
+        draw_card_range(draw, pipeline, &list,
+                        grouping == WD_DRAW_GROUPED ? card_batch(draw) : 1);
     }
 }
 

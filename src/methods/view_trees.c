@@ -117,7 +117,7 @@ static void draw_pictures(const struct wd_view_trees *trees, const struct wd_tre
                           const struct wd_view_push *push)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const uint32_t most = WD_CARD_BATCH * WD_CARD_VERTICES / 4;
+    const uint32_t most = forest->quads_a_draw;
     struct wd_binding instances;
     size_t bytes = trees->tree_count * sizeof *trees->trees;
     void *memory = trees->tree_count ? wd_cmd_upload(draw->cmd, bytes, &instances) : NULL;

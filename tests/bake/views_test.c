@@ -236,19 +236,21 @@ static void cards_show_the_cube_from_three_sides_and_above(void **state)
     make(&f, state, add_cube, NULL);
     const struct wd_card_extent extent = {2.0f, 2.0f, 0.0f, 2.0f};
     struct wd_cards cards;
-    assert_true(wd_cards_bake(&cards, &f.baker, &f.device.mesh, &extent, WD_BAKE_ALL));
+    const struct wd_card_form form = {WD_BAKE_ALL,
+                                      {WD_CARD_TEXELS, WD_CARD_BLOCKS, WD_CARD_TEXELS}};
+    assert_true(wd_cards_bake(&cards, &f.baker, &f.device.mesh, &extent, &form));
     static const double widths[WD_CARDS] = {0.5, 0.683, 0.683, 0.25};
     for (uint32_t card = 0; card < WD_CARDS; card++) {
         size_t count = (size_t)WD_CARD_WIDTH * WD_CARD_HEIGHT;
-        const uint8_t *albedo = cards.planes[WD_PLANE_ALBEDO] + wd_card_offset(card, 0);
+        const uint8_t *albedo = cards.planes[WD_PLANE_ALBEDO] + wd_card_offset(&form, WD_PLANE_ALBEDO, card, 0);
         double sum = 0.0;
         for (size_t i = 0; i < count; i++)
             sum += albedo[4 * i + 3] / 255.0;
         assert_float_equal(sum / (double)count, widths[card], 0.01);
     }
     size_t middle = (size_t)4 * (WD_CARD_HEIGHT / 2 * WD_CARD_WIDTH + WD_CARD_WIDTH / 2);
-    const uint8_t *side = cards.planes[WD_PLANE_DEPTH] + wd_card_offset(0, 0) + middle;
-    const uint8_t *above = cards.planes[WD_PLANE_DEPTH] + wd_card_offset(3, 0) + middle;
+    const uint8_t *side = cards.planes[WD_PLANE_DEPTH] + wd_card_offset(&form, WD_PLANE_DEPTH, 0, 0) + middle;
+    const uint8_t *above = cards.planes[WD_PLANE_DEPTH] + wd_card_offset(&form, WD_PLANE_DEPTH, 3, 0) + middle;
     assert_in_range(side[0], 190, 192); /* the wall 1 m before the card that reaches 2 m */
     assert_in_range(side[1], 63, 65);
     assert_int_equal(above[0], 255);
