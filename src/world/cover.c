@@ -56,7 +56,7 @@ static void add_expected(void *user, size_t row)
             if (layer->max_height_m * 100.0f < (float)LOWEST_CM)
                 continue;
             double spacing_m = layer->placement.input.layer.cell_mm * 0.001;
-            area += wd_demand_density(layer, min_m, max_m, 1) * layer->crown_area_m2 /
+            area += wd_demand_density(&layer->placement, min_m, max_m, 1) * layer->crown_area_m2 /
                     (spacing_m * spacing_m);
         }
         uint8_t *cover = &world->cover[row * world->cover_width + column];

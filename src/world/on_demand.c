@@ -9,6 +9,33 @@
 /* The most trees that a device which binds 128 MiB at once can hold. */
 static const double MOST_STORED = 4.0 * 1024.0 * 1024.0;
 
+double wd_demand_density(const struct wd_placement *placement, const double min_m[2],
+                         const double max_m[2], uint32_t points)
+{
+    const struct wd_place_input *input = &placement->input;
+    double sum = 0.0, planted = fmin(fmax(placement->layer->density, 0.0), 1.0);
+    for (uint32_t i = 0; i < points * points; i++) {
+        double at_mm[2];
+        for (int axis = 0; axis < 2; axis++) {
+            uint32_t step = axis ? i / points : i % points;
+            at_mm[axis] =
+                1000.0 * (min_m[axis] + (step + 0.5) / points * (max_m[axis] - min_m[axis]));
+            at_mm[axis] = fmin(fmax(at_mm[axis], 0.0), input->layer.extent_mm[axis]);
+        }
+        sum += (double)wd_place_odds_at(input, (int32_t)at_mm[0], (int32_t)at_mm[1], -1.0f).chance;
+    }
+    return planted * sum / ((double)points * points);
+}
+
+/* Of all the ground. */
+static double all_trees(const struct wd_placement *placement)
+{
+    const struct wd_place_layer *numbers = &placement->input.layer;
+    const double extent_m[2] = {numbers->extent_mm[0] * 0.001, numbers->extent_mm[1] * 0.001};
+    return (double)numbers->columns * numbers->rows *
+           wd_demand_density(placement, (double[2]){0.0, 0.0}, extent_m, 512);
+}
+
 static double grid_cells(const struct wd_scene_layer *layer, const struct wd_terrain *terrain)
 {
     double spacing_m = layer->spacing_m > 0.0 ? layer->spacing_m : 1.0;
@@ -16,15 +43,34 @@ static double grid_cells(const struct wd_scene_layer *layer, const struct wd_ter
            layer->density;
 }
 
-bool wd_demand_wants(const struct wd_scene *scene, const struct wd_terrain *terrain, size_t layer)
+/* Adds what is to be expected by density and rules. */
+static bool add_expected(const struct wd_placement_params *params, size_t layer, double *trees)
 {
-    if (scene->layers[layer].placement != WD_PLACE_GRID || scene->planting == WD_PLANTING_STORED)
-        return false;
-    double cells = 0.0;
+    struct wd_placement placement;
+    bool ok = wd_placement_init(&placement, params, layer);
+    if (ok)
+        *trees += all_trees(&placement);
+    wd_placement_finish(&placement);
+    return ok;
+}
+
+bool wd_demand_wanted(const struct wd_placement_params *params, bool *wanted)
+{
+    const struct wd_scene *scene = params->scene;
+    double most = 0.0, trees = 0.0;
+    *wanted = scene->planting == WD_PLANTING_ON_DEMAND;
+    if (scene->planting != WD_PLANTING_AUTO)
+        return true;
     for (size_t i = 0; i < scene->layer_count; i++)
         if (scene->layers[i].placement == WD_PLACE_GRID)
-            cells += grid_cells(&scene->layers[i], terrain);
-    return scene->planting == WD_PLANTING_ON_DEMAND || cells > MOST_STORED;
+            most += grid_cells(&scene->layers[i], params->terrain);
+    if (most <= MOST_STORED)
+        return true;
+    for (size_t i = 0; i < scene->layer_count; i++)
+        if (scene->layers[i].placement == WD_PLACE_GRID && !add_expected(params, i, &trees))
+            return false;
+    *wanted = trees > MOST_STORED;
+    return true;
 }
 
 /* --- layers ------------------------------------------------------------------------------- */
@@ -69,11 +115,10 @@ void wd_demand_add(struct wd_demand *demand, struct wd_placement *placement,
     *added = (struct wd_demand_layer){.placement = *placement, .index = (uint32_t)layer};
     *placement = (struct wd_placement){0};
     const struct wd_place_layer *numbers = &added->placement.input.layer;
-    const double extent_m[2] = {numbers->extent_mm[0] * 0.001, numbers->extent_mm[1] * 0.001};
     uint64_t cells = (uint64_t)numbers->columns * numbers->rows;
     added->first_id = (uint32_t)(1 + stored + demand->cells);
     added->levels = level_count(numbers);
-    added->trees = (double)cells * wd_demand_density(added, (double[2]){0.0, 0.0}, extent_m, 512);
+    added->trees = all_trees(&added->placement);
     describe_trees(added, scene);
     demand->cells += cells;
     demand->trees += added->trees;
@@ -85,24 +130,6 @@ void wd_demand_finish(struct wd_demand *demand)
         wd_placement_finish(&demand->layers[i].placement);
     free(demand->layers);
     *demand = (struct wd_demand){0};
-}
-
-double wd_demand_density(const struct wd_demand_layer *layer, const double min_m[2],
-                         const double max_m[2], uint32_t points)
-{
-    const struct wd_place_input *input = &layer->placement.input;
-    double sum = 0.0, planted = fmin(fmax(layer->placement.layer->density, 0.0), 1.0);
-    for (uint32_t i = 0; i < points * points; i++) {
-        double at_mm[2];
-        for (int axis = 0; axis < 2; axis++) {
-            uint32_t step = axis ? i / points : i % points;
-            at_mm[axis] =
-                1000.0 * (min_m[axis] + (step + 0.5) / points * (max_m[axis] - min_m[axis]));
-            at_mm[axis] = fmin(fmax(at_mm[axis], 0.0), input->layer.extent_mm[axis]);
-        }
-        sum += (double)wd_place_odds_at(input, (int32_t)at_mm[0], (int32_t)at_mm[1], -1.0f).chance;
-    }
-    return planted * sum / ((double)points * points);
 }
 
 bool wd_demand_is_none(const struct wd_demand *demand, const char *who, const struct wd_log *log)

@@ -25,9 +25,10 @@ struct wd_demand {
     double trees;   /* expected */
 };
 
-/* Whether the scene's layer is to be planted on demand: grids only, as the scene's "planting" says;
- * "auto": where grids have more cells than some device can hold trees. */
-bool wd_demand_wants(const struct wd_scene *scene, const struct wd_terrain *terrain, size_t layer);
+/* `*wanted`: grids are to be planted on demand, as the scene's "planting" says; "auto": where more
+ * trees are to be expected of them than some device can hold. False: a layer cannot be made
+ * ready, and it has been said why. */
+bool wd_demand_wanted(const struct wd_placement_params *params, bool *wanted);
 
 /* Takes the placement over, whose layer is the scene's. Ids begin after `stored` trees. */
 void wd_demand_add(struct wd_demand *demand, struct wd_placement *placement,
@@ -40,7 +41,7 @@ bool wd_demand_is_none(const struct wd_demand *demand, const char *who, const st
 
 /* Mean probability, over `points` x `points` places of a rectangle of the ground, that a cell's tree
  * stands: density and rules. */
-double wd_demand_density(const struct wd_demand_layer *layer, const double min_m[2],
+double wd_demand_density(const struct wd_placement *placement, const double min_m[2],
                          const double max_m[2], uint32_t points);
 
 /* Tree `index` of a page; false: none stands there. */

@@ -31,12 +31,13 @@ static bool plant_layer(const struct wd_placement_params *params, size_t index,
     return ok;
 }
 
-static bool plant_layers(const struct wd_placement_params *params, struct wd_tree_list *list,
-                         struct layer_ends *layers)
+static bool plant_layers(const struct wd_placement_params *params, bool all,
+                         struct wd_tree_list *list, struct layer_ends *layers)
 {
     layers->inventory_end = list->count;
     for (size_t i = 0; i < params->scene->layer_count; i++) {
-        if (!wd_demand_wants(params->scene, params->terrain, i) && !plant_layer(params, i, list))
+        bool now = all || params->scene->layers[i].placement != WD_PLACE_GRID;
+        if (now && !plant_layer(params, i, list))
             return false;
         layers->ends[i] = list->count;
     }
@@ -49,7 +50,7 @@ static bool add_demand(struct wd_demand *demand, const struct wd_placement_param
 {
     for (size_t i = 0; i < params->scene->layer_count; i++) {
         struct wd_placement placement;
-        if (!wd_demand_wants(params->scene, params->terrain, i))
+        if (params->scene->layers[i].placement != WD_PLACE_GRID)
             continue;
         if (!wd_placement_init(&placement, params, i))
             return false;
@@ -120,8 +121,10 @@ static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool
         world->inventories[i] = inventories[i].report;
     }
     struct layer_ends layers = {.ends = wd_alloc_array(scene->layer_count, sizeof(size_t))};
-    bool ok = plant_layers(params, list, &layers) &&
-              add_demand(&world->demand, params, list->count);
+    bool on_demand;
+    bool ok = wd_demand_wanted(params, &on_demand) &&
+              plant_layers(params, !on_demand, list, &layers) &&
+              (!on_demand || add_demand(&world->demand, params, list->count));
     uint64_t count = list->count;
     ok = ok && wd_progress_report(params->progress, "sorting trees", 0, count);
     if (ok) {

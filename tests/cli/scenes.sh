@@ -21,6 +21,10 @@ check 'the forest has a hash' test -n "$one"
 check 'the same forest from 1 and 7 threads' test "$one" = "$(forest_hash --threads 7)"
 check 'another forest from another seed' test "$one" != "$(forest_hash --seed 8)"
 expect 1 'seed' info "$tiny" --seed banana
+# A wide grid of which rules leave few trees is planted at once, one of many trees on demand.
+expect 0 'octree +[0-9]{6} octants' info "$root/scenes/valley.json"
+expect 0 'layer all: planted on demand' info "$tiny" --set 'terrain.size_m=[12000,12000]' \
+    --set terrain.cell_m=50
 expect 0 'tiny.json: ok' check "$tiny"
 expect 0 'oak.json: ok' check "$root/species/oak.json"
 
