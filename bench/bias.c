@@ -24,7 +24,7 @@ const struct bias_form bias_forms[BIAS_FORMS] = {
     {"views", {"method=views", "methods.views.near_m=0", NO_MESHES}, {false, true, true, true}},
     {"zfield", {"method=zfield", "methods.zfield.near_m=0", "methods.zfield.range_m=1000000",
                 NO_MESHES}, {false, true, true, true}},
-    {"octants", {"method=impostor", "methods.impostor.area_px=1000000",
+    {"octants", {"method=impostor", "methods.impostor.area_px=250",
                  "methods.impostor.cluster_size=1", "methods.octree.leaf_trees=1", NO_MESHES}, {false, false, false, true}},
     {"splats", {"method=continuum", NO_MESHES}, {false, true, true, true}},
 };

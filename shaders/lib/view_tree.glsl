@@ -43,12 +43,21 @@ bool in_picture(wd_view_point p)
     return p.x >= 0.0 && p.x <= 1.0 && p.y >= 0.0 && p.y <= 1.0;
 }
 
+/* The texel there: pictures smaller than their texels show these as they are, since means over
+ * neighbours would mix in what stands beside the leaves. */
+vec3 nearest_texel(vec3 uv, float lod)
+{
+    vec2 size = vec2(textureSize(view_albedo, int(lod)).xy);
+    return vec3((floor(uv.xy * size) + 0.5) / size, uv.z);
+}
+
 void add_view(inout view_sum sum, uint view, float weight, wd_view_point p, float layer)
 {
-    float lod = max(in_foot.w, 0.0);
+    float lod = floor(max(in_foot.w, 0.0) + 0.5);
     wd_view_point at = wd_view_texel(push.atlas, view, p, lod);
-    vec3 uv = vec3(at.x, at.y, layer);
-    vec4 albedo = textureLod(view_albedo, uv, lod), normal = textureLod(view_normal, uv, lod);
+    vec3 uv = vec3(at.x, at.y, layer), own = nearest_texel(uv, lod);
+    vec4 albedo = textureLod(view_albedo, own, lod), normal = textureLod(view_normal, own, lod);
+    uv = own;
     float share = in_picture(p) ? weight * card_opacity(albedo.a, in_foot.w) : 0.0;
     sum.color += share * albedo.rgb;
     sum.normal += share * (normal.xyz * 2.0 - 1.0);
@@ -138,10 +147,13 @@ void main()
     vec3 rel = in_foot.xyz + world_vector(place, vec2(abs(in_pose.z), in_pose.w));
     vec4 clip = frame.clip_from_rel * vec4(rel, 1.0);
     gl_FragDepth = clamp(clip.z / clip.w, 0.0, 1.0);
-    uint material = sum.leaf * per < 0.3 ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF;
+    uint leaf = WD_MATERIAL_LEAF;
 #else
-    uint material = WD_MATERIAL_CARD;
+    uint leaf = WD_MATERIAL_CARD;
 #endif
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    float lot = wd_hash_unit(wd_hash_mix((pixel.x | pixel.y << 16) ^ in_flat.y));
+    uint material = lot < sum.leaf * per ? leaf : WD_MATERIAL_WOOD;
     out_albedo = vec4(albedo, openness);
     out_normal = vec4(normal * 0.5 + 0.5, float(material) / 3.0);
     out_surface = in_flat.x;

@@ -47,6 +47,6 @@ void main()
         albedo = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * packed.a);
     out_albedo = vec4(albedo, packed.a);
     out_normal = vec4(card_world_normal(packed.xyz, in_card) * 0.5 + 0.5,
-                      float(WD_MATERIAL_CARD) / 3.0);
+                      float(is_wood ? WD_MATERIAL_WOOD : WD_MATERIAL_CARD) / 3.0);
     out_surface = in_more.z;
 }

@@ -21,6 +21,17 @@ layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 #include "lib/tree_mesh.glsl"
 #include "lib/fall.glsl"
 
+/* Between the shares that the tables have; the whole has 1. */
+float leaf_growth(wd_model model, float share)
+{
+    uint k = wd_leaf_halvings(share), j = max(k, 1u) - 1u;
+    float part = clamp(log2(1.0 / share) - float(k), 0.0, 1.0);
+    bool full = push.level == WD_LEVEL_MESH;
+    float fewer = full ? model.full_growth[k] : model.reduced_growth[k];
+    float more = full ? model.full_growth[j] : model.reduced_growth[j];
+    return mix(k == 0u ? 1.0 : more, fewer, part);
+}
+
 /* Factor on a leaf's size, 0 where it is not drawn: it may be drawn as a twig, or thinned out. */
 float settle_leaf(uint index, vec3 foot_m, wd_tree tree)
 {
@@ -32,7 +43,9 @@ float settle_leaf(uint index, vec3 foot_m, wd_tree tree)
         && wd_hash_unit(wd_hash2(index, tree.random)) < wd_spray_share(far_m, push.spray_reach))
         return 0.0;
     float share = wd_leaf_share(push.leaf_m * pose.across * push.pixels_per_radian / far_m);
-    return float(index) >= share * float(push.leaf_count) ? 0.0 : inversesqrt(share);
+    if (float(index) >= share * float(push.leaf_count))
+        return 0.0;
+    return inversesqrt(share) * leaf_growth(model, share);
 }
 
 void main()

@@ -142,6 +142,10 @@ struct wd_leaf_vertex {
 };
 WD_STATIC_ASSERT_SIZE(wd_leaf_vertex, 24);
 
+/* Factors on the length of a level's leaves where the first 1/2, 1/4, .. of them are drawn, besides
+ * the one that keeps their area: with them the mesh covers what it did (src/tree/thinning.h). */
+#define WD_LEAF_GROWTHS 6
+
 /* Twigs of broad leaves are whole nearer than the one, and nothing is drawn as a twig beyond the
  * other; those of needles come at half of either: they are smaller, and many more. */
 #define WD_SPRAY_WHOLE_M 3.5f

@@ -6,11 +6,13 @@
 #include <meshoptimizer.h>
 
 #include "base/memory.h"
+#include "tree/thinning.h"
 
 /* A kept model: words, then the wood of the full mesh and of the reduced one and the twig, each as
  * vertices and indices, then the leaves and the forms of their sets, packed by meshoptimizer's codecs
  * (the sequence codec keeps the order of indices). */
-enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, FIGURES = 7 + 7 + BOUNDS,
+enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_LEAF_GROWTHS,
+       FIGURES = 7 + 7 + BOUNDS + GROWTHS,
        SETS = 2 * WD_LEAF_SETS, SET_WORDS = 9, SET_AT = FIGURES + MESHES * MESH_WORDS,
        LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
@@ -100,6 +102,8 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
                           : i % 7 < 3 ? &mesh->min_m[i % 7]
                                       : &mesh->max_m[i % 7 - 3];
     }
+    for (size_t k = 0; k < GROWTHS; k++)
+        figures[14 + BOUNDS + k] = &model->leaf_growth[k / WD_LEAF_GROWTHS][k % WD_LEAF_GROWTHS];
 }
 
 static void meshes_of(struct wd_tree_mesh *meshes[MESHES], struct wd_tree_model *model)
@@ -340,6 +344,7 @@ bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_ca
         return true;
     if (!wd_variant_grow(model, scene, index, log))
         return false;
+    wd_tree_thinning_fit(model);
     wd_tree_model_drop_leaves(model);
     if (species)
         store_model(cache, *key, model);

@@ -1,6 +1,7 @@
 #include "tree/variant.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "tree/look.h"
 
@@ -76,4 +77,6 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         model->transmittance[k] =
             species->leaf.transmittance[k] / fmaxf(species->leaf.color[k], 1e-3f);
     }
+    memcpy(model->full_growth, grown->leaf_growth[0], sizeof model->full_growth);
+    memcpy(model->reduced_growth, grown->leaf_growth[1], sizeof model->reduced_growth);
 }

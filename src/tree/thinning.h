@@ -1,0 +1,12 @@
+/* thinning.h: how large the leaves that stay have to be where the others are left out. */
+#ifndef WD_TREE_THINNING_H
+#define WD_TREE_THINNING_H
+
+#include "tree/grow.h"
+
+/* Fills model->leaf_growth: factors on a leaf's length besides the one that keeps all leaves' area,
+ * with which the first leaf_count >> (k + 1) of each level's leaves cover as much as all of them,
+ * seen level and from half above. The meshes have their leaves. */
+void wd_tree_thinning_fit(struct wd_tree_model *model);
+
+#endif
