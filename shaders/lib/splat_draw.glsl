@@ -36,6 +36,41 @@ void draw_disc(vec2 center, float radius, uint depth_bits, uint id)
     }
 }
 
+/* From this radius on, in pixels, a splat has a leaf's outline. */
+const float LEAF_PX = 1.7;
+/* Largest width over length. */
+const float LEAF_WIDTH = 0.5;
+
+/* A leaf's outline of the disc's area: pointed at both ends, width falling with the square of the
+ * distance from the middle, turned by chance. */
+void draw_leaf(vec2 center, float radius, uint depth_bits, uint id, uint random)
+{
+    float long_px = radius * sqrt(0.375 * 3.14159265 / LEAF_WIDTH);
+    vec2 along = vec2(random & 0xffu, random >> 8 & 0xffu) - 127.3;
+    along *= inversesqrt(dot(along, along));
+    vec2 reach = long_px * max(abs(along), LEAF_WIDTH * abs(along.yx));
+    along /= long_px;
+    ivec2 low = max(ivec2(ceil(center - reach - 0.5)), ivec2(0));
+    ivec2 high = min(ivec2(floor(center + reach - 0.5)), ivec2(view.width, view.height) - 1);
+    ivec2 size = high - low + 1;
+    if (size.x <= 0)
+        return;
+    vec2 first = vec2(low) + 0.5 - center, from = first;
+    uint at = uint(low.y) * view.width + uint(low.x), column = 0u;
+    for (int left = size.x * size.y; left > 0; left--) {
+        float u = dot(from, along), v = along.x * from.y - along.y * from.x;
+        if (abs(v) <= LEAF_WIDTH * (1.0 - u * u))
+            SPLAT(at, depth_bits, id);
+        at++;
+        from.x += 1.0;
+        if (++column == uint(size.x)) {
+            column = 0u;
+            from = vec2(first.x, from.y + 1.0);
+            at += view.width - uint(size.x);
+        }
+    }
+}
+
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
@@ -69,6 +104,11 @@ void main()
         float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0))
                              : tree.radius * sqrt(abs(facing))) * inverse;
         vec2 at = (clip.xy * inverse * 0.5 + 0.5) * size;
-        draw_disc(at, radius, floatBitsToUint(depth), index * WD_ITEM_SPLATS + i + 1u);
+        uint id = index * WD_ITEM_SPLATS + i + 1u;
+        bool leaf = ORTHOGRAPHIC == 0u && SMALL == 0u && !wood && radius > LEAF_PX;
+        draw_disc(at, leaf ? 0.0 : radius, floatBitsToUint(depth), id);
+        if (ORTHOGRAPHIC == 0u && SMALL == 0u)
+            draw_leaf(at, leaf ? radius : -1.0, floatBitsToUint(depth), id,
+                      disc.xy * 0x9e3779b9u >> 16);
     }
 }
