@@ -7,6 +7,7 @@
 #include "shared/hash.h"
 
 layout(local_size_x_id = 0) in;
+layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* as view.orthographic */
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer View { wd_splat_view view; };
@@ -58,7 +59,7 @@ vec3 model_facing(tree_pose pose, vec3 v)
 /* Clip coordinates of an offset. */
 vec3 clip_of(vec4 column)
 {
-    return vec3(column.xy, view.orthographic != 0u ? column.z : column.w);
+    return vec3(column.xy, ORTHOGRAPHIC != 0u ? column.z : column.w);
 }
 
 /* `slope`: how far the model leans with the ground, rise over run. */
@@ -207,8 +208,8 @@ void select_tree(uint index, float share)
     wd_model model = models[model_index];
     tree_pose pose = tree_pose_of(tree, model);
     vec3 middle = foot + vec3(0.0, 0.0, 0.5 * WD_TREE_HEIGHT_M(tree));
-    float distance_m = view.orthographic != 0u ? 1.0 : max(length(middle), 0.1);
-    vec3 toward = view.orthographic != 0u ? frame.sun_direction : -normalize(middle);
+    float distance_m = ORTHOGRAPHIC != 0u ? 1.0 : max(length(middle), 0.1);
+    vec3 toward = ORTHOGRAPHIC != 0u ? frame.sun_direction : -normalize(middle);
 
     wd_wind wind = tree_wind();
     wind.gust = view.calm != 0u ? 0.0 : wind.gust;
@@ -235,7 +236,7 @@ void select_tree(uint index, float share)
     splats.facing = model_facing(pose, toward);
     float own_across = pose.across;
     pose.across *= stretch;
-    if (view.has_history != 0u)
+    if (ORTHOGRAPHIC == 0u && view.has_history != 0u)
         strata = seen_strata(tree, foot, toward, pose, model_index, sway,
                              max(splats.radius, splats.wood_radius) * max(own_across, pose.up),
                              strata);
@@ -280,7 +281,7 @@ wd_drawn drawn_of(wd_cluster cluster)
 {
     bool paged = (cluster.count & WD_CLUSTER_PAGED) != 0u;
     float held = exp2(-2.0 * float(WD_CLUSTER_LEVEL(cluster))); /* share of trees that have records */
-    if (view.orthographic != 0u)
+    if (ORTHOGRAPHIC != 0u)
         return wd_drawn(WD_CLUSTER_TREES, held);
     ivec3 low = ivec3(cluster.min_mm[0], cluster.min_mm[1], cluster.min_mm[2]);
     ivec3 high = ivec3(cluster.max_mm[0], cluster.max_mm[1], cluster.max_mm[2]);

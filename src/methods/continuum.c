@@ -57,7 +57,7 @@ enum { SHAPE_SPLATS, SHAPE_SMALL, SHAPE_WOOD, SHAPES };
 
 struct continuum {
     struct wd_gpu *gpu;
-    struct wd_pipeline cull, args, choose;
+    struct wd_pipeline cull, args, choose[2]; /* [WD_PASS_*] */
     struct wd_pipeline draw[SHAPES][2][2]; /* [][WD_PASS_*][1: ids of the second pass] */
     struct wd_pipeline resolve[2], resolve_shadow; /* splats, wood */
     struct wd_pipeline pyramid[WD_PYRAMID_LEVELS - 1];
@@ -146,6 +146,22 @@ static bool init_pyramid(struct continuum *c, struct wd_gpu *gpu)
     return wd_sampler_init(&c->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP);
 }
 
+static bool init_choose(struct continuum *c, struct wd_gpu *gpu)
+{
+    for (uint32_t pass = 0; pass < 2; pass++) {
+        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW};
+        const struct wd_compute_params choose = {
+            .shader = SPIRV(select_comp),
+            .bindings = {13, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+                              BUFFER, BUFFER, BUFFER, BUFFER,
+                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
+            .constants = {2, constants}};
+        if (!wd_pipeline_init_compute(&c->choose[pass], gpu, &choose))
+            return false;
+    }
+    return true;
+}
+
 static bool continuum_init(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
@@ -156,22 +172,17 @@ static bool continuum_init(void *state, struct wd_gpu *gpu)
     const struct wd_compute_params args = {.shader = SPIRV(args_comp),
                                            .bindings = {3, {BUFFER, BUFFER, BUFFER}},
                                            .constants = {1, &threads}};
-    const struct wd_compute_params choose = {
-        .shader = SPIRV(select_comp),
-        .bindings = {13, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
-                          BUFFER, BUFFER, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
-        .constants = {1, &threads}};
     return wd_pipeline_init_compute(&c->cull, gpu, &cull) &&
            wd_pipeline_init_compute(&c->args, gpu, &args) &&
-           wd_pipeline_init_compute(&c->choose, gpu, &choose) && init_draws(c, gpu) &&
-           init_resolve(c, gpu) && init_pyramid(c, gpu);
+           init_choose(c, gpu) && init_draws(c, gpu) && init_resolve(c, gpu) &&
+           init_pyramid(c, gpu);
 }
 
 static void continuum_finish(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
     struct wd_pipeline *pipelines[] = {
-        &c->cull, &c->args, &c->choose, &c->resolve[0], &c->resolve[1],
+        &c->cull, &c->args, &c->choose[0], &c->choose[1], &c->resolve[0], &c->resolve[1],
                                        &c->resolve_shadow};
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         wd_pipeline_finish(pipelines[i], gpu);
@@ -449,7 +460,7 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_BUFFER(&c->history.pyramid),
                                           WD_BIND_IMAGE(&draw->forest->ground.slopes,
                                                         draw->forest->ground.sampler)};
-    wd_cmd_bind(cmd, &c->choose, bindings);
+    wd_cmd_bind(cmd, &c->choose[draw->pass], bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
     record_args(c, cmd);
 }
