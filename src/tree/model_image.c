@@ -69,7 +69,9 @@ bool wd_model_image_decode(struct wd_model_image *image, const uint8_t *bytes, s
     static const uint8_t png[] = {0x89, 'P', 'N', 'G'}, jpeg[] = {0xff, 0xd8};
     *image = (struct wd_model_image){0};
     bool ok = false;
-    *why = "it is neither PNG nor JPEG";
+    *why = size > 12 && memcmp(bytes, "RIFF", 4) == 0 && memcmp(bytes + 8, "WEBP", 4) == 0
+               ? "it is WebP; PNG and JPEG are read"
+               : "it is neither PNG nor JPEG";
     if (size > sizeof png && memcmp(bytes, png, sizeof png) == 0)
         ok = decode_png(image, bytes, size, why);
     else if (size > sizeof jpeg && memcmp(bytes, jpeg, sizeof jpeg) == 0)

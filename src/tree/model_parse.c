@@ -1,5 +1,6 @@
 /* Reading with assimp. Runs in a process of its own (model_file.c): a crash here is a message there,
  * and nothing needs to be freed. */
+#include "tree/model_obj.h"
 #include "tree/model_parts.h"
 
 #include <assimp/cimport.h>
@@ -67,7 +68,8 @@ static void open_scene(struct parse *parse, const char *path)
         steps |= aiProcess_GlobalScale;
     struct aiPropertyStore *store = aiCreatePropertyStore();
     aiSetImportPropertyFloat(store, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 70);
-    parse->scene = aiImportFileExWithProperties(path, steps, NULL, store);
+    struct aiFileIO *io = wd_model_obj_is_short(path) ? wd_model_obj_io() : NULL;
+    parse->scene = aiImportFileExWithProperties(path, steps, io, store);
     if (!parse->scene)
         give_up(parse, "is not a model that can be read: %s", aiGetErrorString());
     if (!parse->scene->mRootNode || parse->scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE)

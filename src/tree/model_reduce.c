@@ -7,6 +7,8 @@
 
 #include "base/memory.h"
 #include "shared/hash.h"
+#include "tree/coverage.h"
+#include "tree/silhouette.h"
 #include "tree/vec.h"
 
 /* Larger leaves read as balloons. */
@@ -230,6 +232,16 @@ static void copy_triangles(struct copier *copier, const uint32_t *indices, size_
     free(picks);
 }
 
+/* Whether leaves are large enough for pictures of WD_SILHOUETTE pixels a side to measure them. */
+static bool seen_in_silhouettes(const struct wd_tree_mesh *full, const struct pieces *pieces)
+{
+    float side_m = 0;
+    for (int axis = 0; axis < 3; axis++)
+        side_m = fmaxf(side_m, full->max_m[axis] - full->min_m[axis]);
+    float pixel_m = side_m / WD_SILHOUETTE;
+    return pieces->area_m2 > 0.25f * pixel_m * pixel_m * (float)pieces->count;
+}
+
 void wd_tree_mesh_reduce_import(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full,
                                 size_t wood_triangles, size_t leaf_triangles)
 {
@@ -244,12 +256,16 @@ void wd_tree_mesh_reduce_import(struct wd_tree_mesh *reduced, const struct wd_tr
         struct pieces pieces;
         find_pieces(&pieces, full, leaves, leaf_count);
         bool coarse = pieces.triangles > MOST_PIECE_TRIANGLES * pieces.count;
-        if (pieces.triangles <= leaf_triangles || (pieces.count < FEW_PIECES && coarse))
+        bool simplified = pieces.triangles <= leaf_triangles ||
+                          (pieces.count < FEW_PIECES && coarse);
+        if (simplified)
             copy_simplified(&copier, leaves, leaf_count, leaf_triangles);
         else if (coarse)
             copy_triangles(&copier, leaves, leaf_count, leaf_triangles);
         else
             copy_pieces(&copier, &pieces, leaves, leaf_triangles);
+        if (!simplified && seen_in_silhouettes(full, &pieces))
+            wd_tree_mesh_fit_coverage(reduced, full);
         free(pieces.items);
         free(pieces.order);
     }

@@ -1,5 +1,9 @@
 #include "tree_test.h"
 
+#include <assimp/cexport.h>
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
 #include <dirent.h>
 #include <unistd.h>
 
@@ -117,6 +121,88 @@ static void a_tree_stands_on_its_foot_in_metres(void **state)
     drop(result);
 }
 
+/* Some exporters leave out the zero before the point; materials may begin with one, too. */
+static void numbers_may_begin_with_the_point(void **state)
+{
+    (void)state;
+    write_text("short.mtl", "newmtl .5bark\nKd .3 .2 .1\nnewmtl Blatt\nKd .1 .4 .1\n");
+    write_text("short.obj", "mtllib short.mtl\no tree\nv 0 -.25 0\nv\t.5 0 0\nv .5 5 .25\n"
+                            "v 0 5 -.25\nvt .5 .5\nusemtl .5bark\nf 1/1 2/1 3/1 4/1\n"
+                            "v .75 5.5 .125\nusemtl Blatt\nf 3/1 4/1 5/1\n");
+    struct result *result = import("short.obj");
+    if (!result->ok)
+        fail_msg("%s", result->record.text);
+    assert_int_equal(result->import.model.full.wood_index_count / 3, 2);
+    assert_int_equal(test_leaf_triangles(&result->import.model.full), 1);
+    assert_float_equal(result->import.model.height_m, 5.75f, 1e-3);
+    drop(result);
+}
+
+static size_t read_whole(const char *name, char *bytes, size_t most)
+{
+    char *path = path_of(name);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, most, file);
+    fclose(file);
+    free(path);
+    return size;
+}
+
+/* The same tree, brought to another format by assimp's own exporter (whose binary FBX not even
+ * assimp can read). */
+static void convert(const char *from, const char *format, const char *to)
+{
+    char *source = path_of(from), *target = path_of(to);
+    const struct aiScene *scene = aiImportFile(source, aiProcess_Triangulate);
+    assert_non_null(scene);
+    assert_int_equal(aiExportScene(scene, format, target, 0), aiReturn_SUCCESS);
+    aiReleaseImport(scene);
+    free(source);
+    free(target);
+}
+
+static void other_formats_hold_the_same_tree(void **state)
+{
+    static const char *const formats[][2] = {
+        {"collada", "tree.dae"}, {"fbxa", "tree.fbx"}, {"gltf2", "tree.gltf"},
+        {"glb2", "tree.glb"}};
+    (void)state;
+    write_text("tree.mtl", LIBRARY);
+    write_text("tree.obj", "mtllib tree.mtl\no tree\n" TRUNK LEAF);
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        convert("tree.obj", formats[i][0], formats[i][1]);
+        struct result *result = import(formats[i][1]);
+        if (!result->ok)
+            fail_msg("%s: %s", formats[i][1], result->record.text);
+        const struct wd_tree_model *model = &result->import.model;
+        assert_int_equal(model->full.wood_index_count / 3, 8);
+        assert_int_equal(test_leaf_triangles(&model->full), 2);
+        assert_float_equal(model->height_m, 3.1f, 1e-3);
+        drop(result);
+    }
+}
+
+static void webp_textures_are_told(void **state)
+{
+    enum { MOST = 1 << 16 };
+    static const char extension[] = "{\"extensionsUsed\": [\"EXT_texture_webp\"],";
+    char text[MOST + sizeof extension];
+    (void)state;
+    write_text("plain.mtl", LIBRARY);
+    write_text("plain.obj", "mtllib plain.mtl\no tree\n" TRUNK LEAF);
+    convert("plain.obj", "gltf2", "plain.gltf");
+    size_t used = sizeof extension - 1;
+    size_t size = read_whole("plain.gltf", text + used - 1, MOST);
+    assert_int_equal(text[used - 1], '{');
+    memcpy(text, extension, used);
+    write_file("webp.gltf", text, used - 1 + size);
+    struct result *result = import("webp.gltf");
+    assert_true(result->ok);
+    expect_message(result, "has WebP textures");
+    drop(result);
+}
+
 static void a_species_file_says_height_axis_and_materials(void **state)
 {
     (void)state;
@@ -180,13 +266,17 @@ static void what_cannot_be_is_told(void **state)
 static void a_missing_texture_is_a_warning(void **state)
 {
     (void)state;
-    write_text("lost.mtl", "newmtl Bark\nmap_Kd no-such.png\nnewmtl Blatt\nmap_Kd broken.jpg\n");
+    write_text("lost.mtl", "newmtl Bark\nmap_Kd no-such.png\nnewmtl Blatt\nmap_Kd broken.jpg\n"
+                           "newmtl Apfel\nmap_Kd apple.webp\n");
+    write_text("apple.webp", "RIFF----WEBPVP8 and so on");
     write_text("broken.jpg", "\xff\xd8 this is no JPEG");
-    write_text("lost.obj", "mtllib lost.mtl\no tree\n" TRUNK LEAF);
+    write_text("lost.obj", "mtllib lost.mtl\no tree\n" TRUNK LEAF
+                           "v 0 0 0\nv 9 0 0\nv 0 9 0\nusemtl Apfel\nf 13 14 15\n");
     struct result *result = import("lost.obj");
     assert_true(result->ok);
     expect_message(result, "no-such.png");
     expect_message(result, "broken.jpg");
+    expect_message(result, "apple.webp cannot be used: it is WebP");
     drop(result);
 }
 
@@ -283,17 +373,6 @@ static void exported_trees_come_back(void **state)
     }
 }
 
-static size_t read_whole(const char *name, char *bytes, size_t most)
-{
-    char *path = path_of(name);
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    size_t size = fread(bytes, 1, most, file);
-    fclose(file);
-    free(path);
-    return size;
-}
-
 /* The first bytes of the binary chunk are the first vertex's position. */
 static void a_position_that_is_no_number_is_an_error(void **state)
 {
@@ -368,6 +447,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tree_stands_on_its_foot_in_metres),
+        cmocka_unit_test(numbers_may_begin_with_the_point),
+        cmocka_unit_test(other_formats_hold_the_same_tree),
+        cmocka_unit_test(webp_textures_are_told),
         cmocka_unit_test(a_species_file_says_height_axis_and_materials),
         cmocka_unit_test(strays_are_dropped_and_told),
         cmocka_unit_test(what_cannot_be_is_told),

