@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -14,7 +13,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/file.h"
 #include "tree/model_parts.h"
 
 enum { MAX_CPU_S = 300 };
@@ -168,22 +166,6 @@ static bool take(struct wd_model_file *model, int file, const char *path, const 
     return in_range(model) || wd_error(log, "%s: is malformed: an index is out of range", path);
 }
 
-/* glTF textures that are WebP alone come over as no textures at all. */
-static void warn_of_webp(const char *path, const struct wd_log *log)
-{
-    static const char extension[] = "EXT_texture_webp";
-    const char *dot = strrchr(path, '.');
-    char *bytes = NULL;
-    size_t size = 0;
-    if (!dot || (strcasecmp(dot, ".glb") && strcasecmp(dot, ".gltf")))
-        return;
-    if (wd_file_read(path, max_file_bytes, log, &bytes, &size) &&
-        memmem(bytes, size, extension, sizeof extension - 1))
-        wd_warn(log, "%s: has WebP textures (%s), which are not read: colours stand in; save them "
-                "as PNG or JPEG", path, extension);
-    free(bytes);
-}
-
 bool wd_model_file_read(struct wd_model_file *model, const char *path, const struct wd_log *log)
 {
     *model = (struct wd_model_file){0};
@@ -199,8 +181,6 @@ bool wd_model_file_read(struct wd_model_file *model, const char *path, const str
                         : wd_error(log, "%s: no process could be started to read it: %s", path,
                                    strerror(errno));
     ok = ok && take(model, file, path, log);
-    if (ok)
-        warn_of_webp(path, log);
     close(file);
     if (!ok)
         wd_model_file_finish(model);

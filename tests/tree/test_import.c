@@ -199,7 +199,7 @@ static void webp_textures_are_told(void **state)
     write_file("webp.gltf", text, used - 1 + size);
     struct result *result = import("webp.gltf");
     assert_true(result->ok);
-    expect_message(result, "has WebP textures");
+    expect_message(result, "EXT_texture_webp");
     drop(result);
 }
 
