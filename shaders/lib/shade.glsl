@@ -3,22 +3,88 @@
  * Expects `frame`, `push` (wd_light_push), `trees`, `models`, PARTS and the libraries of noise,
  * shadow, gbuffer, tree and crown. */
 
-#include "shared/canopy.h"
-
 const float PER_PI = 0.318309886;
 
-/* Skylight on a surface, with what the ground throws back from below. Under a canopy it has come
- * through leaves. */
-vec3 ambient(vec3 normal, float openness)
+/* --- light from everywhere ------------------------------------------------------------------ */
+
+/* Share of the sky's light from each quarter that reaches level ground here, past crowns and hills
+ * (forest/canopy_light.h). Where the shader does not say, all of it does. */
+#ifndef CANOPY_LIGHT_AT
+#define CANOPY_LIGHT_AT(at) vec4(1.0)
+#endif
+
+/* What comes down to a place among leaves. */
+struct wd_shelter {
+    vec4 through;     /* the share of the sky's quarters that no leaf stops */
+    float floor_mean; /* the mean of that on the ground */
+};
+
+wd_shelter ground_shelter(wd_pixel pixel)
 {
-    float up = 0.5 + 0.5 * normal.z;
-    float toward = dot(normal.xy, frame.sun_direction.xy);
-    vec3 sky = frame.sky_irradiance * (up * (1.0 + 0.25 * toward));
-    vec3 lit_ground = frame.sun_irradiance * (0.35 * max(frame.sun_direction.z, 0.0))
-                      + 0.6 * frame.sky_irradiance;
-    vec3 leafy = mix(vec3(0.90, 0.82, 0.80), vec3(1.0), openness);
-    return (sky + lit_ground * frame.grass * (1.0 - up)) * leafy * openness;
+    vec4 field = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale);
+    wd_shelter shelter;
+    shelter.through = max(field * field, vec4(1e-3));
+    shelter.floor_mean = dot(shelter.through, vec4(0.25));
+    shelter.through *= pixel.surface == 0u ? pixel.openness : 1.0;
+    return shelter;
 }
+
+/* On a tree: from what the ground gets, at the foot of crowns, to what the tree's own leaves let
+ * through, at its top, for trees stand among their like; by how much of the leaves is above. A tree by
+ * itself has its own leaves only. */
+wd_shelter tree_shelter(wd_pixel pixel, wd_crown crown)
+{
+    wd_shelter shelter = ground_shelter(pixel);
+    float top = crown.center_rel.z + crown.radii_m.z, base = crown.center_rel.z - crown.radii_m.z;
+    float above = 1.0 - smoothstep(base, top, pixel.rel.z);
+    vec4 own = vec4(max(pixel.openness, 1e-2));
+    shelter.through = min(exp2(mix(log2(own), log2(shelter.through), above)), own);
+    return shelter;
+}
+
+/* Irradiance of a surface and of its other side. Leaves scatter a share of what they stop, so that a
+ * stand which lets t through if leaves were black lets t^s through, s the root of the share of light
+ * that they absorb (Goudriaan 1977, sections 2.3 and 2.4; de Pury and Farquhar 1997); a deep canopy
+ * returns (1 - s) / (1 + s). So all but the sun's own rays is had from the sky's share: a ray of the sun
+ * meets as many leaves as its way is longer than that of the mean of the sky's, cos(48 degrees). */
+struct wd_around {
+    vec3 front, back;
+};
+
+wd_around light_around(vec3 normal, wd_shelter shelter, float ground_share)
+{
+    vec3 n = normal, s = frame.leaf_scatter;
+    vec3 odd = frame.sky_form[1] * n.x + frame.sky_form[2] * n.y + frame.sky_form[3] * n.z;
+    vec3 even = frame.sky_form[0] + frame.sky_form[4] * (n.x * n.y) + frame.sky_form[5] * (n.y * n.z)
+                + frame.sky_form[6] * (n.z * n.z) + frame.sky_form[7] * (n.x * n.z)
+                + frame.sky_form[8] * (n.x * n.x - n.y * n.y);
+    vec4 through = exp2(frame.sky_slant * log2(shelter.through));
+    vec3 level = frame.sky_quarters[0] * through.x + frame.sky_quarters[1] * through.y
+                 + frame.sky_quarters[2] * through.z + frame.sky_quarters[3] * through.w;
+    vec3 reach = level / max(frame.sky_irradiance, vec3(1e-12));
+    float mean = dot(shelter.through, vec4(0.25));
+    /* Upright, less: low rays meet more leaves; numbers fitted to the integral over a level layer. */
+    float mean4 = mean * mean * mean * mean;
+    float upright = 0.40 + 0.45 * mean + 0.15 * mean4;
+    vec3 sky = reach * exp2((s - 1.0) * log2(mean)) * mix(upright, 1.0, abs(n.z));
+    float rise = max(frame.sun_direction.z, 0.0);
+    float beam = 0.67 / max(rise, 0.05) * log2(dot(frame.sunward, shelter.through));
+    vec3 sun = frame.sun_irradiance * (rise * ground_share);
+    vec3 with_scattered = sun * exp2(s * beam);
+    vec3 scattered = with_scattered - sun * exp2(beam);
+    float covered = 1.0 - shelter.floor_mean;
+    vec3 floor_albedo = mix(frame.grass, frame.litter, covered);
+    vec3 below = mix((1.0 - s) / (1.0 + s), floor_albedo,
+                     exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
+    vec3 upward = below * (frame.sky_irradiance * sky + with_scattered);
+    float up = 0.5 + 0.5 * n.z;
+    wd_around around;
+    around.front = max(even + odd, vec3(0.0)) * sky + scattered * up + upward * (1.0 - up);
+    around.back = max(even - odd, vec3(0.0)) * sky + scattered * (1.0 - up) + upward * up;
+    return around;
+}
+
+/* --- leaves --------------------------------------------------------------------------------- */
 
 /* acos within 0.02 (Lagarde 2014) */
 float angle_of(float cosine)
@@ -43,15 +109,25 @@ vec2 leaf_cloud(float cosine)
 float sunlit_seen(vec3 eye)
 {
     float apart = angle_of(dot(eye, frame.sun_direction));
-    return mix(0.95, 0.33, smoothstep(0.0, 0.5, eye.z)) + 1.55 * exp(-2.7 * apart);
+    float wide = mix(0.95, 0.35, smoothstep(0.0, 0.72, eye.z));
+    return wide + mix(1.5, 2.8, smoothstep(0.0, 1.0, eye.z)) * exp(-1.9 * apart);
 }
 
-/* One leaf with its own normal: which side the sun and the eye are on. */
-vec2 leaf_blade(vec3 normal, vec3 eye)
+/* One leaf with its own normal: which side the sun and the eye are on. Where the normal is but the
+ * crown's (`plain` 0), leaves lie every way behind it: of those seen, the sun lights the seen side of as
+ * many as both directions are apart from opposite. */
+vec2 leaf_blade(vec3 normal, vec3 eye, float plain)
 {
     float facing = dot(normal, frame.sun_direction) * (dot(normal, eye) < 0.0 ? -1.0 : 1.0);
-    return vec2(max(facing, 0.0), max(-facing, 0.0));
+    float same = 1.0 - angle_of(dot(eye, frame.sun_direction)) * PER_PI;
+    vec2 sides = vec2(max(facing, 0.0), max(-facing, 0.0));
+    return sides * mix(vec2(same, 1.0 - same), vec2(1.0), plain);
 }
+
+/* Of light along the normal, a leaf's wax mirrors this (refractive index 1.4), and 1.6 times as much of
+ * light from everywhere. A leaf's albedo holds what its surface reflects: what comes from within is
+ * less. Leaves of every direction mirror pi / 8 of it to any side. Only upper sides shine. */
+const float WAX = 0.028;
 
 /* What a leaf's wax mirrors of the sun, relative to a lit wall: Blinn and Phong's lobe with the
  * normal reflection of wax (0.04), as wide as GGX of this roughness. Far off, leaves of every
@@ -74,8 +150,7 @@ struct wd_place {
     vec2 sides;         /* share of the sun reflected and transmitted toward the eye */
     vec3 transmittance; /* over albedo */
     float gloss;
-    float wax;          /* of leaves: mean reflection of their surface, white */
-    float sky;          /* of the skylight that its openness says: leaves shade each other */
+    float waxed;        /* share of upper sides among leaves seen */
 };
 
 wd_place ground_place(wd_pixel pixel)
@@ -88,8 +163,7 @@ wd_place ground_place(wd_pixel pixel)
     place.sides = vec2(max(dot(pixel.normal, frame.sun_direction), 0.0), 0.0);
     place.transmittance = vec3(0.0);
     place.gloss = 0.0;
-    place.wax = 0.0;
-    place.sky = 1.0;
+    place.waxed = 0.0;
     return place;
 }
 
@@ -105,14 +179,10 @@ void shade_by_crown(inout wd_place place, wd_crown crown, float openness, float 
 }
 
 /* Wood within a crown is in its shade as leaves are. */
-wd_place wood_place(wd_pixel pixel, uint cascade)
+wd_place wood_place(wd_pixel pixel, wd_crown crown, uint cascade)
 {
-    wd_tree tree = trees[pixel.surface - 1u];
-    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
-                            + WD_TREE_VARIANT(tree) % push.variants];
     wd_place place = ground_place(pixel);
-    shade_by_crown(place, crown_of(tree, model), pixel.openness, cascade == 0u ? 1.0 : 0.0,
-                   cascade);
+    shade_by_crown(place, crown, pixel.openness, cascade == 0u ? 1.0 : 0.0, cascade);
     return place;
 }
 
@@ -120,12 +190,8 @@ wd_place wood_place(wd_pixel pixel, uint cascade)
  * crown is left behind before the map is asked, and depth along the sun does the rest. A crown is no
  * even cloud: what sees little of the sky sees little of the sun. Both factors are set so that
  * dense forest from above and from within is as bright as path-traced (docs/reference.md). */
-wd_place leaf_place(wd_pixel pixel, uint cascade)
+wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, uint cascade)
 {
-    wd_tree tree = trees[pixel.surface - 1u];
-    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
-                            + WD_TREE_VARIANT(tree) % push.variants];
-    wd_crown crown = crown_of(tree, model);
     bool card = pixel.material == WD_MATERIAL_CARD;
     vec3 eye = -pixel.direction;
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
@@ -135,30 +201,14 @@ wd_place leaf_place(wd_pixel pixel, uint cascade)
     shade_by_crown(place, crown, pixel.openness, mapped, cascade);
     vec3 outward = crown_normal(crown, place.rel);
     float cosine = dot(eye, frame.sun_direction);
-    place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.normal, eye), near);
+    float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
+    place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.normal, eye, plain), near);
     place.sides *= mix(sunlit_seen(eye), 1.0, mapped);
     place.transmittance = model.transmittance;
-    place.gloss = leaf_gloss(pixel, model.roughness, near) + 0.010;
-    place.wax = 0.024;
-    place.sky = mix(1.05, 0.80, smoothstep(0.0, 0.5, eye.z));
+    place.waxed = 0.5 + 0.5 * eye.z;
+    place.gloss = (leaf_gloss(pixel, model.roughness, near) + WAX * 0.39) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     return place;
-}
-
-/* Where the shader does not say what canopy covers a place, none does. */
-#ifndef COVER_AT
-#define COVER_AT(at) 0.0
-#endif
-
-/* Share of the sky that the forest around leaves to a place on a tree: as little as to the ground at
- * its foot, all of it at its top, for trees stand among their like. */
-float forest_openness(wd_pixel pixel)
-{
-    wd_tree tree = trees[pixel.surface - 1u];
-    vec2 at = (pixel.rel.xy + push.camera_m) * push.cover_scale;
-    float up = (pixel.rel.z - tree_foot_rel(tree).z) / max(WD_TREE_HEIGHT_M(tree), 0.1);
-    return mix(wd_canopy_openness(COVER_AT(at)), 1.0,
-               smoothstep(0.0, 0.75, up));
 }
 
 /* `sun_share` is what of the sun reaches the place, `ground_share` what the ground leaves of it. */
@@ -167,26 +217,31 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     float noise = pixel_noise(at, frame.sample_index);
     uint cascade = shadow_cascade(pixel.axis_m, noise);
     wd_place place = ground_place(pixel);
-    float openness = pixel.openness;
-    if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u)
-        openness *= forest_openness(pixel);
+    wd_shelter shelter = ground_shelter(pixel);
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u) {
+        wd_tree tree = trees[pixel.surface - 1u];
+        wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                                + WD_TREE_VARIANT(tree) % push.variants];
+        wd_crown crown = crown_of(tree, model);
+        shelter = tree_shelter(pixel, crown);
         if (pixel.material >= WD_MATERIAL_LEAF)
-            place = leaf_place(pixel, cascade);
+            place = leaf_place(pixel, crown, model, cascade);
         else
-            place = wood_place(pixel, cascade);
+            place = wood_place(pixel, crown, cascade);
     }
     ground_share = ground_shadow(place.rel);
     vec3 ahead = place.rel + frame.sun_direction * place.ahead_m;
     sun_share = place.own * ground_share * tree_shadow(ahead, place.normal, cascade, noise);
     if (pixel.surface == 0u) { /* no maps so far out: the canopy's cover stands for its shadow */
         float out_of_maps = smoothstep(0.75, 1.0, pixel.axis_m / frame.cascade_far_m.w);
-        sun_share *= mix(1.0, pixel.openness * pixel.openness, out_of_maps);
+        float beam = 0.67 / max(frame.sun_direction.z, 0.05);
+        sun_share *= mix(1.0, pow(dot(frame.sunward, shelter.through), beam), out_of_maps);
     }
     vec3 transmitted = pixel.albedo * place.transmittance;
-    vec3 sunlit = pixel.albedo * place.sides.x + transmitted * place.sides.y + place.gloss;
-    vec3 skylit = pixel.albedo + 0.4 * transmitted + place.wax;
-    vec3 light = frame.sun_irradiance * sun_share * sunlit
-                 + ambient(place.normal, openness) * place.sky * skylit;
+    vec3 within = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
+    vec3 sunlit = within * place.sides.x + transmitted * place.sides.y + place.gloss;
+    wd_around around = light_around(place.normal, shelter, ground_share);
+    vec3 skylit = around.front * (within + 1.6 * WAX * place.waxed) + around.back * transmitted;
+    vec3 light = frame.sun_irradiance * sun_share * sunlit + skylit;
     return light * PER_PI;
 }

@@ -22,11 +22,11 @@ layout(scalar, set = 0, binding = 8) readonly buffer Models { wd_model models[];
 layout(set = 0, binding = 9, rgba32f) uniform image2D radiance_image;
 layout(scalar, set = 0, binding = 10) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
 layout(set = 0, binding = 11) uniform sampler2D overlay;
-layout(set = 0, binding = 12) uniform sampler2D cover_map;
+layout(set = 0, binding = 12) uniform sampler2D canopy_light;
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
-#define COVER_AT(at) textureLod(cover_map, at, 2.0).x
+#define CANOPY_LIGHT_AT(at) textureLod(canopy_light, at, 0.0)
 
 #include "lib/noise.glsl"
 #include "lib/sky.glsl"

@@ -48,7 +48,7 @@ struct wd_frame_uniforms {
     float sun_cos_radius;            /* cosine of the disc's angular radius */
     WD_VEC3(sun_irradiance);         /* on a surface facing the sun, at the ground, linear sRGB */
     float sky_turbidity;
-    WD_VEC3(sky_irradiance);         /* of the whole sky on level ground, for ambient light */
+    WD_VEC3(sky_irradiance);         /* of the whole sky on level ground */
     float sky_strength;
     WD_VEC3(sky_glow);               /* radiance of haze at the horizon over its phase function */
     float near_m;
@@ -68,6 +68,13 @@ struct wd_frame_uniforms {
     WD_VEC3(soil); float snow_line_m;
     WD_VEC3(rock); float tree_line_m;
     WD_VEC3(litter); float terrain_cell_m;
+    WD_VEC3(sky_form[9]);            /* the sky's irradiance as a polynomial in the normal: 1, x, y,
+                                        z, xy, yz, zz, xz, xx - yy */
+    WD_VEC3(sky_quarters[4]);        /* sky_irradiance by where it comes from: E, N, W, S */
+    WD_VEC4(sky_slant);              /* by quarters: how much more a layer of leaves dims that light
+                                        than an even sky's, as a power */
+    WD_VEC4(sunward);                /* shares of the quarters toward the sun's bearing */
+    WD_VEC3(leaf_scatter);           /* root of the share of light that leaves absorb */
     uint32_t width, height;          /* of the picture */
     uint32_t terrain_width, terrain_height; /* samples */
     uint32_t sample_index, sample_count;

@@ -3,7 +3,6 @@
 #ifndef WD_SHARED_GROUND_COVER_H
 #define WD_SHARED_GROUND_COVER_H
 
-#include "shared/canopy.h"
 #include "shared/ground_litter.h"
 #include "shared/noise.h"
 #include "shared/snow.h"
@@ -11,7 +10,7 @@
 struct wd_ground_look {
     WD_VECTOR albedo;
     WD_VECTOR normal;
-    float openness; /* share of the sky that the canopy leaves */
+    float openness; /* share of the sky that the ground itself leaves */
 };
 
 /* Noise of the place at the sizes that the rules below ask for; each ends before it shimmers. */
@@ -229,8 +228,7 @@ WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, floa
     look.normal = wd_v3_normalize(
         WD_V3(-slope_east - n.bump_east * rough - tilt * strewn.hit.tilt_east,
               -slope_north - n.bump_north * rough - tilt * strewn.hit.tilt_north, 1.0f));
-    look.openness = wd_canopy_openness(cover)
-                    * (0.85f + 0.15f * WD_CLAMP(1.0f + 2.0f * n.fine, 0.0f, 1.0f));
+    look.openness = 0.85f + 0.15f * WD_CLAMP(1.0f + 2.0f * n.fine, 0.0f, 1.0f);
     return look;
 }
 

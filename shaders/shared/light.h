@@ -13,7 +13,7 @@ struct wd_light_push {
     uint32_t tile_columns, tile_rows;
     uint32_t is_sea;     /* the water goes on beyond the terrain */
     WD_VEC2(extent_m);   /* of the terrain */
-    WD_VEC2(cover_scale); /* canopy cover: image coordinates = metres * scale */
+    WD_VEC2(canopy_scale); /* of the canopy's light: image coordinates = metres * scale */
     uint32_t has_overlay; /* a method has blended trees over the G-buffer */
 };
 

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/jobs.h"
 #include "base/memory.h"
+#include "forest/canopy_light.h"
 #include "forest/looks.h"
 #include "forest/model_bakes.h"
 #include "tree/variant.h"
@@ -21,6 +22,7 @@ struct preparation {
     struct wd_forest_device *forest;
     const struct wd_forest_device_params *params;
     struct wd_tree_model *grown; /* [model] */
+    struct wd_crown_shade *shades; /* [model] */
     uint8_t *looks;              /* WD_LOOK_BYTES a species */
     atomic_bool failed;
 };
@@ -160,6 +162,54 @@ static bool upload_fades(struct wd_forest_device *forest, struct wd_gpu *gpu)
                       count * sizeof *forest->host_fades);
 }
 
+/* Leaves absorb what none of them reflects or lets through; each model counts by its area. What
+ * light scatters on its way through a stand is what meets leaves at all: where these lie in clumps,
+ * most comes through gaps. */
+static void set_leaf_scatter(struct preparation *work)
+{
+    struct wd_forest_device *forest = work->forest;
+    double sum[3] = {0}, area = 0, clumped = 0;
+    for (uint32_t i = 0; i < forest->model_count; i++) {
+        const struct wd_species *species = &forest->scene->species[i / forest->variants];
+        double own = (double)work->grown[i].leaf_area_m2;
+        for (int k = 0; k < 3; k++)
+            sum[k] += own * (double)(species->leaf.color[k] + species->leaf.transmittance[k]);
+        clumped += own * (double)work->shades[i].clumped;
+        area += own;
+    }
+    for (int k = 0; k < 3 && area > 0; k++)
+        forest->leaf_scatter[k] =
+            (float)(1 - clumped / area * (1 - sqrt(1 - fmin(sum[k] / area, 0.99))));
+}
+
+static void shade_model(void *user, size_t index)
+{
+    struct preparation *work = user;
+    work->shades[index] = wd_crown_shade_of(&work->grown[index]);
+}
+
+static bool make_canopy_light(struct preparation *work, struct wd_gpu *gpu)
+{
+    struct wd_forest_device *forest = work->forest;
+    size_t slots = forest->model_count ? forest->model_count : 1;
+    struct wd_canopy_field field;
+    work->shades = wd_alloc_array(slots, sizeof *work->shades);
+    wd_jobs_run(work->params->threads, forest->model_count, shade_model, work);
+    wd_canopy_field_init(&field, &(struct wd_canopy_field_params){
+                                     .world = forest->world,
+                                     .models = forest->host_models,
+                                     .shades = work->shades,
+                                     .variants = forest->variants,
+                                     .threads = work->params->threads});
+    forest->canopy_light_scale[0] = (float)(1 / (field.cell_m * field.width));
+    forest->canopy_light_scale[1] = (float)(1 / (field.cell_m * field.height));
+    bool ok = wd_canopy_light_upload(&forest->canopy_light, gpu, &field);
+    wd_canopy_field_finish(&field);
+    set_leaf_scatter(work);
+    free(work->shades);
+    return ok;
+}
+
 static bool prepare(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
@@ -194,7 +244,11 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
 {
     const struct wd_scene *scene = params->scene;
     *forest = (struct wd_forest_device){
-        .scene = scene, .world = params->world, .variants = (uint32_t)scene->variants};
+        .scene = scene,
+        .world = params->world,
+        .leaf_scatter = {1, 1, 1},
+        .variants = (uint32_t)scene->variants,
+    };
     forest->model_count = (uint32_t)scene->species_file_count * forest->variants;
     size_t slots = forest->model_count ? forest->model_count : 1;
     forest->host_models = wd_alloc_array(slots, sizeof *forest->host_models);
@@ -214,7 +268,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
               wd_sampler_init(&forest->look_sampler, gpu, WD_SAMPLER_TRILINEAR_REPEAT) &&
               wd_sampler_init(&forest->card_sampler, gpu, WD_SAMPLER_MAGNIFY_CLAMP) &&
               wd_sampler_init(&forest->point_sampler, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
-              (forest->model_count == 0 || prepare(&work, gpu));
+              (forest->model_count == 0 || prepare(&work, gpu)) && make_canopy_light(&work, gpu);
     for (uint32_t i = 0; i < forest->model_count; i++)
         wd_tree_model_finish(&work.grown[i]);
     wd_transfer_drop_staging(gpu);
@@ -231,7 +285,7 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
     struct wd_buffer *buffers[] = {&forest->trees, &forest->models, &forest->fades,
                                    &forest->card_indices};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
-                                 &forest->card_normal};
+                                 &forest->card_normal, &forest->canopy_light};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
@@ -256,7 +310,7 @@ void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
 {
     struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->fades};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
-                                 &forest->card_normal};
+                                 &forest->card_normal, &forest->canopy_light};
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
         if (tables[i]->buffer)
             wd_cmd_use_buffer(cmd, tables[i], WD_USE_SHADER_READ);

@@ -23,6 +23,9 @@ struct wd_forest_device {
     struct wd_image looks;     /* WD_LOOK_LAYERS of each species, sRGB */
     struct wd_image look_details; /* the same layers: normal, roughness, height (tree/look_map.h) */
     struct wd_image card_albedo, card_normal; /* WD_CARDS layers a model */
+    struct wd_image canopy_light;   /* see forest/canopy_light.h */
+    float canopy_light_scale[2];    /* its coordinates = local metres * scale */
+    float leaf_scatter[3];          /* root of what leaves absorb: wd_frame_uniforms */
     VkSampler look_sampler, card_sampler, point_sampler; /* point: normals and shadows of cards */
     struct wd_forest_meshes meshes;
     struct wd_tree_model *grown; /* while the forest is made, then NULL */

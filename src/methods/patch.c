@@ -375,7 +375,7 @@ static void draw_quads(const struct drawing *d, struct wd_binding table, uint32_
         d->light ? d->light->shadow_map : card,
         d->light ? d->light->sun_heights : WD_BIND_BUFFER(&forest->fades),
         WD_BIND_BUFFER(&d->patch->near),
-        WD_BIND_IMAGE(&forest->ground.cover, forest->ground.sampler),
+        d->light ? d->light->canopy_light : card,
     };
     struct wd_cmd *cmd = d->draw->cmd;
     wd_cmd_bind(cmd, d->pipeline, bindings);

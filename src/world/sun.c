@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "shared/sky.h"
+#include "shared/air.h"
+#include "world/skylight.h"
 
 static const float DEGREE = 3.14159265f / 180.0f;
 
@@ -28,29 +29,9 @@ struct sky {
     float sun_air_mass;
 };
 
-static float radiance_toward(const struct sky *sky, const float direction[3])
+static struct wd_vec3 radiance_of(const void *user, struct wd_vec3 direction)
 {
-    float cosine = 0;
-    for (int k = 0; k < 3; k++)
-        cosine += direction[k] * sky->sun[k];
-    return wd_sky_radiance(sky->band, wd_air_mass(direction[2]), sky->sun_air_mass,
-                           wd_air_phase(cosine), wd_haze_phase(cosine), sky->sun[2]);
-}
-
-/* On level ground: the midpoint rule over 16 rings of equal height and 32 bearings. */
-static float irradiance_of(const struct sky *sky)
-{
-    enum { RINGS = 16, BEARINGS = 32 };
-    float sum = 0;
-    for (int ring = 0; ring < RINGS; ring++) {
-        float rise = (ring + 0.5f) / RINGS, across = sqrtf(1 - rise * rise);
-        for (int bearing = 0; bearing < BEARINGS; bearing++) {
-            float turn = (bearing + 0.5f) * (360.0f / BEARINGS) * DEGREE;
-            const float direction[3] = {across * sinf(turn), across * cosf(turn), rise};
-            sum += rise * radiance_toward(sky, direction);
-        }
-    }
-    return sum * (360.0f * DEGREE) / (RINGS * BEARINGS);
+    return wd_sky_toward(user, direction);
 }
 
 /* Share of the disc over the horizon. */
@@ -88,12 +69,12 @@ static void add_clouds(struct wd_frame_uniforms *uniforms, float cover)
         float own = clouds * tint[channel];
         uniforms->sky_cloud[channel] = own * zenith_per_irradiance;
         uniforms->sun_irradiance[channel] *= 1 - cover;
-        uniforms->sky_irradiance[channel] = (1 - cover) * uniforms->sky_irradiance[channel] + own;
         uniforms->sky_glow[channel] *= 1 - cover;
         uniforms->sky_horizon[channel] = (1 - cover) * uniforms->sky_horizon[channel] +
                                          uniforms->sky_cloud[channel] * wd_cloud_gradient(0);
     }
     uniforms->sky_strength *= 1 - cover;
+    wd_skylight_fill(uniforms, radiance_of, uniforms);
 }
 
 void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene)
@@ -120,9 +101,9 @@ void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scen
         uniforms->sun_irradiance[channel] = WD_SUN_OUTSIDE * source * tint *
                                             wd_sun_through(sky.band, sky.sun_air_mass) *
                                             disc_share(elevation_deg, radius_deg);
-        uniforms->sky_irradiance[channel] = irradiance_of(&sky) * uniforms->sky_strength;
         set_horizon(uniforms, &sky, channel, uniforms->sky_strength);
     }
+    wd_skylight_fill(uniforms, radiance_of, uniforms);
     if (scene->sky.cover > 0)
         add_clouds(uniforms, (float)scene->sky.cover);
 }

@@ -117,7 +117,6 @@ static void use_gbuffer(struct wd_cmd *cmd, struct wd_targets *targets)
 static struct wd_light_push push_of(const struct wd_light_pass *pass,
                                     const struct wd_light_params *params)
 {
-    const struct wd_ground *ground = &params->forest->ground;
     return (struct wd_light_push){
         .camera_m = {(float)params->view->eye_m[0], (float)params->view->eye_m[1]},
         .sun_cell_m = pass->sun_field.cell_m,
@@ -129,8 +128,8 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
         .has_overlay = params->overlay == WD_OVERLAY_OVER,
         .extent_m = {(float)wd_terrain_extent_x_m(params->forest->ground.terrain),
                      (float)wd_terrain_extent_y_m(params->forest->ground.terrain)},
-        .cover_scale = {(float)(1 / (ground->cover_cell_m * ground->cover.width)),
-                        (float)(1 / (ground->cover_cell_m * ground->cover.height))},
+        .canopy_scale = {params->forest->canopy_light_scale[0],
+                         params->forest->canopy_light_scale[1]},
         .tile_columns = (params->targets->width + WD_TILE - 1) / WD_TILE,
         .tile_rows = (params->targets->height + WD_TILE - 1) / WD_TILE,
     };
@@ -214,7 +213,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_STORAGE_IMAGE(&targets->radiance),
         WD_BIND_BUFFER(&pass->lists),
         WD_BIND_IMAGE(push.has_overlay ? &targets->overlay : &targets->albedo, pass->nearest),
-        WD_BIND_IMAGE(&params->forest->ground.cover, params->forest->ground.sampler),
+        WD_BIND_IMAGE(&params->forest->canopy_light, params->forest->ground.sampler),
     };
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);
@@ -239,6 +238,7 @@ bool wd_light_pass_inputs(struct wd_light_pass *pass, struct wd_cmd *cmd,
         .push = push_of(pass, params),
         .shadow_map = WD_BIND_IMAGE(&params->targets->shadow, pass->shadow),
         .sun_heights = WD_BIND_BUFFER(&pass->sun_field.heights),
+        .canopy_light = WD_BIND_IMAGE(&params->forest->canopy_light, params->forest->ground.sampler),
     };
     return true;
 }

@@ -33,7 +33,7 @@ struct wd_light_params {
  * of it is in use for reading by any shader. */
 struct wd_light_inputs {
     struct wd_light_push push;
-    struct wd_binding shadow_map, sun_heights;
+    struct wd_binding shadow_map, sun_heights, canopy_light;
 };
 bool wd_light_pass_inputs(struct wd_light_pass *pass, struct wd_cmd *cmd,
                           const struct wd_light_params *params, struct wd_light_inputs *inputs);

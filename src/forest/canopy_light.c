@@ -1,0 +1,393 @@
+#include "forest/canopy_light.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/jobs.h"
+#include "base/memory.h"
+
+static const float PI = 3.14159265f;
+
+/* --- crowns -------------------------------------------------------------------------------- */
+
+enum { CROWN_SIDE = 64 }; /* texels across: leaves that share a twig share a texel */
+
+/* Area across rays along one axis, in texels' areas, on a square about the stem. */
+struct outline {
+    float depth[CROWN_SIDE * CROWN_SIDE];
+    float texel_m, low_m[2];
+    int across[2]; /* axes */
+};
+
+static void outline_init(struct outline *outline, const struct wd_tree_mesh *mesh, int first,
+                         int second)
+{
+    *outline = (struct outline){.across = {first, second}};
+    float extent_m = 0.1f;
+    for (int k = 0; k < 2; k++) {
+        int axis = outline->across[k];
+        outline->low_m[k] = mesh->min_m[axis];
+        extent_m = fmaxf(extent_m, mesh->max_m[axis] - mesh->min_m[axis]);
+    }
+    outline->texel_m = 1.001f * extent_m / CROWN_SIDE;
+}
+
+static void outline_add(struct outline *outline, const float middle[3], float area)
+{
+    int at[2];
+    for (int k = 0; k < 2; k++) {
+        float place = (middle[outline->across[k]] - outline->low_m[k]) / outline->texel_m;
+        at[k] = place < 0 ? 0 : place >= CROWN_SIDE ? CROWN_SIDE - 1 : (int)place;
+    }
+    outline->depth[at[1] * CROWN_SIDE + at[0]] += area / (outline->texel_m * outline->texel_m);
+}
+
+static float outline_hides_m2(const struct outline *outline)
+{
+    float sum = 0;
+    for (int i = 0; i < CROWN_SIDE * CROWN_SIDE; i++)
+        sum += 1 - expf(-outline->depth[i]);
+    return sum * outline->texel_m * outline->texel_m;
+}
+
+/* Its area as seen along each axis. */
+static void triangle_areas(const struct wd_tree_mesh *mesh, uint32_t first, float middle[3],
+                           float areas[3])
+{
+    const float *p[3];
+    float a[3], b[3];
+    for (int k = 0; k < 3; k++)
+        p[k] = mesh->vertices[mesh->indices[first + (uint32_t)k]].position_m;
+    for (int k = 0; k < 3; k++) {
+        middle[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
+        a[k] = p[1][k] - p[0][k];
+        b[k] = p[2][k] - p[0][k];
+    }
+    areas[0] = 0.5f * fabsf(a[1] * b[2] - a[2] * b[1]);
+    areas[1] = 0.5f * fabsf(a[2] * b[0] - a[0] * b[2]);
+    areas[2] = 0.5f * fabsf(a[0] * b[1] - a[1] * b[0]);
+}
+
+struct crown {
+    struct outline above, side;
+    float base_m, stem_m2, whole_m2;
+};
+
+/* `areas`: as seen along each axis. */
+static void crown_add(struct crown *crown, const float middle[3], const float areas[3])
+{
+    crown->whole_m2 += areas[2];
+    if (middle[2] <= crown->base_m) {
+        crown->stem_m2 += areas[1];
+        return;
+    }
+    outline_add(&crown->above, middle, areas[2]);
+    outline_add(&crown->side, middle, areas[1]);
+}
+
+/* Wood is closed, so that either half of it hides the other; leaves are sheets. */
+static void add_triangles(struct crown *crown, const struct wd_tree_model *model)
+{
+    const struct wd_tree_mesh *mesh = &model->full;
+    uint32_t end = model->leaves ? mesh->wood_index_count : mesh->index_count;
+    for (uint32_t first = 0; first < end; first += 3) {
+        float middle[3], areas[3];
+        triangle_areas(mesh, first, middle, areas);
+        for (int k = 0; k < 3 && first < mesh->wood_index_count; k++)
+            areas[k] *= 0.5f;
+        crown_add(crown, middle, areas);
+    }
+}
+
+/* Leaves that are places and forms share the tree's leaf area by their squared lengths. */
+static void add_leaves(struct crown *crown, const struct wd_tree_model *model)
+{
+    double squares = 0;
+    for (uint32_t i = 0; i < model->leaf_count; i++) {
+        double size_m = (double)wd_leaf_size_m(model->leaves[i], model->leaf_box);
+        squares += size_m * size_m;
+    }
+    for (uint32_t i = 0; i < model->leaf_count && squares > 0; i++) {
+        struct wd_tree_leaf leaf = model->leaves[i];
+        float size_m = wd_leaf_size_m(leaf, model->leaf_box);
+        float area = (float)((double)(model->leaf_area_m2 * size_m * size_m) / squares);
+        struct wd_leaf_axes axes = wd_leaf_axes_of(leaf.turn);
+        struct wd_vec3 at = wd_leaf_foot(leaf, model->leaf_box);
+        const float middle[3] = {at.x + 0.5f * size_m * axes.along.x,
+                                 at.y + 0.5f * size_m * axes.along.y,
+                                 at.z + 0.5f * size_m * axes.along.z};
+        const float areas[3] = {area * fabsf(axes.above.x), area * fabsf(axes.above.y),
+                                area * fabsf(axes.above.z)};
+        crown_add(crown, middle, areas);
+    }
+}
+
+struct wd_crown_shade wd_crown_shade_of(const struct wd_tree_model *model)
+{
+    struct crown *crown = wd_alloc(sizeof *crown);
+    *crown = (struct crown){.base_m = model->crown_base_m};
+    outline_init(&crown->above, &model->full, 0, 1);
+    outline_init(&crown->side, &model->full, 0, 2);
+    add_triangles(crown, model);
+    if (model->leaves)
+        add_leaves(crown, model);
+    float radius_m = fmaxf(model->crown_radius_m, 0.05f);
+    float deep_m = fmaxf(model->height_m - model->crown_base_m, 0.1f);
+    float above_m2 = outline_hides_m2(&crown->above);
+    const struct wd_crown_shade shade = {
+        .above = above_m2 / (PI * radius_m * radius_m),
+        .side = outline_hides_m2(&crown->side) / (0.5f * PI * radius_m * deep_m),
+        .stem = crown->stem_m2 / (radius_m * fmaxf(model->crown_base_m, 0.1f)),
+        .clumped = crown->whole_m2 > 0 ? above_m2 / crown->whole_m2 : 1};
+    free(crown);
+    return shade;
+}
+
+/* --- the stand ----------------------------------------------------------------------------- */
+
+/* Crowns of a cell as a layer of leaves over the ground. Rays from above find the gaps between
+ * crowns, which keep apart; level ones pass crown after crown as if these stood at random. */
+struct stand {
+    float ground_m, base_m, top_m; /* above the world's zero */
+    float steep_per_m, level_per_m; /* extinction */
+    float stems_per_m;              /* of level ways below the crowns */
+};
+
+enum { MOST_CELLS = 384, STEEPNESSES = 4, QUARTERS = 4 };
+static const double LEAST_CELL_M = 8;
+static const float STEP_M = 3;           /* up */
+static const float FARTHEST_M = 3000;    /* hills beyond are left to the sun's own shadow */
+static const float DARK = 6;             /* optical depth that ends a ray */
+
+struct work {
+    struct wd_canopy_field *field;
+    const struct wd_world *world;
+    const struct wd_canopy_field_params *params;
+    struct stand *stands;
+    float highest_m; /* of all tops */
+};
+
+/* Of a cell's trees, by its share of the ground: the area of crowns' outlines from above; what crowns
+ * and stems hide from above and from the side; base and top, weighted by the first. */
+struct sums {
+    float outline, above, side, stem, base_m, top_m;
+};
+
+static void add_tree(struct sums *sums, const struct wd_canopy_field *field,
+                     const struct wd_canopy_field_params *params, const struct wd_tree *tree)
+{
+    uint32_t variant = WD_TREE_VARIANT(*tree) % params->variants;
+    size_t index = (size_t)WD_TREE_SPECIES(*tree) * params->variants + variant;
+    const struct wd_model *model = &params->models[index];
+    float height_m = WD_TREE_HEIGHT_M(*tree), radius_m = 0.5f * WD_TREE_CROWN_M(*tree);
+    float base_m = model->crown_base_m * height_m / model->height_m;
+    float per_m2 = (float)(1 / (field->cell_m * field->cell_m));
+    float outline = PI * radius_m * radius_m * per_m2;
+    float above = params->shades[index].above * outline;
+    float side = params->shades[index].side * 0.5f * PI * radius_m * (height_m - base_m) * per_m2;
+    double x = tree->x_mm * 0.001 / field->cell_m - 0.5, y = tree->y_mm * 0.001 / field->cell_m - 0.5;
+    double i0 = floor(x), j0 = floor(y);
+    for (int corner = 0; corner < 4; corner++) {
+        double i = i0 + (corner & 1), j = j0 + (corner >> 1);
+        float part = (float)((corner & 1 ? x - i0 : 1 - (x - i0)) *
+                             (corner >> 1 ? y - j0 : 1 - (y - j0)));
+        if (i < 0 || j < 0 || i >= field->width || j >= field->height)
+            continue;
+        struct sums *to = &sums[(size_t)j * field->width + (size_t)i];
+        to->outline += part * outline;
+        to->above += part * above;
+        to->side += part * side;
+        to->stem += part * params->shades[index].stem * radius_m * per_m2;
+        to->base_m += part * outline * base_m;
+        to->top_m += part * outline * height_m;
+    }
+}
+
+/* Mean canopy cover about a place. */
+static float cover_at(const struct wd_world *world, double x_m, double y_m, double cell_m)
+{
+    long reach = (long)fmax(0.5 * cell_m / world->cover_cell_m, 1);
+    long column = (long)(x_m / world->cover_cell_m), row = (long)(y_m / world->cover_cell_m);
+    float sum = 0, count = 0;
+    for (long j = row - reach; j < row + reach; j++)
+        for (long i = column - reach; i < column + reach; i++)
+            if (i >= 0 && j >= 0 && i < (long)world->cover_width && j < (long)world->cover_height) {
+                sum += world->cover[(size_t)j * world->cover_width + (size_t)i];
+                count++;
+            }
+    return count > 0 ? sum / (255 * count) : 0;
+}
+
+/* Trees that are planted only when somebody looks: their mean, as many as the cover says. */
+static struct sums sums_on_demand(const struct work *work, float cover)
+{
+    const struct wd_canopy_field_params *params = work->params;
+    const struct wd_demand_layer *layer = &work->world->demand.layers[0];
+    const struct wd_crown_shade *shade = &params->shades[0];
+    float height_m = layer->height_m, radius_m = sqrtf((float)layer->crown_area_m2 / PI);
+    float base_m = height_m * params->models[0].crown_base_m / params->models[0].height_m;
+    float outline = -logf(1 - cover), per_m2 = outline / fmaxf((float)layer->crown_area_m2, 0.1f);
+    return (struct sums){.outline = outline,
+                         .above = outline * shade->above,
+                         .side = 0.5f * PI * radius_m * (height_m - base_m) * per_m2 * shade->side,
+                         .stem = radius_m * per_m2 * shade->stem,
+                         .base_m = outline * base_m,
+                         .top_m = outline * height_m};
+}
+
+/* Crowns that hide a share a of the ground leave e^-a of it free where they stand at random. Most
+ * keep apart: by as much as their outlines do, whose union is the canopy's cover. */
+static void settle_stand(struct work *work, size_t cell, struct sums sums)
+{
+    const struct wd_canopy_field *field = work->field;
+    double x_m = ((double)(cell % field->width) + 0.5) * field->cell_m;
+    double y_m = ((double)(cell / field->width) + 0.5) * field->cell_m;
+    struct stand *stand = &work->stands[cell];
+    stand->ground_m = stand->base_m = stand->top_m =
+        wd_terrain_height(&work->world->terrain, x_m, y_m);
+    float cover = fminf(cover_at(work->world, x_m, y_m, field->cell_m), 0.98f);
+    if (sums.outline <= 0 && work->world->demand.count)
+        sums = sums_on_demand(work, cover);
+    if (sums.outline <= 0)
+        return;
+    float deep_m = fmaxf((sums.top_m - sums.base_m) / sums.outline, 1);
+    float apart = fminf(fmaxf(-logf(1 - cover) / sums.outline, 1), 2);
+    stand->base_m += sums.base_m / sums.outline;
+    stand->top_m = stand->base_m + deep_m;
+    stand->steep_per_m = sums.above * apart / deep_m;
+    stand->level_per_m = sums.side / deep_m;
+    stand->stems_per_m = sums.stem;
+    work->highest_m = fmaxf(work->highest_m, stand->top_m);
+}
+
+static void settle_stands(struct work *work)
+{
+    size_t count = (size_t)work->field->width * work->field->height;
+    struct sums *sums = wd_alloc_array(count, sizeof *sums);
+    for (size_t i = 0; i < work->world->tree_count; i++)
+        add_tree(sums, work->field, work->params, &work->world->trees[i]);
+    work->highest_m = work->world->terrain.min_m;
+    for (size_t cell = 0; cell < count; cell++)
+        settle_stand(work, cell, sums[cell]);
+    free(sums);
+}
+
+/* --- rays ---------------------------------------------------------------------------------- */
+
+struct ray {
+    float east, north, rise; /* unit */
+    float level;             /* how level it runs: squared sine of the angle from the zenith */
+};
+
+static const struct stand *stand_at(const struct work *work, double x, double y)
+{
+    const struct wd_canopy_field *field = work->field;
+    if (x < 0 || y < 0 || x >= field->width || y >= field->height)
+        return NULL;
+    return &work->stands[(size_t)y * field->width + (size_t)x];
+}
+
+/* Share of the light along a ray to a place half a metre over the ground; through crowns by Beer's
+ * law, stopped by hills. */
+static float ray_through(const struct work *work, size_t cell, const struct ray *ray)
+{
+    const struct wd_canopy_field *field = work->field;
+    double x = (double)(cell % field->width) + 0.5, y = (double)(cell / field->width) + 0.5;
+    float z = work->stands[cell].ground_m + 0.5f, depth = 0, gone_m = 0;
+    float step_m = STEP_M / ray->rise;
+    while (depth < DARK && gone_m < FARTHEST_M) {
+        step_m = fmaxf(step_m, 0.08f * gone_m);
+        double half = 0.5 * (double)step_m / field->cell_m;
+        const struct stand *stand =
+            stand_at(work, x + half * (double)ray->east, y + half * (double)ray->north);
+        float low = z, high = z + step_m * ray->rise;
+        if (!stand || (low > work->highest_m && low > work->world->terrain.max_m))
+            break;
+        if (0.5f * (low + high) < stand->ground_m - 2)
+            return 0;
+        float within = fminf(high, stand->top_m) - fmaxf(low, stand->base_m);
+        float per_m = wd_mixf(stand->steep_per_m, stand->level_per_m, ray->level);
+        float below = fminf(high, stand->base_m) - fmaxf(low, stand->ground_m);
+        depth += (fmaxf(within, 0) * per_m +
+                  fmaxf(below, 0) * stand->stems_per_m * sqrtf(ray->level)) / ray->rise;
+        x += 2 * half * (double)ray->east;
+        y += 2 * half * (double)ray->north;
+        z = high;
+        gone_m += step_m;
+    }
+    return expf(-depth);
+}
+
+/* Rings of equal share of a level surface's light (even in the squared sine), each turned against
+ * the one before so that a quarter is seen at several bearings. */
+static void fill_cell(const struct work *work, size_t cell)
+{
+    static const float turn_deg[STEEPNESSES] = {-34, 11, -11, 34};
+    for (int quarter = 0; quarter < QUARTERS; quarter++) {
+        float sum = 0;
+        for (int ring = 0; ring < STEEPNESSES; ring++) {
+            float level = ((float)ring + 0.5f) / STEEPNESSES, across = sqrtf(level);
+            float bearing = (90.0f * (float)quarter + turn_deg[ring]) * (PI / 180);
+            const struct ray ray = {across * cosf(bearing), across * sinf(bearing),
+                                    sqrtf(1 - level), level};
+            sum += ray_through(work, cell, &ray);
+        }
+        work->field->quarters[cell][quarter] = sum / STEEPNESSES;
+    }
+}
+
+static void fill_row(void *user, size_t row)
+{
+    const struct work *work = user;
+    for (uint32_t i = 0; i < work->field->width; i++)
+        fill_cell(work, row * work->field->width + i);
+}
+
+void wd_canopy_field_init(struct wd_canopy_field *field,
+                          const struct wd_canopy_field_params *params)
+{
+    const struct wd_world *world = params->world;
+    double x_m = wd_terrain_extent_x_m(&world->terrain);
+    double y_m = wd_terrain_extent_y_m(&world->terrain);
+    double cell_m = fmax(LEAST_CELL_M, fmax(x_m, y_m) / MOST_CELLS);
+    *field = (struct wd_canopy_field){.width = (uint32_t)ceil(x_m / cell_m),
+                                      .height = (uint32_t)ceil(y_m / cell_m),
+                                      .cell_m = cell_m};
+    field->width = field->width ? field->width : 1;
+    field->height = field->height ? field->height : 1;
+    size_t count = (size_t)field->width * field->height;
+    field->quarters = wd_alloc_array(count, sizeof *field->quarters);
+    struct work work = {.field = field, .world = world, .params = params};
+    work.stands = wd_alloc_array(count, sizeof *work.stands);
+    settle_stands(&work);
+    wd_jobs_run(params->threads, field->height, fill_row, &work);
+    free(work.stands);
+}
+
+void wd_canopy_field_finish(struct wd_canopy_field *field)
+{
+    free(field->quarters);
+    *field = (struct wd_canopy_field){0};
+}
+
+/* --- upload -------------------------------------------------------------------------------- */
+
+bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
+                            const struct wd_canopy_field *field)
+{
+    const struct wd_image_params params = {.name = "canopy light",
+                                           .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                           .width = field->width,
+                                           .height = field->height,
+                                           .mips = 1,
+                                           .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
+    size_t count = (size_t)field->width * field->height;
+    uint8_t(*texels)[4] = wd_alloc_array(count, sizeof *texels);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 4; k++)
+            texels[i][k] = (uint8_t)(sqrtf(field->quarters[i][k]) * 255 + 0.5f);
+    bool ok = wd_image_init(image, gpu, &params) &&
+              wd_image_upload(gpu, image, 0, 0, texels, count * sizeof *texels);
+    free(texels);
+    return ok;
+}

@@ -1,0 +1,45 @@
+/* canopy_light.h: how much of the sky's light comes down to the ground, past crowns and hills. */
+#ifndef WD_FOREST_CANOPY_LIGHT_H
+#define WD_FOREST_CANOPY_LIGHT_H
+
+#include "gpu/memory.h"
+#include "shared/forest.h"
+#include "tree/grow.h"
+#include "world/world.h"
+
+/* What a model's crown hides of what lies behind it, over the area of its outline: an ellipse, seen
+ * from above and level. More than 1 where leaves reach far beyond the mean radius. */
+struct wd_crown_shade {
+    float above, side;
+    float stem;    /* below the crown, over the crown's radius times its base's height */
+    float clumped; /* share of the ground that leaves hide over what they would if none lay behind
+                      another */
+};
+struct wd_crown_shade wd_crown_shade_of(const struct wd_tree_model *model);
+
+/* The field on the CPU: for each cell, of the light that an even sky sends to level ground from the
+ * east, north, west and south, the share that arrives. */
+struct wd_canopy_field {
+    float (*quarters)[4]; /* width * height, rows from the south */
+    uint32_t width, height;
+    double cell_m;
+};
+
+struct wd_canopy_field_params {
+    const struct wd_world *world;
+    const struct wd_model *models;       /* [species * variants + variant] */
+    const struct wd_crown_shade *shades; /* parallel */
+    uint32_t variants;
+    unsigned threads;
+};
+
+/* The same for any number of threads. */
+void wd_canopy_field_init(struct wd_canopy_field *field,
+                          const struct wd_canopy_field_params *params);
+void wd_canopy_field_finish(struct wd_canopy_field *field);
+
+/* R8G8B8A8_UNORM, square roots of the shares; x runs east, y north over the field's cells. */
+bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
+                            const struct wd_canopy_field *field);
+
+#endif

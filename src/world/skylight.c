@@ -1,0 +1,124 @@
+#include "world/skylight.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "shared/vec.h"
+
+enum { RINGS = 16, BEARINGS = 32, FORMS = 9 };
+static const float PI = 3.14159265f;
+
+/* Moments of the radiance that spherical harmonics up to the second order are made of. */
+static void forms_of(struct wd_vec3 d, float forms[FORMS])
+{
+    const float values[FORMS] = {1,         d.x,       d.y,       d.z,
+                                 d.x * d.y, d.y * d.z, d.z * d.z, d.x * d.z,
+                                 d.x * d.x - d.y * d.y};
+    memcpy(forms, values, sizeof values);
+}
+
+/* A layer of leaves such as a forest's. */
+static const float LAYER_DEPTH = 0.65f;
+
+struct slants {
+    float whole[4], through[4], even, even_through;
+};
+
+/* What of a quarter's light such a layer lets through, beside what it would of an even sky's. */
+static void add_slants(struct slants *slants, const float share[4], float weight, float rise)
+{
+    float through = expf(-LAYER_DEPTH / rise);
+    for (int quarter = 0; quarter < 4; quarter++) {
+        slants->whole[quarter] += share[quarter] * weight;
+        slants->through[quarter] += share[quarter] * weight * through;
+    }
+    slants->even += rise;
+    slants->even_through += rise * through;
+}
+
+/* Light that arrives over a solid angle, cosine and all: half of it to either quarter where it comes
+ * from between two. */
+static void add_quarters(struct wd_frame_uniforms *frame, struct slants *slants, struct wd_vec3 d,
+                         const float light[3])
+{
+    float across2 = d.x * d.x + d.y * d.y;
+    float share[4] = {d.x > 0 ? d.x * d.x : 0, d.y > 0 ? d.y * d.y : 0, d.x < 0 ? d.x * d.x : 0,
+                      d.y < 0 ? d.y * d.y : 0};
+    for (int quarter = 0; quarter < 4; quarter++)
+        share[quarter] /= across2;
+    for (int quarter = 0; quarter < 4; quarter++)
+        for (int k = 0; k < 3; k++)
+            frame->sky_quarters[quarter][k] += light[k] * d.z * share[quarter];
+    add_slants(slants, share, light[1] * d.z, d.z);
+}
+
+static void add_direction(struct wd_frame_uniforms *frame, struct slants *slants, struct wd_vec3 d,
+                          struct wd_vec3 radiance, float solid_angle)
+{
+    float forms[FORMS];
+    const float light[3] = {radiance.x * solid_angle, radiance.y * solid_angle,
+                            radiance.z * solid_angle};
+    forms_of(d, forms);
+    for (int form = 0; form < FORMS; form++)
+        for (int k = 0; k < 3; k++)
+            frame->sky_form[form][k] += forms[form] * light[k];
+    add_quarters(frame, slants, d, light);
+    for (int k = 0; k < 3; k++)
+        frame->sky_irradiance[k] += d.z * light[k];
+}
+
+/* From moments to irradiance as a polynomial in the normal: each order of the harmonics times what a
+ * cosine lobe leaves of it, pi, 2 pi / 3, pi / 4 (Ramamoorthi and Hanrahan 2001). */
+static void settle_forms(struct wd_frame_uniforms *frame)
+{
+    const float first = 2 * PI / 3 * (3 / (4 * PI)), second = PI / 4;
+    const float cross = second * (15 / (4 * PI)), height = second * (5 / (16 * PI));
+    float(*form)[3] = frame->sky_form;
+    for (int k = 0; k < 3; k++) {
+        float mean = form[0][k], zz = 3 * form[6][k] - mean;
+        form[0][k] = mean * 0.25f - height * zz;
+        for (int i = 1; i <= 3; i++)
+            form[i][k] *= first;
+        form[4][k] *= cross;
+        form[5][k] *= cross;
+        form[6][k] = 3 * height * zz;
+        form[7][k] *= cross;
+        form[8][k] *= 0.25f * cross;
+    }
+}
+
+static void set_sunward(struct wd_frame_uniforms *frame)
+{
+    float x = frame->sun_direction[0], y = frame->sun_direction[1];
+    float across2 = fmaxf(x * x + y * y, 1e-8f);
+    float even = x * x + y * y < 1e-8f ? 0.25f : 0;
+    frame->sunward[0] = even + (x > 0 ? x * x / across2 : 0);
+    frame->sunward[1] = even + (y > 0 ? y * y / across2 : 0);
+    frame->sunward[2] = even + (x < 0 ? x * x / across2 : 0);
+    frame->sunward[3] = even + (y < 0 ? y * y / across2 : 0);
+}
+
+void wd_skylight_fill(struct wd_frame_uniforms *frame, wd_skylight_radiance *radiance,
+                      const void *user)
+{
+    struct slants slants = {0};
+    memset(frame->sky_irradiance, 0, sizeof frame->sky_irradiance);
+    memset(frame->sky_form, 0, sizeof frame->sky_form);
+    memset(frame->sky_quarters, 0, sizeof frame->sky_quarters);
+    for (int ring = 0; ring < RINGS; ring++) {
+        float rise = ((float)ring + 0.5f) / RINGS, across = sqrtf(1 - rise * rise);
+        for (int bearing = 0; bearing < BEARINGS; bearing++) {
+            float turn = ((float)bearing + 0.5f) * (2 * PI / BEARINGS);
+            struct wd_vec3 d = {across * cosf(turn), across * sinf(turn), rise};
+            add_direction(frame, &slants, d, radiance(user, d), 2 * PI / (RINGS * BEARINGS));
+        }
+    }
+    settle_forms(frame);
+    set_sunward(frame);
+    for (int quarter = 0; quarter < 4; quarter++)
+        frame->sky_slant[quarter] =
+            slants.through[quarter] > 0
+                ? logf(slants.through[quarter] / slants.whole[quarter]) /
+                      logf(slants.even_through / slants.even)
+                : 1;
+}
