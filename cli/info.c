@@ -12,14 +12,21 @@ struct stand {
     double stems_per_ha, mean_height_m, max_height_m, mean_crown_m;
 };
 
+/* Of worlds that are planted on demand so many cells are looked at. */
+enum { SURVEYED = 200000 };
+
 /* A row a species; free() it. */
 static struct stand *survey(const struct wd_forest *forest, const struct wd_forest_info *info)
 {
     struct stand *stands = calloc((size_t)info->species_count + 1, sizeof *stands);
     struct wd_tree_info tree;
+    struct wd_species_info species;
     if (!stands)
         abort();
-    for (uint32_t id = 1; wd_forest_get_tree(forest, id, &tree); id++) {
+    uint32_t step = info->on_demand && info->last_id > SURVEYED ? info->last_id / SURVEYED : 1;
+    for (uint64_t id = 1; id <= info->last_id; id += step) {
+        if (!wd_forest_get_tree(forest, (uint32_t)id, &tree))
+            continue;
         struct stand *stand = &stands[tree.species];
         stand->stems_per_ha += 1; /* until all are seen, sums */
         stand->mean_height_m += tree.height_m;
@@ -31,7 +38,8 @@ static struct stand *survey(const struct wd_forest *forest, const struct wd_fore
         double count = fmax(stand->stems_per_ha, 1);
         stand->mean_height_m /= count;
         stand->mean_crown_m /= count;
-        stand->stems_per_ha /= info->terrain_ha;
+        wd_forest_get_species(forest, i, &species);
+        stand->stems_per_ha = (double)species.tree_count / info->terrain_ha;
     }
     return stands;
 }

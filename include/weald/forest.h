@@ -42,6 +42,8 @@ void wd_forest_destroy(struct wd_forest **forest);
 struct wd_forest_info {
     const char *name;
     uint64_t tree_count;       /* of layers planted on demand the number to be expected */
+    uint32_t last_id;          /* no tree has a greater one */
+    bool on_demand;            /* some layers are not stored: not every id is a tree's */
     uint32_t species_count, layer_count, inventory_count;
     double min_m[3], max_m[3]; /* local frame: ground and trees */
     double origin_m[2];        /* projected coordinates of local (0, 0) */

@@ -287,7 +287,7 @@ wd_drawn drawn_of(wd_cluster cluster)
     ivec3 high = ivec3(cluster.max_mm[0], cluster.max_mm[1], cluster.max_mm[2]);
     vec3 middle = rel_of_mm(low + (high - low) / 2), size_m = vec3(high - low) * 0.001;
     float distance_m = max(length(middle), 1.0);
-    float typical_m = paged ? WD_CLUSTER_HEIGHT_M(cluster) : view.typical_m;
+    float typical_m = paged ? WD_CLUSTER_GRAIN_M(cluster) : view.typical_m;
     float tall_px = typical_m * view.pixels / distance_m;
     float wanted = tall_px * tall_px * (0.2 / WD_LEAST_TREE_PX) / held;
     float count = ceil(clamp(wanted * float(WD_CLUSTER_TREES), 1.0, float(WD_CLUSTER_TREES)));

@@ -75,7 +75,7 @@ void main()
     if (thread != 0u)
         return;
     uint count = planted == 0u ? 0u
-                               : WD_CLUSTER_OF_PAGE(planted, job.level, layers[own_layer].height_cm);
+                               : WD_CLUSTER_OF_PAGE(planted, job.level, layers[own_layer].grain_cm);
     clusters[push.first_cluster + job.slot * WD_PAGE_CLUSTERS + cluster] =
         wd_cluster(low_mm, high_mm,
                    push.first_tree + job.slot * WD_PAGE_TREES + cluster * WD_PAGE_CLUSTER, count);

@@ -73,17 +73,17 @@ struct wd_cluster {
     int32_t min_mm[3], max_mm[3]; /* bounds of its trees */
     uint32_t first;
     uint32_t count; /* bits 0..6: trees. Bit 7: of a page: all WD_CLUSTER_TREES records count, those
-                       without a tree have size 0; a tree stands for 4^level (bits 8..12); mean
-                       height in cm in bits 16..31 */
+                       without a tree have size 0; a tree stands for 4^level (bits 8..12); what
+                       view.typical_m is, in cm, in bits 16..31 */
 };
 WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
 #define WD_CLUSTERS_A_PAGE 16u
 #define WD_CLUSTER_PAGED 0x80u
-#define WD_CLUSTER_OF_PAGE(trees, level, height_cm)                                                \
-    ((trees) | WD_CLUSTER_PAGED | ((level) << 8) | ((height_cm) << 16))
+#define WD_CLUSTER_OF_PAGE(trees, level, grain_cm)                                                \
+    ((trees) | WD_CLUSTER_PAGED | ((level) << 8) | ((grain_cm) << 16))
 #define WD_CLUSTER_COUNT(cluster) ((cluster).count & 0x7fu)
 #define WD_CLUSTER_LEVEL(cluster) (((cluster).count >> 8) & 0x1fu)
-#define WD_CLUSTER_HEIGHT_M(cluster) (WD_FLOAT((cluster).count >> 16) * 0.01f)
+#define WD_CLUSTER_GRAIN_M(cluster) (WD_FLOAT((cluster).count >> 16) * 0.01f)
 
 /* Levels of the depth pyramid. A texel of level l holds the farthest depth of a square of 2^(l + 1)
  * pixels; rows of a level follow each other, levels begin at pyramid_first. */

@@ -9,7 +9,7 @@ struct wd_page_layer {
     uint32_t first_id;
     uint32_t table_first, map_first; /* of all layers' tables and maps */
     uint32_t fade;                   /* see WD_TREE_LAYER */
-    uint32_t height_cm;              /* mean of its trees */
+    uint32_t grain_cm;               /* struct wd_demand_layer.grain_m */
 };
 
 /* A page to be planted into a slot: records WD_PAGE_TREES * slot on, after the stored trees. */

@@ -1,6 +1,7 @@
 #include "api/forest.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -90,6 +91,9 @@ void wd_forest_get_info(const struct wd_forest *forest, struct wd_forest_info *i
     *info = (struct wd_forest_info){
         .name = forest->scene.name,
         .tree_count = world->tree_count + (uint64_t)world->demand.trees,
+        .last_id = (uint32_t)fmin((double)world->tree_count + (double)world->demand.cells,
+                                  (double)UINT32_MAX),
+        .on_demand = world->demand.count > 0,
         .species_count = (uint32_t)forest->scene.species_file_count,
         .layer_count = (uint32_t)forest->scene.layer_count,
         .inventory_count = (uint32_t)forest->scene.inventory_count,

@@ -54,7 +54,7 @@ static bool upload_layers(struct wd_pages *pages)
         const struct wd_placement *placement = &layer->placement;
         layers[i] = (struct wd_page_layer){
             placement->input.layer, layer->first_id,       (uint32_t)table_count,
-            (uint32_t)map_count,    fade_of(layer->index), (uint32_t)(layer->height_m * 100.0f)};
+            (uint32_t)map_count,    fade_of(layer->index), (uint32_t)(layer->grain_m * 100.0f)};
         if (placement->map)
             memcpy(maps + map_count, placement->map, map_size(layer) * sizeof *maps);
         memcpy(tables + table_count, placement->table, placement->table_count * sizeof *tables);
@@ -189,7 +189,7 @@ static bool is_fine(const struct choice *c, const struct wd_page *page, const fl
 {
     const struct wd_demand_layer *layer = &c->pages->world->demand.layers[page->layer];
     double distance_m = c->query->orthographic ? 1.0 : fmax((double)distance_to(min, max), 1.0);
-    double tall_px = (double)(layer->height_m * c->query->pixels) / distance_m;
+    double tall_px = (double)(layer->grain_m * c->query->pixels) / distance_m;
     double share = tall_px / (double)c->query->whole_px;
     return page->level == 0 || c->fewer * share * share <= ldexp(1.0, -2 * (int)page->level);
 }

@@ -14,7 +14,7 @@ struct wd_demand_layer {
     uint32_t levels;     /* one page of level levels - 1 holds all of it */
     double trees;        /* expected */
     double crown_area_m2; /* mean of a tree */
-    float height_m;      /* mean of a tree */
+    float grain_m;       /* height of a usual tree that covers as much of a picture as the mean one */
     float max_height_m, max_crown_m;
 };
 
