@@ -64,7 +64,7 @@ static const struct cli_option option_table[] = {
     {"method", 0, "NAME", CLI_KIND_TEXT, AT(method), 0, 0, SCENE_COMMANDS | CLI_GROW,
      "how trees are drawn (default: the scene's)"},
     {"suite", 0, "NAME", CLI_KIND_TEXT, AT(suite), 0, 0, CLI_BENCH,
-     "what to measure: seeds, scale, quality or popping"},
+     "what to measure: seeds, scale, density, quality or popping"},
     {"quick", 0, NULL, CLI_KIND_FLAG, AT(quick), 0, 0, CLI_BENCH,
      "minutes instead of hours: small pictures, few samples"},
     {"methods", 0, "A,B,...", CLI_KIND_TEXT, AT(methods), 0, 0, CLI_BENCH,

@@ -30,7 +30,13 @@ static const struct bench_suite suites[] = {
     {"seeds", "the scenes of the seed documents, every method: time, memory, image error",
      {"guerrero", "rpi", "3dworld", "osg", "intel", "bruneton"},
      {NULL}, BENCH_FIRST_CAMERA, BENCH_TIME | BENCH_ERROR},
-    {"scale", "one square kilometre with more and more trees: time and memory",
+    {"scale", "a view over 10 thousand to a billion trees, and a road: continuum's time and memory",
+     {"scale", "road"},
+     {"terrain.size_m=[485,485]", "terrain.size_m=[1530,1530]", "terrain.size_m=[4850,4850]",
+      "terrain.size_m=[15300,15300]", "terrain.size_m=[48500,48500]",
+      "terrain.size_m=[153000,153000]"},
+     BENCH_FIRST_CAMERA, BENCH_TIME, "continuum"},
+    {"density", "one square kilometre with more and more trees: time and memory",
      {"bench75k"},
      {"layers.0.spacing_m=10", "layers.0.spacing_m=3.65", "layers.0.spacing_m=1.8"},
      BENCH_FIRST_CAMERA, BENCH_TIME},
@@ -66,8 +72,8 @@ static bool choose_suite(struct bench *bench)
             bench->suite = &suites[i];
     }
     if (!wanted)
-        return cli_fail(bench->session, "no suite named: add --suite seeds, scale, quality or "
-                                        "popping");
+        return cli_fail(bench->session, "no suite named: add --suite seeds, scale, density, "
+                                        "quality or popping");
     return bench->suite || complain_name(bench->session, "suite", wanted, names);
 }
 
@@ -91,7 +97,10 @@ static bool choose_metric(struct bench *bench)
 static bool choose_methods(struct bench *bench)
 {
     const char *const *names = wd_method_names();
-    char *list = bench->session->options->methods ? strdup(bench->session->options->methods) : NULL;
+    const char *wanted = bench->session->options->methods;
+    if (!wanted)
+        wanted = bench->suite->methods;
+    char *list = wanted ? strdup(wanted) : NULL;
     size_t count = 0;
     char *rest = NULL;
     bool ok = true;
@@ -328,10 +337,12 @@ static enum wd_result run_suite(struct bench *bench)
                                             : scene_path(suite->scenes[i]);
         char name[64], label[64];
         name_of(path, name);
-        for (int s = 0; result == WD_OK && (s == 0 || suite->settings[s]); s++) {
-            const char *setting = options->operand_count ? NULL : suite->settings[s];
+        for (int s = 0; result == WD_OK && (s == 0 || (i == 0 && suite->settings[s])); s++) {
+            const char *setting = options->operand_count || i > 0 ? NULL : suite->settings[s];
             const char *value = setting ? strchr(setting, '=') + 1 : NULL;
             snprintf(label, sizeof label, "%.40s%s%s", name, value ? " " : "", value ? value : "");
+            for (char *comma; (comma = strchr(label, ','));)
+                *comma = ' '; /* it parts columns of the results */
             result = run_scene(bench, path, label, setting);
             if (options->operand_count)
                 break;

@@ -56,9 +56,10 @@ struct bench_effort {
 struct bench_suite {
     const char *name, *summary;
     const char *scenes[8];   /* in scenes/, without .json */
-    const char *settings[8]; /* each scene is measured with each; none: as it is */
+    const char *settings[8]; /* the first scene is measured with each; none: as it is */
     enum bench_cameras { BENCH_FIRST_CAMERA, BENCH_EVERY_CAMERA } cameras;
     enum bench_measures { BENCH_TIME = 1, BENCH_ERROR = 2, BENCH_POPPING = 4 } measures;
+    const char *methods; /* "A,B": those measured unless others are named; NULL: all */
 };
 
 struct bench {
