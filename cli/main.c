@@ -73,7 +73,8 @@ static const struct cli_command commands[] = {
      "path-traced ones; prints a table and leaves results.csv, results.json and report.html in DIR.\n"
      "Stopped, the same command goes on. Suites:\n"
      "  seeds    the scenes of the seed documents      quality  every camera of two forests\n"
-     "  scale    more and more trees                   popping  slow camera paths",
+     "  scale    up to a billion trees                 popping  slow camera paths\n"
+     "  density  more and more trees on a square kilometre",
      "  weald bench --suite seeds --quick -o out/bench\n"
      "  weald bench --suite quality --methods octree,lod --metric ssim -o out/bench\n"
      "  weald bench my-scene.json --suite quality -o out/bench\n",
