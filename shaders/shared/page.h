@@ -7,8 +7,8 @@
  *
  * A page of level l holds the trees of 32 x 32 such blocks, in clusters of 8 x 8. In a cluster come
  * those first that stand for blocks of the coarsest levels (in the order of reversed bits: see
- * wd_page_cell), so that a prefix of a cluster's trees is what a coarser page holds of it: going from a page
- * to the coarser one changes nothing where a quarter of its trees are drawn.
+ * wd_page_cell_of), so that a prefix of a cluster's trees is what a coarser page holds of it: going
+ * from a page to the coarser one changes nothing where a quarter of its trees are drawn.
  *
  * A shader that includes this defines WD_LAYER(member) before. */
 #ifndef WD_SHARED_PAGE_H
