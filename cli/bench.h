@@ -26,8 +26,9 @@ enum bench_column {
                                                   of 4 x 4 blocks, in percent of white */
     BENCH_POPPING_P999,
     BENCH_POPPING_STEP, /* the largest */
-    BENCH_BOUNDARY_STEP, /* the largest where a tree changes its level: full to reduced mesh, reduced
-                            to billboard, full to billboard, billboard to canopy map */
+    BENCH_BOUNDARY_STEP, /* mean of a tree's blocks that change their level, of the tree where it is the
+                            largest: full to reduced mesh, reduced to billboard, full to billboard,
+                            billboard to canopy map */
     BENCH_COLUMNS = BENCH_BOUNDARY_STEP + 4,
 };
 

@@ -132,29 +132,58 @@ static void popping_finish(struct popping *popping)
     free(popping->excess);
 }
 
-/* A tree crosses a boundary where it shows both sides of it in two frames one after the other. */
-static void add_crossing(struct popping *popping, const struct seen *before, const struct seen *now,
-                         double excess)
+/* The boundary whose both sides a tree shows in two frames one after the other, or
+ * BENCH_BOUNDARIES. */
+static int boundary_of(const struct seen *before, const struct seen *now)
 {
     static const uint32_t sides[BENCH_BOUNDARIES] = {FULL | REDUCED, REDUCED | BILLBOARD,
                                                      FULL | BILLBOARD, BILLBOARD | CANOPY};
     uint32_t levels = before->levels | now->levels;
+    int boundary = 0;
     if (!now->tree || before->tree != now->tree)
-        return;
-    for (int i = 0; i < BENCH_BOUNDARIES; i++)
-        if (levels == sides[i])
-            popping->step[i] = fmax(popping->step[i], excess);
+        return BENCH_BOUNDARIES;
+    while (boundary < BENCH_BOUNDARIES && levels != sides[boundary])
+        boundary++;
+    return boundary;
+}
+
+/* Mean excess of a tree's blocks that cross a boundary: noise of single blocks averages out. */
+static void add_tree(struct popping *popping, uint32_t tree, int boundary, const double *excess)
+{
+    const struct seen *before = popping->frames[0].seen, *now = popping->frames[1].seen;
+    uint32_t count = 0;
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)popping->columns * popping->rows; i++)
+        if (now[i].tree == tree && boundary_of(&before[i], &now[i]) == boundary) {
+            sum += excess[i];
+            count++;
+        }
+    if (count > 0)
+        popping->step[boundary] = fmax(popping->step[boundary], sum / count);
+}
+
+static void add_crossings(struct popping *popping, const double *excess)
+{
+    const struct seen *before = popping->frames[0].seen, *now = popping->frames[1].seen;
+    uint32_t last_tree = 0;
+    int last = BENCH_BOUNDARIES;
+    for (size_t i = 0; i < (size_t)popping->columns * popping->rows; i++) {
+        int boundary = boundary_of(&before[i], &now[i]);
+        if (boundary < BENCH_BOUNDARIES && (now[i].tree != last_tree || boundary != last))
+            add_tree(popping, last_tree = now[i].tree, last = boundary, excess);
+    }
 }
 
 static void add_step(struct popping *popping, uint32_t step)
 {
     const struct frame *now = &popping->frames[step % 2], *before = &popping->frames[1 - step % 2];
-    for (size_t i = 0; step > 0 && i < (size_t)popping->columns * popping->rows; i++) {
-        double excess = fmax(
+    double *excess = popping->excess + popping->count;
+    if (step == 0)
+        return;
+    for (size_t i = 0; i < (size_t)popping->columns * popping->rows; i++)
+        popping->excess[popping->count++] = fmax(
             fabs(now->drawn[i] - before->drawn[i]) - fabs(now->truth[i] - before->truth[i]), 0);
-        popping->excess[popping->count++] = excess;
-        add_crossing(popping, &before->seen[i], &now->seen[i], excess);
-    }
+    add_crossings(popping, excess);
 }
 
 /* A slow walk ahead: half a degree of change a frame for things 25 m to the side. */
