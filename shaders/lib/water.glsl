@@ -10,12 +10,12 @@ bool water_reaches(vec3 rel)
                                  && all(lessThan(local_m, push.extent_m)));
 }
 
-/* Light of a surface in the picture, roughly: as if half of it stood in the sun. */
+/* Light of a surface in the picture, roughly: as if most of it stood in the sun. */
 vec3 mirrored_surface(ivec2 at)
 {
     vec4 albedo = texelFetch(gbuffer_albedo, at, 0);
     vec3 normal = texelFetch(gbuffer_normal, at, 0).xyz * 2.0 - 1.0;
-    float facing = 0.15 + 0.3 * max(dot(normal, frame.sun_direction), 0.0);
+    float facing = 0.25 + 0.5 * max(dot(normal, frame.sun_direction), 0.0);
     vec3 light = frame.sun_irradiance * facing * albedo.a + frame.sky_irradiance * (0.6 * albedo.a);
     return albedo.rgb * light * 0.318309886;
 }
