@@ -224,7 +224,7 @@ static struct sums sums_on_demand(const struct work *work, float cover)
     const struct wd_canopy_field_params *params = work->params;
     const struct wd_demand_layer *layer = &work->world->demand.layers[0];
     const struct wd_crown_shade *shade = &params->shades[0];
-    float height_m = layer->height_m, radius_m = sqrtf((float)layer->crown_area_m2 / PI);
+    float height_m = layer->mean_height_m, radius_m = sqrtf((float)layer->crown_area_m2 / PI);
     float base_m = height_m * params->models[0].crown_base_m / params->models[0].height_m;
     float outline = -logf(1 - cover), per_m2 = outline / fmaxf((float)layer->crown_area_m2, 0.1f);
     return (struct sums){.outline = outline,

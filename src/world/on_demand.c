@@ -106,6 +106,7 @@ static void describe_trees(struct wd_demand_layer *added, const struct wd_scene 
     /* as continuum's covered_px, half from above; a usual tree covers a fifth of its height squared */
     double wide_m = sqrt(added->crown_area_m2 / 0.7853981633974483);
     double tall_m = 0.01 * (numbers->height_min_cm + 0.5 * numbers->height_span_cm);
+    added->mean_height_m = (float)tall_m;
     double covered_m2 = 0.6 * wide_m * sqrt(0.5 * tall_m * tall_m + 0.5 * wide_m * wide_m);
     added->grain_m = (float)sqrt(covered_m2 / 0.2);
     added->max_height_m = 0.01f * (float)(numbers->height_min_cm + numbers->height_span_cm);

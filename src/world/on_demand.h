@@ -15,7 +15,7 @@ struct wd_demand_layer {
     double trees;        /* expected */
     double crown_area_m2; /* mean of a tree */
     float grain_m;       /* height of a usual tree that covers as much of a picture as the mean one */
-    float max_height_m, max_crown_m;
+    float mean_height_m, max_height_m, max_crown_m;
 };
 
 struct wd_demand {

@@ -12,7 +12,7 @@ sound() { python3 "$root/tests/cli/glb_check.py" "$@"; }
 
 # shellcheck disable=SC2086  # $small is many words
 {
-    expect 0 'oak .*24.*80 years; triangles' grow oak --age 80 --open 1 --seed 3 -o "$out/oak.glb"
+    expect 0 'oak .* m high, .*80 years; triangles' grow oak --age 80 --open 1 --seed 3 -o "$out/oak.glb"
     expect 0 'oak.obj: ' grow oak --height 5 --detail 0.2 -o "$out/oak.obj"
     expect 0 'oak.png: ' grow oak --height 5 -o "$out/oak.png" $small --gpu-validate
     expect 0 . grow oak --height 5 --season autumn -o "$out/autumn.png" $small
