@@ -5,11 +5,13 @@
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer View { wd_terrain_view view; };
 layout(constant_id = 0) const uint HAS_HOLES = 1u;
+layout(constant_id = 1) const uint IS_NEAR = 1u;
 
 layout(set = 0, binding = 4) uniform sampler2D slopes;
-layout(set = 0, binding = 5) uniform sampler2D cover_map;
+layout(set = 0, binding = 5) uniform sampler2D cover_map; /* x: of the place, y: about it */
 layout(scalar, set = 0, binding = 6) readonly buffer Holes { uint holes[]; };
 
+#define WD_STREWN_SHOWN (IS_NEAR != 0u)
 #include "shared/ground_cover.h"
 
 layout(location = 0) in vec3 in_rel;
@@ -53,16 +55,6 @@ float footprint_of(float distance_m, vec2 slope)
     return distance_m * view.pixel_rad / sqrt(max(facing, 0.02));
 }
 
-float woods_about(vec2 local_m, float lod)
-{
-    const vec2 ways[4] = {vec2(WD_WOODS_M, 0.0), vec2(-WD_WOODS_M, 0.0), vec2(0.0, WD_WOODS_M),
-                          vec2(0.0, -WD_WOODS_M)};
-    float sum = 0.0;
-    for (int i = 0; i < 4; i++)
-        sum += textureLod(cover_map, (local_m + ways[i]) * view.cover_scale, lod).x;
-    return 0.25 * sum;
-}
-
 void main()
 {
     vec2 local_m = in_rel.xy + view.camera_m;
@@ -72,10 +64,9 @@ void main()
     float level = log2(distance_m * view.pixel_rad * 1.5);
     vec2 slope = textureLod(slopes, local_m * view.slopes_scale + view.slopes_offset,
                             level - log2(view.slopes_texel_m)).xy;
-    float cover = textureLod(cover_map, local_m * view.cover_scale,
-                             level - log2(view.cover_texel_m)).x;
-    wd_ground_look look = wd_ground_cover(in_rel, slope.x, slope.y, cover,
-                                          woods_about(local_m, level - log2(view.cover_texel_m)),
+    vec2 cover = textureLod(cover_map, local_m * view.cover_scale,
+                            level - log2(view.cover_texel_m)).xy;
+    wd_ground_look look = wd_ground_cover(in_rel, slope.x, slope.y, cover.x, cover.y,
                                           footprint_of(distance_m, slope));
     if (in_curtain > 0.0) {
         look.albedo = frame.soil * (0.75 + 0.25 * cos(in_rel.z * 1.3));

@@ -63,6 +63,11 @@ struct wd_ground_strewn {
 /* From this footprint on, in metres, leaves on the ground are no more than its mean colour. */
 #define WD_STREWN_NONE_M 0.045f
 
+/* Shaders may say that no pixel is so near. */
+#ifndef WD_STREWN_SHOWN
+#define WD_STREWN_SHOWN true
+#endif
+
 /* Under trees leaves, in meadows blades; `shade` as in wd_soil_albedo. */
 WD_FUNC WD_STRUCT wd_ground_strewn wd_ground_strewn_at(WD_FRAME_IN float east_m, float north_m,
                                                        float shade, float footprint_m)
@@ -70,7 +75,7 @@ WD_FUNC WD_STRUCT wd_ground_strewn wd_ground_strewn_at(WD_FRAME_IN float east_m,
     WD_STRUCT wd_strewn things;
     bool leaves = shade > 0.5f;
     things.bits = 6;
-    things.layers = footprint_m < WD_STREWN_NONE_M ? 4 : 0;
+    things.layers = WD_STREWN_SHOWN && footprint_m < WD_STREWN_NONE_M ? 4 : 0;
     things.half_length = leaves ? 0.55f : 0.75f;
     things.half_width = leaves ? 0.30f : 0.065f;
     things.chance = leaves ? 0.8f : 0.95f;
@@ -202,11 +207,8 @@ WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float steep, floa
     return albedo;
 }
 
-/* A forest's mean cover is taken this far to each side of a place, in metres. */
-#define WD_WOODS_M 14.0f
-
-/* `rel`: the place; `slope`: rise over run east and north; `cover`: of the canopy, 0..1; `woods`: the
- * mean of it WD_WOODS_M to the east, west, north and south. */
+/* `rel`: the place; `slope`: rise over run east and north; `cover`: of the canopy, 0..1; `woods`: its
+ * mean about the place (world/cover.h). */
 WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, float slope_east,
                                                  float slope_north, float cover, float woods,
                                                  float footprint_m)

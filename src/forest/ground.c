@@ -6,6 +6,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "world/cover.h"
 
 static const uint32_t MAX_SLOPES_SIDE = 4096; /* texels; every device can do this */
 
@@ -148,10 +149,11 @@ static void halve(float *values, uint32_t *width, uint32_t *height, uint32_t cha
     *height = h;
 }
 
-/* Uploads all mips of a two-channel (half) or one-channel (byte) image; spoils `values`. */
-static bool upload_mips(struct wd_image *image, struct wd_gpu *gpu, float *values,
-                        uint32_t channels)
+/* Uploads all mips of an image of two channels, halves or (0..1) bytes; spoils `values`. */
+static bool upload_mips(struct wd_image *image, struct wd_gpu *gpu, float *values)
 {
+    const uint32_t channels = 2;
+    bool halves = image->format == VK_FORMAT_R16G16_SFLOAT;
     uint32_t width = image->width, height = image->height;
     size_t texel = wd_format_texel_bytes(image->format);
     uint8_t *bytes = wd_alloc_array((size_t)width * height, texel);
@@ -159,10 +161,10 @@ static bool upload_mips(struct wd_image *image, struct wd_gpu *gpu, float *value
     for (uint32_t mip = 0; mip < image->mips && ok; mip++) {
         size_t count = (size_t)width * height * channels;
         for (size_t i = 0; i < count; i++) {
-            if (channels == 2)
+            if (halves)
                 memcpy(bytes + 2 * i, &(uint16_t){half_of(values[i])}, 2);
             else
-                bytes[i] = (uint8_t)(values[i] + 0.5f);
+                bytes[i] = (uint8_t)(255.0f * values[i] + 0.5f);
         }
         ok = wd_image_upload(gpu, image, 0, mip, bytes, (size_t)width * height * texel);
         halve(values, &width, &height, channels);
@@ -198,22 +200,26 @@ static bool upload_slopes(struct wd_ground *ground, struct wd_gpu *gpu)
     }
     bool ok = make_image(&ground->slopes, gpu, "ground slopes", VK_FORMAT_R16G16_SFLOAT, width,
                          height) &&
-              upload_mips(&ground->slopes, gpu, slopes, 2);
+              upload_mips(&ground->slopes, gpu, slopes);
     free(slopes);
     return ok;
 }
 
-/* A world without cover (no trees) gets one texel of none. */
+/* Cover and the woods about a place. A world without cover (no trees) gets one texel of none. */
 static bool upload_cover(struct wd_ground *ground, struct wd_gpu *gpu, const struct wd_world *world)
 {
     bool has = world->cover && world->cover_width && world->cover_height;
     uint32_t width = has ? world->cover_width : 1, height = has ? world->cover_height : 1;
     ground->cover_cell_m = has ? world->cover_cell_m : wd_terrain_extent_x_m(ground->terrain);
-    float *cover = wd_alloc_array((size_t)width * height, sizeof *cover);
-    for (size_t i = 0; has && i < (size_t)width * height; i++)
-        cover[i] = world->cover[i];
-    bool ok = make_image(&ground->cover, gpu, "canopy cover", VK_FORMAT_R8_UNORM, width, height) &&
-              upload_mips(&ground->cover, gpu, cover, 1);
+    float *cover = wd_alloc_array((size_t)width * height, 2 * sizeof *cover);
+    for (size_t i = 0; has && i < (size_t)width * height; i++) {
+        double x_m = ((double)(i % width) + 0.5) * ground->cover_cell_m;
+        double y_m = ((double)(i / width) + 0.5) * ground->cover_cell_m;
+        cover[2 * i] = (float)world->cover[i] / 255.0f;
+        cover[2 * i + 1] = wd_woods_at(world, x_m, y_m);
+    }
+    bool ok = make_image(&ground->cover, gpu, "canopy cover", VK_FORMAT_R8G8_UNORM, width, height) &&
+              upload_mips(&ground->cover, gpu, cover);
     free(cover);
     return ok;
 }

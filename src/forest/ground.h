@@ -22,7 +22,7 @@ struct wd_ground {
     struct wd_buffer heights;         /* float[width * height], metres above the world's zero */
     struct wd_buffer holes;           /* uint8_t[width * height] padded to 4; 4 bytes without holes */
     struct wd_image slopes;           /* R16G16_SFLOAT, mips: rise over run eastward, northward */
-    struct wd_image cover;            /* R8, mips: canopy cover */
+    struct wd_image cover;            /* RG8, mips: of the canopy; its mean about */
     VkSampler sampler;                /* trilinear, clamped, for both */
     uint32_t slopes_step;             /* samples from texel to texel of `slopes` */
     double cover_cell_m;

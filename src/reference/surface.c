@@ -4,6 +4,7 @@
 #include "shared/ground_cover.h"
 #include "shared/snow.h"
 #include "tree/vec.h"
+#include "world/cover.h"
 
 static const float COARSE_FOOTPRINT_M = 0.4f;
 
@@ -149,49 +150,17 @@ static void sample_slope(const struct wd_terrain *terrain, uint32_t i, uint32_t 
                ((float)(north - south) * cell_m);
 }
 
-/* The lower of two neighbours on a grid of `count` and the share of the upper, clamped. */
-static uint32_t grid_place(double at, uint32_t count, float *share)
-{
-    double last = count - 1.0, x = at < 0 ? 0 : at > last ? last : at;
-    uint32_t cell = (uint32_t)x;
-    if (cell + 1 >= count)
-        cell = count >= 2 ? count - 2 : 0;
-    *share = count >= 2 ? (float)(x - cell) : 0;
-    return cell;
-}
-
 /* Interpolated between samples, as pictures are drawn with it. */
 static void smooth_slope(const struct wd_terrain *terrain, double x_m, double y_m, float slope[2])
 {
     float u, v, corner[4][2];
-    uint32_t i = grid_place(x_m / terrain->cell_m, terrain->width, &u);
-    uint32_t j = grid_place(y_m / terrain->cell_m, terrain->height, &v);
+    uint32_t i = wd_grid_place(x_m / terrain->cell_m, terrain->width, &u);
+    uint32_t j = wd_grid_place(y_m / terrain->cell_m, terrain->height, &v);
     for (uint32_t k = 0; k < 4; k++)
         sample_slope(terrain, i + (k & 1), j + (k >> 1), corner[k]);
     for (int k = 0; k < 2; k++)
         slope[k] = wd_mixf(wd_mixf(corner[0][k], corner[1][k], u),
                            wd_mixf(corner[2][k], corner[3][k], u), v);
-}
-
-static float canopy_cover(const struct wd_world *world, double x_m, double y_m)
-{
-    if (!world->cover || !world->cover_width || !world->cover_height)
-        return 0;
-    float u, v;
-    uint32_t width = world->cover_width, height = world->cover_height;
-    uint32_t i = grid_place(x_m / world->cover_cell_m - 0.5, width, &u);
-    uint32_t j = grid_place(y_m / world->cover_cell_m - 0.5, height, &v);
-    const uint8_t *south = world->cover + (size_t)j * width + i;
-    const uint8_t *north = height > 1 ? south + width : south;
-    int right = width > 1;
-    return wd_mixf(wd_mixf(south[0], south[right], u), wd_mixf(north[0], north[right], u), v) / 255;
-}
-
-static float woods_about(const struct wd_world *world, double x_m, double y_m)
-{
-    const double d = (double)WD_WOODS_M;
-    return 0.25f * (canopy_cover(world, x_m + d, y_m) + canopy_cover(world, x_m - d, y_m) +
-                    canopy_cover(world, x_m, y_m + d) + canopy_cover(world, x_m, y_m - d));
 }
 
 static void ground_surface(struct wd_surface *surface, const struct wd_trace_scene *scene,
@@ -217,7 +186,7 @@ static void ground_surface(struct wd_surface *surface, const struct wd_trace_sce
     }
     struct wd_ground_look look =
         wd_ground_cover(scene->frame, surface->place, slope[0], slope[1],
-                        canopy_cover(scene->world, x_m, y_m), woods_about(scene->world, x_m, y_m),
+                        wd_cover_at(scene->world, x_m, y_m), wd_woods_at(scene->world, x_m, y_m),
                         footprint_m);
     surface->albedo = look.albedo;
     surface->outward = look.normal;

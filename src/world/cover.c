@@ -7,6 +7,7 @@
 #include "base/memory.h"
 
 enum { SIDE = 4 }; /* sample points along a cell's side */
+static const double WOODS_M = 14.0;
 enum { LOWEST_CM = 150 }; /* lower ones are herbs and seedlings: no canopy over the ground */
 static const double most_cells = 4.0 * 1024.0 * 1024.0;
 
@@ -90,4 +91,39 @@ void wd_cover_init(struct wd_world *world, unsigned threads)
     world->cover_cell_m = cell_m;
     if (world->demand.count)
         wd_jobs_run(threads, samples.height, add_expected, world);
+}
+
+/* --- reading it --------------------------------------------------------------------------- */
+
+uint32_t wd_grid_place(double at, uint32_t count, float *share)
+{
+    double last = count - 1.0, x = at < 0 ? 0 : at > last ? last : at;
+    uint32_t cell = (uint32_t)x;
+    if (cell + 1 >= count)
+        cell = count >= 2 ? count - 2 : 0;
+    *share = count >= 2 ? (float)(x - cell) : 0;
+    return cell;
+}
+
+float wd_cover_at(const struct wd_world *world, double x_m, double y_m)
+{
+    if (!world->cover || !world->cover_width || !world->cover_height)
+        return 0.0f;
+    float u, v;
+    uint32_t width = world->cover_width, height = world->cover_height;
+    uint32_t i = wd_grid_place(x_m / world->cover_cell_m - 0.5, width, &u);
+    uint32_t j = wd_grid_place(y_m / world->cover_cell_m - 0.5, height, &v);
+    const uint8_t *south = world->cover + (size_t)j * width + i;
+    const uint8_t *north = height > 1 ? south + width : south;
+    int right = width > 1;
+    float low = (float)south[0] + u * (float)(south[right] - south[0]);
+    float high = (float)north[0] + u * (float)(north[right] - north[0]);
+    return (low + v * (high - low)) / 255.0f;
+}
+
+float wd_woods_at(const struct wd_world *world, double x_m, double y_m)
+{
+    const double d = WOODS_M;
+    return 0.25f * (wd_cover_at(world, x_m + d, y_m) + wd_cover_at(world, x_m - d, y_m) +
+                    wd_cover_at(world, x_m, y_m + d) + wd_cover_at(world, x_m, y_m - d));
 }

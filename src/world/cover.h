@@ -10,4 +10,12 @@
  * random. */
 void wd_cover_init(struct wd_world *world, unsigned threads);
 
+/* Cover at a place, 0..1, and its mean 14 m to the east, west, north and south of the place, which
+ * tells a forest from a single tree. */
+float wd_cover_at(const struct wd_world *world, double x_m, double y_m);
+float wd_woods_at(const struct wd_world *world, double x_m, double y_m);
+
+/* The lower of two neighbours on a grid of `count` and the share of the upper, clamped. */
+uint32_t wd_grid_place(double at, uint32_t count, float *share);
+
 #endif

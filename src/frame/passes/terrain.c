@@ -37,8 +37,10 @@ static bool init_indices(struct wd_buffer *buffer, struct wd_gpu *gpu)
     return true;
 }
 
-static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t has_holes)
+static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t has_holes,
+                          uint32_t is_near)
 {
+    const uint32_t constants[] = {has_holes, is_near};
     const struct wd_graphics_params params = {
         .vertex = SPIRV(terrain_vert),
         .fragment = SPIRV(terrain_frag),
@@ -48,7 +50,7 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
-        .constants = {1, &has_holes},
+        .constants = {2, constants},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
@@ -60,8 +62,9 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint
 bool wd_terrain_pass_init(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_terrain_pass){0};
-    bool ok = init_indices(&pass->indices, gpu) && init_pipeline(&pass->whole, gpu, 0) &&
-              init_pipeline(&pass->holed, gpu, 1);
+    bool ok = init_indices(&pass->indices, gpu);
+    for (uint32_t i = 0; i < 4 && ok; i++)
+        ok = init_pipeline(&pass->pipelines[i >> 1][i & 1], gpu, i >> 1, i & 1);
     if (!ok)
         wd_terrain_pass_finish(pass, gpu);
     return ok;
@@ -69,11 +72,21 @@ bool wd_terrain_pass_init(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
 
 void wd_terrain_pass_finish(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
 {
-    wd_pipeline_finish(&pass->whole, gpu);
-    wd_pipeline_finish(&pass->holed, gpu);
+    for (uint32_t i = 0; i < 4; i++)
+        wd_pipeline_finish(&pass->pipelines[i >> 1][i & 1], gpu);
     wd_buffer_finish(&pass->indices, gpu);
     wd_patch_list_finish(&pass->patches);
     *pass = (struct wd_terrain_pass){0};
+}
+
+static void draw(struct wd_cmd *cmd, const struct wd_pipeline *pipeline,
+                 const struct wd_binding *bindings, uint32_t first, uint32_t count)
+{
+    if (!count)
+        return;
+    wd_cmd_bind(cmd, pipeline, bindings);
+    if (!cmd->failed)
+        vkCmdDrawIndexed(cmd->vk, PATCH_INDICES, count, 0, 0, first);
 }
 
 void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
@@ -103,8 +116,9 @@ void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(&ground->cover, ground->sampler),
         WD_BIND_BUFFER(&ground->holes),
     };
-    wd_cmd_bind(cmd, ground->terrain->hole ? &pass->holed : &pass->whole, bindings);
+    const struct wd_pipeline *pipelines = pass->pipelines[ground->terrain->hole != NULL];
+    uint32_t detailed = (uint32_t)pass->patches.detailed;
     vkCmdBindIndexBuffer(cmd->vk, pass->indices.buffer, 0, VK_INDEX_TYPE_UINT16);
-    if (!cmd->failed)
-        vkCmdDrawIndexed(cmd->vk, PATCH_INDICES, (uint32_t)count, 0, 0, 0);
+    draw(cmd, &pipelines[1], bindings, 0, detailed);
+    draw(cmd, &pipelines[0], bindings, detailed, (uint32_t)count - detailed);
 }

@@ -8,7 +8,7 @@
 #include "frame/view.h"
 
 struct wd_terrain_pass {
-    struct wd_pipeline whole, holed; /* ground without and with holes */
+    struct wd_pipeline pipelines[2][2]; /* with holes; near enough for what is strewn on it */
     struct wd_buffer indices;
     struct wd_patch_list patches; /* scratch */
     uint64_t triangles;           /* of the newest record */
@@ -23,7 +23,7 @@ struct wd_terrain_params {
     struct wd_binding uniforms;     /* struct wd_frame_uniforms */
     float error_px;                 /* wanted bound of the mesh's error on screen */
 };
-/* Records one indexed draw into an open rendering of the G-buffer (wd_targets_gbuffer).
+/* Records up to two indexed draws into an open rendering of the G-buffer (wd_targets_gbuffer).
  *
  * The ground needs no pass into the shadow maps: its own shadows, at any distance, are in the light
  * pass (frame/sun_field.h), and the maps hold what stands on it. */

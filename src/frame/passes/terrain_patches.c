@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "shared/ground_cover.h"
 
 /* Why nothing comes apart: distances are measured across (plus one height for the whole frame), so
  * a patch of level k, whose parent comes within range[k - 1 + 1], ends before range[k] + the
@@ -57,26 +58,31 @@ static double outside(double low, double high, double at)
     return at < low ? low - at : at > high ? at - high : 0;
 }
 
-static void add_patch(struct selection *s, uint32_t level, uint32_t column, uint32_t row,
-                      uint32_t edge)
+static void add_patch(struct selection *s, bool detailed, struct wd_terrain_patch patch)
 {
-    *wd_push(s->list->items, s->list->count, s->list->capacity) =
-        (struct wd_terrain_patch){column, row, level, edge};
+    struct wd_patch_list *list = s->list;
+    struct wd_terrain_patch *to = wd_push(list->items, list->count, list->capacity);
+    if (detailed) {
+        *to = list->items[list->detailed];
+        to = &list->items[list->detailed++];
+    }
+    *to = patch;
 }
 
-static void add_with_curtains(struct selection *s, uint32_t level, uint32_t column, uint32_t row)
+static void add_with_curtains(struct selection *s, double distance_m, uint32_t level,
+                              uint32_t column, uint32_t row)
 {
+    bool detailed = distance_m < WD_STREWN_NONE_M * s->view->pixels_per_radian;
     const struct wd_terrain *terrain = s->ground->terrain;
     uint32_t size = WD_PATCH_CELLS << level;
-    add_patch(s, level, column, row, WD_EDGE_NONE);
-    if (row == 0)
-        add_patch(s, level, column, row, WD_EDGE_SOUTH);
-    if (column + size >= terrain->width - 1)
-        add_patch(s, level, column, row, WD_EDGE_EAST);
-    if (row + size >= terrain->height - 1)
-        add_patch(s, level, column, row, WD_EDGE_NORTH);
-    if (column == 0)
-        add_patch(s, level, column, row, WD_EDGE_WEST);
+    bool edges[5] = {[WD_EDGE_NONE] = true,
+                     [WD_EDGE_SOUTH] = row == 0,
+                     [WD_EDGE_EAST] = column + size >= terrain->width - 1,
+                     [WD_EDGE_NORTH] = row + size >= terrain->height - 1,
+                     [WD_EDGE_WEST] = column == 0};
+    for (uint32_t edge = WD_EDGE_NONE; edge <= WD_EDGE_WEST; edge++)
+        if (edges[edge])
+            add_patch(s, detailed, (struct wd_terrain_patch){column, row, level, edge});
 }
 
 static void visit(struct selection *s, uint32_t level, uint32_t i, uint32_t j)
@@ -98,7 +104,8 @@ static void visit(struct selection *s, uint32_t level, uint32_t i, uint32_t j)
     double x = outside(west, east, 0), y = outside(south, north, 0), z = s->ranges->above_m;
     double distance = sqrt(x * x + y * y + z * z);
     if (level == 0 || distance >= s->ranges->range_m[level - 1]) {
-        add_with_curtains(s, level, (i * WD_PATCH_CELLS) << level, (j * WD_PATCH_CELLS) << level);
+        add_with_curtains(s, distance, level, (i * WD_PATCH_CELLS) << level,
+                          (j * WD_PATCH_CELLS) << level);
         return;
     }
     /* nearest child first: what is behind fails the depth test early */
@@ -112,7 +119,7 @@ void wd_patches_select(struct wd_patch_list *list, const struct wd_patch_ranges 
 {
     struct selection selection = {list, ranges, ground, view};
     const struct wd_ground_level *top = &ground->levels[ground->level_count - 1];
-    list->count = 0;
+    list->count = list->detailed = 0;
     for (uint32_t j = 0; j < top->rows; j++) {
         for (uint32_t i = 0; i < top->columns; i++)
             visit(&selection, ground->level_count - 1, i, j);

@@ -8,6 +8,7 @@
 struct wd_patch_list {
     struct wd_terrain_patch *items; /* near ones first */
     size_t count, capacity;
+    size_t detailed; /* so many at the beginning are near enough for what is strewn on the ground */
 };
 void wd_patch_list_finish(struct wd_patch_list *list);
 
