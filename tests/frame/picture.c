@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "forest/canopy_light.h"
 #include "frame/uniforms.h"
 
 static void set_weather(struct wd_scene *scene)
@@ -53,6 +54,22 @@ static void make_cover(struct wd_world *world)
     }
 }
 
+/* No crowns: what hills alone leave of the sky. */
+static bool make_canopy_light(struct picture_test *test)
+{
+    const struct wd_model none = {0};
+    const struct wd_crown_shade no_shade = {0};
+    const struct wd_canopy_field_params params = {
+        .world = &test->world, .models = &none, .shades = &no_shade, .variants = 1, .threads = 1};
+    struct wd_canopy_field field;
+    wd_canopy_field_init(&field, &params);
+    test->forest.canopy_light_scale[0] = (float)(1 / (field.cell_m * field.width));
+    test->forest.canopy_light_scale[1] = (float)(1 / (field.cell_m * field.height));
+    bool ok = wd_canopy_light_upload(&test->forest.canopy_light, &test->gpu, &field);
+    wd_canopy_field_finish(&field);
+    return ok;
+}
+
 static bool make_forest(struct picture_test *test)
 {
     const struct wd_buffer_params trees = {.name = "no trees",
@@ -64,7 +81,8 @@ static bool make_forest(struct picture_test *test)
     test->forest.variants = 1;
     return wd_ground_init(&test->forest.ground, &test->gpu, &test->world, &test->log) &&
            wd_buffer_init(&test->forest.trees, &test->gpu, &trees) &&
-           wd_buffer_upload(&test->gpu, &test->forest.trees, 0, &none, sizeof none);
+           wd_buffer_upload(&test->gpu, &test->forest.trees, 0, &none, sizeof none) &&
+           make_canopy_light(test);
 }
 
 bool picture_init(struct picture_test *test, uint32_t width, uint32_t height, uint32_t cells,
@@ -95,6 +113,7 @@ void picture_finish(struct picture_test *test)
     wd_frames_finish(&test->frames);
     wd_ground_finish(&test->forest.ground, &test->gpu);
     wd_buffer_finish(&test->forest.trees, &test->gpu);
+    wd_image_finish(&test->forest.canopy_light, &test->gpu);
     wd_targets_finish(&test->targets, &test->gpu);
     wd_terrain_pass_finish(&test->terrain, &test->gpu);
     wd_light_pass_finish(&test->light, &test->gpu);
@@ -163,6 +182,7 @@ static bool draw_sample(struct picture_test *test, const struct wd_camera *camer
     if (mapped)
         *mapped = test->uniforms;
     wd_ground_use(&test->forest.ground, &cmd);
+    wd_cmd_use_image(&cmd, &test->forest.canopy_light, WD_USE_SHADER_READ);
     wd_cmd_use_buffer(&cmd, &test->forest.trees, WD_USE_SHADER_READ);
     record(test, &cmd, binding);
     return wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE) && wd_frames_wait(&test->frames);
