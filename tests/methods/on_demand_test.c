@@ -45,10 +45,8 @@ static struct wd_page_cell cell_of(const struct wd_world *world, uint32_t level,
  * hold, and these come first in their clusters. */
 static void pages_are_nested_samples(void **state)
 {
-    (void)state;
     enum { SIDE = 8 * WD_PAGE_SIDE };
-    struct frame_test test;
-    frame_test_init_with(&test, root, 0, WOODS);
+    struct frame_test *test = *state;
     uint8_t *level_of = wd_alloc(SIDE * SIDE);
     memset(level_of, 255, SIDE * SIDE);
     for (uint32_t level = 0; level < 4; level++) {
@@ -56,7 +54,7 @@ static void pages_are_nested_samples(void **state)
         for (uint32_t i = 0; i < pages * pages * WD_PAGE_TREES; i++) {
             uint32_t page = i / WD_PAGE_TREES, index = i % WD_PAGE_TREES;
             struct wd_page_cell cell =
-                cell_of(&test.world, level, page % pages, page / pages, index);
+                cell_of(&test->world, level, page % pages, page / pages, index);
             assert_true(cell.column < SIDE && cell.row < SIDE);
             uint8_t *at = &level_of[cell.row * SIDE + cell.column];
             assert_int_equal(*at, level ? level - 1 : 255); /* once, and held by the finer level */
@@ -67,22 +65,19 @@ static void pages_are_nested_samples(void **state)
     }
     /* the first quarter of a cluster, in the order of reversed bits, stands for coarser blocks */
     for (uint32_t index = 0; index < WD_PAGE_TREES; index++) {
-        struct wd_page_cell cell = cell_of(&test.world, 0, 0, 0, index);
+        struct wd_page_cell cell = cell_of(&test->world, 0, 0, 0, index);
         bool first_quarter = (index & 3u) == 0;
         assert_int_equal(level_of[cell.row * SIDE + cell.column] >= 1, first_quarter);
     }
     free(level_of);
-    frame_test_finish(&test);
 }
 
 static void ids_name_trees(void **state)
 {
-    (void)state;
-    struct frame_test test;
-    frame_test_init_with(&test, root, 0, WOODS);
-    const struct wd_demand *demand = &test.world.demand;
+    struct frame_test *test = *state;
+    const struct wd_demand *demand = &test->world.demand;
     assert_int_equal(demand->count, 2);
-    assert_int_equal(test.world.tree_count, 0);
+    assert_int_equal(test->world.tree_count, 0);
     size_t trees = 0;
     for (uint32_t layer = 0; layer < demand->count; layer++) {
         const struct wd_page page = {layer, 1, 1, 2};
@@ -91,28 +86,27 @@ static void ids_name_trees(void **state)
             if (!wd_demand_tree(demand, &page, i, &tree))
                 continue;
             trees++;
-            assert_true(wd_world_find_tree(&test.world, tree.id, &found));
+            assert_true(wd_world_find_tree(&test->world, tree.id, &found));
             assert_memory_equal(&tree, &found, sizeof tree);
         }
     }
     assert_true(trees > WD_PAGE_TREES / 2);
     /* ids go on where 32 bits end, and none is 0 */
-    struct wd_demand_layer *last = &test.world.demand.layers[1];
+    struct wd_demand_layer *last = &test->world.demand.layers[1];
     struct wd_tree tree;
+    uint32_t first_id = last->first_id;
     last->first_id = UINT32_MAX - 1000u;
     for (uint32_t i = 0; i < WD_PAGE_TREES; i++)
         if (wd_demand_tree(demand, &(struct wd_page){1, 0, 0, 0}, i, &tree))
             assert_int_not_equal(tree.id, 0);
-    frame_test_finish(&test);
+    last->first_id = first_id;
 }
 
 /* What is to be expected is what there is. */
 static void counts_are_expected(void **state)
 {
-    (void)state;
-    struct frame_test test;
-    frame_test_init_with(&test, root, 0, WOODS);
-    const struct wd_demand *demand = &test.world.demand;
+    struct frame_test *test = *state;
+    const struct wd_demand *demand = &test->world.demand;
     for (uint32_t k = 0; k < demand->count; k++) {
         const struct wd_place_input *input = &demand->layers[k].placement.input;
         double trees = 0.0;
@@ -123,7 +117,6 @@ static void counts_are_expected(void **state)
                       demand->layers[k].trees);
         assert_true(fabs(trees / demand->layers[k].trees - 1.0) < 0.02);
     }
-    frame_test_finish(&test);
 }
 
 /* --- pages on the device ------------------------------------------------------------------- */
@@ -356,20 +349,32 @@ static void cover_is_that_of_stored_trees(void **state)
 
 static void others_refuse(void **state)
 {
-    (void)state;
-    struct frame_test test;
-    frame_test_init_with(&test, root, 0, WOODS);
+    struct frame_test *test = *state;
     static const char *const names[] = {"octree", "separate", "grid",    "lod",     "patch",
                                         "views",  "zfield",   "dissolve", "impostor"};
     struct wd_frame_params params = {
-        .forest = &test.forest, .width = 64, .height = 64, .samples = 1};
+        .forest = &test->forest, .width = 64, .height = 64, .samples = 1};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         params.method = wd_method_find(names[i]);
-        assert_false(wd_frame_prepare(&test.frame, &params));
+        assert_false(wd_frame_prepare(&test->frame, &params));
     }
     params.method = wd_method_find("continuum");
-    assert_true(wd_frame_prepare(&test.frame, &params));
-    frame_test_finish(&test);
+    assert_true(wd_frame_prepare(&test->frame, &params));
+}
+
+static struct frame_test woods; /* of the tests that change nothing in it */
+
+static int open_woods(void **state)
+{
+    frame_test_init_with(&woods, root, 0, WOODS);
+    *state = &woods;
+    return 0;
+}
+
+static int close_woods(void **state)
+{
+    frame_test_finish(*state);
+    return 0;
 }
 
 int main(int argc, char **argv)
@@ -386,5 +391,5 @@ int main(int argc, char **argv)
         cmocka_unit_test(cover_is_that_of_stored_trees),
         cmocka_unit_test(others_refuse),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, open_woods, close_woods);
 }
