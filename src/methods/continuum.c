@@ -4,64 +4,19 @@
  * splatted into one visibility buffer, which is resolved into the same G-buffer that every method
  * fills. */
 #include "methods/continuum_forest.h"
+#include "methods/continuum_pipelines.h"
 #include "methods/method.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-static const uint32_t cull_comp[] =
-#include "continuum_cull.comp.inc"
-    ;
-static const uint32_t args_comp[] =
-#include "continuum_args.comp.inc"
-    ;
-static const uint32_t pyramid_comp[] =
-#include "continuum_pyramid.comp.inc"
-    ;
-static const uint32_t select_comp[] =
-#include "continuum_select.comp.inc"
-    ;
-static const uint32_t splat_comp[] =
-#include "continuum_splat.comp.inc"
-    ;
-static const uint32_t splat_twice_comp[] =
-#include "continuum_splat_twice.comp.inc"
-    ;
-static const uint32_t wood_comp[] =
-#include "continuum_wood.comp.inc"
-    ;
-static const uint32_t wood_twice_comp[] =
-#include "continuum_wood_twice.comp.inc"
-    ;
-static const uint32_t resolve_vert[] =
-#include "whole_target.vert.inc"
-    ;
-static const uint32_t resolve_frag[] =
-#include "continuum_resolve.frag.inc"
-    ;
-static const uint32_t resolve_shadow_frag[] =
-#include "continuum_resolve_shadow.frag.inc"
-    ;
-
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 /* Visible trees and items of one view: hard caps, whatever the world holds. */
 enum { MAX_TREES = 1 << 19, MAX_ITEMS = 1 << 20 };
 
-/* What is rasterised. */
-enum { SHAPE_SPLATS, SHAPE_SMALL, SHAPE_WOOD, SHAPES };
-
 struct continuum {
     struct wd_gpu *gpu;
-    struct wd_pipeline cull, args, choose[2]; /* [WD_PASS_*] */
-    struct wd_pipeline draw[SHAPES][2][2]; /* [][WD_PASS_*][1: ids of the second pass] */
-    struct wd_pipeline resolve[2], resolve_shadow; /* splats, wood */
-    struct wd_pipeline pyramid[WD_PYRAMID_LEVELS - 1];
-    VkSampler nearest;
+    struct wd_continuum_pipelines pipelines;
     struct wd_continuum_forest forest;
     struct wd_buffer visible, counts, groups, trees, items, wood_items, pixels;
     uint32_t tree_capacity, item_capacity;
@@ -76,122 +31,17 @@ struct continuum {
     struct wd_page_list pages; /* of that view */
 };
 
-/* --- pipelines --------------------------------------------------------------------------- */
-
-#define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
-
-static bool init_draws(struct continuum *c, struct wd_gpu *gpu)
-{
-    const struct wd_spirv shaders[SHAPES][2] = {
-        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
-        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
-        {SPIRV(wood_twice_comp), SPIRV(wood_comp)}};
-    bool wide = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS;
-    for (uint32_t i = 0; i < SHAPES * 2 * 2; i++) {
-        uint32_t shape = i / 4, pass = i / 2 % 2, ids = i % 2;
-        bool once = wide && pass == WD_PASS_CAMERA;
-        /* llvmpipe's subgroups are 8 wide; a wider group only idles on small trees */
-        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW, ids,
-                                      shape == SHAPE_SMALL};
-        const struct wd_compute_params params = {
-            .shader = shaders[shape][once],
-            .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
-            .constants = {4, constants},
-        };
-        bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
-        if (needed && !wd_pipeline_init_compute(&c->draw[shape][pass][ids], gpu, &params))
-            return false;
-    }
-    return true;
-}
-
-static bool init_resolve(struct continuum *c, struct wd_gpu *gpu)
-{
-    struct wd_graphics_params params = {
-        .vertex = SPIRV(resolve_vert),
-        .fragment = SPIRV(resolve_frag),
-        .bindings = {11, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
-                          BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
-        .push_size = sizeof(struct wd_tree_push),
-        .color_count = 3,
-        .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
-        .depth_format = WD_DEPTH_FORMAT,
-        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
-    };
-    for (uint32_t wood = 0; wood < 2; wood++) {
-        params.constants = (struct wd_spec_constants){1, &wood};
-        if (!wd_pipeline_init_graphics(&c->resolve[wood], gpu, &params))
-            return false;
-    }
-    params.fragment = (struct wd_spirv)SPIRV(resolve_shadow_frag);
-    params.constants.count = 0;
-    params.bindings.count = 2;
-    params.push_size = 0;
-    params.color_count = 0;
-    return wd_pipeline_init_graphics(&c->resolve_shadow, gpu, &params);
-}
-
-static bool init_pyramid(struct continuum *c, struct wd_gpu *gpu)
-{
-    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
-        const uint32_t constants[] = {i ? i + 1 : 0};
-        const struct wd_compute_params params = {
-            .shader = SPIRV(pyramid_comp),
-            .bindings = {4, {BUFFER, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
-            .constants = {1, constants},
-        };
-        if (!wd_pipeline_init_compute(&c->pyramid[i], gpu, &params))
-            return false;
-    }
-    return wd_sampler_init(&c->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP);
-}
-
-static bool init_choose(struct continuum *c, struct wd_gpu *gpu)
-{
-    for (uint32_t pass = 0; pass < 2; pass++) {
-        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW};
-        const struct wd_compute_params choose = {
-            .shader = SPIRV(select_comp),
-            .bindings = {13, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
-                              BUFFER, BUFFER, BUFFER, BUFFER,
-                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
-            .constants = {2, constants}};
-        if (!wd_pipeline_init_compute(&c->choose[pass], gpu, &choose))
-            return false;
-    }
-    return true;
-}
-
 static bool continuum_init(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
     c->gpu = gpu;
-    const struct wd_compute_params cull = {
-        .shader = SPIRV(cull_comp), .bindings = {7, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
-    const uint32_t threads = gpu->software ? 8 : 64;
-    const struct wd_compute_params args = {.shader = SPIRV(args_comp),
-                                           .bindings = {3, {BUFFER, BUFFER, BUFFER}},
-                                           .constants = {1, &threads}};
-    return wd_pipeline_init_compute(&c->cull, gpu, &cull) &&
-           wd_pipeline_init_compute(&c->args, gpu, &args) &&
-           init_choose(c, gpu) && init_draws(c, gpu) && init_resolve(c, gpu) &&
-           init_pyramid(c, gpu);
+    return wd_continuum_pipelines_init(&c->pipelines, gpu);
 }
 
 static void continuum_finish(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
-    struct wd_pipeline *pipelines[] = {
-        &c->cull, &c->args, &c->choose[0], &c->choose[1], &c->resolve[0], &c->resolve[1],
-                                       &c->resolve_shadow};
-    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
-        wd_pipeline_finish(pipelines[i], gpu);
-    for (uint32_t i = 0; i < SHAPES * 2 * 2; i++)
-        wd_pipeline_finish(&c->draw[i / 4][i / 2 % 2][i % 2], gpu);
-    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++)
-        wd_pipeline_finish(&c->pyramid[i], gpu);
-    if (c->nearest)
-        vkDestroySampler(gpu->device, c->nearest, NULL);
+    wd_continuum_pipelines_finish(&c->pipelines, gpu);
     wd_buffer_finish(&c->pixels, gpu);
     wd_buffer_finish(&c->history.pyramid, gpu);
     wd_page_list_finish(&c->pages);
@@ -415,7 +265,7 @@ static void record_args(struct continuum *c, struct wd_cmd *cmd)
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->counts),
                                           WD_BIND_BUFFER(&c->groups)};
-    wd_cmd_bind(cmd, &c->args, bindings);
+    wd_cmd_bind(cmd, &c->pipelines.args, bindings);
     wd_cmd_dispatch(cmd, 1, 1, 1);
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_INDIRECT);
 }
@@ -433,7 +283,7 @@ static void record_cull(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_BUFFER(&c->history.pyramid),
                                           upload_pages(c, cmd)};
     size_t clusters = c->forest.cluster_count + c->pages.count * WD_PAGE_CLUSTERS;
-    wd_cmd_bind(cmd, &c->cull, bindings);
+    wd_cmd_bind(cmd, &c->pipelines.cull, bindings);
     wd_cmd_dispatch_1d(cmd, (clusters + 63) / 64);
     record_args(c, cmd);
 }
@@ -460,7 +310,7 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_BUFFER(&c->history.pyramid),
                                           WD_BIND_IMAGE(&draw->forest->ground.slopes,
                                                         draw->forest->ground.sampler)};
-    wd_cmd_bind(cmd, &c->choose[draw->pass], bindings);
+    wd_cmd_bind(cmd, &c->pipelines.choose[draw->pass], bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
     record_args(c, cmd);
 }
@@ -493,9 +343,9 @@ static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
     wd_cmd_use_buffer(cmd, &c->items, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->wood_items, WD_USE_COMPUTE_READ);
     clear_pixels(c, draw);
-    for (uint32_t i = 0; i < 2 * SHAPES; i++) {
-        uint32_t ids = i / SHAPES, kind = i % SHAPES;
-        const struct wd_pipeline *pipeline = &c->draw[kind][draw->pass][ids];
+    for (uint32_t i = 0; i < 2 * WD_SHAPES; i++) {
+        uint32_t ids = i / WD_SHAPES, kind = i % WD_SHAPES;
+        const struct wd_pipeline *pipeline = &c->pipelines.draw[kind][draw->pass][ids];
         const struct wd_binding bindings[] = {c->view,
                                               WD_BIND_BUFFER(&c->counts),
                                               WD_BIND_BUFFER(&c->trees),
@@ -551,8 +401,8 @@ static void draw_camera(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_IMAGE(&draw->forest->looks,
                                                         draw->forest->look_sampler)};
     for (uint32_t wood = 0; wood < 2; wood++) {
-        wd_cmd_bind(draw->cmd, &c->resolve[wood], bindings);
-        wd_cmd_push(draw->cmd, &c->resolve[wood], &push, sizeof push);
+        wd_cmd_bind(draw->cmd, &c->pipelines.resolve[wood], bindings);
+        wd_cmd_push(draw->cmd, &c->pipelines.resolve[wood], &push, sizeof push);
         wd_cmd_draw(draw->cmd, 3, 1);
         draw->stats->draw_calls++;
     }
@@ -561,7 +411,7 @@ static void draw_camera(struct continuum *c, const struct wd_tree_draw *draw)
 static void draw_cascade(struct continuum *c, const struct wd_tree_draw *draw)
 {
     const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels)};
-    wd_cmd_bind(draw->cmd, &c->resolve_shadow, bindings);
+    wd_cmd_bind(draw->cmd, &c->pipelines.resolve_shadow, bindings);
     wd_cmd_draw(draw->cmd, 3, 1);
     draw->stats->draw_calls++;
 }
@@ -587,12 +437,12 @@ static void continuum_keep(void *state, const struct wd_tree_draw *draw)
     wd_cmd_use_image(cmd, &draw->targets->depth, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_READ);
     const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
-                                          WD_BIND_IMAGE(&draw->targets->depth, c->nearest),
+                                          WD_BIND_IMAGE(&draw->targets->depth, c->pipelines.nearest),
                                           WD_BIND_BUFFER(&c->history.pyramid)};
     for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
         uint32_t texels = 8 * (4u << i); /* pixels of a workgroup */
         wd_cmd_use_buffer(cmd, &c->history.pyramid, WD_USE_COMPUTE_WRITE);
-        wd_cmd_bind(cmd, &c->pyramid[i], bindings);
+        wd_cmd_bind(cmd, &c->pipelines.pyramid[i], bindings);
         wd_cmd_dispatch(cmd, (view->width + texels - 1) / texels,
                         (view->height + texels - 1) / texels, 1);
     }

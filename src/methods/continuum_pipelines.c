@@ -1,0 +1,153 @@
+#include "methods/continuum_pipelines.h"
+
+static const uint32_t cull_comp[] =
+#include "continuum_cull.comp.inc"
+    ;
+static const uint32_t args_comp[] =
+#include "continuum_args.comp.inc"
+    ;
+static const uint32_t pyramid_comp[] =
+#include "continuum_pyramid.comp.inc"
+    ;
+static const uint32_t select_comp[] =
+#include "continuum_select.comp.inc"
+    ;
+static const uint32_t splat_comp[] =
+#include "continuum_splat.comp.inc"
+    ;
+static const uint32_t splat_twice_comp[] =
+#include "continuum_splat_twice.comp.inc"
+    ;
+static const uint32_t wood_comp[] =
+#include "continuum_wood.comp.inc"
+    ;
+static const uint32_t wood_twice_comp[] =
+#include "continuum_wood_twice.comp.inc"
+    ;
+static const uint32_t resolve_vert[] =
+#include "whole_target.vert.inc"
+    ;
+static const uint32_t resolve_frag[] =
+#include "continuum_resolve.frag.inc"
+    ;
+static const uint32_t resolve_shadow_frag[] =
+#include "continuum_resolve_shadow.frag.inc"
+    ;
+
+#define SPIRV(words)                                                                               \
+    {                                                                                              \
+        words, sizeof words, #words                                                                \
+    }
+
+#define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+
+static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
+    const struct wd_spirv shaders[WD_SHAPES][2] = {
+        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
+        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
+        {SPIRV(wood_twice_comp), SPIRV(wood_comp)}};
+    bool wide = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS;
+    for (uint32_t i = 0; i < WD_SHAPES * 2 * 2; i++) {
+        uint32_t shape = i / 4, pass = i / 2 % 2, ids = i % 2;
+        bool once = wide && pass == WD_PASS_CAMERA;
+        /* llvmpipe's subgroups are 8 wide; a wider group only idles on small trees */
+        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW, ids,
+                                      shape == WD_SHAPE_SMALL};
+        const struct wd_compute_params params = {
+            .shader = shaders[shape][once],
+            .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
+            .constants = {4, constants},
+        };
+        bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
+        if (needed && !wd_pipeline_init_compute(&p->draw[shape][pass][ids], gpu, &params))
+            return false;
+    }
+    return true;
+}
+
+static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
+    struct wd_graphics_params params = {
+        .vertex = SPIRV(resolve_vert),
+        .fragment = SPIRV(resolve_frag),
+        .bindings = {11, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+                          BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
+        .push_size = sizeof(struct wd_tree_push),
+        .color_count = 3,
+        .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
+        .depth_format = WD_DEPTH_FORMAT,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+    };
+    for (uint32_t wood = 0; wood < 2; wood++) {
+        params.constants = (struct wd_spec_constants){1, &wood};
+        if (!wd_pipeline_init_graphics(&p->resolve[wood], gpu, &params))
+            return false;
+    }
+    params.fragment = (struct wd_spirv)SPIRV(resolve_shadow_frag);
+    params.constants.count = 0;
+    params.bindings.count = 2;
+    params.push_size = 0;
+    params.color_count = 0;
+    return wd_pipeline_init_graphics(&p->resolve_shadow, gpu, &params);
+}
+
+static bool init_pyramid(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
+    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
+        const uint32_t constants[] = {i ? i + 1 : 0};
+        const struct wd_compute_params params = {
+            .shader = SPIRV(pyramid_comp),
+            .bindings = {4, {BUFFER, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
+            .constants = {1, constants},
+        };
+        if (!wd_pipeline_init_compute(&p->pyramid[i], gpu, &params))
+            return false;
+    }
+    return wd_sampler_init(&p->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP);
+}
+
+static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
+    for (uint32_t pass = 0; pass < 2; pass++) {
+        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW};
+        const struct wd_compute_params choose = {
+            .shader = SPIRV(select_comp),
+            .bindings = {13, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+                              BUFFER, BUFFER, BUFFER, BUFFER,
+                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
+            .constants = {2, constants}};
+        if (!wd_pipeline_init_compute(&p->choose[pass], gpu, &choose))
+            return false;
+    }
+    return true;
+}
+
+bool wd_continuum_pipelines_init(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
+    const uint32_t threads = gpu->software ? 8 : 64;
+    const struct wd_compute_params cull = {
+        .shader = SPIRV(cull_comp),
+        .bindings = {7, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
+    const struct wd_compute_params args = {.shader = SPIRV(args_comp),
+                                           .bindings = {3, {BUFFER, BUFFER, BUFFER}},
+                                           .constants = {1, &threads}};
+    return wd_pipeline_init_compute(&p->cull, gpu, &cull) &&
+           wd_pipeline_init_compute(&p->args, gpu, &args) && init_choose(p, gpu) &&
+           init_draws(p, gpu) && init_resolve(p, gpu) && init_pyramid(p, gpu);
+}
+
+void wd_continuum_pipelines_finish(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
+    struct wd_pipeline *pipelines[] = {&p->cull,       &p->args,       &p->choose[0],
+                                       &p->choose[1],  &p->resolve[0], &p->resolve[1],
+                                       &p->resolve_shadow};
+    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
+        wd_pipeline_finish(pipelines[i], gpu);
+    for (uint32_t i = 0; i < WD_SHAPES * 2 * 2; i++)
+        wd_pipeline_finish(&p->draw[i / 4][i / 2 % 2][i % 2], gpu);
+    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++)
+        wd_pipeline_finish(&p->pyramid[i], gpu);
+    if (p->nearest)
+        vkDestroySampler(gpu->device, p->nearest, NULL);
+}

@@ -1,0 +1,23 @@
+/* continuum_pipelines.h: what the passes of continuum run (shaders/shared/continuum.h). */
+#ifndef WD_METHODS_CONTINUUM_PIPELINES_H
+#define WD_METHODS_CONTINUUM_PIPELINES_H
+
+#include "methods/tree_draw.h"
+#include "shared/continuum.h"
+
+/* What is rasterised. */
+enum { WD_SHAPE_SPLATS, WD_SHAPE_SMALL, WD_SHAPE_WOOD, WD_SHAPES };
+
+struct wd_continuum_pipelines {
+    struct wd_pipeline cull, args, choose[2]; /* [WD_PASS_*] */
+    struct wd_pipeline draw[WD_SHAPES][2][2]; /* [][WD_PASS_*][1: ids of the second pass] */
+    struct wd_pipeline resolve[2], resolve_shadow; /* splats, wood */
+    struct wd_pipeline pyramid[WD_PYRAMID_LEVELS - 1];
+    VkSampler nearest;
+};
+
+/* False, with a message, where the device cannot; finish all the same. */
+bool wd_continuum_pipelines_init(struct wd_continuum_pipelines *pipelines, struct wd_gpu *gpu);
+void wd_continuum_pipelines_finish(struct wd_continuum_pipelines *pipelines, struct wd_gpu *gpu);
+
+#endif
