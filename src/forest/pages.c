@@ -173,22 +173,12 @@ static bool page_box(const struct choice *c, const struct wd_page *page, float m
     return true;
 }
 
-static float distance_to(const float min[3], const float max[3])
-{
-    float squared = 0.0f;
-    for (int k = 0; k < 3; k++) {
-        float outside = fmaxf(fmaxf(min[k], -max[k]), 0.0f);
-        squared += outside * outside;
-    }
-    return sqrtf(squared);
-}
-
 /* Whether the page holds as many trees as its nearest place asks for. */
 static bool is_fine(const struct choice *c, const struct wd_page *page, const float min[3],
                     const float max[3])
 {
     const struct wd_demand_layer *layer = &c->pages->world->demand.layers[page->layer];
-    double distance_m = c->query->orthographic ? 1.0 : fmax((double)distance_to(min, max), 1.0);
+    double distance_m = c->query->orthographic ? 1.0 : fmax((double)wd_box_distance(min, max), 1.0);
     double tall_px = (double)(layer->grain_m * c->query->pixels) / distance_m;
     double share = tall_px / (double)c->query->whole_px;
     return page->level == 0 || c->fewer * share * share <= ldexp(1.0, -2 * (int)page->level);

@@ -19,16 +19,6 @@ struct traversal {
     uint32_t max_cull_depth, sorted_trees;
 };
 
-static float box_distance(const float min[3], const float max[3])
-{
-    float squared = 0.0f;
-    for (int k = 0; k < 3; k++) {
-        float outside = fmaxf(fmaxf(min[k], -max[k]), 0.0f);
-        squared += outside * outside;
-    }
-    return sqrtf(squared);
-}
-
 static void add_single(const struct traversal *t, uint32_t begin, uint32_t end)
 {
     for (uint32_t i = begin; i < end; i++)
@@ -50,7 +40,7 @@ static void relative_box(const struct traversal *t, const struct wd_octant *octa
 static float sort_key(const struct traversal *t, const float min[3], const float max[3])
 {
     if (t->draw->pass == WD_PASS_CAMERA)
-        return box_distance(min, max);
+        return wd_box_distance(min, max);
     float depth = 0.0f; /* reversed: greatest nearest the sun */
     for (int k = 0; k < 3; k++) {
         float rise = t->draw->view->clip_from_rel[k][2];
@@ -103,7 +93,7 @@ static void visit(const struct traversal *t, uint32_t index)
     enum wd_side side = wd_frustum_box(&view->frustum, min, max);
     if (side == WD_OUTSIDE)
         return;
-    if (box_distance(min, max) < t->card_distance_m) {
+    if (wd_box_distance(min, max) < t->card_distance_m) {
         add_single(t, octant->begin, octant->own_end);
         visit_children(t, octant);
     } else if (octant->child_count && ((side == WD_PARTLY && octant->depth < t->max_cull_depth) ||

@@ -3,6 +3,7 @@
  * order is depth-first and an octant's own trees come before those of its children. */
 #include "world/octree.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -359,4 +360,14 @@ void wd_octree_finish(struct wd_octree *octree)
     free(octree->octants);
     free(octree->tight_trees);
     *octree = (struct wd_octree){0};
+}
+
+float wd_box_distance(const float min[3], const float max[3])
+{
+    float squared = 0.0f;
+    for (int k = 0; k < 3; k++) {
+        float outside = fmaxf(fmaxf(min[k], -max[k]), 0.0f);
+        squared += outside * outside;
+    }
+    return sqrtf(squared);
 }

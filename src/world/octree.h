@@ -44,4 +44,7 @@ void wd_octree_finish(struct wd_octree *octree);
 /* A tree's bounding box in local metres. */
 void wd_tree_bounds(const struct wd_tree *tree, float min_m[3], float max_m[3]);
 
+/* From the origin to the nearest place of a box; 0 within. */
+float wd_box_distance(const float min[3], const float max[3]);
+
 #endif
