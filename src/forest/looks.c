@@ -99,26 +99,42 @@ static const uint8_t *layer_of(const uint8_t *rgba, uint32_t layer)
            layer % WD_LOOK_LAYERS * WD_LOOK_MAP_BYTES;
 }
 
-bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *rgba,
-                     uint32_t species_count)
+/* How a map's next mip is made of the one before: sizes are the coarse one's. */
+struct mip_rule {
+    void (*halve)(const struct mip_rule *rule, uint8_t *coarse, const uint8_t *fine,
+                  uint32_t size);
+    float linear[256]; /* of sRGB bytes */
+    float covered;     /* share of the finest level that is opaque */
+};
+
+static void halve_look(const struct mip_rule *rule, uint8_t *coarse, const uint8_t *fine,
+                       uint32_t size)
 {
-    if (!make_image(image, gpu, "looks", VK_FORMAT_R8G8B8A8_SRGB, species_count))
-        return false;
-    float linear[256];
-    for (int i = 0; i < 256; i++)
-        linear[i] = wd_srgb_decode((uint8_t)i);
+    halve(coarse, fine, size, rule->linear);
+    keep_coverage(coarse, size, rule->covered);
+}
+
+static void halve_details(const struct mip_rule *rule, uint8_t *coarse, const uint8_t *fine,
+                          uint32_t size)
+{
+    (void)rule;
+    halve_linear(coarse, fine, size);
+}
+
+/* `maps`: each layer's finest level, that of layer 0 first. Finishes the image where it fails. */
+static bool upload_mips(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *maps,
+                        struct mip_rule *rule)
+{
     uint8_t *levels[2] = {wd_alloc(WD_LOOK_MAP_BYTES), wd_alloc(WD_LOOK_MAP_BYTES)};
     uint8_t *mips = wd_alloc(wd_image_layer_bytes(image));
     bool ok = true;
     for (uint32_t layer = 0; layer < image->layers && ok; layer++) {
-        memcpy(levels[0], layer_of(rgba, layer), WD_LOOK_MAP_BYTES);
-        float covered = coverage(levels[0], WD_LOOK_SIZE);
+        memcpy(levels[0], layer_of(maps, layer), WD_LOOK_MAP_BYTES);
+        rule->covered = coverage(levels[0], WD_LOOK_SIZE);
         for (uint32_t mip = 0, at = 0; mip < image->mips; mip++) {
             uint32_t size = WD_LOOK_SIZE >> mip;
-            if (mip > 0) {
-                halve(levels[mip & 1], levels[(mip - 1) & 1], size, linear);
-                keep_coverage(levels[mip & 1], size, covered);
-            }
+            if (mip > 0)
+                rule->halve(rule, levels[mip & 1], levels[(mip - 1) & 1], size);
             memcpy(mips + at, levels[mip & 1], (size_t)4 * size * size);
             at += 4 * size * size;
         }
@@ -132,29 +148,20 @@ bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *
     return ok;
 }
 
+bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *rgba,
+                     uint32_t species_count)
+{
+    struct mip_rule rule = {.halve = halve_look};
+    for (int i = 0; i < 256; i++)
+        rule.linear[i] = wd_srgb_decode((uint8_t)i);
+    return make_image(image, gpu, "looks", VK_FORMAT_R8G8B8A8_SRGB, species_count) &&
+           upload_mips(image, gpu, rgba, &rule);
+}
+
 bool wd_look_details_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *rgba,
                             uint32_t species_count)
 {
-    if (!make_image(image, gpu, "look details", VK_FORMAT_R8G8B8A8_UNORM, species_count))
-        return false;
-    uint8_t *levels[2] = {wd_alloc(WD_LOOK_MAP_BYTES), wd_alloc(WD_LOOK_MAP_BYTES)};
-    uint8_t *mips = wd_alloc(wd_image_layer_bytes(image));
-    bool ok = true;
-    for (uint32_t layer = 0; layer < image->layers && ok; layer++) {
-        memcpy(levels[0], layer_of(rgba, layer) + WD_LOOK_HALF_BYTES, WD_LOOK_MAP_BYTES);
-        for (uint32_t mip = 0, at = 0; mip < image->mips; mip++) {
-            uint32_t size = WD_LOOK_SIZE >> mip;
-            if (mip > 0)
-                halve_linear(levels[mip & 1], levels[(mip - 1) & 1], size);
-            memcpy(mips + at, levels[mip & 1], (size_t)4 * size * size);
-            at += 4 * size * size;
-        }
-        ok = wd_image_upload_layers(gpu, image, layer, 1, mips);
-    }
-    free(levels[0]);
-    free(levels[1]);
-    free(mips);
-    if (!ok)
-        wd_image_finish(image, gpu);
-    return ok;
+    struct mip_rule rule = {.halve = halve_details};
+    return make_image(image, gpu, "look details", VK_FORMAT_R8G8B8A8_UNORM, species_count) &&
+           upload_mips(image, gpu, rgba + WD_LOOK_HALF_BYTES, &rule);
 }

@@ -7,6 +7,7 @@
 #include <gdal.h>
 #include <math.h>
 #include <ogr_srs_api.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 struct made_raster {
@@ -57,6 +58,21 @@ static GDALDatasetH make_raster_open(const struct made_raster *made)
 static void make_raster(const struct made_raster *made)
 {
     GDALClose(make_raster_open(made));
+}
+
+/* Undoes what tests leave in memory: for a group's teardown. */
+static int made_rasters_forget(void **state)
+{
+    (void)state;
+    char **names = VSIReadDir("/vsimem/");
+    for (int i = 0; names && names[i]; i++) {
+        char path[256];
+        snprintf(path, sizeof path, "/vsimem/%s", names[i]);
+        VSIUnlink(path);
+    }
+    CSLDestroy(names);
+    GDALDestroyDriverManager();
+    return 0;
 }
 
 #endif

@@ -336,20 +336,6 @@ static void real_land_cover(void **state)
     wd_terrain_finish(&terrain);
 }
 
-static int finish_gdal(void **state)
-{
-    (void)state;
-    char **names = VSIReadDir("/vsimem/");
-    for (int i = 0; names && names[i]; i++) {
-        char path[256];
-        snprintf(path, sizeof path, "/vsimem/%s", names[i]);
-        VSIUnlink(path);
-    }
-    CSLDestroy(names);
-    GDALDestroyDriverManager();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -363,5 +349,5 @@ int main(void)
         cmocka_unit_test_setup(real_canopies, forget_log),
         cmocka_unit_test_setup(real_land_cover, forget_log),
     };
-    return cmocka_run_group_tests(tests, NULL, finish_gdal);
+    return cmocka_run_group_tests(tests, NULL, made_rasters_forget);
 }

@@ -626,20 +626,6 @@ static void real_bigtujunga(void **state)
     wd_terrain_finish(&terrain);
 }
 
-static int forget_files(void **state)
-{
-    (void)state;
-    char **names = VSIReadDir("/vsimem/");
-    for (int i = 0; names && names[i]; i++) {
-        char path[256];
-        snprintf(path, sizeof path, "/vsimem/%s", names[i]);
-        VSIUnlink(path);
-    }
-    CSLDestroy(names);
-    GDALDestroyDriverManager();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -666,5 +652,5 @@ int main(void)
         cmocka_unit_test_setup(real_colorado, forget_log),
         cmocka_unit_test_setup(real_bigtujunga, forget_log),
     };
-    return cmocka_run_group_tests(tests, NULL, forget_files);
+    return cmocka_run_group_tests(tests, NULL, made_rasters_forget);
 }
