@@ -1,15 +1,17 @@
-/* A card's point in the G-buffer. Expects `frame`, `card_normal`, tree.glsl, card_flat.glsl and the
- * outputs out_albedo, out_normal and out_surface. */
+/* A card's point in the G-buffer. Expects `frame`, `card_normal`, `card_leaf`, tree.glsl,
+ * card_flat.glsl and the outputs out_albedo, out_normal and out_surface. */
+#include "lib/card_material.glsl"
 
 /* `albedo` is that of the card at uv (z: layer); `card` is turn, tint_show, normal, ratio_flags. */
 void card_surface(vec3 uv, float lod, vec4 albedo, uvec4 card, uint surface)
 {
     vec4 packed = textureLod(card_normal, uv, lod - float(WD_CARD_NORMAL_MIP));
-    albedo.rgb *= unpackUnorm4x8(card.y).rgb * 2.0;
+    float leaf = textureLod(card_leaf, uv, lod - float(WD_CARD_NORMAL_MIP)).x;
+    albedo.rgb *= mix(vec3(1.0), unpackUnorm4x8(card.y).rgb * 2.0, leaf);
     if (frame.view_mode == WD_MODE_LOD)
         albedo.rgb = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * packed.a);
     out_albedo = vec4(albedo.rgb, packed.a);
     out_normal = vec4(card_world_normal(packed.xyz, card) * 0.5 + 0.5,
-                      float(WD_MATERIAL_CARD) / 3.0);
+                      float(card_material(leaf, surface)) / 3.0);
     out_surface = surface;
 }

@@ -10,6 +10,7 @@ layout(set = 0, binding = 2) uniform sampler2DArray card_normal;
 layout(scalar, set = 0, binding = 3) readonly buffer Cards { wd_card_flat cards[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Vertices { wd_card_vertex vertices[]; };
 layout(set = 0, binding = 5) uniform usampler2D visible;
+layout(set = 0, binding = 6) uniform sampler2DArray card_leaf;
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;

@@ -10,9 +10,10 @@ layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
 layout(set = 0, binding = 5) uniform sampler2DArray card_normal;
-layout(set = 0, binding = 7) uniform sampler2DArrayShadow shadow_map;
-layout(scalar, set = 0, binding = 8) readonly buffer SunHeights { float sun_height_m[]; };
-layout(set = 0, binding = 10) uniform sampler2D canopy_light;
+layout(set = 0, binding = 7) uniform sampler2DArray card_leaf;
+layout(set = 0, binding = 8) uniform sampler2DArrayShadow shadow_map;
+layout(scalar, set = 0, binding = 9) readonly buffer SunHeights { float sun_height_m[]; };
+layout(set = 0, binding = 11) uniform sampler2D canopy_light;
 layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 
 #define PARTS (WD_PART_GROUND | WD_PART_TREES)
@@ -29,6 +30,7 @@ layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 #include "lib/shade.glsl"
 #include "lib/card.glsl"
 #include "lib/card_flat.glsl"
+#include "lib/card_material.glsl"
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
@@ -45,15 +47,16 @@ void main()
     if (opacity < 1.0 / 255.0)
         discard;
     vec4 packed = textureLod(card_normal, uv, lod - float(WD_CARD_NORMAL_MIP));
+    float leaf = textureLod(card_leaf, uv, lod - float(WD_CARD_NORMAL_MIP)).x;
     wd_pixel pixel;
     pixel.ray = pixel_ray(ivec2(gl_FragCoord.xy));
     pixel.direction = normalize(pixel.ray);
     pixel.axis_m = frame.near_m / gl_FragCoord.z;
     pixel.rel = pixel.ray * pixel.axis_m;
-    pixel.albedo = albedo.rgb * tint_show.rgb * 2.0;
+    pixel.albedo = albedo.rgb * mix(vec3(1.0), tint_show.rgb * 2.0, leaf);
     pixel.openness = packed.a;
     pixel.normal = card_world_normal(packed.xyz, in_card);
-    pixel.material = WD_MATERIAL_CARD;
+    pixel.material = card_material(leaf, in_more.z);
     pixel.surface = in_more.z;
     float sun_share, ground_share;
     vec3 radiance = shade(pixel, uvec2(gl_FragCoord.xy), sun_share, ground_share);

@@ -14,7 +14,7 @@ layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[];
 layout(scalar, set = 0, binding = 3) readonly buffer Table { uint table[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer Fades { wd_layer_fade fades[]; };
 /* by layer: billboards are nothing nearer than x, whole beyond y */
-layout(scalar, set = 0, binding = 9) readonly buffer Near { vec2 near_m[]; };
+layout(scalar, set = 0, binding = 10) readonly buffer Near { vec2 near_m[]; };
 layout(scalar, push_constant) uniform Push { wd_patch_push push; };
 
 uint first_tree(uint cell)

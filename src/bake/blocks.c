@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-enum { SIDE = 4, TEXELS = SIDE * SIDE, BLOCK_BYTES = 16, COLORS = 4, ALPHAS = 8 };
+enum { SIDE = 4, TEXELS = SIDE * SIDE, ALPHA_BYTES = 8, BLOCK_BYTES = 16, COLORS = 4, ALPHAS = 8 };
 enum { POWER_STEPS = 6, REFINEMENTS = 2 };
 static const float LEAST_WEIGHT = 0.02f; /* of texels that show nothing: filters read them */
 
@@ -21,6 +21,11 @@ static uint32_t block_count(uint32_t texels)
 size_t wd_blocks_bytes(uint32_t width, uint32_t height)
 {
     return (size_t)BLOCK_BYTES * block_count(width) * block_count(height);
+}
+
+size_t wd_alpha_blocks_bytes(uint32_t width, uint32_t height)
+{
+    return (size_t)ALPHA_BYTES * block_count(width) * block_count(height);
 }
 
 /* --- opacity ----------------------------------------------------------------------------- */
@@ -81,7 +86,7 @@ static void pack_alpha(uint8_t *out, const struct block *block)
     bool use_inner = inner_error < all_error;
     uint64_t bits = (use_inner ? (uint64_t)inner_low | (uint64_t)inner_high << 8 | inner << 16
                                : (uint64_t)high | (uint64_t)low << 8 | all << 16);
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < ALPHA_BYTES; i++)
         out[i] = (uint8_t)(bits >> (8 * i));
 }
 
@@ -270,6 +275,16 @@ void wd_blocks_pack(uint8_t *blocks, const uint8_t *rgba, uint32_t width, uint32
             struct block block;
             read_block(&block, rgba, width, height, x, y);
             pack_alpha(blocks, &block);
-            pack_color(blocks + 8, &block);
+            pack_color(blocks + ALPHA_BYTES, &block);
+        }
+}
+
+void wd_alpha_blocks_pack(uint8_t *blocks, const uint8_t *rgba, uint32_t width, uint32_t height)
+{
+    for (uint32_t y = 0; y < height; y += SIDE)
+        for (uint32_t x = 0; x < width; x += SIDE, blocks += ALPHA_BYTES) {
+            struct block block;
+            read_block(&block, rgba, width, height, x, y);
+            pack_alpha(blocks, &block);
         }
 }

@@ -7,8 +7,12 @@
 #include <stdint.h>
 
 size_t wd_blocks_bytes(uint32_t width, uint32_t height);
+size_t wd_alpha_blocks_bytes(uint32_t width, uint32_t height);
 
 /* Packs RGBA8; texels without alpha count little. The same texels give the same bytes anywhere. */
 void wd_blocks_pack(uint8_t *blocks, const uint8_t *rgba, uint32_t width, uint32_t height);
+
+/* Alone what BC3 says of opacity: Vulkan's BC4, 8 bytes a block. */
+void wd_alpha_blocks_pack(uint8_t *blocks, const uint8_t *rgba, uint32_t width, uint32_t height);
 
 #endif

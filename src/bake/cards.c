@@ -15,22 +15,26 @@ void wd_card_size(uint32_t mip, uint32_t *width, uint32_t *height)
     *height = WD_CARD_HEIGHT >> mip ? WD_CARD_HEIGHT >> mip : 1;
 }
 
-uint32_t wd_card_first_mip(int plane)
+uint32_t wd_card_first_mip(const struct wd_card_form *form, int plane)
 {
-    return plane == WD_PLANE_NORMAL ? WD_CARD_NORMAL_MIP : 0;
+    return plane == WD_PLANE_NORMAL || form->planes[plane] >= WD_CARD_ALPHA ? WD_CARD_NORMAL_MIP : 0;
 }
 
 static size_t mip_bytes(enum wd_card_texels texels, uint32_t mip)
 {
     uint32_t width, height;
     wd_card_size(mip, &width, &height);
-    return texels == WD_CARD_BLOCKS ? wd_blocks_bytes(width, height) : (size_t)4 * width * height;
+    size_t count = (size_t)width * height;
+    return texels == WD_CARD_BLOCKS         ? wd_blocks_bytes(width, height)
+           : texels == WD_CARD_ALPHA_BLOCKS ? wd_alpha_blocks_bytes(width, height)
+           : texels == WD_CARD_ALPHA        ? count
+                                            : 4 * count;
 }
 
 size_t wd_card_offset(const struct wd_card_form *form, int plane, uint32_t card, uint32_t mip)
 {
     size_t one = 0, before = 0;
-    for (uint32_t i = wd_card_first_mip(plane); i < WD_CARD_MIPS; i++) {
+    for (uint32_t i = wd_card_first_mip(form, plane); i < WD_CARD_MIPS; i++) {
         if (i == mip)
             before = one;
         one += mip_bytes(form->planes[plane], i);
@@ -42,7 +46,7 @@ size_t wd_card_plane_bytes(const struct wd_card_form *form, int plane)
 {
     return form->planes[plane] == WD_CARD_NOTHING
                ? 0
-               : wd_card_offset(form, plane, WD_CARDS, wd_card_first_mip(plane));
+               : wd_card_offset(form, plane, WD_CARDS, wd_card_first_mip(form, plane));
 }
 
 void wd_cards_finish(struct wd_cards *cards)
@@ -108,11 +112,16 @@ static void take_mip(struct taking *taking, uint32_t card, uint32_t mip, int pla
     uint32_t width, height;
     const struct wd_card_form *form = &taking->cards->form;
     uint8_t *out = taking->cards->planes[plane] + wd_card_offset(form, plane, card, mip);
-    bool blocks = form->planes[plane] == WD_CARD_BLOCKS;
+    enum wd_card_texels texels = form->planes[plane];
     wd_card_size(mip, &width, &height);
-    wd_pyramid_get(&taking->pyramid, mip, plane, blocks ? taking->texels : out, (size_t)4 * width);
-    if (blocks)
+    wd_pyramid_get(&taking->pyramid, mip, plane, texels == WD_CARD_TEXELS ? out : taking->texels,
+                   (size_t)4 * width);
+    if (texels == WD_CARD_BLOCKS)
         wd_blocks_pack(out, taking->texels, width, height);
+    else if (texels == WD_CARD_ALPHA_BLOCKS)
+        wd_alpha_blocks_pack(out, taking->texels, width, height);
+    for (size_t i = 0; i < (size_t)width * height && texels == WD_CARD_ALPHA; i++)
+        out[i] = taking->texels[4 * i + 3];
 }
 
 static void take_card(void *user, uint32_t card, const uint8_t *planes)
@@ -120,7 +129,7 @@ static void take_card(void *user, uint32_t card, const uint8_t *planes)
     struct taking *taking = user;
     wd_pyramid_set(&taking->pyramid, planes);
     for (int plane = 0; plane < WD_PLANES; plane++)
-        for (uint32_t mip = wd_card_first_mip(plane);
+        for (uint32_t mip = wd_card_first_mip(&taking->cards->form, plane);
              mip < WD_CARD_MIPS && taking->cards->planes[plane]; mip++)
             take_mip(taking, card, mip, plane);
 }

@@ -22,14 +22,22 @@ struct wd_card_extent {
 };
 struct wd_card_extent wd_card_extent_of(const struct wd_tree_mesh *mesh);
 
-/* What is kept of cards: of each plane (WD_PLANE_*) nothing, 4 bytes a texel, or blocks.h's. */
-enum wd_card_texels { WD_CARD_NOTHING, WD_CARD_TEXELS, WD_CARD_BLOCKS };
+/* What is kept of cards: of each plane (WD_PLANE_*) nothing, 4 bytes a texel, or blocks.h's. Of the
+ * depth plane the fourth value is the share of leaves. */
+enum wd_card_texels {
+    WD_CARD_NOTHING,
+    WD_CARD_TEXELS,
+    WD_CARD_BLOCKS,
+    WD_CARD_ALPHA,       /* a plane's fourth value alone: a byte a texel */
+    WD_CARD_ALPHA_BLOCKS /* or half of one */
+};
 struct wd_card_form {
     enum wd_bake_parts parts;
     enum wd_card_texels planes[WD_PLANES];
 };
 
-/* The cards of one model, card after card, mip after mip: of normals from WD_CARD_NORMAL_MIP on. What
+/* The cards of one model, card after card, mip after mip: of normals, and of what is kept of a
+ * fourth value alone, from WD_CARD_NORMAL_MIP on. What
  * a plane holds is in shared/view_set.h; depth 1 is a half width before the card (of the level card:
  * at the top), 0 as far behind it (at the bottom). */
 struct wd_cards {
@@ -37,7 +45,7 @@ struct wd_cards {
     uint8_t *planes[WD_PLANES]; /* wd_card_plane_bytes() each, or NULL */
 };
 /* The finest mip of a plane that is kept. */
-uint32_t wd_card_first_mip(int plane);
+uint32_t wd_card_first_mip(const struct wd_card_form *form, int plane);
 size_t wd_card_plane_bytes(const struct wd_card_form *form, int plane);
 /* Byte offset of a mip of a card in a plane, and its size in texels. */
 size_t wd_card_offset(const struct wd_card_form *form, int plane, uint32_t card, uint32_t mip);

@@ -225,7 +225,7 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     }
     double grown = wd_clock_s();
     forest->grown_us = (uint64_t)((grown - start) * 1e6);
-    struct wd_image *cards[WD_PLANES] = {&forest->card_albedo, &forest->card_normal};
+    struct wd_image *cards[WD_PLANES] = {&forest->card_albedo, &forest->card_normal, &forest->card_leaf};
     bool ok = wd_forest_meshes_init(&forest->meshes, gpu, work->grown, forest->model_count) &&
               make_table(&forest->models, gpu, "tree models", forest->host_models,
                          forest->model_count * sizeof *forest->host_models) &&
@@ -233,8 +233,8 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
                               (uint32_t)params->scene->species_file_count) &&
               wd_look_details_upload(&forest->look_details, gpu, work->looks,
                                      (uint32_t)params->scene->species_file_count) &&
-              wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, cards, params->progress,
-                                   &forest->baked_from_cache);
+              wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, cards, WD_CARD_DEPTH_LEAVES,
+                                   params->progress, &forest->baked_from_cache);
     forest->baked_us = (uint64_t)((wd_clock_s() - grown) * 1e6);
     return ok;
 }
@@ -285,7 +285,8 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
     struct wd_buffer *buffers[] = {&forest->trees, &forest->models, &forest->fades,
                                    &forest->card_indices};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
-                                 &forest->card_normal, &forest->canopy_light};
+                                 &forest->card_normal, &forest->card_leaf,
+                                 &forest->canopy_light};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
@@ -310,7 +311,8 @@ void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
 {
     struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->fades};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
-                                 &forest->card_normal, &forest->canopy_light};
+                                 &forest->card_normal, &forest->card_leaf,
+                                 &forest->canopy_light};
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
         if (tables[i]->buffer)
             wd_cmd_use_buffer(cmd, tables[i], WD_USE_SHADER_READ);

@@ -23,6 +23,7 @@ struct wd_forest_device {
     struct wd_image looks;     /* WD_LOOK_LAYERS of each species, sRGB */
     struct wd_image look_details; /* the same layers: normal, roughness, height (tree/look_map.h) */
     struct wd_image card_albedo, card_normal; /* WD_CARDS layers a model */
+    struct wd_image card_leaf;                /* share of leaves; mips as those of normals */
     struct wd_image canopy_light;   /* see forest/canopy_light.h */
     float canopy_light_scale[2];    /* its coordinates = local metres * scale */
     float leaf_scatter[3];          /* root of what leaves absorb: wd_frame_uniforms */

@@ -90,7 +90,8 @@ static bool make_image(struct wd_image *image, struct wd_gpu *gpu, struct wd_ima
 /* Normals are read once a pixel, and blocks do. Albedo's opacity is read for every card that a pixel
  * may show: software devices unpack blocks at 4% of a frame, others in no time. */
 static struct wd_card_form card_form(const struct wd_gpu *gpu, enum wd_bake_parts parts,
-                                     struct wd_image *images[WD_PLANES])
+                                     struct wd_image *images[WD_PLANES],
+                                     enum wd_card_depth depth)
 {
     bool blocks = gpu->features & WD_GPU_FEATURE_BLOCKS;
     const bool small[WD_PLANES] = {
@@ -102,20 +103,26 @@ static struct wd_card_form card_form(const struct wd_gpu *gpu, enum wd_bake_part
         form.planes[plane] = !images[plane] ? WD_CARD_NOTHING
                              : small[plane] ? WD_CARD_BLOCKS
                                             : WD_CARD_TEXELS;
+    if (images[WD_PLANE_DEPTH] && depth == WD_CARD_DEPTH_LEAVES)
+        form.planes[WD_PLANE_DEPTH] = blocks ? WD_CARD_ALPHA_BLOCKS : WD_CARD_ALPHA;
     return form;
 }
 
 static VkFormat card_format(const struct wd_card_form *form, int plane)
 {
-    if (form->planes[plane] == WD_CARD_TEXELS)
-        return formats[plane];
-    return plane == WD_PLANE_ALBEDO ? VK_FORMAT_BC3_SRGB_BLOCK : VK_FORMAT_BC3_UNORM_BLOCK;
+    switch (form->planes[plane]) {
+    case WD_CARD_BLOCKS:
+        return plane == WD_PLANE_ALBEDO ? VK_FORMAT_BC3_SRGB_BLOCK : VK_FORMAT_BC3_UNORM_BLOCK;
+    case WD_CARD_ALPHA: return VK_FORMAT_R8_UNORM;
+    case WD_CARD_ALPHA_BLOCKS: return VK_FORMAT_BC4_UNORM_BLOCK;
+    default: return formats[plane];
+    }
 }
 
 static bool make_card_plane(struct wd_image *image, struct wd_gpu *gpu,
                             const struct wd_card_form *form, int plane, uint32_t models)
 {
-    uint32_t width, height, first = wd_card_first_mip(plane);
+    uint32_t width, height, first = wd_card_first_mip(form, plane);
     wd_card_size(first, &width, &height);
     return make_image(image, gpu,
                       (struct wd_image_params){.name = names[plane],
@@ -151,9 +158,10 @@ static bool get_cards(struct wd_cards *cards, struct wd_forest_device *forest, s
 
 bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
                           enum wd_bake_parts parts, struct wd_image *images[WD_PLANES],
-                          const struct wd_progress *progress, uint32_t *from_cache)
+                          enum wd_card_depth depth, const struct wd_progress *progress,
+                          uint32_t *from_cache)
 {
-    const struct wd_card_form form = card_form(gpu, parts, images);
+    const struct wd_card_form form = card_form(gpu, parts, images, depth);
     struct wd_baker baker = {0};
     bool ok = true;
     *from_cache = 0;

@@ -20,12 +20,16 @@ void wd_model_mesh_finish(struct wd_model_mesh *mesh, struct wd_gpu *gpu); /* ac
 bool wd_forest_grow_model(struct wd_tree_model *grown, struct wd_forest_device *forest,
                           uint32_t model, const struct wd_log *log);
 
+/* Of the depth plane all that it holds, or the share of leaves alone. */
+enum wd_card_depth { WD_CARD_DEPTH_ALL, WD_CARD_DEPTH_LEAVES };
+
 /* Makes images of WD_CARDS layers a model for each plane (WD_PLANE_*) whose `images` is not NULL:
  * cards of whole trees, or of wood and leaves apart (W6). They must be {0} before, and are the
  * caller's to finish, also after a failure. */
 bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
                           enum wd_bake_parts parts, struct wd_image *images[WD_PLANES],
-                          const struct wd_progress *progress, uint32_t *from_cache);
+                          enum wd_card_depth depth, const struct wd_progress *progress,
+                          uint32_t *from_cache);
 
 /* View sets of all models, or of the first variants of each species. */
 struct wd_view_sets {

@@ -117,7 +117,8 @@ bool wd_octant_pictures_init(struct wd_octant_pictures *p, struct wd_gpu *gpu,
         p->linear[i] = wd_srgb_decode((uint8_t)i);
     bool ok = wd_frames_init(&p->frames, gpu) && init_pipeline(&p->pipeline, gpu) &&
               init_atlas(p) &&
-              wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, planes, NULL, &from_cache);
+              wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, planes, WD_CARD_DEPTH_ALL, NULL,
+                                   &from_cache);
     if (!ok)
         wd_octant_pictures_finish(p);
     return ok;

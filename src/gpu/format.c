@@ -26,6 +26,7 @@ static const struct format_row formats[] = {
     FORMAT(R32G32_SFLOAT, 8), FORMAT(R32G32B32A32_UINT, 16), FORMAT(R32G32B32A32_SINT, 16),
     FORMAT(R32G32B32A32_SFLOAT, 16), FORMAT(R64_UINT, 8), FORMAT(D16_UNORM, 2),
     FORMAT(D32_SFLOAT, 4), FORMAT(BC3_UNORM_BLOCK, 16), FORMAT(BC3_SRGB_BLOCK, 16),
+    FORMAT(BC4_UNORM_BLOCK, 8),
 };
 
 static const struct format_row *find_format(VkFormat format)
@@ -45,7 +46,9 @@ uint32_t wd_format_texel_bytes(VkFormat format)
 
 uint32_t wd_format_block_side(VkFormat format)
 {
-    return format == VK_FORMAT_BC3_UNORM_BLOCK || format == VK_FORMAT_BC3_SRGB_BLOCK ? 4 : 1;
+    bool blocks = format == VK_FORMAT_BC3_UNORM_BLOCK || format == VK_FORMAT_BC3_SRGB_BLOCK ||
+                  format == VK_FORMAT_BC4_UNORM_BLOCK;
+    return blocks ? 4 : 1;
 }
 
 const char *wd_format_name(VkFormat format)

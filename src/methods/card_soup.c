@@ -85,7 +85,7 @@ static bool init_resolve(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
     const struct wd_graphics_params params = {
         .vertex = SPIRV(whole_target_vert),
         .fragment = SPIRV(card_resolve_frag),
-        .bindings = {6, {BUFFER, IMAGE, IMAGE, BUFFER, BUFFER, IMAGE}},
+        .bindings = {7, {BUFFER, IMAGE, IMAGE, BUFFER, BUFFER, IMAGE, IMAGE}},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
@@ -328,7 +328,8 @@ static void record_resolve(const struct wd_card_soup *soup, const struct wd_tree
                                           WD_BIND_IMAGE(&forest->card_normal, forest->point_sampler),
                                           WD_BIND_BUFFER(&soup->cards),
                                           WD_BIND_BUFFER(&soup->vertices),
-                                          WD_BIND_IMAGE(&soup->visible, forest->point_sampler)};
+                                          WD_BIND_IMAGE(&soup->visible, forest->point_sampler),
+                                          WD_BIND_IMAGE(&forest->card_leaf, forest->point_sampler)};
     wd_cmd_bind(draw->cmd, &soup->resolve, bindings);
     wd_cmd_draw(draw->cmd, 3, 1);
 }

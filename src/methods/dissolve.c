@@ -119,7 +119,8 @@ static bool bake(struct wd_image planes[WD_PLANES], struct wd_gpu *gpu,
 {
     struct wd_image *images[WD_PLANES] = {&planes[0], &planes[1], &planes[2]};
     uint32_t from_cache;
-    return wd_forest_bake_cards(forest, gpu, parts, images, &forest->progress, &from_cache);
+    return wd_forest_bake_cards(forest, gpu, parts, images, WD_CARD_DEPTH_ALL, &forest->progress,
+                                &from_cache);
 }
 
 static bool dissolve_use_forest(void *state, struct wd_gpu *gpu, struct wd_forest_device *forest)

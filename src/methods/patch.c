@@ -31,7 +31,7 @@ static const uint32_t tree_card_frag[] =
         words, sizeof words, #words                                                                \
     }
 
-enum { BINDINGS = 11 };
+enum { BINDINGS = 12 };
 
 /* A patch on the device. */
 struct resident {
@@ -67,7 +67,8 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
     params->vertex = (struct wd_spirv)SPIRV(patch_card_vert);
     params->bindings = (struct wd_bindings){
         BINDINGS,
-        {buffer, buffer, buffer, buffer, image, image, buffer, image, buffer, buffer, image}};
+        {buffer, buffer, buffer, buffer, image, image, buffer, image, image, buffer, buffer,
+         image}};
     params->push_size = sizeof(struct wd_patch_push);
     params->depth_format = WD_DEPTH_FORMAT;
     params->topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
@@ -372,6 +373,7 @@ static void draw_quads(const struct drawing *d, struct wd_binding table, uint32_
         card,
         WD_BIND_IMAGE(&forest->card_normal, forest->point_sampler),
         WD_BIND_BUFFER(&forest->fades),
+        WD_BIND_IMAGE(&forest->card_leaf, forest->point_sampler),
         d->light ? d->light->shadow_map : card,
         d->light ? d->light->sun_heights : WD_BIND_BUFFER(&forest->fades),
         WD_BIND_BUFFER(&d->patch->near),

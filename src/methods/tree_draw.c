@@ -78,12 +78,13 @@ static bool init_card(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
     const uint32_t constants[] = {pass == WD_PASS_SHADOW, listed};
     struct wd_graphics_params params = {
         .vertex = SPIRV(tree_card_vert),
-        .bindings = {7,
+        .bindings = {8,
                      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .constants = {2, constants},
     };
     const struct wd_spirv fragments[] = {SPIRV(tree_card_frag), SPIRV(tree_card_shadow_frag)};
@@ -333,7 +334,8 @@ static void bind_cards(const struct wd_tree_draw *draw, const struct wd_pipeline
         instances,
         WD_BIND_IMAGE(&forest->card_albedo, albedo),
         WD_BIND_IMAGE(&forest->card_normal, forest->point_sampler),
-        WD_BIND_BUFFER(&forest->fades)};
+        WD_BIND_BUFFER(&forest->fades),
+        WD_BIND_IMAGE(&forest->card_leaf, forest->point_sampler)};
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_bind_indices(draw->cmd, &forest->card_indices);
 }

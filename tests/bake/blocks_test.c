@@ -49,9 +49,14 @@ struct error {
 static struct error error_of(const uint8_t *rgba, uint32_t width, uint32_t height)
 {
     uint8_t *blocks = wd_alloc(wd_blocks_bytes(width, height));
+    uint8_t *alphas = wd_alloc(wd_alpha_blocks_bytes(width, height));
     struct error error = {0};
     double shown = 0;
     wd_blocks_pack(blocks, rgba, width, height);
+    wd_alpha_blocks_pack(alphas, rgba, width, height);
+    for (size_t i = 0; i < wd_alpha_blocks_bytes(width, height) / 8; i++)
+        assert_memory_equal(alphas + 8 * i, blocks + 16 * i, 8); /* the same opacity, alone */
+    free(alphas);
     for (uint32_t i = 0; i < width * height; i++) {
         uint32_t x = i % width, y = i / width;
         const uint8_t *block = blocks + 16 * (y / 4 * ((width + 3) / 4) + x / 4);

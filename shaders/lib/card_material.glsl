@@ -1,0 +1,10 @@
+/* A picture's texel is leaf and wood; a pixel is lit as one of them, by lot. Expects `frame`. */
+#include "shared/hash.h"
+
+uint card_material(float leaf, uint surface)
+{
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    uint name = wd_hash_mix((pixel.x | pixel.y << 16) ^ surface * 0x9e3779b9u);
+    float lot = fract(wd_hash_unit(name) + float(frame.sample_index & 1023u) * 0.61803399);
+    return lot < leaf ? WD_MATERIAL_CARD : WD_MATERIAL_WOOD;
+}
