@@ -6,6 +6,7 @@
 #include <meshoptimizer.h>
 
 #include "base/memory.h"
+#include "tree/import.h"
 #include "tree/thinning.h"
 
 /* A kept model: words, then the wood of the full mesh and of the reduced one and the twig, each as
@@ -63,6 +64,18 @@ static uint64_t mesh_key(const struct wd_tree_mesh *mesh)
                                 mesh->vertex_count * sizeof *mesh->vertices);
     key = wd_cache_key(key, mesh->indices, mesh->index_count * sizeof *mesh->indices);
     return wd_cache_key(key, &mesh->wood_index_count, sizeof mesh->wood_index_count);
+}
+
+/* And its pictures: the same mesh may be textured anew. */
+static uint64_t import_key(const struct wd_tree_import *import)
+{
+    uint64_t key = mesh_key(&import->model.full);
+    for (size_t i = 0; i < import->materials.picture_count; i++) {
+        const struct wd_model_image *image = &import->materials.pictures[i].image;
+        key = wd_cache_key(key, &image->width, sizeof image->width);
+        key = wd_cache_key(key, image->rgba, (size_t)4 * image->width * image->height);
+    }
+    return key;
 }
 
 /* --- models ------------------------------------------------------------------------------ */
@@ -349,7 +362,7 @@ bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_ca
     if (species)
         store_model(cache, *key, model);
     else
-        *key = mesh_key(&model->full);
+        *key = import_key(grown.imported);
     return true;
 }
 

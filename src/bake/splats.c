@@ -266,3 +266,59 @@ void wd_splats_finish(struct wd_splats *splats)
     free(splats->wood);
     *splats = (struct wd_splats){0};
 }
+
+/* --- cache ------------------------------------------------------------------------------- */
+
+enum { POINTS_BYTES = WD_SPLATS * (sizeof(struct wd_splat) + sizeof(uint32_t)) };
+
+/* Of the wood of a reduced mesh: what is larger was not kept. */
+enum { MOST_TRIANGLES = 1 << 20 };
+
+static size_t kept_bytes(uint32_t triangles)
+{
+    return sizeof(struct wd_splat_model) + POINTS_BYTES + triangles * sizeof(struct wd_splat_wood);
+}
+
+bool wd_splats_load(struct wd_splats *splats, struct wd_bake_cache *cache, uint64_t model_key)
+{
+    size_t size;
+    uint8_t *block =
+        wd_cache_load(cache, "splats", model_key, kept_bytes(MOST_TRIANGLES), &size);
+    *splats = (struct wd_splats){0};
+    bool found = block && size >= kept_bytes(0);
+    if (found)
+        memcpy(&splats->model, block, sizeof splats->model);
+    found = found && splats->model.wood_count <= MOST_TRIANGLES &&
+            size == kept_bytes(splats->model.wood_count);
+    if (found) {
+        const uint8_t *at = block + sizeof splats->model;
+        splats->splats = wd_alloc_array(WD_SPLATS, sizeof *splats->splats);
+        splats->looks = wd_alloc_array(WD_SPLATS, sizeof *splats->looks);
+        splats->wood = wd_alloc_array(splats->model.wood_count, sizeof *splats->wood);
+        memcpy(splats->splats, at, WD_SPLATS * sizeof *splats->splats);
+        at += WD_SPLATS * sizeof *splats->splats;
+        memcpy(splats->looks, at, WD_SPLATS * sizeof *splats->looks);
+        at += WD_SPLATS * sizeof *splats->looks;
+        memcpy(splats->wood, at, splats->model.wood_count * sizeof *splats->wood);
+    }
+    free(block);
+    return found;
+}
+
+void wd_splats_store(const struct wd_splats *splats, struct wd_bake_cache *cache,
+                     uint64_t model_key)
+{
+    if (splats->model.wood_count > MOST_TRIANGLES)
+        return;
+    size_t bytes = kept_bytes(splats->model.wood_count);
+    uint8_t *block = wd_alloc(bytes), *at = block;
+    memcpy(at, &splats->model, sizeof splats->model);
+    at += sizeof splats->model;
+    memcpy(at, splats->splats, WD_SPLATS * sizeof *splats->splats);
+    at += WD_SPLATS * sizeof *splats->splats;
+    memcpy(at, splats->looks, WD_SPLATS * sizeof *splats->looks);
+    at += WD_SPLATS * sizeof *splats->looks;
+    memcpy(at, splats->wood, splats->model.wood_count * sizeof *splats->wood);
+    wd_cache_store(cache, "splats", model_key, block, bytes);
+    free(block);
+}

@@ -2,6 +2,7 @@
 #ifndef WD_BAKE_SPLATS_H
 #define WD_BAKE_SPLATS_H
 
+#include "bake/cache.h"
 #include "shared/continuum.h"
 #include "tree/grow.h"
 #include "tree/points.h"
@@ -18,5 +19,10 @@ struct wd_splats {
 bool wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
                     const struct wd_point_look *look, const struct wd_log *log);
 void wd_splats_finish(struct wd_splats *splats); /* accepts {0} */
+
+/* `model_key` names what they are made of (wd_growth_get). */
+bool wd_splats_load(struct wd_splats *splats, struct wd_bake_cache *cache, uint64_t model_key);
+void wd_splats_store(const struct wd_splats *splats, struct wd_bake_cache *cache,
+                     uint64_t model_key);
 
 #endif

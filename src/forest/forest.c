@@ -41,13 +41,8 @@ static void grow_model(void *user, size_t index)
 static void make_look(void *user, size_t index)
 {
     struct preparation *work = user;
-    const struct wd_species *species = &work->params->scene->species[index];
-    uint8_t *looks = work->looks + index * WD_LOOK_BYTES;
-    struct wd_bake_cache *cache = &work->forest->cache;
-    if (wd_looks_load(looks, WD_LOOK_BYTES, cache, species))
-        return;
-    wd_look_generate(species, looks);
-    wd_looks_store(looks, WD_LOOK_BYTES, cache, species);
+    wd_look_get(work->looks + index * WD_LOOK_BYTES, &work->forest->cache,
+                &work->params->scene->species[index]);
 }
 
 /* --- uploading --------------------------------------------------------------------------- */

@@ -3,11 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bake/growth_cache.h"
 #include "base/color.h"
 #include "base/memory.h"
 #include "tree/look_map.h"
 
-void wd_look_generate(const struct wd_species *species, uint8_t *rgba)
+static void generate(const struct wd_species *species, uint8_t *rgba)
 {
     for (uint32_t layer = 0; layer < WD_LOOK_LAYERS; layer++) {
         uint8_t *albedo = rgba + layer * WD_LOOK_MAP_BYTES;
@@ -16,6 +17,14 @@ void wd_look_generate(const struct wd_species *species, uint8_t *rgba)
         for (size_t i = 3; i < WD_LOOK_MAP_BYTES && !species->imported; i += 4)
             albedo[i] = 255; /* grown leaves are cut out as polygons */
     }
+}
+
+void wd_look_get(uint8_t *rgba, struct wd_bake_cache *cache, const struct wd_species *species)
+{
+    if (wd_looks_load(rgba, WD_LOOK_BYTES, cache, species))
+        return;
+    generate(species, rgba);
+    wd_looks_store(rgba, WD_LOOK_BYTES, cache, species);
 }
 
 /* Share of texels that pass the cut. */

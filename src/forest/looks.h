@@ -2,6 +2,7 @@
 #ifndef WD_FOREST_LOOKS_H
 #define WD_FOREST_LOOKS_H
 
+#include "bake/cache.h"
 #include "bake/cards.h"
 
 /* Bytes of one map, WD_LOOK_SIZE square; of one species' albedo, or detail, in all layers; and of
@@ -10,8 +11,9 @@
 #define WD_LOOK_HALF_BYTES (WD_LOOK_LAYERS * WD_LOOK_MAP_BYTES)
 #define WD_LOOK_BYTES (2 * WD_LOOK_HALF_BYTES)
 
-/* Generates one species' textures; `rgba` holds WD_LOOK_BYTES. */
-void wd_look_generate(const struct wd_species *species, uint8_t *rgba);
+/* One species' textures, from the cache or generated and put into it; `rgba` holds
+ * WD_LOOK_BYTES. */
+void wd_look_get(uint8_t *rgba, struct wd_bake_cache *cache, const struct wd_species *species);
 
 /* Images of WD_LOOK_LAYERS * species_count layers with all mips; `rgba` holds species_count *
  * WD_LOOK_BYTES. */

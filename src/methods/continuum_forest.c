@@ -9,7 +9,7 @@
 #include "base/jobs.h"
 #include "base/memory.h"
 #include "forest/looks.h"
-#include "bake/growth_cache.h"
+#include "forest/model_bakes.h"
 
 /* --- clusters ---------------------------------------------------------------------------- */
 
@@ -90,31 +90,45 @@ uint32_t wd_clusters_make(struct wd_cluster **clusters, const struct wd_octree *
 struct sampling {
     struct wd_forest_device *forest;
     const struct wd_log *log;
-    struct wd_splats *splats; /* [model] */
-    uint8_t *looks;           /* WD_LOOK_BYTES a species */
+    struct wd_splats *splats; /* [model]; {0} until there */
+    uint8_t *looks;           /* WD_LOOK_BYTES a species, where one of its models needs them */
     atomic_bool failed;
 };
+
+static void load_splats(void *user, size_t index)
+{
+    struct sampling *work = user;
+    wd_splats_load(&work->splats[index], &work->forest->cache, work->forest->model_keys[index]);
+}
 
 static void make_look(void *user, size_t index)
 {
     struct sampling *work = user;
-    wd_look_generate(&work->forest->scene->species[index], work->looks + index * WD_LOOK_BYTES);
+    const struct wd_splats *models = work->splats + index * work->forest->variants;
+    bool needed = false;
+    for (uint32_t i = 0; i < work->forest->variants; i++)
+        needed |= !models[i].splats;
+    if (needed)
+        wd_look_get(work->looks + index * WD_LOOK_BYTES, &work->forest->cache,
+                    &work->forest->scene->species[index]);
 }
 
 static void sample_model(void *user, size_t index)
 {
     struct sampling *work = user;
+    struct wd_splats *splats = &work->splats[index];
     struct wd_tree_model model;
-    uint64_t key;
-    struct wd_bake_cache *cache = &work->forest->cache;
-    if (!wd_growth_get(&model, &key, cache, work->forest->scene, (uint32_t)index, work->log)) {
+    if (splats->splats)
+        return;
+    if (!wd_forest_grow_model(&model, work->forest, (uint32_t)index, work->log)) {
         atomic_store(&work->failed, true);
         return;
     }
-    wd_tree_model_add_leaves(&model);
     const struct wd_point_look look = {
         work->looks + index / work->forest->variants * WD_LOOK_BYTES, WD_LOOK_SIZE};
-    if (!wd_splats_init(&work->splats[index], &model, &look, work->log))
+    if (wd_splats_init(splats, &model, &look, work->log))
+        wd_splats_store(splats, &work->forest->cache, work->forest->model_keys[index]);
+    else
         atomic_store(&work->failed, true);
     wd_tree_model_finish(&model);
 }
@@ -168,6 +182,7 @@ static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
         .splats = wd_alloc_array(forest->model_count, sizeof *work.splats),
         .looks = wd_alloc_array(species, WD_LOOK_BYTES),
     };
+    wd_jobs_run(0, forest->model_count, load_splats, &work);
     wd_jobs_run(0, species, make_look, &work);
     wd_jobs_run(0, forest->model_count, sample_model, &work);
     bool ok = !atomic_load(&work.failed) &&

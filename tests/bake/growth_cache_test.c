@@ -11,6 +11,8 @@
 
 #include "base/memory.h"
 #include "bake/growth_cache.h"
+#include "bake/splats.h"
+#include "tree/import.h"
 
 struct fixture {
     char directory[64];
@@ -148,6 +150,69 @@ static void keys_follow_what_growth_sees(void **state)
     assert_true(wd_species_key(&other) == 0);
 }
 
+static void imported_trees_are_named_by_mesh_and_pictures(void **state)
+{
+    struct fixture *f = *state;
+    uint8_t texels[16] = {0};
+    struct wd_model_picture picture = {.image = {2, 2, texels}};
+    struct wd_tree_import import = {.materials = {.pictures = &picture, .picture_count = 1}};
+    assert_true(wd_variant_grow(&import.model, &f->scene, 0, NULL));
+    free(import.model.leaves); /* of imports they are triangles like others */
+    import.model.leaves = NULL;
+    import.model.leaf_count = import.model.flower_count = 0;
+    f->scene.species[0].imported = &import;
+    uint64_t keys[4];
+    for (int i = 0; i < 4; i++) {
+        struct wd_tree_model model;
+        texels[5] = i == 2;
+        picture.image.width = picture.image.height = i == 3 ? 1 : 2;
+        assert_true(wd_growth_get(&model, &keys[i], &f->cache, &f->scene, 0, NULL));
+        wd_tree_model_finish(&model);
+    }
+    f->scene.species[0].imported = NULL;
+    wd_tree_model_finish(&import.model);
+    assert_true(keys[0] == keys[1]);
+    assert_true(keys[0] != keys[2]);
+    assert_true(keys[0] != keys[3]);
+}
+
+static void assert_same_splats(const struct wd_splats *a, const struct wd_splats *b)
+{
+    assert_memory_equal(&a->model, &b->model, sizeof a->model);
+    assert_memory_equal(a->splats, b->splats, WD_SPLATS * sizeof *a->splats);
+    assert_memory_equal(a->looks, b->looks, WD_SPLATS * sizeof *a->looks);
+    assert_memory_equal(a->wood, b->wood, a->model.wood_count * sizeof *a->wood);
+}
+
+static void splats_are_kept_by_model(void **state)
+{
+    struct fixture *f = *state;
+    struct wd_tree_model model;
+    struct wd_splats made, kept;
+    assert_true(wd_variant_grow(&model, &f->scene, 1, NULL));
+    static uint8_t texels[4 * WD_LOOK_LAYERS] = {90, 120, 30, 255};
+    const struct wd_point_look look = {texels, 1};
+    assert_true(wd_splats_init(&made, &model, &look, NULL));
+    assert_false(wd_splats_load(&kept, &f->cache, 7));
+    wd_splats_store(&made, &f->cache, 7);
+    assert_false(wd_splats_load(&kept, &f->cache, 8));
+    assert_true(wd_splats_load(&kept, &f->cache, 7));
+    assert_true(kept.model.wood_count > 0);
+    assert_same_splats(&made, &kept);
+    wd_splats_finish(&kept);
+    /* whole and checked, but with fewer triangles than it says */
+    size_t size;
+    uint8_t *block = wd_cache_load(&f->cache, "splats", 7, 64 << 20, &size);
+    wd_cache_store(&f->cache, "splats", 7, block, size - sizeof *made.wood);
+    assert_false(wd_splats_load(&kept, &f->cache, 7));
+    wd_cache_store(&f->cache, "splats", 7, block, 100);
+    assert_false(wd_splats_load(&kept, &f->cache, 7));
+    free(block);
+    wd_splats_finish(&made);
+    wd_tree_model_finish(&model);
+    drop(f, "splats", 7);
+}
+
 static void looks_are_kept_by_species(void **state)
 {
     struct fixture *f = *state;
@@ -171,6 +236,8 @@ int main(void)
         TEST(a_kept_tree_is_the_grown_tree),
         TEST(a_damaged_file_grows_the_tree_again),
         TEST(keys_follow_what_growth_sees),
+        TEST(imported_trees_are_named_by_mesh_and_pictures),
+        TEST(splats_are_kept_by_model),
         TEST(looks_are_kept_by_species),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
