@@ -50,7 +50,7 @@ struct cli_options {
     uint32_t size_px[2];
     uint32_t samples, frames, threads, bounces;
     uint32_t variants, max_trees, grow_seed;
-    double frames_per_second, time_s;
+    double frames_per_second, time_s, max_error_px, budget_ms;
     double height_m, dbh_cm, age_years, openness, detail, month, distance_m; /* of grow */
     const char *season, *form, *clip;
     struct cli_words settings, method_options;
@@ -122,6 +122,10 @@ enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **f
 bool cli_method_known(struct cli_session *session, const char *name);
 /* Tells a wrong --method from a right one before any long work. */
 bool cli_method_check(struct cli_session *session);
+/* Whether at most one of --max-error and --budget-ms is given. */
+bool cli_error_check(struct cli_session *session);
+/* Whether the method in use has the error bound that --max-error or --budget-ms ask for. */
+bool cli_bound_check(struct cli_session *session, const struct wd_forest *forest);
 /* The same for --camera and --path. */
 bool cli_places_check(struct cli_session *session, const struct wd_forest *forest);
 

@@ -31,6 +31,7 @@ enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
                              const struct wd_forest *forest, const struct cli_plan *plan)
 {
     *film = (struct cli_film){.session = session, .forest = forest, .plan = plan};
+    film->budget = wd_budget_of(session->options->budget_ms);
     if (!settle_frames(film))
         return WD_ERROR_INPUT;
     struct wd_film_params params = {
@@ -57,6 +58,19 @@ static enum wd_result frame_camera(const struct cli_film *film, uint64_t frame,
     return wd_forest_get_path_camera(film->forest, film->path, time_s, camera, NULL);
 }
 
+/* The next frame's error bound follows from this one's time. */
+static void note_time(struct cli_film *film, const struct cli_painter *painter,
+                      const struct wd_render_params *params)
+{
+    struct wd_frame_stats stats;
+    if (film->session->options->budget_ms <= 0)
+        return;
+    wd_renderer_get_stats(painter->renderer, &stats);
+    double frame_ms = stats.frame_ms * (params->samples ? params->samples : 1);
+    film->over_budget += frame_ms > film->budget.target_ms;
+    wd_budget_next(&film->budget, frame_ms);
+}
+
 static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *painter,
                                   struct wd_camera *previous)
 {
@@ -64,11 +78,15 @@ static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *pai
     struct wd_render_params params = film->plan->params;
     struct wd_picture picture = {0};
     enum wd_result result = frame_camera(film, frame, &params.camera);
+    if (film->session->options->budget_ms > 0)
+        params.max_error_px = film->budget.error_px;
     params.time_s += (double)frame / film->frames_per_second;
     params.previous_time_s = frame ? params.time_s - 1 / film->frames_per_second : params.time_s;
     params.previous_camera = frame ? previous : NULL;
     if (result == WD_OK)
         result = cli_painter_paint(painter, &params, &picture);
+    if (result == WD_OK)
+        note_time(film, painter, &params);
     if (result == WD_OK)
         result = wd_film_add(film->output, &picture);
     wd_picture_finish(&picture);
@@ -102,6 +120,14 @@ static void say_kept(struct cli_film *film, enum wd_result result)
     cli_say_written(film->session, film->plan, what);
 }
 
+static void say_budget(struct cli_film *film)
+{
+    if (film->session->options->budget_ms > 0)
+        cli_say(film->session, "budget %g ms: %llu frames took longer; error at the end %.2f px\n",
+                film->budget.target_ms, (unsigned long long)film->over_budget,
+                film->budget.error_px);
+}
+
 enum wd_result cli_film_close(struct cli_film *film, enum wd_result result)
 {
     enum wd_result closed = WD_OK;
@@ -109,7 +135,9 @@ enum wd_result cli_film_close(struct cli_film *film, enum wd_result result)
         wd_film_discard(&film->output);
     else
         closed = wd_film_commit(&film->output);
-    if (closed == WD_OK && film->frames_done && result != WD_ERROR_OUTPUT)
+    if (closed == WD_OK && film->frames_done && result != WD_ERROR_OUTPUT) {
         say_kept(film, result);
+        say_budget(film);
+    }
     return result == WD_OK ? closed : result;
 }

@@ -13,6 +13,8 @@ struct cli_film {
     double duration_s; /* of the path */
     double frames_per_second;
     uint64_t frame_count, frames_done;
+    struct wd_budget budget; /* with --budget-ms */
+    uint64_t over_budget;    /* frames that took longer */
 };
 
 /* Settles the frames and opens the output, before the long work. `*film` is ready for

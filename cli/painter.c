@@ -72,6 +72,8 @@ static void print_passes(const struct wd_renderer *renderer)
         printf("%-16s %10.2f %10.2f\n", stats.passes[i].name, stats.passes[i].gpu_ms,
                stats.passes[i].cpu_ms);
     printf("%-16s %10.2f\n", "whole frame", stats.frame_ms);
+    if (stats.discs)
+        printf("discs: %llu\n", (unsigned long long)stats.discs);
     printf("trees drawn: %llu as mesh, %llu reduced, %llu as billboard; %llu draw calls, "
            "%llu triangles; device memory %.1f MB, at most %.1f MB\n",
            (unsigned long long)stats.trees_mesh, (unsigned long long)stats.trees_reduced,

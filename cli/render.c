@@ -34,6 +34,14 @@ static bool make_plan(struct cli_session *session, struct cli_plan *plan)
         return cli_fail(session, "--reference draws lit pictures only; an .exr holds the layers");
     if (options->bounces && !options->reference)
         return cli_fail(session, "--bounces is for --reference");
+    if (options->reference && (options->max_error_px > 0 || options->budget_ms > 0))
+        return cli_fail(session, "--reference has no error bound: --max-error and --budget-ms are for "
+                                 "continuum");
+    if (options->budget_ms > 0 && !plan->film)
+        return cli_fail(session, "--budget-ms is for films and the viewer: a still must not depend on a "
+                                 "clock; --max-error bounds its error");
+    if (!cli_error_check(session))
+        return false;
     return cli_method_check(session);
 }
 
@@ -51,6 +59,7 @@ static void choose_picture(const struct cli_session *session, const struct wd_fo
                                            : defaults.samples;
     params->method = options->method;
     params->view = options->view;
+    params->max_error_px = options->max_error_px;
     params->time_s = params->previous_time_s = options->time_s;
     params->timing = options->times ? WD_TIME_PASSES : WD_TIME_OFF;
     bool layers = plan->kind == CLI_OUTPUT_EXR || plan->kind == CLI_OUTPUT_NUMBERED_EXR;
@@ -124,7 +133,7 @@ enum cli_status cli_render(struct cli_session *session)
     if (!plan.film && !cli_output_probe(session, session->options->output))
         return CLI_FAILED;
     enum wd_result result = cli_forest_open(session, &forest);
-    if (result == WD_OK && !cli_places_check(session, forest))
+    if (result == WD_OK && !(cli_places_check(session, forest) && cli_bound_check(session, forest)))
         result = WD_ERROR_INPUT;
     if (result == WD_OK) {
         choose_picture(session, forest, &plan);

@@ -258,6 +258,24 @@ bool cli_method_check(struct cli_session *session)
     return !method || cli_method_known(session, method);
 }
 
+bool cli_error_check(struct cli_session *session)
+{
+    const struct cli_options *options = session->options;
+    return options->max_error_px <= 0 || options->budget_ms <= 0 ||
+           cli_fail(session, "--max-error and --budget-ms exclude each other");
+}
+
+bool cli_bound_check(struct cli_session *session, const struct wd_forest *forest)
+{
+    const struct cli_options *options = session->options;
+    struct wd_render_defaults defaults;
+    wd_forest_get_render_defaults(forest, &defaults);
+    const char *method = options->method ? options->method : defaults.method;
+    return (options->max_error_px <= 0 && options->budget_ms <= 0) || !strcmp(method, "continuum") ||
+           cli_fail(session, "%s is for the method continuum, not for %s",
+                    options->budget_ms > 0 ? "--budget-ms" : "--max-error", method);
+}
+
 enum { MAX_NAMES = 256 };
 
 static bool check_place(struct cli_session *session, const struct wd_forest *forest,

@@ -10,7 +10,7 @@ static bool keep_running(void *user)
 enum cli_status cli_view(struct cli_session *session)
 {
     const struct cli_options *options = session->options;
-    if (!cli_method_check(session))
+    if (!cli_method_check(session) || !cli_error_check(session))
         return CLI_USAGE;
     struct wd_viewer_params params = {
         .scene_path = options->operands[0],
@@ -20,6 +20,8 @@ enum cli_status cli_view(struct cli_session *session)
         .view = options->view,
         .width = options->size_px[0],
         .height = options->size_px[1],
+        .max_error_px = options->max_error_px,
+        .budget_ms = options->budget_ms,
         .walk = options->walk,
         .screenshot_dir = options->screenshots,
         .report_path = options->report,
@@ -35,7 +37,7 @@ enum cli_status cli_view(struct cli_session *session)
         return CLI_NO_DISPLAY;
     struct wd_forest *forest = NULL;
     enum wd_result result = cli_forest_open(session, &forest);
-    if (result == WD_OK && !cli_places_check(session, forest))
+    if (result == WD_OK && !(cli_places_check(session, forest) && cli_bound_check(session, forest)))
         result = WD_ERROR_INPUT;
     if (result == WD_OK)
         result = wd_viewer_run(forest, &params);

@@ -150,6 +150,7 @@ void viewer_act_screenshot(struct viewer_state *viewer)
         .samples = SCREENSHOT_SAMPLES,
         .method = viewer->method,
         .view = viewer->view,
+        .max_error_px = viewer_error_px(viewer),
     };
     struct wd_picture picture = {0};
     bool ok = wd_renderer_wait(viewer->renderer) == WD_OK &&

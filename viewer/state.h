@@ -47,6 +47,7 @@ struct viewer_state {
     uint64_t frame_count;
     unsigned screenshot_count;
     double frame_ms; /* from frame to frame, smoothed */
+    struct wd_budget budget; /* where the parameters ask for one */
     char notice[256];
     double notice_until_s;
     bool grabbed, times_shown, help_shown, quit;
@@ -56,6 +57,10 @@ struct viewer_state {
 };
 
 double viewer_seconds(void);
+/* Whether the frame's time is held by the error bound. */
+bool viewer_has_budget(const struct viewer_state *viewer);
+/* As in struct wd_render_params. */
+double viewer_error_px(const struct viewer_state *viewer);
 
 /* --- input.c */
 void viewer_input_event(struct viewer_state *viewer, const SDL_Event *event);

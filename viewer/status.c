@@ -18,12 +18,25 @@ static const char help_text[] = "W A S D      move\n"
                                 "H            this help\n"
                                 "Esc          quit";
 
+/* What decides how finely trees are drawn: a budget, a bound, or neither. */
+static void print_quality(const struct viewer_state *viewer, char *text, size_t size)
+{
+    text[0] = 0;
+    if (viewer_has_budget(viewer))
+        snprintf(text, size, "   budget %g ms: error %.2f px", viewer->budget.target_ms,
+                 viewer->budget.error_px);
+    else if (viewer_error_px(viewer) > 0 && !strcmp(viewer->method, "continuum"))
+        snprintf(text, size, "   error at most %g px", viewer_error_px(viewer));
+}
+
 static void print_status(const struct viewer_state *viewer, char *text, size_t size)
 {
     const double *p = viewer->motion.camera.position_m;
-    snprintf(text, size, "%s   %s x%.2g   %.1f, %.1f, %.1f m   %.0f ms a frame   H: help",
+    char quality[64];
+    print_quality(viewer, quality, sizeof quality);
+    snprintf(text, size, "%s   %s x%.2g   %.1f, %.1f, %.1f m   %.0f ms a frame%s   H: help",
              viewer->method, viewer->motion.gait == VIEWER_WALK ? "on foot" : "flying",
-             viewer->motion.speed_factor, p[0], p[1], p[2], viewer->frame_ms);
+             viewer->motion.speed_factor, p[0], p[1], p[2], viewer->frame_ms, quality);
 }
 
 static void print_times(const struct viewer_state *viewer, char *text, size_t size)

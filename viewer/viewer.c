@@ -87,6 +87,7 @@ static enum wd_result choose_start(struct viewer_state *viewer)
     viewer->motion.speed_factor = 1;
     viewer->motion.gait = params->walk ? VIEWER_WALK : VIEWER_FLY;
     viewer->path_time_s = params->path ? 0 : -1;
+    viewer->budget = wd_budget_of(params->budget_ms);
     viewer->camera_name =
         params->camera ? params->camera : wd_forest_camera_name(viewer->forest, 0);
     const char *name;
@@ -180,6 +181,17 @@ static bool rebuild(struct viewer_state *viewer)
             viewer_overlay_resize(&viewer->overlay, &viewer->swapchain));
 }
 
+/* Only continuum has an error to bound. */
+bool viewer_has_budget(const struct viewer_state *viewer)
+{
+    return viewer->params->budget_ms > 0 && !strcmp(viewer->method, "continuum");
+}
+
+double viewer_error_px(const struct viewer_state *viewer)
+{
+    return viewer_has_budget(viewer) ? viewer->budget.error_px : viewer->params->max_error_px;
+}
+
 static enum wd_result draw_forest(struct viewer_state *viewer,
                                   const struct viewer_overlay_frame *frame, uint32_t index)
 {
@@ -193,6 +205,7 @@ static enum wd_result draw_forest(struct viewer_state *viewer,
         .samples = 1,
         .method = viewer->method,
         .view = viewer->view,
+        .max_error_px = viewer_error_px(viewer),
         .timing = viewer->times_shown ? WD_TIME_PASSES : WD_TIME_OFF,
     };
     struct wd_vulkan_target target = {
@@ -205,6 +218,17 @@ static enum wd_result draw_forest(struct viewer_state *viewer,
         .signal = frame->drawn,
     };
     return wd_renderer_draw(viewer->renderer, &params, &target);
+}
+
+/* Without a true clock on the device the time from frame to frame is what there is; the window system
+ * may hold it up to its own pace. */
+static void note_time(struct viewer_state *viewer, double frame_ms)
+{
+    struct wd_frame_stats stats;
+    if (!viewer_has_budget(viewer))
+        return;
+    wd_renderer_get_stats(viewer->renderer, &stats);
+    wd_budget_next(&viewer->budget, stats.gpu_ms > 0 ? stats.gpu_ms : frame_ms);
 }
 
 static enum wd_result draw_frame(struct viewer_state *viewer)
@@ -232,6 +256,7 @@ static enum wd_result draw_frame(struct viewer_state *viewer)
     viewer->stale = viewer->stale || state == VIEWER_SWAP_STALE;
     viewer->frame_count++;
     double frame_ms = (viewer_seconds() - viewer->now_s) * 1e3;
+    note_time(viewer, frame_ms);
     viewer->frame_ms += (frame_ms - viewer->frame_ms) * (viewer->frame_count == 1 ? 1 : 0.2);
     return state == VIEWER_SWAP_FAILED ? WD_ERROR_DEVICE : WD_OK;
 }

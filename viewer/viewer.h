@@ -11,6 +11,8 @@ struct wd_viewer_params {
     const char *method;     /* NULL: the scene's */
     enum wd_view_mode view;
     uint32_t width, height;     /* of the window; 0: 1280x720 */
+    double max_error_px;        /* see struct wd_render_params; 0: the method's own */
+    double budget_ms;           /* of a frame, held by the error; 0: none */
     bool walk;                  /* begin on foot */
     const char *screenshot_dir; /* NULL: the working directory */
     const char *report_path;    /* where lines of JSON about the state go; NULL: nowhere */

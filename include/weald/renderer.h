@@ -79,6 +79,9 @@ enum wd_layer_bits {
     WD_LAYER_ALL = 0xff,
 };
 
+#define WD_LEAST_ERROR_PX 0.25
+#define WD_MOST_ERROR_PX 32.0
+
 struct wd_render_params {
     struct wd_camera camera;
     const struct wd_camera *previous_camera; /* for velocity; NULL: the camera stood still */
@@ -89,6 +92,11 @@ struct wd_render_params {
     const char *method;     /* NULL: the scene's */
     enum wd_view_mode view;
     uint32_t layers;        /* wd_layer_bits wanted; 0: display */
+    double max_error_px;    /* of continuum, WD_LEAST_ERROR_PX..WD_MOST_ERROR_PX; 0: by its option
+                               "density". Mean distance, on screen, between the discs that stand for a
+                               crown's surface: what is finer may be missing from a single sample. Trees
+                               less than about twice as wide are drawn as one for several, and triangles of
+                               wood and pages of trees on demand are chosen alike. */
     enum wd_time_mode { WD_TIME_OFF, WD_TIME_PASSES } timing; /* per-pass times, at some cost */
 };
 
@@ -125,13 +133,34 @@ struct wd_pass_time {
 };
 struct wd_frame_stats {
     double frame_ms; /* wall clock of one sample from begin to finished */
+    double gpu_ms;   /* device time of the newest frame finished by wd_renderer_draw; 0 where the device
+                        has no true clock */
     uint32_t pass_count;
     const struct wd_pass_time *passes; /* valid until the next call on the renderer */
     uint64_t draw_calls, triangles;    /* submitted */
+    uint64_t discs;                    /* of the camera's view, by wd_renderer_render; 0 without
+                                          WD_TIME_PASSES and for methods other than continuum */
     uint64_t trees_mesh, trees_reduced, trees_billboard; /* drawn into the picture by level */
     uint64_t device_bytes, device_bytes_peak;
 };
 void wd_renderer_get_stats(const struct wd_renderer *renderer, struct wd_frame_stats *stats);
+
+/* Holds frame time by the error bound: before each frame but the first the caller tells how long the
+ * newest one took and draws with the error that comes back. Nothing but arithmetic: the same times give
+ * the same errors. */
+struct wd_budget {
+    double target_ms; /* > 0 */
+    double error_px;  /* in force */
+    double share;     /* of a frame's time that follows the number of discs, as told by the past */
+    uint32_t settling; /* frames until a time told is weighed again */
+    double weighed_ms, weighed_error_px; /* the newest time that was, and the error it belongs to */
+};
+struct wd_budget wd_budget_of(double target_ms);
+/* Error for the frame to come, within WD_LEAST_ERROR_PX..WD_MOST_ERROR_PX. `frame_ms` that is not
+ * positive and finite changes nothing. Times may be those of the frame before the newest or of the one
+ * before it: after a change two frames are not weighed. Within eight frames of a jump in cost the time is
+ * below the target again, as far as the bounds allow. */
+double wd_budget_next(struct wd_budget *budget, double frame_ms);
 
 /* Name of the device in use; lives as long as the renderer. */
 const char *wd_renderer_device_name(const struct wd_renderer *renderer);

@@ -215,7 +215,7 @@ void select_tree(uint index, float share)
     wind.gust = view.calm != 0u ? 0.0 : wind.gust;
     vec3 sway = tree_sway_in(wind, tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
     float pixels_per_m = view.pixels / distance_m;
-    float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m;
+    float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m * view.detail;
     bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(tree.random));
     float wanted = max(view.density * covered_px(tree, toward, pixels_per_m),
                        float(view.min_splats));
@@ -288,7 +288,7 @@ wd_drawn drawn_of(wd_cluster cluster)
     vec3 middle = rel_of_mm(low + (high - low) / 2), size_m = vec3(high - low) * 0.001;
     float distance_m = max(length(middle), 1.0);
     float typical_m = paged ? WD_CLUSTER_GRAIN_M(cluster) : view.typical_m;
-    float tall_px = typical_m * view.pixels / distance_m;
+    float tall_px = typical_m * view.pixels * view.detail / distance_m;
     float wanted = tall_px * tall_px * (0.2 / WD_LEAST_TREE_PX) / held;
     float count = ceil(clamp(wanted * float(WD_CLUSTER_TREES), 1.0, float(WD_CLUSTER_TREES)));
     float share = held * count / float(WD_CLUSTER_TREES);

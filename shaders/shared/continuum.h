@@ -104,6 +104,8 @@ struct wd_splat_view {
     uint32_t width, height;
     uint32_t texels;         /* of the target for one of the view's pixels, each way */
     float density;           /* splats a pixel that a tree covers */
+    float detail;            /* level of detail is chosen as if the picture had so many times its pixels
+                                each way: what the error bound asks for */
     uint32_t min_splats;     /* of a tree */
     float wood_px;           /* trees taller than about this have triangles of wood */
     uint32_t cluster_count, variants;

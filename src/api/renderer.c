@@ -138,6 +138,10 @@ static bool check(const struct wd_renderer *renderer, const struct wd_render_par
     double fov = params->camera.fov_rad;
     if (!(fov > 0.0 && fov < 3.14159))
         return wd_error(log, "field of view of %g radians: between 0 and pi is possible", fov);
+    double error_px = params->max_error_px;
+    if (error_px != 0.0 && !(error_px >= WD_LEAST_ERROR_PX && error_px <= WD_MOST_ERROR_PX))
+        return wd_error(log, "an error of %g pixels: %g to %g are possible", error_px,
+                        WD_LEAST_ERROR_PX, WD_MOST_ERROR_PX);
     for (int k = 0; k < 3; k++) {
         if (!(fabs(params->camera.position_m[k]) < 2.0e6))
             return wd_error(log,
@@ -175,6 +179,7 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
         .height = params->height,
         .samples = samples < max_samples ? samples : max_samples,
         .view_mode = (uint32_t)params->view,
+        .max_error_px = (float)params->max_error_px,
         .gbuffer = params->layers & ~(uint32_t)(WD_LAYER_DISPLAY | WD_LAYER_COLOR)
                        ? WD_GBUFFER_READ
                        : WD_GBUFFER_OWN,
@@ -241,6 +246,9 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
     if (!wd_frames_wait(&frame->ring))
         return WD_ERROR_DEVICE;
     renderer->frame_ms = (wd_clock_s() - start) * 1e3 / samples;
+    renderer->discs = 0;
+    if (frame->ring.timing == WD_TIMING_ON && frame->params.method->discs)
+        renderer->discs = frame->params.method->discs(frame->method_state, &renderer->gpu);
     return WD_OK;
 }
 
@@ -267,6 +275,8 @@ void wd_renderer_get_stats(const struct wd_renderer *renderer, struct wd_frame_s
     const struct wd_frame *frame = &renderer->frame;
     *stats = (struct wd_frame_stats){
         .frame_ms = renderer->frame_ms,
+        .gpu_ms = renderer->gpu_ms,
+        .discs = renderer->discs,
         .pass_count = renderer->pass_count,
         .passes = renderer->passes,
         .draw_calls = frame->stats.draw_calls,

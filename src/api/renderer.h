@@ -21,6 +21,8 @@ struct wd_renderer {
     struct wd_pass_time passes[WD_MAX_PASSES];
     uint32_t pass_count;
     double frame_ms;
+    double gpu_ms;  /* of the newest frame drawn live; 0: not known */
+    uint64_t discs; /* of the newest picture; 0: not counted */
 };
 
 /* Checks the parameters of a picture and hands them to the frame. */

@@ -38,6 +38,15 @@ static bool check_target(const struct wd_renderer *renderer, const struct wd_ren
     }
 }
 
+/* Device time of the newest finished frame. */
+static double scopes_ms(const struct wd_frames *ring)
+{
+    double sum_us = 0.0;
+    for (uint32_t i = 0; i < ring->last_scope_count; i++)
+        sum_us += ring->last_scopes[i].depth == 0 ? ring->last_scopes[i].gpu_us : 0.0;
+    return sum_us * 1e-3;
+}
+
 enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_render_params *params,
                                 const struct wd_vulkan_target *target)
 {
@@ -48,6 +57,9 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
     if (result != WD_OK)
         return result;
     renderer->frame.params.page_budget = LIVE_PAGES;
+    bool true_clock = (renderer->gpu.features & WD_GPU_FEATURE_TIMESTAMPS) != 0;
+    if (true_clock)
+        renderer->frame.ring.timing = WD_TIMING_ON;
     struct wd_cmd cmd;
     double start = wd_clock_s();
     if (!wd_frame_begin(&renderer->frame.ring, &cmd))
@@ -59,6 +71,7 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
         return WD_ERROR_DEVICE;
     renderer->frame_ms = (wd_clock_s() - start) * 1e3;
     wd_renderer_keep_times(renderer);
+    renderer->gpu_ms = true_clock ? scopes_ms(&renderer->frame.ring) : 0.0;
     return WD_OK;
 }
 

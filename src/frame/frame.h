@@ -23,6 +23,7 @@ struct wd_frame_params {
         WD_GBUFFER_READ, /* its layers are read afterwards: trees stand in all of them */
     } gbuffer;
     uint32_t page_budget; /* pages of trees on demand to plant for a view, at most; 0: all it needs */
+    float max_error_px;   /* see struct wd_render_params; 0: the method's own */
     enum wd_velocity { WD_VELOCITY_OFF, WD_VELOCITY_ON } velocity;
 };
 

@@ -9,7 +9,10 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 /* Visible trees and items of one view: hard caps, whatever the world holds. */
 enum { MAX_TREES = 1 << 19, MAX_ITEMS = 1 << 20 };
@@ -172,6 +175,16 @@ static float texels_per_m(const struct wd_view *view)
     return 0.5f * sqrtf(squared) * (float)view->width;
 }
 
+/* Pixels each way, over the picture's own, that the error bound asks level of detail to be chosen for.
+ * Maps that are kept for later frames do not follow it. */
+static float detail_of(const struct wd_tree_draw *draw)
+{
+    double spacing_px = 1.0 / sqrt(draw->forest->scene->methods.continuum.density);
+    if (draw->max_error_px <= 0.0f || (draw->pass == WD_PASS_SHADOW && draw->view->box.calm))
+        return 1.0f;
+    return (float)(spacing_px / draw->max_error_px);
+}
+
 static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
 {
     const struct wd_view *view = draw->view;
@@ -180,6 +193,7 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
         return;
     const struct wd_continuum_options *options = &draw->forest->scene->methods.continuum;
     bool shadow = draw->pass == WD_PASS_SHADOW;
+    float detail = detail_of(draw);
     *values = (struct wd_splat_view){
         .plane_count = view->frustum.count,
         .orthographic = shadow,
@@ -190,7 +204,8 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
         .width = view->width,
         .height = view->height,
         .texels = 1,
-        .density = (float)options->density,
+        .density = (float)options->density * detail * detail,
+        .detail = detail,
         .min_splats = (uint32_t)options->min_splats,
         .wood_px = (float)options->wood_px,
         .cluster_count = c->forest.cluster_count,
@@ -205,7 +220,7 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
     if (!shadow)
         set_history(c, values, view);
     if (shadow) {
-        values->density = (float)options->shadow_density;
+        values->density = (float)options->shadow_density * detail * detail;
         values->min_splats = WD_SPLAT_STRATA;
         if (view->cascade > 0 && view->width % 2 == 0)
             values->texels = 2; /* these cascades hold crowns, not leaves: shaders/lib/shade.glsl */
@@ -237,7 +252,7 @@ static void select_pages(struct continuum *c, const struct wd_tree_draw *draw)
         .eye_m = {view->eye_m[0], view->eye_m[1], view->eye_m[2]},
         .pixels = view->pixels_per_radian,
         .orthographic = shadow,
-        .whole_px = WD_WHOLE_TREE_PX,
+        .whole_px = WD_WHOLE_TREE_PX / detail_of(draw),
         .budget = shadow ? (draw->page_budget + 3) / 4 : draw->page_budget,
         .most = (uint32_t)((shadow ? CASCADE_SHARE : CAMERA_SHARE) * pages->capacity),
     };
@@ -452,6 +467,31 @@ static void continuum_keep(void *state, const struct wd_tree_draw *draw)
     memcpy(c->history.clip_from_rel, view->clip_from_rel, sizeof c->history.clip_from_rel);
 }
 
+/* Splats of the items first..first + count. */
+static uint64_t count_splats(struct continuum *c, struct wd_gpu *gpu, uint32_t first, uint32_t count)
+{
+    uint64_t splats = 0;
+    size_t size = count * sizeof(struct wd_splat_item);
+    struct wd_splat_item *items = wd_alloc_array(count ? count : 1, sizeof *items);
+    if (count && wd_buffer_read(gpu, &c->items, first * sizeof *items, items, size)) {
+        for (uint32_t i = 0; i < count; i++)
+            splats += items[i].count;
+    }
+    free(items);
+    return splats;
+}
+
+static uint64_t continuum_discs(void *state, struct wd_gpu *gpu)
+{
+    struct continuum *c = state;
+    struct wd_splat_counts counts;
+    if (!c->counts.buffer || !wd_buffer_read(gpu, &c->counts, 0, &counts, sizeof counts))
+        return 0;
+    uint32_t many = counts.items < c->item_capacity ? counts.items : c->item_capacity;
+    uint32_t few = counts.small_items < c->item_capacity ? counts.small_items : c->item_capacity;
+    return count_splats(c, gpu, 0, many) + count_splats(c, gpu, c->item_capacity - few, few);
+}
+
 const struct wd_method wd_method_continuum = {
     .name = "continuum",
     .on_demand = true,
@@ -465,4 +505,5 @@ const struct wd_method wd_method_continuum = {
     .select = continuum_select,
     .draw = continuum_draw,
     .keep = continuum_keep,
+    .discs = continuum_discs,
 };

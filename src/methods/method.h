@@ -31,6 +31,8 @@ struct wd_method {
     void (*draw)(void *state, const struct wd_tree_draw *draw);
     /* Outside of any rendering, with the camera's depth complete: what it saw, for the next frame. */
     void (*keep)(void *state, const struct wd_tree_draw *draw);
+    /* With no frame in flight: discs that the newest view of the camera was drawn with. */
+    uint64_t (*discs)(void *state, struct wd_gpu *gpu);
     /* Of methods that blend, and only when pixels show light: outside of any rendering, with the
      * camera's G-buffer complete: draws lit trees into targets->overlay, all of it. */
     void (*blend)(void *state, const struct wd_tree_draw *draw,

@@ -32,6 +32,7 @@ struct wd_tree_draw {
     struct wd_draw_stats *stats;    /* added to */
     uint32_t view_mode;             /* WD_MODE_* */
     uint32_t page_budget;           /* as in struct wd_frame_params */
+    float max_error_px;             /* likewise */
 };
 
 /* Whether trees that stand alone share draws. */

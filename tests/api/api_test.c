@@ -190,6 +190,12 @@ static void impossible_pictures_are_refused(void **state)
     params = good;
     params.camera.position_m[2] = INFINITY;
     assert_refused(suite, &params, "camera");
+    params = suite_params(suite->forest, NULL);
+    const double errors[] = {0.2, 33.0, -1.0, NAN};
+    for (int i = 0; i < 4; i++) {
+        params.max_error_px = errors[i];
+        assert_refused(suite, &params, "0.25 to 32 are possible");
+    }
 }
 
 static void without_a_forest_nothing_is_drawn(void **state)

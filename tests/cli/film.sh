@@ -22,6 +22,11 @@ complete_png() { # a PNG ends with an IEND chunk
     expect 0 '8 frames' render "$tiny" -o "$out/speed.mp4" --path fly --fps 2 $size
     expect 0 '3 frames' render "$tiny" -o "$out/f-%05d.png" --path fly --frames 3 $size
     expect 0 '2 frames' render "$tiny" -o "$out/e-%d.exr" --path fly --frames 2 $size
+    expect 0 'budget 1 ms: 6 frames took longer; error at the end 1[0-9]' render "$tiny" \
+        -o "$out/held.mp4" --method continuum --budget-ms 1 --frames 6 $size
+    expect 2 'exclude each other' render "$tiny" -o "$out/p.mp4" --budget-ms 9 --max-error 2 $size
+    expect 1 'budget-ms is for the method continuum' render "$tiny" -o "$out/p.mp4" --method octree \
+        --budget-ms 9 $size
     expect 1 'even' render "$tiny" -o "$out/odd.mp4" --frames 2 --size 63x47 --gpu software
     expect 1 'none' render "$tiny" -o "$out/none/f.mp4" --frames 2 $size
     expect 1 'nowhere' render "$tiny" -o "$out/p.mp4" --path nowhere $size

@@ -22,10 +22,13 @@ out=$scratch/out
     expect 0 'whole frame' render "$tiny" -o "$out/times.png" $soft --times
     expect 0 '33x47, 3 samples' render "$tiny" -o "$out/small.png" $soft --size 33x47 --samples 3
     expect 0 '1x1' render "$tiny" -o "$out/pixel.png" $soft --size 1x1
+    expect 0 . render "$tiny" -o "$out/own.png" $soft --method continuum
+    expect 0 . render "$tiny" -o "$out/coarse.png" $soft --method continuum --max-error 8
     expect 0 'layers.exr: ' render "$tiny" -o "$out/layers.exr" $soft
 }
 check 'threads change no picture' cmp "$out/a.png" "$out/threads.png"
 check 'validation changes no picture' cmp "$out/a.png" "$out/validate.png"
+check 'an error bound changes the picture' sh -c "! cmp -s '$out/own.png' '$out/coarse.png'"
 for other in seed lod west path; do
     check "$other changes the picture" sh -c "! cmp -s '$out/a.png' '$out/$other.png'"
 done
@@ -52,6 +55,11 @@ cp "$out/a.png" "$out/keep.png"
     expect 1 'there are: south, west' render "$tiny" -o "$out/keep.png" $soft --camera nowhere
     expect 1 'there are: fly' render "$tiny" -o "$out/keep.png" $soft --path nowhere
     expect 1 'no-such-gpu' render "$tiny" -o "$out/keep.png" --gpu no-such-gpu
+    expect 1 'max-error is for the method continuum, not for octree' render "$tiny" \
+        -o "$out/keep.png" $soft --method octree --max-error 2
+    expect 2 'must be a number from 0.25 to 32' render "$tiny" -o "$out/keep.png" $soft --max-error 0
+    expect 2 'must be a number from 0.25 to 32' render "$tiny" -o "$out/keep.png" $soft --max-error nan
+    expect 2 'a still must not depend on a clock' render "$tiny" -o "$out/keep.png" $soft --budget-ms 40
     expect 1 'does not exist' render "$tiny" -o "$out/none/a.png" $soft
     expect 2 'must end in' render "$tiny" -o "$out" $soft
     mkdir "$out/dir.png"

@@ -146,6 +146,42 @@ static void large_trees_have_the_ids_of_octree(void **state)
     frame_test_finish(&test);
 }
 
+/* Of a picture that knows what the same one before hid. */
+static uint64_t discs_of(struct frame_test *test, uint32_t camera, float max_error_px)
+{
+    test->max_error_px = max_error_px;
+    for (int i = 0; i < 2; i++) {
+        struct frame_picture picture;
+        frame_test_draw(test, "continuum", camera, &picture);
+        frame_picture_finish(&picture);
+    }
+    return wd_method_continuum.discs(test->frame.method_state, &test->gpu);
+}
+
+/* The coarser a picture may be, the fewer discs it has; as the option "density" has it without a
+ * bound. */
+static void discs_fall_as_the_error_rises(void **state)
+{
+    static const float errors[] = {0.25f, 0.5f, 1.0f, 1.41421356f, 2.0f, 4.0f, 8.0f, 16.0f, 32.0f};
+    (void)state;
+    struct frame_test test;
+    frame_test_init(&test, root, 0);
+    for (uint32_t camera = OVER; camera < CAMERAS; camera++) {
+        uint64_t own = discs_of(&test, camera, 0.0f), before = UINT64_MAX, finest = 0;
+        for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) {
+            uint64_t discs = discs_of(&test, camera, errors[i]);
+            print_message("%.2f px: %llu discs\n", (double)errors[i], (unsigned long long)discs);
+            assert_true(discs > 0 && discs < before);
+            finest = finest ? finest : discs;
+            if (errors[i] == 1.41421356f)
+                assert_true(fabs((double)discs / (double)own - 1.0) < 0.02);
+            before = discs;
+        }
+        assert_true(before < finest / 20);
+    }
+    frame_test_finish(&test);
+}
+
 static void *read_cascade(struct frame_test *test, uint32_t layer)
 {
     struct wd_image *shadow = &test->frame.targets.shadow;
@@ -197,6 +233,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(two_passes_give_the_picture_of_one),
         cmocka_unit_test(nothing_seen_is_left_out),
         cmocka_unit_test(kept_cascades_are_as_if_drawn),
+        cmocka_unit_test(discs_fall_as_the_error_rises),
         cmocka_unit_test(large_trees_have_the_ids_of_octree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -76,6 +76,7 @@ void frame_test_draw(struct frame_test *test, const char *method, uint32_t camer
         .height = 240,
         .samples = 1,
         .page_budget = test->page_budget,
+        .max_error_px = test->max_error_px,
         .time_s = test->time_s,
         .previous_time_s = test->time_s,
     };

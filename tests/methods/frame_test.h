@@ -12,6 +12,7 @@ struct frame_test {
     struct wd_forest_device forest;
     struct wd_frame frame;
     uint32_t page_budget; /* as in struct wd_frame_params */
+    float max_error_px;   /* likewise */
     double time_s; /* of the wind, in the frames to come */
 };
 
