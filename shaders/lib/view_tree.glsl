@@ -3,7 +3,7 @@
 #include "shared/frame.h"
 #include "shared/view_draw.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 5) readonly buffer ViewModels { wd_view_model view_models[]; };
 layout(set = 0, binding = 6) uniform sampler2DArray view_albedo;
 layout(set = 0, binding = 7) uniform sampler2DArray view_normal;

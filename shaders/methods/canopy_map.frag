@@ -4,7 +4,7 @@
 #include "shared/canopy_map.h"
 #include "shared/forest.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Canopy { wd_canopy_pixel canopy[]; };
 
 #include "lib/tree.glsl"

@@ -4,7 +4,7 @@
 #include "shared/forest.h"
 #include "shared/card_soup.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1) uniform sampler2DArray card_albedo;
 layout(set = 0, binding = 2) uniform sampler2DArray card_normal;
 layout(scalar, set = 0, binding = 3) readonly buffer Cards { wd_card_flat cards[]; };

@@ -3,7 +3,7 @@
 #include "shared/frame.h"
 #include "shared/forest.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1) uniform sampler2DArray card_albedo;
 
 #include "lib/card.glsl"

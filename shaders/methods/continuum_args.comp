@@ -6,7 +6,7 @@ layout(local_size_x = 1) in;
 
 layout(constant_id = 0) const uint THREADS = 64u; /* of a splat's group */
 
-layout(scalar, set = 0, binding = 0) readonly buffer View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 2) writeonly buffer Groups { wd_splat_groups groups; };
 

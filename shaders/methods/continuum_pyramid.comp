@@ -6,7 +6,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint LEVEL = 0u;
 
-layout(scalar, set = 0, binding = 0) readonly buffer View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) readonly buffer Pixels { uvec2 pixels[]; };
 layout(set = 0, binding = 2) uniform sampler2D terrain_depth;
 layout(scalar, set = 0, binding = 3) buffer Pyramid { float pyramid[]; };

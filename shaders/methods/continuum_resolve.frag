@@ -6,7 +6,7 @@
 
 layout(constant_id = 0) const uint WOOD = 0u; /* splats and wood apart: see main */
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Pixels { uvec2 pixels[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Items { wd_splat_item items[]; };

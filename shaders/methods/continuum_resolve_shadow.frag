@@ -2,7 +2,7 @@
 /* Depth of a cascade from the visibility buffer. */
 #include "shared/continuum.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) readonly buffer Pixels { uint depth_bits[]; };
 
 void main()

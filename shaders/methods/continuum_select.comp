@@ -9,8 +9,8 @@
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* as view.orthographic */
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 1) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 2) readonly buffer Clusters { wd_cluster clusters[]; };
 layout(scalar, set = 0, binding = 3) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 4) readonly buffer Visible { uint visible[]; };

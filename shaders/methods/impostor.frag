@@ -3,7 +3,7 @@
 #include "shared/frame.h"
 #include "shared/hash.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in vec4 in_color;

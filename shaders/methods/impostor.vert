@@ -6,7 +6,7 @@
 #include "shared/impostor.h"
 #include "shared/hash.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Impostors { wd_impostor impostors[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer List { uint list[]; };
 layout(scalar, push_constant) uniform Push { wd_impostor_push push; };

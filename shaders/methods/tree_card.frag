@@ -2,7 +2,7 @@
 #include "shared/frame.h"
 #include "shared/forest.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
 layout(set = 0, binding = 5) uniform sampler2DArray card_normal;
 layout(set = 0, binding = 7) uniform sampler2DArray card_leaf;

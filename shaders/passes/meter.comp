@@ -5,7 +5,7 @@
 
 layout(local_size_x = 256) in;
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D radiance_image;
 layout(scalar, set = 0, binding = 2) buffer Meter { wd_meter meter; };
 

@@ -5,7 +5,7 @@
 
 layout(local_size_x = 1) in;
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) buffer Meter { wd_meter meter; };
 
 #define WD_BIN_AT(index) (meter.bins[index])

@@ -2,8 +2,8 @@
 #include "shared/frame.h"
 #include "shared/terrain_patch.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer View { wd_terrain_view view; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 1) uniform View { wd_terrain_view view; };
 layout(constant_id = 0) const uint HAS_HOLES = 1u;
 layout(constant_id = 1) const uint IS_NEAR = 1u;
 

@@ -6,7 +6,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 2, rgba8) uniform writeonly image2D display_image;
 layout(scalar, set = 0, binding = 3) readonly buffer Meter { wd_meter meter; };

@@ -41,20 +41,22 @@ enum {
 };
 static const VkDescriptorType IMAGE = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 static const VkDescriptorType BUFFER = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+static const VkDescriptorType UNIFORM = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 
 /* --- pipelines --------------------------------------------------------------------------- */
 
+/* `first`: type of the first binding; the others are storage buffers. */
 static bool init_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu, struct wd_spirv shader,
-                         uint32_t bindings, uint32_t shadow)
+                         VkDescriptorType first, uint32_t bindings, uint32_t shadow)
 {
     struct wd_compute_params params = {
         .shader = shader,
-        .bindings = {.count = bindings},
+        .bindings = {bindings, {first}},
         .push_size = sizeof(struct wd_card_soup_push),
         .constants = {1, &shadow},
     };
-    for (uint32_t i = 0; i < bindings; i++)
-        params.bindings.types[i] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    for (uint32_t i = 1; i < bindings; i++)
+        params.bindings.types[i] = BUFFER;
     return wd_pipeline_init_compute(pipeline, gpu, &params);
 }
 
@@ -66,7 +68,7 @@ static bool init_draw(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
         .vertices = {sizeof(struct wd_card_vertex), 2,
                      {{VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(struct wd_card_vertex, clip)},
                       {VK_FORMAT_R32G32B32_UINT, offsetof(struct wd_card_vertex, layer_lod)}}},
-        .bindings = {2, {BUFFER, IMAGE}},
+        .bindings = {2, {UNIFORM, IMAGE}},
         .color_count = 1,
         .color_formats = {WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
@@ -85,7 +87,7 @@ static bool init_resolve(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
     const struct wd_graphics_params params = {
         .vertex = SPIRV(whole_target_vert),
         .fragment = SPIRV(card_resolve_frag),
-        .bindings = {7, {BUFFER, IMAGE, IMAGE, BUFFER, BUFFER, IMAGE, IMAGE}},
+        .bindings = {7, {UNIFORM, IMAGE, IMAGE, BUFFER, BUFFER, IMAGE, IMAGE}},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
@@ -102,14 +104,14 @@ bool wd_card_soup_init(struct wd_card_soup *soup, struct wd_gpu *gpu)
         "card draw", sizeof(struct wd_draw_indexed),
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, WD_MEMORY_DEVICE};
     *soup = (struct wd_card_soup){0};
-    bool ok = init_compute(&soup->scan, gpu, (struct wd_spirv)SPIRV(card_scan_comp), 2, 0) &&
+    const struct wd_spirv scan = SPIRV(card_scan_comp), count = SPIRV(card_count_comp),
+                          expand = SPIRV(card_expand_comp);
+    bool ok = init_compute(&soup->scan, gpu, scan, BUFFER, 2, 0) &&
               init_resolve(&soup->resolve, gpu) &&
               wd_buffer_init(&soup->command, gpu, &command);
     for (uint32_t pass = WD_PASS_CAMERA; ok && pass <= WD_PASS_SHADOW; pass++)
-        ok = init_compute(&soup->count[pass], gpu, (struct wd_spirv)SPIRV(card_count_comp), 7,
-                          pass == WD_PASS_SHADOW) &&
-             init_compute(&soup->expand[pass], gpu, (struct wd_spirv)SPIRV(card_expand_comp), 9,
-                          pass == WD_PASS_SHADOW) &&
+        ok = init_compute(&soup->count[pass], gpu, count, UNIFORM, 7, pass == WD_PASS_SHADOW) &&
+             init_compute(&soup->expand[pass], gpu, expand, UNIFORM, 9, pass == WD_PASS_SHADOW) &&
              init_draw(&soup->draw[pass], gpu, (enum wd_tree_pass)pass);
     if (!ok)
         wd_card_soup_finish(soup, gpu);

@@ -40,6 +40,7 @@ static const uint32_t resolve_shadow_frag[] =
     }
 
 #define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+#define UNIFORM VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
 
 static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
@@ -56,7 +57,7 @@ static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
                                       shape == WD_SHAPE_SMALL};
         const struct wd_compute_params params = {
             .shader = shaders[shape][once],
-            .bindings = {6, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
+            .bindings = {6, {UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
             .constants = {4, constants},
         };
         bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
@@ -71,7 +72,7 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     struct wd_graphics_params params = {
         .vertex = SPIRV(resolve_vert),
         .fragment = SPIRV(resolve_frag),
-        .bindings = {11, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+        .bindings = {11, {UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
                           BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .push_size = sizeof(struct wd_tree_push),
         .color_count = 3,
@@ -98,7 +99,7 @@ static bool init_pyramid(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         const uint32_t constants[] = {i ? i + 1 : 0};
         const struct wd_compute_params params = {
             .shader = SPIRV(pyramid_comp),
-            .bindings = {4, {BUFFER, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
+            .bindings = {4, {UNIFORM, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
             .constants = {1, constants},
         };
         if (!wd_pipeline_init_compute(&p->pyramid[i], gpu, &params))
@@ -113,7 +114,7 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW};
         const struct wd_compute_params choose = {
             .shader = SPIRV(select_comp),
-            .bindings = {13, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+            .bindings = {13, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
                               BUFFER, BUFFER, BUFFER, BUFFER,
                               VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
             .constants = {2, constants}};
@@ -128,9 +129,9 @@ bool wd_continuum_pipelines_init(struct wd_continuum_pipelines *p, struct wd_gpu
     const uint32_t threads = gpu->software ? 8 : 64;
     const struct wd_compute_params cull = {
         .shader = SPIRV(cull_comp),
-        .bindings = {7, {BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
+        .bindings = {7, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
     const struct wd_compute_params args = {.shader = SPIRV(args_comp),
-                                           .bindings = {3, {BUFFER, BUFFER, BUFFER}},
+                                           .bindings = {3, {UNIFORM, BUFFER, BUFFER}},
                                            .constants = {1, &threads}};
     return wd_pipeline_init_compute(&p->cull, gpu, &cull) &&
            wd_pipeline_init_compute(&p->args, gpu, &args) && init_choose(p, gpu) &&

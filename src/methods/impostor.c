@@ -51,10 +51,11 @@ static bool impostor_init(void *state, struct wd_gpu *gpu)
 {
     struct impostors *impostors = state;
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const struct wd_graphics_params params = {
         .vertex = SPIRV(impostor_vert),
         .fragment = SPIRV(impostor_frag),
-        .bindings = {3, {buffer, buffer, buffer}},
+        .bindings = {3, {uniform, buffer, buffer}},
         .push_size = sizeof(struct wd_impostor_push),
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},

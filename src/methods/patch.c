@@ -63,11 +63,12 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
                           struct wd_graphics_params *params)
 {
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     params->vertex = (struct wd_spirv)SPIRV(patch_card_vert);
     params->bindings = (struct wd_bindings){
         BINDINGS,
-        {buffer, buffer, buffer, buffer, image, image, buffer, image, image, buffer, buffer,
+        {uniform, buffer, buffer, buffer, image, image, buffer, image, image, buffer, buffer,
          image}};
     params->push_size = sizeof(struct wd_patch_push);
     params->depth_format = WD_DEPTH_FORMAT;

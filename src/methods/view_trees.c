@@ -23,6 +23,7 @@ enum { BINDINGS = 9, MAX_VIEWS = 1023, GROUP_TREES = 64 };
 bool wd_view_trees_init(struct wd_view_trees *trees, struct wd_gpu *gpu, enum wd_view_shape shape)
 {
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const uint32_t constants[] = {shape};
     const struct wd_spirv fragments[] = {SPIRV(view_tree_frag), SPIRV(zfield_tree_frag)};
@@ -30,7 +31,7 @@ bool wd_view_trees_init(struct wd_view_trees *trees, struct wd_gpu *gpu, enum wd
         .vertex = SPIRV(view_tree_vert),
         .fragment = fragments[shape],
         .bindings = {BINDINGS,
-                     {buffer, buffer, buffer, buffer, buffer, buffer, image, image, image}},
+                     {uniform, buffer, buffer, buffer, buffer, buffer, image, image, image}},
         .push_size = sizeof(struct wd_view_push),
         .constants = {1, constants},
         .color_count = 3,

@@ -26,13 +26,14 @@ static const uint32_t light_view_comp[] =
 
 static const VkDescriptorType IMAGE = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 static const VkDescriptorType BUFFER = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+static const VkDescriptorType UNIFORM = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 
 static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     struct wd_compute_params params = {
         .shader = SPIRV(light_view_comp),
         .bindings = {10,
-                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER,
+                     {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
@@ -52,7 +53,7 @@ static bool init_sorting(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     const struct wd_compute_params tiles = {
         .shader = SPIRV(light_tiles_comp),
-        .bindings = {4, {BUFFER, IMAGE, IMAGE, BUFFER}},
+        .bindings = {4, {UNIFORM, IMAGE, IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
     const struct wd_compute_params args = {.shader = SPIRV(light_args_comp),
@@ -65,7 +66,7 @@ static bool init_velocity(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     const struct wd_compute_params params = {
         .shader = SPIRV(light_velocity_comp),
-        .bindings = {8, {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER}},
+        .bindings = {8, {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
     return wd_pipeline_init_compute(pipeline, gpu, &params);

@@ -21,13 +21,14 @@ enum { METERED_PER_GROUP = 16 * 256 }; /* as in meter.comp */
 static bool init_meter(struct wd_post_pass *pass, struct wd_gpu *gpu)
 {
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const struct wd_compute_params meter = {
         .shader = SPIRV(meter_comp),
-        .bindings = {3, {buffer, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, buffer}},
+        .bindings = {3, {uniform, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, buffer}},
     };
     const struct wd_compute_params exposure = {
         .shader = SPIRV(meter_exposure_comp),
-        .bindings = {2, {buffer, buffer}},
+        .bindings = {2, {uniform, buffer}},
     };
     const struct wd_buffer_params histogram = {
         .name = "luminance histogram",
@@ -44,7 +45,7 @@ static bool init_tonemap(struct wd_post_pass *pass, struct wd_gpu *gpu)
     const struct wd_compute_params params = {
         .shader = SPIRV(tonemap_comp),
         .bindings = {5,
-                     {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                     {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .push_size = sizeof(struct wd_post_push),
