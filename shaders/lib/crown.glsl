@@ -17,6 +17,19 @@ wd_crown crown_of(wd_tree tree, wd_model model)
     return crown;
 }
 
+/* Grasses close over the ground: 1 where a plant is one of such a layer, which has no sides that light
+ * could come in by. */
+float crown_is_sward(wd_crown crown)
+{
+    return 1.0 - smoothstep(0.22, 0.35, crown.radii_m.z);
+}
+
+/* Metres of leaves over a place in a sward. */
+float sward_depth_m(wd_crown crown, vec3 rel)
+{
+    return clamp(crown.center_rel.z + crown.radii_m.z - rel.z, 0.0, 2.0 * crown.radii_m.z);
+}
+
 /* Metres of crown between a place and the sun; leaves without the ellipsoid are taken to stand on
  * it, the stem below where it is. */
 float crown_path_m(wd_crown crown, vec3 rel)
@@ -26,7 +39,9 @@ float crown_path_m(wd_crown crown, vec3 rel)
     vec3 s = frame.sun_direction / crown.radii_m;
     float ss = dot(s, s), qs = dot(q, s);
     float root = sqrt(max(qs * qs - ss * (dot(q, q) - 1.0), 0.0));
-    return (max(root - qs, 0.0) - max(-root - qs, 0.0)) / ss;
+    float path_m = (max(root - qs, 0.0) - max(-root - qs, 0.0)) / ss;
+    float level_m = sward_depth_m(crown, rel) / max(frame.sun_direction.z, 0.05);
+    return mix(path_m, level_m, crown_is_sward(crown));
 }
 
 /* Of the light, a metre of crown takes this share: half the leaf area a ray meets stands across it
@@ -41,6 +56,15 @@ float crown_per_m(wd_crown crown)
 float crown_through(wd_crown crown, float path_m)
 {
     return exp(-crown_per_m(crown) * path_m);
+}
+
+/* The same for a sward, whose leaves the eye meets by a, the sun by b a metre of depth: of those seen
+ * a / (a + b) are lit. Where that share of the sun is left: */
+float sward_card_height_m(wd_crown crown, vec3 direction)
+{
+    float sun = max(frame.sun_direction.z, 0.05);
+    float depth_m = sun / crown_per_m(crown) * log(1.0 + abs(direction.z) / (1.5 * sun));
+    return crown.center_rel.z + crown.radii_m.z - depth_m;
 }
 
 /* A card's picture is flat: its places are moved along the view ray to where the sun is as strong
@@ -58,7 +82,9 @@ vec3 crown_card_place(wd_crown crown, vec3 direction)
     float way_m = max(nearest_m + half_m - from_m, 0.0), x = way_m * crown_per_m(crown);
     float left = 0.6 * (1.0 - exp(-2.5 * x)) / (1.0 - exp(-1.5 * max(x, 1e-3)));
     float share = x < 0.02 ? 0.5 : -log(left) / x;
-    return direction * (from_m + share * way_m);
+    vec3 within = direction * (from_m + share * way_m);
+    within.z = mix(within.z, sward_card_height_m(crown, direction), crown_is_sward(crown));
+    return within;
 }
 
 /* The crown's outward direction at a place: the smooth normal of its ellipsoid. */

@@ -31,14 +31,17 @@ wd_shelter ground_shelter(wd_pixel pixel)
 
 /* On a tree: from what the ground gets, at the foot of crowns, to what the tree's own leaves let
  * through, at its top, for trees stand among their like; by how much of the leaves is above. A tree by
- * itself has its own leaves only. */
+ * itself has its own leaves only. Herbs get what the ground gets, less what their own leaves take. */
 wd_shelter tree_shelter(wd_pixel pixel, wd_crown crown)
 {
     wd_shelter shelter = ground_shelter(pixel);
     float top = crown.center_rel.z + crown.radii_m.z, base = crown.center_rel.z - crown.radii_m.z;
     float above = 1.0 - smoothstep(base, top, pixel.rel.z);
+    float over = crown_is_sward(crown) * crown_per_m(crown) * sward_depth_m(crown, pixel.rel);
+    float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
     vec4 own = vec4(max(pixel.openness, 1e-2));
-    shelter.through = min(exp2(mix(log2(own), log2(shelter.through), above)), own);
+    vec4 stand = min(exp2(mix(log2(own), log2(shelter.through), above)), own);
+    shelter.through = mix(stand, shelter.through * own * exp(-0.4 * over), herb);
     return shelter;
 }
 
@@ -198,14 +201,15 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, uint cascade
     float mapped = cascade == 0u && !card ? 0.75 : 0.0;
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
-    shade_by_crown(place, crown, pixel.openness, mapped, cascade);
+    shade_by_crown(place, crown, pixel.openness, mapped * (1.0 - 0.5 * crown_is_sward(crown)),
+                   cascade);
     vec3 outward = crown_normal(crown, place.rel);
     float cosine = dot(eye, frame.sun_direction);
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
     place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.normal, eye, plain), near);
     place.sides *= mix(sunlit_seen(eye), 1.0, mapped);
     place.transmittance = model.transmittance;
-    place.waxed = 0.5 + 0.5 * eye.z;
+    place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, crown_is_sward(crown)); /* blades bend over */
     place.gloss = (leaf_gloss(pixel, model.roughness, near) + WAX * 0.39) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     return place;
