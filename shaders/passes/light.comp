@@ -23,10 +23,12 @@ layout(set = 0, binding = 9, rgba32f) uniform image2D radiance_image;
 layout(scalar, set = 0, binding = 10) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
 layout(set = 0, binding = 11) uniform sampler2D overlay;
 layout(set = 0, binding = 12) uniform sampler2D canopy_light;
+layout(set = 0, binding = 13) uniform sampler2D sky_map;
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
 #define CANOPY_LIGHT_AT(at) textureLod(canopy_light, at, 0.0)
+#define SKY_MAP sky_map
 
 #include "lib/noise.glsl"
 #include "lib/sky.glsl"

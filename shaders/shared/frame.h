@@ -56,6 +56,8 @@ struct wd_frame_uniforms {
     float fog_per_m;                 /* extinction at full density */
     WD_VEC3(sky_cloud);              /* radiance of clouds at the zenith, as mixed into the sky */
     float snow;                      /* share of upper sides under snow, 0..1 */
+    float sky_turn;                  /* of the sky's map, clockwise, in whole turns */
+    uint32_t sky_is_map;             /* the sky is a map (shared/sky_map.h), not computed */
     float fog_height_m;
     float fog_base_m;                /* above the world's zero */
     float wind_speed_mps, wind_gust;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "api/sky_file.h"
 #include "base/memory.h"
 #include "tree/import.h"
 
@@ -52,7 +53,8 @@ enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_fores
         !wd_scene_load_with(&forest->scene, params->scene_path, &scene, &forest->log) ||
         !wd_species_import_models(forest->scene.species, forest->scene.species_file_count,
                                   &progress, &forest->log) ||
-        !wd_world_init(&forest->world, &forest->scene, &world)) {
+        !wd_world_init(&forest->world, &forest->scene, &world) ||
+        !wd_sky_file_load(&forest->world.sky, &forest->scene, &forest->log)) {
         wd_forest_destroy(&forest);
         return watch.stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_INPUT;
     }

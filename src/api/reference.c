@@ -134,6 +134,9 @@ static uint64_t picture_key(const struct work *work)
     uint64_t key = wd_world_hash(&work->reference->forest->world);
     key = XXH64(&work->frame, sizeof work->frame, key);
     key = XXH64(numbers, sizeof numbers, key);
+    const struct wd_sky_map *sky = &work->reference->forest->world.sky;
+    key = XXH64(sky->rgb ? (const void *)sky->rgb : numbers,
+                (size_t)sky->width * sky->height * 3 * sizeof *sky->rgb, key);
     for (uint32_t i = 0; i < models->count; i++) {
         const struct wd_tree_mesh *mesh = &models->models[i].grown.full;
         key = XXH64(mesh->vertices, mesh->vertex_count * sizeof *mesh->vertices, key);
@@ -161,13 +164,14 @@ static bool prepare(struct work *work)
     work->frame.width = params->width;
     work->frame.height = params->height;
     wd_surroundings_set_camera(&work->frame, params->camera.position_m);
-    wd_surroundings_fill(&work->frame, &forest->scene, &forest->world.terrain);
+    wd_surroundings_fill(&work->frame, &forest->scene, &forest->world);
     work->job.view = wd_trace_view_of(&params->camera, params->width, params->height);
     work->job.view.lens_m = (float)wd_scene_lens_radius_m(&forest->scene, params->camera.fov_rad);
     work->job.view.focus_m = (float)forest->scene.lens.focus_m;
     work->tracer = (struct wd_tracer){
         .scene = &work->scene,
         .sky = wd_sky_toward,
+        .sky_map = forest->world.sky.width ? &forest->world.sky : NULL,
         .bounces = params->bounces ? params->bounces : DEFAULT_BOUNCES,
         .pixel_rad = wd_trace_pixel_rad(&work->job.view),
         .is_sea = wd_water_is_sea(&forest->world.terrain, work->frame.water_level_m),

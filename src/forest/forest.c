@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "forest/canopy_light.h"
 #include "forest/looks.h"
+#include "forest/sky.h"
 #include "forest/model_bakes.h"
 #include "tree/variant.h"
 
@@ -263,7 +264,8 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
               wd_sampler_init(&forest->look_sampler, gpu, WD_SAMPLER_TRILINEAR_REPEAT) &&
               wd_sampler_init(&forest->card_sampler, gpu, WD_SAMPLER_MAGNIFY_CLAMP) &&
               wd_sampler_init(&forest->point_sampler, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
-              (forest->model_count == 0 || prepare(&work, gpu)) && make_canopy_light(&work, gpu);
+              (forest->model_count == 0 || prepare(&work, gpu)) && make_canopy_light(&work, gpu) &&
+              wd_sky_upload(&forest->sky, gpu, &params->world->sky);
     for (uint32_t i = 0; i < forest->model_count; i++)
         wd_tree_model_finish(&work.grown[i]);
     wd_transfer_drop_staging(gpu);
@@ -281,7 +283,7 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
                                    &forest->card_indices};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
                                  &forest->card_normal, &forest->card_leaf,
-                                 &forest->canopy_light};
+                                 &forest->canopy_light, &forest->sky};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
@@ -307,7 +309,7 @@ void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
     struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->fades};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
                                  &forest->card_normal, &forest->card_leaf,
-                                 &forest->canopy_light};
+                                 &forest->canopy_light, &forest->sky};
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
         if (tables[i]->buffer)
             wd_cmd_use_buffer(cmd, tables[i], WD_USE_SHADER_READ);

@@ -25,6 +25,7 @@ struct wd_forest_device {
     struct wd_image card_albedo, card_normal; /* WD_CARDS layers a model */
     struct wd_image card_leaf;                /* share of leaves; mips as those of normals */
     struct wd_image canopy_light;   /* see forest/canopy_light.h */
+    struct wd_image sky;            /* the world's map of the sky, or a black texel */
     float canopy_light_scale[2];    /* its coordinates = local metres * scale */
     float leaf_scatter[3];          /* root of what leaves absorb: wd_frame_uniforms */
     VkSampler look_sampler, card_sampler, point_sampler; /* point: normals and shadows of cards */

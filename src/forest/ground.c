@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/half.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "world/cover.h"
@@ -103,19 +104,6 @@ static void build_pyramid(struct wd_ground *ground)
 
 /* --- images and buffers --------------------------------------------------------------------- */
 
-/* Half precision, rounded to nearest; |x| from 2^-14 to 65504, smaller ones become 0. */
-static uint16_t half_of(float x)
-{
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    uint32_t sign = bits >> 16 & 0x8000u, magnitude = bits & 0x7fffffffu;
-    if (magnitude < 0x38800000u)
-        return (uint16_t)sign;
-    if (magnitude > 0x477fe000u)
-        magnitude = 0x477fe000u;
-    return (uint16_t)(sign | ((magnitude - 0x38000000u + 0x0fffu + (magnitude >> 13 & 1)) >> 13));
-}
-
 /* Rise over run at a sample by differences over `step` samples to either side. */
 static void slope_at(const struct wd_terrain *terrain, uint32_t i, uint32_t j, uint32_t step,
                      float slope[2])
@@ -162,7 +150,7 @@ static bool upload_mips(struct wd_image *image, struct wd_gpu *gpu, float *value
         size_t count = (size_t)width * height * channels;
         for (size_t i = 0; i < count; i++) {
             if (halves)
-                memcpy(bytes + 2 * i, &(uint16_t){half_of(values[i])}, 2);
+                memcpy(bytes + 2 * i, &(uint16_t){wd_half_of(values[i])}, 2);
             else
                 bytes[i] = (uint8_t)(255.0f * values[i] + 0.5f);
         }

@@ -122,7 +122,7 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
     };
     fill_camera(uniforms, view, params);
     fill_previous(uniforms, params);
-    wd_surroundings_fill(uniforms, scene, &forest->world->terrain);
+    wd_surroundings_fill(uniforms, scene, forest->world);
     memcpy(uniforms->leaf_scatter, forest->leaf_scatter, sizeof uniforms->leaf_scatter);
     struct wd_cascades_params sun = {
         .view = view,

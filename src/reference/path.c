@@ -16,6 +16,7 @@ struct path {
     uint32_t left_tree, left_triangle; /* what the ray has just left */
     bool mirrored, under_water;
     uint32_t bounce;
+    float per_sr;                      /* density with which its direction was chosen; 0: it had to be */
     float seen_m;                      /* how far off the eye sees something; infinite: the sky */
 };
 
@@ -38,7 +39,7 @@ static struct wd_trace_hit nearest(struct path *path)
     return hit;
 }
 
-static bool sun_reaches(struct path *path, const struct wd_trace_ray *ray)
+static bool sky_reaches(struct path *path, const struct wd_trace_ray *ray)
 {
     path->counts->rays++;
     return !wd_trace_blocked(path->tracer->scene, ray);
@@ -73,8 +74,42 @@ static void add_sun(struct path *path, const struct wd_surface *surface)
     if (scattered.x + scattered.y + scattered.z <= 0)
         return;
     struct wd_trace_ray ray = wd_surface_leave(surface, toward);
-    if (sun_reaches(path, &ray))
+    if (sky_reaches(path, &ray))
         add(path, wd_v3_scale(wd_v3_mul(scattered, irradiance), share));
+}
+
+/* --- a map of the sky ------------------------------------------------------------------------ */
+
+/* Light from a direction chosen by the map's brightness. The scattered rays that escape bring the
+ * same light; each counts by its share of both densities (the balance heuristic: Veach and Guibas
+ * 1995). */
+static void add_map(struct path *path, const struct wd_surface *surface)
+{
+    const struct wd_sky_map *map = path->tracer->sky_map;
+    float part[2], within[2];
+    wd_sampler_next(&path->sampler, part);
+    wd_sampler_next(&path->sampler, within);
+    struct wd_vec3 toward = wd_sky_map_sample(map, part, within);
+    struct wd_vec3 eye = wd_v3_scale(path->ray.direction, -1);
+    struct wd_scatter_density density = wd_scatter_density_of(surface, eye, toward);
+    struct wd_vec3 scattered = density.scattered;
+    if (scattered.x + scattered.y + scattered.z <= 0)
+        return;
+    struct wd_trace_ray ray = wd_surface_leave(surface, toward);
+    if (!sky_reaches(path, &ray))
+        return;
+    float chance = wd_sky_map_density(map, toward) + density.per_sr;
+    add(path, wd_v3_scale(wd_v3_mul(scattered, wd_sky_map_toward(map, toward)), 1 / chance));
+}
+
+static void escape_to_map(struct path *path)
+{
+    const struct wd_sky_map *map = path->tracer->sky_map;
+    struct wd_vec3 direction = path->ray.direction;
+    float share = path->per_sr > 0
+                      ? path->per_sr / (path->per_sr + wd_sky_map_density(map, direction))
+                      : 1;
+    add(path, wd_v3_scale(wd_sky_map_toward(map, direction), share));
 }
 
 /* --- water ----------------------------------------------------------------------------------- */
@@ -124,7 +159,7 @@ static void meet_water(struct path *path, float at_m, float hit_m)
     wd_sampler_next(&path->sampler, choice);
     struct wd_vec3 above = wd_v3_add(at, WD_V3(0, 0, 2e-3f));
     struct wd_trace_ray to_sun = {above, toward_sun(path, &share), INFINITY};
-    float lit = frame->sun_irradiance[1] > 0 && sun_reaches(path, &to_sun) ? share : 0;
+    float lit = frame->sun_irradiance[1] > 0 && sky_reaches(path, &to_sun) ? share : 0;
     add(path, wd_v3_scale(wd_water_glint(frame, waves, direction), lit));
     if (choice[0] >= wd_water_fresnel(waves, direction)) {
         look_under(path, at, fminf(hit_m - at_m, 1e4f), lit);
@@ -134,6 +169,7 @@ static void meet_water(struct path *path, float at_m, float hit_m)
     struct wd_vec3 mirrored = wd_v3_mad(direction, waves.normal, -2 * facing);
     mirrored.z = fmaxf(mirrored.z, 0.02f);
     path->ray = (struct wd_trace_ray){above, wd_v3_unit(mirrored), INFINITY};
+    path->per_sr = 0;
     path->mirrored = true;
 }
 
@@ -143,7 +179,10 @@ static void meet_water(struct path *path, float at_m, float hit_m)
 static void escape(struct path *path)
 {
     const struct wd_frame_uniforms *frame = frame_of(path);
-    add(path, path->tracer->sky(frame, path->ray.direction));
+    if (path->tracer->sky_map)
+        escape_to_map(path);
+    else
+        add(path, path->tracer->sky(frame, path->ray.direction));
     if (path->bounce == 0 && !path->mirrored && !path->under_water)
         add(path, wd_sun_disc_toward(frame, path->ray.direction));
 }
@@ -170,9 +209,14 @@ static bool scatter(struct path *path, const struct wd_trace_hit *hit)
                   path->bounce == 0 ? path->tracer->pixel_rad : 0);
     add_sun(path, &surface);
     struct wd_vec3 eye = wd_v3_scale(path->ray.direction, -1);
-    if (path->bounce++ >= path->tracer->bounces ||
-        !wd_scatter_sample(&scattered, &surface, eye, &path->sampler))
+    if (path->bounce++ >= path->tracer->bounces)
         return false;
+    if (path->tracer->sky_map)
+        add_map(path, &surface);
+    if (!wd_scatter_sample(&scattered, &surface, eye, &path->sampler))
+        return false;
+    if (path->tracer->sky_map)
+        path->per_sr = wd_scatter_density_of(&surface, eye, scattered.direction).per_sr;
     path->throughput = wd_v3_mul(path->throughput, scattered.weight);
     path->ray = wd_surface_leave(&surface, scattered.direction);
     path->left_tree = hit->tree;

@@ -4,6 +4,7 @@
 #define WD_REFERENCE_PATH_H
 
 #include "reference/scatter.h"
+#include "world/sky_map.h"
 
 /* Radiance of the sky toward a direction, without the sun's disc. */
 typedef struct wd_vec3 wd_sky_function(const struct wd_frame_uniforms *frame,
@@ -12,6 +13,7 @@ typedef struct wd_vec3 wd_sky_function(const struct wd_frame_uniforms *frame,
 struct wd_tracer {
     const struct wd_trace_scene *scene;
     wd_sky_function *sky;
+    const struct wd_sky_map *sky_map; /* in its place; or NULL */
     uint32_t bounces;     /* times that light may be scattered */
     float pixel_rad;      /* angle that a pixel spans */
     bool is_sea;          /* water goes on beyond the terrain */

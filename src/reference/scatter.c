@@ -140,30 +140,81 @@ static struct wd_vec3 cosine_direction(struct wd_vec3 normal, struct wd_vec3 fla
     return beyond < 0 ? wd_v3_unit(wd_v3_mad(d, flat, -2 * beyond)) : d;
 }
 
+/* Chances of the three ways light may have come. */
+struct lobes {
+    struct wd_vec3 albedo, through;
+    float fresnel, coat, front, back;
+};
+
+static struct lobes lobes_of(const struct wd_surface *surface, struct wd_vec3 eye)
+{
+    struct lobes lobes = {.albedo = inner_albedo(surface), .through = inner_transmittance(surface)};
+    lobes.fresnel = surface->glossy ? fresnel(wd_v3_dot(surface->normal, eye)) : 0;
+    float reflected = mean_of(lobes.albedo), transmitted = mean_of(lobes.through);
+    float inner = (1 - lobes.fresnel) * (reflected + transmitted);
+    lobes.coat = lobes.fresnel > 0 ? lobes.fresnel / (lobes.fresnel + inner) : 0;
+    if (inner <= 0)
+        return lobes;
+    lobes.back = (1 - lobes.coat) * (transmitted / (reflected + transmitted));
+    lobes.front = (1 - lobes.coat) * (1 - transmitted / (reflected + transmitted));
+    return lobes;
+}
+
 bool wd_scatter_sample(struct wd_scattered *scattered, const struct wd_surface *surface,
                        struct wd_vec3 eye, struct wd_sampler *sampler)
 {
     float choice[2], point[2];
     wd_sampler_next(sampler, choice);
     wd_sampler_next(sampler, point);
-    struct wd_vec3 albedo = inner_albedo(surface), through = inner_transmittance(surface);
-    float coat = surface->glossy ? fresnel(wd_v3_dot(surface->normal, eye)) : 0;
-    float reflected = mean_of(albedo), transmitted = mean_of(through);
-    float inner = (1 - coat) * (reflected + transmitted);
-    float coat_chance = coat > 0 ? coat / (coat + inner) : 0;
-    if (choice[0] < coat_chance)
-        return sample_coat(scattered, surface, eye, point, coat_chance);
-    if (inner <= 0)
+    struct lobes lobes = lobes_of(surface, eye);
+    if (choice[0] < lobes.coat)
+        return sample_coat(scattered, surface, eye, point, lobes.coat);
+    if (lobes.front + lobes.back <= 0)
         return false;
-    float back_chance = transmitted / (reflected + transmitted);
-    bool back = choice[1] < back_chance;
+    bool back = choice[1] * (lobes.front + lobes.back) < lobes.back;
     struct wd_vec3 normal = surface->normal, flat = surface->flat;
-    float chance = (1 - coat_chance) * (back ? back_chance : 1 - back_chance);
     if (back) {
         normal = wd_v3_scale(normal, -1);
         flat = wd_v3_scale(flat, -1);
     }
     scattered->direction = cosine_direction(normal, flat, point);
-    scattered->weight = wd_v3_scale(back ? through : albedo, (1 - coat) / chance);
+    scattered->weight = wd_v3_scale(back ? lobes.through : lobes.albedo,
+                                    (1 - lobes.fresnel) / (back ? lobes.back : lobes.front));
     return true;
+}
+
+/* Of cosine_direction. */
+static float cosine_density(struct wd_vec3 normal, struct wd_vec3 flat, struct wd_vec3 direction)
+{
+    struct wd_vec3 turned = wd_v3_mad(direction, flat, -2 * wd_v3_dot(direction, flat));
+    return (fmaxf(wd_v3_dot(normal, direction), 0) + fmaxf(wd_v3_dot(normal, turned), 0)) / PI;
+}
+
+struct wd_scatter_density wd_scatter_density_of(const struct wd_surface *surface,
+                                                struct wd_vec3 eye, struct wd_vec3 light)
+{
+    struct lobes lobes = lobes_of(surface, eye);
+    bool front = wd_v3_dot(surface->flat, light) > 0;
+    struct wd_vec3 normal = surface->normal, flat = surface->flat;
+    if (!front) {
+        normal = wd_v3_scale(normal, -1);
+        flat = wd_v3_scale(flat, -1);
+    }
+    float within = cosine_density(normal, flat, light);
+    struct wd_scatter_density density = {
+        (front ? lobes.front : lobes.back) * within,
+        wd_v3_scale(front ? lobes.albedo : lobes.through, (1 - lobes.fresnel) * within)};
+    float coat = front && lobes.coat > 0
+                     ? coat_toward(surface->normal, surface->coat_alpha, eye, light)
+                     : 0;
+    if (coat <= 0)
+        return density;
+    /* chosen by visible facets: without what hides light on its way in, and whatever it reflects */
+    struct wd_vec3 half_way = wd_v3_unit(wd_v3_add(eye, light));
+    float in = ggx_lambda(wd_v3_dot(surface->normal, eye), surface->coat_alpha);
+    float out = ggx_lambda(wd_v3_dot(surface->normal, light), surface->coat_alpha);
+    density.per_sr += lobes.coat * coat / fresnel(wd_v3_dot(half_way, eye)) * (1 + in + out) /
+                      (1 + in);
+    density.scattered = wd_v3_add(density.scattered, WD_V3(coat, coat, coat));
+    return density;
 }

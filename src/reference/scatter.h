@@ -20,4 +20,13 @@ struct wd_scattered {
 bool wd_scatter_sample(struct wd_scattered *scattered, const struct wd_surface *surface,
                        struct wd_vec3 eye, struct wd_sampler *sampler);
 
+/* With which density, per steradian, wd_scatter_sample chooses a direction, and the scattering times
+ * the cosine there, as its samples have it in the mean. */
+struct wd_scatter_density {
+    float per_sr;
+    struct wd_vec3 scattered;
+};
+struct wd_scatter_density wd_scatter_density_of(const struct wd_surface *surface,
+                                                struct wd_vec3 eye, struct wd_vec3 light);
+
 #endif

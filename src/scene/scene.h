@@ -133,6 +133,9 @@ struct wd_scene_time {
 /* Whether the trees of grids are all placed and kept, or found anew by whoever looks at them. */
 enum wd_planting { WD_PLANTING_AUTO, WD_PLANTING_STORED, WD_PLANTING_ON_DEMAND };
 
+/* Where there is a map of the sky: whose sun shines. */
+enum wd_sky_sun { WD_SKY_SUN_FILE, WD_SKY_SUN_SCENE };
+
 struct wd_grow_params;
 struct wd_scene {
     const char *path;        /* of the file */
@@ -160,10 +163,13 @@ struct wd_scene {
         double angular_diameter_deg;
         double strength;     /* 1: the sun of a clear day */
     } sun;
-    struct {
+    struct wd_scene_sky {
         double turbidity;    /* 1.8 clear .. 10 hazy */
         double cover;        /* of clouds: 0 clear .. 1 overcast */
         double strength;
+        const char *file;    /* environment map, EXR by longitude and latitude; NULL: computed */
+        double turn_deg;     /* of the map, clockwise */
+        int sun;             /* enum wd_sky_sun */
     } sky;
     struct {
         double visibility_m; /* distance at which contrast falls to 2% */

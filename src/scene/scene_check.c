@@ -61,6 +61,18 @@ bool wd_scene_check_terrain(void *object, const struct wd_keys_place *place)
     return wd_scene_expand_file(&terrain->file, "file", place);
 }
 
+bool wd_scene_check_sky(void *object, const struct wd_keys_place *place)
+{
+    struct wd_scene_sky *sky = object;
+    if (sky->file && sky->cover > 0)
+        return wd_keys_error(place, "cover", "found %g beside a \"file\"; a map has its own clouds: "
+                             "allowed is 0", sky->cover);
+    if (!sky->file && sky->turn_deg != 0)
+        return wd_keys_error(place, "turn_deg", "found %g without a \"file\"; only a map can be "
+                             "turned", sky->turn_deg);
+    return wd_scene_expand_file(&sky->file, "file", place);
+}
+
 bool wd_scene_check_map(void *object, const struct wd_keys_place *place)
 {
     struct wd_scene_map *map = object;

@@ -12,6 +12,7 @@ bool wd_scene_check_layer(void *object, const struct wd_keys_place *place);
 bool wd_scene_check_inventory(void *object, const struct wd_keys_place *place);
 bool wd_scene_check_camera(void *object, const struct wd_keys_place *place);
 bool wd_scene_check_path(void *object, const struct wd_keys_place *place);
+bool wd_scene_check_sky(void *object, const struct wd_keys_place *place);
 bool wd_scene_check_time(void *object, const struct wd_keys_place *place);
 
 /* Sets the sun and the season of the loaded species from date, clock and place. */

@@ -7,6 +7,7 @@
 static const char *const terrain_kinds[] = {"flat", "diamond-square", "raster", NULL};
 static const char *const nodata_rules[] = {"fill", "cut", NULL};
 static const char *const plantings[] = {"auto", "stored", "on_demand", NULL};
+static const char *const sky_suns[] = {"file", "scene", NULL};
 static const char *const raster_units[] = {"metres", NULL};
 
 #define TERRAIN(member) offsetof(struct wd_scene_terrain, member)
@@ -85,9 +86,20 @@ static const struct wd_key sky_keys[] = {
     {"turbidity", WD_KEY_DOUBLE, IN(sky, turbidity), 1.5, 20, "2.5", "1.8 clear to 10 hazy."},
     {"cover", WD_KEY_DOUBLE, IN(sky, cover), 0, 1, "0", "Clouds: 0 clear, 1 overcast."},
     {"strength", WD_KEY_DOUBLE, IN(sky, strength), 0, 1000, "1", "Factor on the sky's light."},
+    {"file", WD_KEY_STRING, IN(sky, file),
+     .doc = "Environment map in place of the computed sky, beside the scene: OpenEXR by longitude "
+            "and latitude, twice as wide as high, channels R, G, B in linear sRGB; zenith at the "
+            "top, north in the middle, east to the right of it."},
+    {"turn_deg", WD_KEY_DOUBLE, IN(sky, turn_deg), -360, 360, "0",
+     "The map is turned clockwise by this, in degrees."},
+    {"sun", WD_KEY_ENUM, IN(sky, sun), .fallback = "\"file\"", .choices = sky_suns,
+     .doc = "With a map: \"file\": the sun is what is brightest in the map, taken out of it; "
+            "\"scene\": the sun stands and shines as \"sun\" and \"time\" say, and the map stays "
+            "as it is."},
     {0},
 };
-static const struct wd_keys sky_table = GROUP("sky", sky_keys, sky);
+static const struct wd_keys sky_table = {"sky", sky_keys, sizeof(struct wd_scene_sky),
+                                         wd_scene_check_sky};
 
 static const struct wd_key fog_keys[] = {
     {"visibility_m", WD_KEY_DOUBLE, IN(fog, visibility_m), 1, 1e7, "30000",

@@ -3,9 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "shared/vec.h"
-
-enum { RINGS = 16, BEARINGS = 32, FORMS = 9 };
+enum { RINGS = WD_SKYLIGHT_RINGS, BEARINGS = WD_SKYLIGHT_BEARINGS, FORMS = 9 };
 static const float PI = 3.14159265f;
 
 /* Moments of the radiance that spherical harmonics up to the second order are made of. */
@@ -98,6 +96,13 @@ static void set_sunward(struct wd_frame_uniforms *frame)
     frame->sunward[3] = even + (y < 0 ? y * y / across2 : 0);
 }
 
+struct wd_vec3 wd_skylight_direction(float ring, float bearing)
+{
+    float rise = ring / RINGS, across = sqrtf(1 - rise * rise);
+    float turn = bearing * (2 * PI / BEARINGS);
+    return WD_V3(across * cosf(turn), across * sinf(turn), rise);
+}
+
 void wd_skylight_fill(struct wd_frame_uniforms *frame, wd_skylight_radiance *radiance,
                       const void *user)
 {
@@ -105,13 +110,10 @@ void wd_skylight_fill(struct wd_frame_uniforms *frame, wd_skylight_radiance *rad
     memset(frame->sky_irradiance, 0, sizeof frame->sky_irradiance);
     memset(frame->sky_form, 0, sizeof frame->sky_form);
     memset(frame->sky_quarters, 0, sizeof frame->sky_quarters);
-    for (int ring = 0; ring < RINGS; ring++) {
-        float rise = ((float)ring + 0.5f) / RINGS, across = sqrtf(1 - rise * rise);
-        for (int bearing = 0; bearing < BEARINGS; bearing++) {
-            float turn = ((float)bearing + 0.5f) * (2 * PI / BEARINGS);
-            struct wd_vec3 d = {across * cosf(turn), across * sinf(turn), rise};
-            add_direction(frame, &slants, d, radiance(user, d), 2 * PI / (RINGS * BEARINGS));
-        }
+    for (int part = 0; part < RINGS * BEARINGS; part++) {
+        float ring = (float)(part / BEARINGS) + 0.5f, bearing = (float)(part % BEARINGS) + 0.5f;
+        struct wd_vec3 d = wd_skylight_direction(ring, bearing);
+        add_direction(frame, &slants, d, radiance(user, d), 2 * PI / (RINGS * BEARINGS));
     }
     settle_forms(frame);
     set_sunward(frame);

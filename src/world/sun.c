@@ -77,7 +77,26 @@ static void add_clouds(struct wd_frame_uniforms *uniforms, float cover)
     wd_skylight_fill(uniforms, radiance_of, uniforms);
 }
 
-void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene)
+/* The map in place of the computed sky; haze fades into its horizon. */
+static void set_map(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene,
+                    const struct wd_sky_map *map)
+{
+    uniforms->sky_is_map = 1;
+    uniforms->sky_turn = map->turn;
+    uniforms->sky_strength = 0;
+    for (int k = 0; k < 3; k++) {
+        uniforms->sky_horizon[k] = map->horizon[k];
+        uniforms->sky_glow[k] = 0;
+    }
+    for (int k = 0; k < 3 && map->sun == WD_SKY_SUN_FILE; k++) {
+        uniforms->sun_direction[k] = map->sun_direction[k];
+        uniforms->sun_irradiance[k] = map->sun_irradiance[k] * (float)scene->sun.strength;
+    }
+    wd_skylight_fill(uniforms, wd_sky_map_mean, map);
+}
+
+void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene,
+                 const struct wd_sky_map *map)
 {
     float elevation_deg = (float)scene->sun.elevation_deg;
     double azimuth_deg = scene->sun.azimuth_deg;
@@ -102,6 +121,10 @@ void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scen
                                             wd_sun_through(sky.band, sky.sun_air_mass) *
                                             disc_share(elevation_deg, radius_deg);
         set_horizon(uniforms, &sky, channel, uniforms->sky_strength);
+    }
+    if (map) {
+        set_map(uniforms, scene, map);
+        return;
     }
     wd_skylight_fill(uniforms, radiance_of, uniforms);
     if (scene->sky.cover > 0)

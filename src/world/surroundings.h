@@ -4,11 +4,12 @@
 
 #include "shared/frame.h"
 #include "weald/forest.h"
-#include "world/terrain.h"
+#include "world/world.h"
 
-/* Fills the members of `*uniforms` for sun, sky, fog, wind, water and ground. */
+/* Fills the members of `*uniforms` for sun, sky, fog, wind, water and ground; of the world, terrain
+ * and sky count. */
 void wd_surroundings_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene,
-                          const struct wd_terrain *terrain);
+                          const struct wd_world *world);
 
 /* Splits a place of the local frame into whole millimetres and the rest. */
 void wd_surroundings_set_camera(struct wd_frame_uniforms *uniforms, const double position_m[3]);

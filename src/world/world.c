@@ -197,6 +197,7 @@ void wd_world_finish(struct wd_world *world)
     free(world->inventories);
     free(world->cover);
     wd_demand_finish(&world->demand);
+    wd_sky_map_finish(&world->sky);
     *world = (struct wd_world){0};
 }
 

@@ -4,6 +4,7 @@
 
 #include "world/octree.h"
 #include "world/on_demand.h"
+#include "world/sky_map.h"
 #include "world/terrain.h"
 
 struct wd_world_params {
@@ -37,6 +38,7 @@ struct wd_world {
     struct wd_inventory_report *inventories; /* parallel to scene->inventories */
     struct wd_demand demand;        /* layers of which nothing else here says anything */
     struct wd_octree octree;
+    struct wd_sky_map sky;          /* {0}, or what whoever made the world has loaded into it */
     /* Canopy cover of the ground, 0..255, on a grid of cover_cell_m over the terrain, for the
      * colour of the forest floor. */
     uint8_t *cover;

@@ -39,8 +39,9 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     };
     bool ok = wd_pipeline_init_compute(&pass->view, gpu, &params);
     params.shader = (struct wd_spirv)SPIRV(light_comp);
-    params.bindings.count = 13;
-    params.bindings.types[11] = params.bindings.types[12] = IMAGE;
+    params.bindings.count = 14;
+    for (uint32_t binding = 11; binding < 14; binding++)
+        params.bindings.types[binding] = IMAGE;
     for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
         const uint32_t constants[] = {wd_tile_list_parts(list), list};
         params.constants = (struct wd_spec_constants){2, constants};
@@ -215,6 +216,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_BUFFER(&pass->lists),
         WD_BIND_IMAGE(push.has_overlay ? &targets->overlay : &targets->albedo, pass->nearest),
         WD_BIND_IMAGE(&params->forest->canopy_light, params->forest->ground.sampler),
+        WD_BIND_IMAGE(&params->forest->sky, params->forest->look_sampler),
     };
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);

@@ -1,0 +1,169 @@
+/* Environment maps from files: what is drawn under them, and what is said of bad ones. */
+#include "suite.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output/exr.h"
+#include "weald/reference.h"
+
+enum { WIDTH = 64, HEIGHT = 32 };
+
+static struct suite suite;
+
+/* A map of one radiance above the horizon and black below, but for one value of the last texel. */
+static const char *write_map(const char *name, const char *const channels[3], uint32_t width,
+                             float odd)
+{
+    static float rgb[3][WIDTH * HEIGHT];
+    const char *path = suite_path(&suite, name);
+    for (uint32_t at = 0; at < width * HEIGHT; at++)
+        for (int k = 0; k < 3; k++)
+            rgb[k][at] = at < width * HEIGHT / 2 ? 0.5f + 0.25f * (float)k : 0;
+    rgb[1][width * HEIGHT - 1] = odd;
+    const struct wd_exr_channel planes[3] = {{channels[0], WD_EXR_FLOAT, rgb[0], 1},
+                                             {channels[1], WD_EXR_FLOAT, rgb[1], 1},
+                                             {channels[2], WD_EXR_FLOAT, rgb[2], 1}};
+    const struct wd_exr_params params = {width, HEIGHT, planes, 3, NULL, 0};
+    assert_true(wd_exr_write(path, &params, &suite.log));
+    return path;
+}
+
+static const char *const RGB[3] = {"R", "G", "B"};
+
+static enum wd_result open_forest(struct wd_forest **forest, const char *map, const char *setting)
+{
+    char file[256];
+    snprintf(file, sizeof file, "sky.file=%s", map);
+    const char *const settings[] = {file, setting, NULL};
+    const struct wd_forest_params params = {
+        .scene_path = suite.small_path, .settings = settings, .log = suite.log};
+    return wd_forest_create(forest, &params);
+}
+
+/* Mean of the sky's pixels and of the rest. */
+struct means {
+    double sky[3], rest[3], skies, rests;
+};
+
+static struct means means_of(const struct wd_picture *picture)
+{
+    struct means means = {0};
+    for (size_t at = 0; at < (size_t)picture->width * picture->height; at++) {
+        bool sky = isinf(picture->depth_m[at]);
+        for (size_t k = 0; k < 3; k++)
+            (sky ? means.sky : means.rest)[k] += (double)picture->color[3 * at + k];
+        *(sky ? &means.skies : &means.rests) += 1;
+    }
+    for (int k = 0; k < 3; k++) {
+        means.sky[k] /= fmax(means.skies, 1);
+        means.rest[k] /= fmax(means.rests, 1);
+    }
+    return means;
+}
+
+static struct means drawn(const char *map, const char *camera, const char *setting)
+{
+    struct wd_forest *forest = NULL;
+    struct wd_picture picture = {0};
+    assert_int_equal(open_forest(&forest, map, setting), WD_OK);
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, forest), WD_OK);
+    struct wd_render_params render = suite_params(forest, camera);
+    render.layers = WD_LAYER_COLOR | WD_LAYER_DEPTH;
+    assert_int_equal(wd_renderer_render(suite.renderer, &render, &picture), WD_OK);
+    struct means means = means_of(&picture);
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, suite.forest), WD_OK);
+    wd_forest_destroy(&forest);
+    wd_picture_finish(&picture);
+    return means;
+}
+
+static struct means traced(const char *map, const char *setting)
+{
+    struct wd_forest *forest = NULL;
+    struct wd_reference *reference = NULL;
+    struct wd_picture picture = {0};
+    assert_int_equal(open_forest(&forest, map, setting), WD_OK);
+    const struct wd_reference_params params = {.log = suite.log};
+    assert_int_equal(wd_reference_create(&reference, forest, &params), WD_OK);
+    struct wd_reference_picture_params trace = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT,
+                                                .samples = 8,
+                                                .layers = WD_LAYER_COLOR | WD_LAYER_DEPTH};
+    assert_int_equal(wd_forest_get_camera(forest, "over", &trace.camera), WD_OK);
+    assert_int_equal(wd_reference_render(reference, &trace, &picture), WD_OK);
+    struct means means = means_of(&picture);
+    wd_reference_destroy(&reference);
+    wd_forest_destroy(&forest);
+    wd_picture_finish(&picture);
+    return means;
+}
+
+/* The sky is the map's, and twice the light is twice as bright. */
+static void the_map_is_the_sky(void **state)
+{
+    (void)state;
+    const char *map = write_map("even.exr", RGB, WIDTH, 0);
+    struct means once = drawn(map, "walk", "sky.sun=file"),
+                 twice = drawn(map, "walk", "sky.strength=2");
+    assert_true(once.skies > 100 && once.rests > 100);
+    for (int k = 0; k < 3; k++) {
+        assert_float_equal(once.sky[k], 0.5 + 0.25 * k, 0.01);
+        assert_true(once.rest[k] > 0.001);
+        assert_float_equal(twice.rest[k], 2 * once.rest[k], 0.01 * once.rest[k]);
+    }
+}
+
+static void drawn_as_traced(void **state)
+{
+    (void)state;
+    const char *map = write_map("even.exr", RGB, WIDTH, 0);
+    struct means drawn_means = drawn(map, "over", "fog.visibility_m=1e7");
+    struct means traced_means = traced(map, "fog.visibility_m=1e7");
+    for (int k = 0; k < 3; k++) {
+        assert_float_equal(drawn_means.rest[k], traced_means.rest[k], 0.25 * traced_means.rest[k]);
+    }
+}
+
+static void expect_refused(const char *map, const char *setting, const char *said)
+{
+    struct wd_forest *forest = NULL;
+    suite_clear(&suite);
+    assert_int_equal(open_forest(&forest, map, setting), WD_ERROR_INPUT);
+    assert_null(forest);
+    if (!suite_logged(&suite, said) || !suite_logged(&suite, "sky"))
+        fail_msg("not said: \"%s\" in: %s", said, suite.messages);
+    suite_clear(&suite);
+}
+
+static void bad_maps_are_refused(void **state)
+{
+    (void)state;
+    static const char *const gray[3] = {"Y", "G", "B"};
+    const char *good = write_map("even.exr", RGB, WIDTH, 0);
+    expect_refused("/nowhere/map.exr", "sky.turn_deg=0", "sky.file: /nowhere/map.exr");
+    expect_refused(suite.small_path, "sky.turn_deg=0", "is not an EXR");
+    expect_refused(write_map("tall.exr", RGB, HEIGHT, 0), "sky.turn_deg=0", "found 32 x 32 pixels");
+    expect_refused(write_map("gray.exr", gray, WIDTH, 0), "sky.turn_deg=0", "no R of half or float");
+    expect_refused(write_map("nan.exr", RGB, WIDTH, NAN), "sky.turn_deg=0",
+                   "found nan in channel G at column 63, row 31");
+    expect_refused(write_map("inf.exr", RGB, WIDTH, INFINITY), "sky.turn_deg=0", "found inf");
+    expect_refused(write_map("less.exr", RGB, WIDTH, -1), "sky.turn_deg=0", "found -1");
+    expect_refused(good, "sky.cover=0.5", "beside a \"file\"");
+    expect_refused(good, "sky.sun=moon", "sun");
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_map_is_the_sky),
+        cmocka_unit_test(drawn_as_traced),
+        cmocka_unit_test(bad_maps_are_refused),
+    };
+    if (argc < 2 || !suite_init(&suite, argv[1]))
+        return 1;
+    int failed = cmocka_run_group_tests_name("sky", tests, NULL, NULL);
+    suite_finish(&suite);
+    return failed;
+}
