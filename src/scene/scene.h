@@ -148,6 +148,8 @@ struct wd_scene {
     struct wd_species *species; /* loaded, parallel to species_files */
     struct wd_scene_clip *clips; /* hedges among the species */
     size_t clip_count;
+    struct wd_number_pair *openness; /* how openly species stand: 0 to 1 */
+    size_t openness_count;
     int64_t variants;        /* grown individuals a species */
     const struct wd_grow_params *individuals; /* NULL; or, not from a file, one a species: each is
                                 grown so (tree/grow.h), and `variants` is 1 */

@@ -227,6 +227,22 @@ static bool cut_hedges(const struct loader *loader, struct wd_scene *scene)
     return ok;
 }
 
+static bool set_openness(const struct loader *loader, struct wd_scene *scene)
+{
+    struct wd_keys_place map = {loader->root->reader, loader->root, "openness", 0};
+    bool ok = true;
+    for (size_t i = 0; i < scene->openness_count; i++) {
+        const struct wd_number_pair *given = &scene->openness[i];
+        int index = wd_scene_find_species(scene, given->name);
+        if (index < 0)
+            ok = wd_keys_error(&map, given->name,
+                               "no layer or inventory has the species \"%.60s\"", given->name);
+        else
+            scene->species[index].openness = (float)given->value;
+    }
+    return ok;
+}
+
 bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *place)
 {
     struct loader loader = {.root = place};
@@ -236,6 +252,7 @@ bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *p
     ok = take_inventories(&loader, scene) && ok;
     ok = load_all(&loader, scene) && ok;
     ok = ok && cut_hedges(&loader, scene);
+    ok = ok && set_openness(&loader, scene);
     finish(&loader);
     return ok;
 }

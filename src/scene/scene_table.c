@@ -217,6 +217,10 @@ static const struct wd_key scene_keys[] = {
     {"clips", WD_KEY_MAP, SCENE(clips), .table = &clip_table, .count_offset = SCENE(clip_count),
      .doc = "Names of species whose individuals are cut to a box, as plants of a hedge are. A name "
             "of its own in \"species\" keeps the same species' free trees apart."},
+    {"openness", WD_KEY_NUMBER_MAP, SCENE(openness), 0, 1, .count_offset = SCENE(openness_count),
+     .doc = "How openly a species' trees have grown: {\"oak\": 1} is as wide and low crowned as in a "
+            "meadow, 0 as among close neighbours; without it 0.2, as in a stand. A name of its own in "
+            "\"species\" keeps the same species' other trees apart."},
     {"variants", WD_KEY_INTEGER, SCENE(variants), 1, 64, "5", "Individuals grown a species."},
     {"layers", WD_KEY_LIST, SCENE(layers), .table = &wd_scene_layer_keys,
      .count_offset = SCENE(layer_count), .doc = "Trees placed by rule."},

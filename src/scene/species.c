@@ -22,6 +22,7 @@ bool wd_species_load(struct wd_species *species, const char *path, struct wd_are
     bool model = wd_species_text_has_model(path, text, size);
     const struct wd_keys *keys = model ? &wd_species_model_keys : &wd_species_keys;
     bool ok = wd_keys_read(keys, path, text, size, arena, log, species);
+    species->openness = WD_STAND_OPENNESS;
     free(text);
     return ok;
 }
@@ -99,10 +100,28 @@ double wd_species_stem_of_height_cm(const struct wd_species *species, double hei
     return stem_cm;
 }
 
+double wd_species_open_stem(const struct wd_species *species, double height_m, double openness)
+{
+    double typical_m = (double)species->typical_height_m, ratio = (double)species->stem_open;
+    if (height_m < typical_m)
+        ratio *= fmax(1, wd_species_stem_of_height_cm(species, typical_m) * height_m /
+                             (typical_m * wd_species_stem_of_height_cm(species, height_m)));
+    return 1 + (ratio - 1) * openness;
+}
+
+double wd_species_open_crown(const struct wd_species *species, double openness)
+{
+    return 1 + ((double)species->crown_open - 1) * openness;
+}
+
 double wd_species_crown_of_height_m(const struct wd_species *species, double height_m)
 {
-    double sure_m = sure_height_m(species, height_m);
-    return wd_species_crown_m(species, wd_species_dbh_cm(species, sure_m)) * height_m / sure_m;
+    double sure_m = sure_height_m(species, height_m), open = (double)species->openness;
+    double crown_m = 0, stem_cm = wd_species_dbh_cm(species, sure_m);
+    if (species->clip_box_m[2] > 0 || species->model.file)
+        return wd_species_crown_m(species, stem_cm) * height_m / sure_m;
+    crown_m = wd_species_crown_m(species, stem_cm * wd_species_open_stem(species, height_m, open));
+    return crown_m * wd_species_open_crown(species, open) * height_m / sure_m;
 }
 
 float wd_hedge_reach_m(float width_m, float depth_m)

@@ -168,10 +168,14 @@ struct wd_species {
         size_t leaf_count, wood_count;
         float crown_share;    /* crown diameter over height where allometry.crown_b is 0 */
     } model;
+    float openness;           /* in scenes: 0 grown among neighbours .. 1 in the open */
     float clip_box_m[3];      /* width, depth, height of the box that a hedge is cut to; 0: none */
     struct wd_tree_import *imported; /* the model once read: wd_species_import_models */
     float flexibility;        /* wind: top displacement over height at 10 m/s, share */
 };
+
+/* Of a species that a scene does not place more openly: the upper trees of a stand. */
+#define WD_STAND_OPENNESS 0.2f
 
 /* Files of grown species and of species that are an artist's model. */
 extern const struct wd_keys wd_species_keys, wd_species_model_keys;
@@ -198,8 +202,15 @@ double wd_species_dbh_cm(const struct wd_species *species, double height_m);
 /* The same for any height: where the curve gives no diameter (just over the height where diameters
  * are taken, and near the greatest height) stems thicken with height. */
 double wd_species_stem_of_height_cm(const struct wd_species *species, double height_m);
-/* Crown diameter of a tree in a forest. Just over the height where diameters are taken and near
- * the greatest height (where any diameter fits) crowns scale with height. */
+/* Stem diameter over that of a forest tree of the same height. Trees in the open keep their height
+ * per diameter from youth on (30 to 60: Hasenauer, For. Ecol. Manage. 96 (1997) 197-206), while young
+ * trees of a forest are rods: below the typical height the ratio grows. */
+double wd_species_open_stem(const struct wd_species *species, double height_m, double openness);
+/* Crown diameter over that of a forest tree of the same stem. */
+double wd_species_open_crown(const struct wd_species *species, double openness);
+/* Crown diameter of a tree that stands as openly as the species does. Just over the height where
+ * diameters are taken and near the greatest height (where any diameter fits) crowns scale with
+ * height. */
 double wd_species_crown_of_height_m(const struct wd_species *species, double height_m);
 
 /* Radius of the circle as large as a rectangle: how far a hedge reaches. */

@@ -200,7 +200,7 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
     leaf->size_m = wd_mixf(1.2f, 0.85f, wd_clampf(1.5f * leaf->sky, 0, 1)) *
                    wd_random_range(&random, 0.8f, 1.15f);
     float gap = form->species->orders[form->species->order_count - 1].spacing_m;
-    float loose = needles ? 0.02f : form->species->leaf.count == 0 ? 0 : 0.15f * gap;
+    float loose = needles ? 0.02f : form->species->leaf.count == 0 ? 0 : 0.3f * gap;
     if (needles) /* a spire ends in short shoots */
         leaf->size_m *= wd_clampf(2.2f * wd_tree_envelope_m(form, WD_V3(0, 0, p.z)) /
                                       form->crown_radius_m, 0.62f, 1);
@@ -228,13 +228,16 @@ static void order_leaves(struct wd_foliage *foliage, uint32_t key)
     free(order);
 }
 
-/* Leaf area of the whole tree from the leaf area index over the crown's projection. */
+/* Leaf area of the whole tree from the leaf area index over the crown's projection. Crowns in the
+ * open are lit from the side as well: they carry as much more as they are longer than wide. */
 static float leaf_area_m2(const struct wd_tree_form *form)
 {
     float projection = (float)WD_PI * form->crown_radius_m * form->crown_radius_m;
     if (form->clip) /* light comes to its sides too: leaves all over them, less deep */
         return HEDGE_SHARE * form->clip->shell_m2 * form->species->leaf.area_index;
-    return 1.05f * projection * form->species->leaf.area_index;
+    float slender = (form->height_m - form->crown_base_m) / (2 * form->crown_radius_m);
+    float lit = wd_mixf(1, wd_clampf(slender, 1, 1.3f), form->openness);
+    return 1.1f * lit * projection * form->species->leaf.area_index;
 }
 
 /* Small trees draw fewer leaves, and never smaller ones than real. Large ones draw larger leaves,
@@ -243,7 +246,7 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
 {
     const struct wd_species *species = form->species;
     bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
-    double spread = wd_dpow((double)form->spread, 1.1);
+    double spread = wd_dpow((double)form->spread, form->spread < 1 ? 0.9 : 1.1);
     if (species->leaf.count == 0)
         return 0;
     double count = (double)species->leaf.count * (double)form->detail;

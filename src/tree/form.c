@@ -7,10 +7,12 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
     double dbh_cm = 100 * (double)params->dbh_m;
     struct wd_random random = wd_random_of(params->seed, 0x7ee5);
     float crown = (float)wd_species_crown_m(species, dbh_cm);
-    crown *= wd_mixf(1, species->crown_open, open) * wd_random_range(&random, 0.92f, 1.08f);
+    crown *= (float)wd_species_open_crown(species, (double)open);
+    crown *= wd_random_range(&random, 0.92f, 1.08f);
     float typical_crown = (float)wd_species_crown_m(
         species, wd_species_dbh_cm(species, (double)species->typical_height_m));
-    float clear = wd_mixf(species->crown_base_forest, species->crown_base_open, open);
+    float young = wd_minf(height / species->typical_height_m, 1); /* in the open: clear later */
+    float clear = wd_mixf(species->crown_base_forest, young * species->crown_base_open, open);
     float length = height * (1 - clear) /
                    (species->typical_height_m * (1 - species->crown_base_forest));
     return (struct wd_tree_form){
@@ -43,13 +45,18 @@ bool wd_tree_is_cut(const struct wd_tree_form *form, struct wd_vec3 p)
     return form->clip && p.z > form->clip->min_m[2] && !wd_clip_inside(form->clip, p);
 }
 
+#define FOREST_FOOT 0.6f
+
 /* The four given radii joined by straight lines for a conifer; for a broadleaf their squares are,
- * which rounds the top like a dome. */
-static float profile(const struct wd_species *species, float t)
+ * which rounds the top like a dome. In a forest neighbours shade the crown's foot, which tapers. */
+static float profile(const struct wd_tree_form *form, float t)
 {
+    const struct wd_species *species = form->species;
     float place = wd_clampf(t, 0, 1) * 3;
     int i = place >= 2 ? 2 : (int)place;
     float a = species->crown_shape[i], b = species->crown_shape[i + 1], f = place - (float)i;
+    if (i == 0)
+        a *= wd_mixf(FOREST_FOOT, 1, form->openness);
     if (species->form == WD_FORM_CONIFER)
         return wd_mixf(a, b, f);
     return sqrtf(wd_mixf(a * a, b * b, f));
@@ -68,7 +75,7 @@ float wd_tree_envelope_m(const struct wd_tree_form *form, struct wd_vec3 p)
     struct wd_vec3 out = wd_v3_unit_or(WD_V3(p.x, p.y, 0), WD_V3(1, 0, 0));
     struct wd_vec3 at = wd_v3_mad(WD_V3(0, 0, p.z), out, form->crown_radius_m);
     float bulge = wd_noise3(form->key, wd_v3_scale(at, 1 / form->lobe_m)) - 0.5f;
-    return form->crown_radius_m * profile(form->species, t) *
+    return form->crown_radius_m * profile(form, t) *
            (1 + 2 * form->species->crown_lobes * bulge);
 }
 
@@ -76,7 +83,7 @@ float wd_tree_envelope_m(const struct wd_tree_form *form, struct wd_vec3 p)
 static float least_envelope_m(const struct wd_tree_form *form, float share)
 {
     float lobes = wd_clampf(form->species->crown_lobes, 0, 1);
-    return 0.999f * (1 - lobes) * form->crown_radius_m * profile(form->species, share);
+    return 0.999f * (1 - lobes) * form->crown_radius_m * profile(form, share);
 }
 
 float wd_tree_envelope_share(const struct wd_tree_form *form, struct wd_vec3 p)

@@ -9,9 +9,27 @@ static bool refuse(const struct wd_species *species, const struct wd_log *log, c
                     found, low, high);
 }
 
-static double open_stem(const struct wd_species *species, const struct wd_grow_params *params)
+static double open_stem(const struct wd_species *species, const struct wd_grow_params *params,
+                        double height_m)
 {
-    return 1 + ((double)species->stem_open - 1) * (double)params->openness;
+    return wd_species_open_stem(species, height_m, (double)params->openness);
+}
+
+/* The height whose stem in this much light has the diameter. */
+static double height_of_dbh_m(const struct wd_species *species,
+                              const struct wd_grow_params *params, double dbh_cm)
+{
+    double low = 0.01, high = 200;
+    for (int i = 0; i < 50; i++) {
+        double middle = 0.5 * (low + high);
+        double stem_cm = wd_species_stem_of_height_cm(species, middle) *
+                         open_stem(species, params, middle);
+        if (stem_cm < dbh_cm)
+            low = middle;
+        else
+            high = middle;
+    }
+    return 0.5 * (low + high);
 }
 
 static bool resolve_height(struct wd_grow_params *params, const struct wd_species *species,
@@ -30,7 +48,8 @@ static bool resolve_height(struct wd_grow_params *params, const struct wd_specie
     if (age != 0)
         height = wd_species_height_at_age_m(species, age);
     else if (height == 0 && dbh_cm != 0)
-        height = wd_species_height_m(species, dbh_cm / open_stem(species, params));
+        height = params->openness > 0 ? height_of_dbh_m(species, params, dbh_cm)
+                                      : wd_species_height_m(species, dbh_cm);
     else if (height == 0)
         height = (double)species->typical_height_m;
     double low = (double)species->height_range_m[0], high = (double)species->height_range_m[1];
@@ -48,7 +67,8 @@ static bool resolve_dbh(struct wd_grow_params *params, const struct wd_species *
                         const struct wd_log *log)
 {
     double height = (double)params->height_m, found = (double)params->dbh_m;
-    double usual = 0.01 * wd_species_stem_of_height_cm(species, height) * open_stem(species, params);
+    double usual = 0.01 * wd_species_stem_of_height_cm(species, height) *
+                   open_stem(species, params, height);
     if (found == 0)
         params->dbh_m = (float)usual;
     else if (!(found >= usual / 3 && found <= usual * 3))

@@ -208,7 +208,7 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
 static float spacing_m(const struct wd_tree_form *form, int order)
 {
     /* a year's growth is long in young trees too: they have fewer branches, not smaller gaps */
-    double power = form->spread < 1 ? 0.5 : order == 0 ? 0.8 : 1.0;
+    double power = form->spread < 1 ? 0.5 : order == 0 ? 0.6 : 0.9;
     double squeeze = wd_dpow((double)form->spread, power);
     float spacing = form->species->orders[order].spacing_m * (float)squeeze;
     if (form->clip) /* cut shoots branch again: a hedge is as dense as its light allows */

@@ -22,7 +22,7 @@ struct wd_grow_params wd_variant_params(const struct wd_scene *scene, uint32_t i
     return (struct wd_grow_params){
         .seed = variant + 1,
         .height_m = species->clip_box_m[2] > 0 ? 0 : variant_height(species, variant, variants),
-        .openness = 0.35f,
+        .openness = species->openness,
     };
 }
 

@@ -73,7 +73,8 @@ static uint32_t crown_cm_of(const struct wd_inventory_tree *tree, const struct w
     if (tree->crown_m > 0.0f)
         return whole_cm((double)tree->crown_m * 100.0);
     if (tree->dbh_cm > 0.0f)
-        return whole_cm(wd_species_crown_m(species, tree->dbh_cm) * 100.0);
+        return whole_cm(wd_species_crown_m(species, tree->dbh_cm) *
+                        wd_species_open_crown(species, (double)species->openness) * 100.0);
     return whole_cm(wd_crown_cm(species, height_cm));
 }
 

@@ -69,12 +69,12 @@ static void same_parameters_same_bytes(void **state)
 static void known_hashes(void **state)
 {
     static const uint64_t expected[SPECIES_COUNT] = {
-        0x10af978ba350848au, 0xa9e5e3f5df17ed22u, 0x0894c0fbb5e3f291u,
-        0xced069baf013c5f2u, 0x6a601a86e561dd01u, 0x95980ac2ef75a8dcu,
-        0x0274f424ba0bb642u, 0x5475ec3816689751u, 0xd9506eb41bf675ffu,
-        0x0be914cbc927d9ddu, 0x1b14bd1e264cb84eu, 0x884f086e485beb06u,
-        0x93ef30334eb6f54fu, 0x7b95ae13511b084du, 0x2b6d9b4a5807739au,
-        0x4e720c131f1d4543u, 0x6e578d8c9039cbeau};
+        0xbbd55fa052e98581u, 0xd505e4d704d318a6u, 0xbcafb95c3e7bac2au,
+        0x061d16de560bf7e1u, 0xb65bfe9a1907f2cdu, 0x83884c27a59753bfu,
+        0xd9efa7a53b62b8dbu, 0x38021c0c4a604f4cu, 0x5659b3e35645eed8u,
+        0xe1d05763b0de7974u, 0x1b14bd1e264cb84eu, 0x1b8a9a06eb0b60f4u,
+        0x346f441ecd5d7ea4u, 0xda5e37af36dc2334u, 0x2b6d9b4a5807739au,
+        0x4e720c131f1d4543u, 0x00d4026a1b47c928u};
     struct wd_arena arena = {0};
     int wrong = 0;
     (void)state;
@@ -235,7 +235,8 @@ static void budgets_of_mature_trees_hold(void **state)
             double radius = (double)model.crown_radius_m;
             double index = (double)model.leaf_area_m2 / (3.14159265 * radius * radius);
             double wanted = (double)species.leaf.area_index;
-            assert_true(index > 0.75 * wanted && index < 1.3 * wanted);
+            double lit = open ? 1.3 : 1; /* from the side as well */
+            assert_true(index > 0.75 * wanted && index < 1.3 * lit * wanted);
             wd_tree_model_finish(&model);
         }
     wd_arena_finish(&arena);
