@@ -2,7 +2,7 @@
 BUILD ?= build
 PREFIX ?= /usr/local
 
-.PHONY: run test deps build lint bench gallery install clean help
+.PHONY: run test deps build lint bench suites gallery install clean help
 .DEFAULT_GOAL := help
 
 run: deps ## build, then show scenes/valley.json: in a window, or as out/valley.png
@@ -25,6 +25,9 @@ lint: ## static checks
 
 bench: deps ## measure everything, or one figure with ONLY=NAME
 	@bench/run $(BUILD) $(ONLY)
+
+suites: build ## weald bench in full, results and reports in docs/bench (stopped, it goes on)
+	@scripts/suites.sh $(BUILD)
 
 gallery: build ## the pictures of docs/gallery.md, path-traced ones beside them (DATA=DIR)
 	@scripts/gallery.sh $(BUILD)

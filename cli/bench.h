@@ -15,6 +15,7 @@ enum bench_column {
     BENCH_FRAME_MS, /* median of one sample, wall clock */
     BENCH_FRAME_P95_MS,
     BENCH_FRAME_P99_MS,
+    BENCH_FRAMES, /* that these are of */
     BENCH_GPU_MS, /* all passes */
     BENCH_CPU_MS,
     BENCH_DRAWS,
@@ -22,8 +23,11 @@ enum bench_column {
     BENCH_DEVICE_MB,
     BENCH_HOST_MB, /* peak of the program so far */
     BENCH_COMPARISON, /* the members of struct wd_comparison */
-    BENCH_POPPING_MEAN = BENCH_COMPARISON + 7, /* frame-to-frame change over the reference's own,
-                                                  of 4 x 4 blocks, in percent of white */
+    BENCH_NOISE_FLIP = BENCH_COMPARISON + 7, /* of the reference: what its picture is away from where
+                                                more samples would bring it, by FLIP */
+    BENCH_NOISE_BLOCKS,                      /* and by block_rmse_pct */
+    BENCH_POPPING_MEAN,                      /* frame-to-frame change over the reference's own, of 4 x 4
+                                                blocks, in percent of white */
     BENCH_POPPING_P999,
     BENCH_POPPING_STEP, /* the largest */
     BENCH_BOUNDARY_STEP, /* mean of a tree's blocks that change their level, of the tree where it is the
@@ -61,6 +65,7 @@ struct bench_suite {
     enum bench_cameras { BENCH_FIRST_CAMERA, BENCH_EVERY_CAMERA } cameras;
     enum bench_measures { BENCH_TIME = 1, BENCH_ERROR = 2, BENCH_POPPING = 4 } measures;
     const char *methods; /* "A,B": those measured unless others are named; NULL: all */
+    double budget_s;     /* of frames, where that is less than the effort's; 0: the effort's */
 };
 
 struct bench {
@@ -115,10 +120,23 @@ void bench_print_table(const struct bench *bench);
 bool bench_write_json(const struct bench *bench);
 bool bench_write_html(const struct bench *bench);
 
-/* Parts of the report. */
-void bench_print_plot(FILE *to, const struct bench *bench, const struct bench_row *place);
-const char *bench_method_color(const struct bench *bench, const char *method);
+/* Parts of the report. A plot of what was measured at one place: time across, `column` up, a dot a
+ * method. The best, than which none is both faster and nearer, are joined by a line; a dashed line is
+ * the reference's own noise where that is known. */
+void bench_print_plot(FILE *to, const struct bench *bench, const struct bench_row *place,
+                      uint32_t column);
+/* Trees across, `column` up, both logarithmic, a line a method, over all places of the suite's first
+ * scene. */
+void bench_print_growth(FILE *to, const struct bench *bench, uint32_t column);
+/* Bars of a place's passes. */
+void bench_print_passes(FILE *to, const struct bench *bench, const struct bench_row *place);
+/* The column's name in words: "frame p95, ms". */
+void bench_column_title(uint32_t column, char title[64]);
+/* Which of the style sheet's colours a method has. */
+uint32_t bench_method_color(const struct bench *bench, const char *method);
 bool bench_same_place(const struct bench_row *a, const struct bench_row *b);
+/* Whether no method at that place is both faster and lower in `column`. */
+bool bench_is_best(const struct bench *bench, const struct bench_row *row, uint32_t column);
 
 /* DIRECTORY/NAME as printf's; free() it. */
 __attribute__((format(printf, 2, 3))) char *bench_path(const struct bench *bench,

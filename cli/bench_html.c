@@ -1,4 +1,4 @@
-/* One file that needs no other and no script: plots as SVG, pictures inside. */
+/* The report: one file that needs no other and no script: plots as SVG, pictures inside. */
 #include "bench.h"
 
 #include <errno.h>
@@ -6,84 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/utsname.h>
-#include <unistd.h>
 
-/* --- the machine
- * ----------------------------------------------------------------------------------- */
+#include "bench_style.h"
 
-static void processor_name(char name[128])
-{
-    char line[256];
-    FILE *file = fopen("/proc/cpuinfo", "r");
-    snprintf(name, 128, "unknown processor");
-    while (file && fgets(line, sizeof line, file)) {
-        char *colon = strchr(line, ':');
-        if (strncmp(line, "model name", 10) == 0 && colon) {
-            snprintf(name, 128, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
-            break;
-        }
-    }
-    if (file)
-        fclose(file);
-}
-
-/* As the run that measured wrote it down. */
-static char *remembered(const char *path)
-{
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = fopen(path, "r");
-    if (file && getdelim(&text, &size, 0, file) <= 0) {
-        free(text);
-        text = NULL;
-    }
-    if (file)
-        fclose(file);
-    return text;
-}
-
-static void remember(const char *path, const char *text)
-{
-    FILE *file = fopen(path, "w");
-    if (!file)
-        return; /* the report itself holds it, too */
-    fputs(text, file);
-    fclose(file);
-}
-
-static char *describe_machine(const struct bench *bench)
-{
-    char processor[128], *text = NULL;
-    struct utsname name;
-    processor_name(processor);
-    if (uname(&name) != 0)
-        name = (struct utsname){0};
-    double memory_gb = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGE_SIZE) * 1e-9;
-    if (asprintf(&text,
-                 "device: %s\nprocessor: %s, %ld threads\nmemory: %.1f GB\nsystem: %s %s %s\n"
-                 "weald " WEALD_VERSION,
-                 bench->device, processor, sysconf(_SC_NPROCESSORS_ONLN), memory_gb, name.sysname,
-                 name.release, name.machine) < 0)
-        abort();
-    return text;
-}
-
-char *bench_machine_text(const struct bench *bench)
-{
-    char *path = bench_path(bench, "machine.txt"), *text = NULL;
-    if (*bench->device) {
-        text = describe_machine(bench);
-        remember(path, text);
-    } else {
-        text = remembered(path);
-    }
-    free(path);
-    return text ? text : describe_machine(bench);
-}
-
-/* --- parts
- * ----------------------------------------------------------------------------------------- */
+/* --- parts --------------------------------------------------------------------------------- */
 
 static void print_escaped(FILE *to, const char *text)
 {
@@ -134,11 +60,52 @@ static void print_picture(FILE *to, const struct bench *bench, const struct benc
     free(path);
 }
 
-/* --- tables and strips
- * ----------------------------------------------------------------------------- */
+/* "frame_p95_ms" as "frame p95, ms". */
+void bench_column_title(uint32_t column, char title[64])
+{
+    static const struct {
+        const char *end, *unit;
+    } units[] = {{"_ms", ", ms"}, {"_pct", ", %"}, {"_mb", ", MB"}, {"_s", ", s"}};
+    static const char *const capitals[] = {"flip", "ssim", "rmse", "gpu", "cpu"};
+    const char *name = bench_column_name(column);
+    size_t length = strlen(name);
+    const char *unit = "";
+    for (size_t i = 0; !*unit && i < sizeof units / sizeof *units; i++) {
+        size_t end = strlen(units[i].end);
+        if (length > end && strcmp(name + length - end, units[i].end) == 0) {
+            unit = units[i].unit;
+            length -= end;
+        }
+    }
+    snprintf(title, 64, "%.*s%s", (int)length, name, unit);
+    for (char *at = title; (at = strchr(at, '_'));)
+        *at = ' ';
+    for (size_t i = 0; i < sizeof capitals / sizeof *capitals; i++) {
+        char *at = strstr(title, capitals[i]);
+        for (size_t k = 0; at && k < strlen(capitals[i]); k++)
+            at[k] = (char)(at[k] - 'a' + 'A');
+    }
+}
+
+static void print_value(FILE *to, double value, bool best)
+{
+    const char *begin = best ? "<td class=\"best\">" : "<td>";
+    if (!isfinite(value))
+        fputs("<td></td>", to);
+    else if (fabs(value) >= 1e7)
+        fprintf(to, "%s%.1f M</td>", begin, value * 1e-6);
+    else if (fabs(value) >= 1000)
+        fprintf(to, "%s%.0f</td>", begin, value);
+    else
+        fprintf(to, "%s%.3g</td>", begin, value);
+}
+
+/* --- one place: tables and strips ---------------------------------------------------------- */
 
 static bool column_used(const struct bench *bench, uint32_t column)
 {
+    if (column == BENCH_NOISE_FLIP || column == BENCH_NOISE_BLOCKS) /* told in words */
+        return false;
     for (size_t i = 0; i < bench->row_count; i++)
         if (isfinite(bench->rows[i].values[column]))
             return true;
@@ -149,58 +116,39 @@ static void print_heads(FILE *to, const struct bench *bench)
 {
     fprintf(to, "<tr><th>method</th>");
     for (uint32_t c = BENCH_FRAME_MS; c < BENCH_COLUMNS; c++) {
-        char name[64];
-        snprintf(name, sizeof name, "%s", bench_column_name(c));
-        for (char *at = name; *at; at++)
-            *at = *at == '_' ? ' ' : *at;
+        char title[64];
+        bench_column_title(c, title);
         if (column_used(bench, c))
-            fprintf(to, "<th>%s</th>", name);
+            fprintf(to, "<th class=\"text\">%s</th>", title);
     }
     fprintf(to, "</tr>\n");
 }
 
-static void print_value(FILE *to, double value)
-{
-    if (!isfinite(value))
-        fputs("<td></td>", to);
-    else if (fabs(value) >= 1000)
-        fprintf(to, "<td>%.0f</td>", value);
-    else
-        fprintf(to, "<td>%.3g</td>", value);
-}
-
 static void print_table(FILE *to, const struct bench *bench, const struct bench_row *place)
 {
-    fputs("<table>", to);
+    fputs("<div class=\"wide\"><table>", to);
     print_heads(to, bench);
     for (size_t i = 0; i < bench->row_count; i++) {
         const struct bench_row *row = &bench->rows[i];
         if (!bench_same_place(row, place))
             continue;
-        fprintf(to, "<tr class=\"result\"><td style=\"color:%s\">%s</td>",
+        fprintf(to, "<tr class=\"result\"><td class=\"m%u\">%s</td>",
                 bench_method_color(bench, row->method), row->method);
         for (uint32_t c = BENCH_FRAME_MS; c < BENCH_COLUMNS; c++)
             if (column_used(bench, c))
-                print_value(to, row->values[c]);
+                print_value(to, row->values[c], false);
         fputs("</tr>\n", to);
     }
-    fputs("</table>\n<details><summary>Times of the passes, milliseconds</summary><table>\n", to);
-    for (size_t i = 0; i < bench->row_count; i++) {
-        if (!bench_same_place(&bench->rows[i], place))
-            continue;
-        fprintf(to, "<tr><td>%s</td><td class=\"passes\">", bench->rows[i].method);
-        for (const char *at = bench->rows[i].passes; *at; at++)
-            fputs(*at == ';' ? ", " : *at == '=' ? " " : (char[]){*at, 0}, to);
-        fputs("</td></tr>\n", to);
-    }
-    fputs("</table><p>GPU + CPU time of each.</p></details>\n", to);
+    fputs("</table></div>\n", to);
 }
 
 static void print_strip(FILE *to, const struct bench *bench, const struct bench_row *place)
 {
     if (!(bench->suite->measures & BENCH_ERROR))
         return;
-    fputs("<div class=\"strip\">\n<figure>", to);
+    fputs("<h3>Pictures over their errors</h3>\n<p class=\"legend\">FLIP of each pixel: 0"
+          "<i class=\"ramp\"></i>1</p>\n<div class=\"strip\">\n<figure>",
+          to);
     print_picture(to, bench, place, "reference");
     fputs("<figcaption>path-traced reference</figcaption></figure>\n", to);
     for (size_t i = 0; i < bench->row_count; i++) {
@@ -212,49 +160,66 @@ static void print_strip(FILE *to, const struct bench *bench, const struct bench_
         fputs("<figure>", to);
         print_picture(to, bench, row, row->method);
         print_picture(to, bench, row, what);
-        fprintf(to, "<figcaption><b style=\"color:%s\">%s</b> FLIP %.3f</figcaption></figure>\n",
-                bench_method_color(bench, row->method), row->method, row->values[BENCH_COMPARISON]);
+        fprintf(to,
+                "<figcaption><b class=\"m%u\">%s</b> FLIP %.3f, blocks %.2g %%, %.4g "
+                "ms</figcaption></figure>\n",
+                bench_method_color(bench, row->method), row->method, row->values[BENCH_COMPARISON],
+                row->values[BENCH_COMPARISON + 3], row->values[BENCH_FRAME_MS]);
     }
     fputs("</div>\n", to);
 }
 
-/* --- all places at a glance
- * ------------------------------------------------------------------------ */
-
-static bool is_first_of_place(const struct bench *bench, size_t index);
-
-static void print_glance_row(FILE *to, const struct bench *bench, const char *method)
+static bool has_two_methods(const struct bench *bench, const struct bench_row *place)
 {
-    fprintf(to, "<tr><td style=\"color:%s\">%s</td>", bench_method_color(bench, method), method);
-    for (size_t i = 0; i < bench->row_count; i++) {
-        const struct bench_row *place = &bench->rows[i], *row;
-        if (!is_first_of_place(bench, i))
-            continue;
-        row = bench_results_find(bench, place->scene, place->camera, method);
-        print_value(to, row ? row->values[BENCH_FRAME_MS] : NAN);
-        print_value(to, row ? row->values[bench->metric] : NAN);
-    }
-    fputs("</tr>\n", to);
+    size_t count = 0;
+    for (size_t i = 0; i < bench->row_count; i++)
+        count += bench_same_place(&bench->rows[i], place);
+    return count > 1;
 }
 
-static void print_glance(FILE *to, const struct bench *bench)
+/* The column that stands beside the chosen one. */
+static uint32_t second_column(const struct bench *bench)
 {
-    fputs("<table><tr><th></th>", to);
-    for (size_t i = 0; i < bench->row_count; i++)
-        if (is_first_of_place(bench, i)) {
-            fputs("<th colspan=\"2\">", to);
-            print_escaped(to, bench->rows[i].scene);
-            fprintf(to, "<br>%s</th>", bench->rows[i].camera);
-        }
-    fputs("</tr>\n<tr><th>method</th>", to);
-    for (size_t i = 0; i < bench->row_count; i++)
-        if (is_first_of_place(bench, i))
-            fprintf(to, "<th>ms</th><th>%s</th>", bench_column_name(bench->metric));
-    fputs("</tr>\n", to);
-    for (size_t m = 0; bench->methods[m]; m++)
-        print_glance_row(to, bench, bench->methods[m]);
-    fputs("</table>\n", to);
+    if (bench->suite->measures & BENCH_POPPING)
+        return BENCH_POPPING_P999;
+    if (!(bench->suite->measures & BENCH_ERROR))
+        return BENCH_DEVICE_MB;
+    return bench->metric == BENCH_COMPARISON ? BENCH_COMPARISON + 3 : BENCH_COMPARISON;
 }
+
+static void print_plots(FILE *to, const struct bench *bench, const struct bench_row *place)
+{
+    uint32_t second = second_column(bench);
+    if (!has_two_methods(bench, place))
+        return;
+    fputs("<div class=\"plots\">\n", to);
+    if (isfinite(place->values[bench->metric]))
+        bench_print_plot(to, bench, place, bench->metric);
+    if (isfinite(place->values[second]))
+        bench_print_plot(to, bench, place, second);
+    fputs("</div>\n", to);
+}
+
+static void print_place(FILE *to, const struct bench *bench, const struct bench_row *place)
+{
+    fputs("<section><h2>", to);
+    print_escaped(to, place->scene);
+    fputs(", ", to);
+    print_escaped(to, place->camera);
+    fprintf(to, "</h2>\n<p class=\"faint\">%.0f trees; ready in %.1f s.",
+            place->values[BENCH_TREES], place->values[BENCH_START_S]);
+    if (isfinite(place->values[BENCH_NOISE_FLIP]))
+        fprintf(to, " The reference's own noise: FLIP %.3f, %.2g %% of 16 x 16 blocks.",
+                place->values[BENCH_NOISE_FLIP], place->values[BENCH_NOISE_BLOCKS]);
+    fputs("</p>\n", to);
+    print_plots(to, bench, place);
+    print_table(to, bench, place);
+    bench_print_passes(to, bench, place);
+    print_strip(to, bench, place);
+    fputs("</section>\n", to);
+}
+
+/* --- all places at a glance ---------------------------------------------------------------- */
 
 static bool is_first_of_place(const struct bench *bench, size_t index)
 {
@@ -264,44 +229,93 @@ static bool is_first_of_place(const struct bench *bench, size_t index)
     return true;
 }
 
+static void print_glance_row(FILE *to, const struct bench *bench, const char *method, bool error)
+{
+    fprintf(to, "<tr><td class=\"m%u\">%s</td>", bench_method_color(bench, method), method);
+    for (size_t i = 0; i < bench->row_count; i++) {
+        const struct bench_row *place = &bench->rows[i], *row;
+        if (!is_first_of_place(bench, i))
+            continue;
+        row = bench_results_find(bench, place->scene, place->camera, method);
+        bool best = error && row && bench_is_best(bench, row, bench->metric);
+        print_value(to, row ? row->values[BENCH_FRAME_MS] : NAN, best);
+        if (error)
+            print_value(to, row ? row->values[bench->metric] : NAN, best);
+    }
+    fputs("</tr>\n", to);
+}
+
+static void print_glance(FILE *to, const struct bench *bench)
+{
+    bool error = column_used(bench, bench->metric);
+    char title[64];
+    bench_column_title(bench->metric, title);
+    fputs("<h3>At a glance</h3>\n<div class=\"wide\"><table><tr><th></th>", to);
+    for (size_t i = 0; i < bench->row_count; i++)
+        if (is_first_of_place(bench, i)) {
+            fprintf(to, "<th colspan=\"%d\">", error ? 2 : 1);
+            print_escaped(to, bench->rows[i].scene);
+            fprintf(to, "<br>%s</th>", bench->rows[i].camera);
+        }
+    fputs("</tr>\n<tr><th>method</th>", to);
+    for (size_t i = 0; i < bench->row_count; i++)
+        if (is_first_of_place(bench, i)) {
+            fputs("<th>ms</th>", to);
+            if (error)
+                fprintf(to, "<th class=\"text\">%s</th>", title);
+        }
+    fputs("</tr>\n", to);
+    for (size_t m = 0; bench->methods[m]; m++)
+        print_glance_row(to, bench, bench->methods[m], error);
+    fputs("</table></div>\n", to);
+    if (error)
+        fprintf(to, "<p class=\"faint\">Shaded: no other method is both faster and lower in %s."
+                    "</p>\n", title);
+}
+
+static void print_effort(FILE *to, const struct bench *bench)
+{
+    const struct bench_effort *effort = &bench->effort;
+    fprintf(to,
+            "<p class=\"faint\">Effort \"%s\". Times: medians of up to %u frames of %u x %u "
+            "pixels, one sample a pixel.",
+            effort->name, effort->frames, effort->width, effort->height);
+    if (bench->suite->measures & BENCH_ERROR)
+        fprintf(to,
+                " Errors: %u samples a pixel against %u traced paths a pixel, at %u x %u.",
+                effort->samples, effort->truth_samples, effort->truth_width, effort->truth_height);
+    if (bench->suite->measures & BENCH_POPPING)
+        fprintf(to,
+                " Popping: change between %u frames 0.25 m apart beyond the change of the "
+                "path-traced ones (%u paths a pixel), in blocks of 4 x 4 pixels, %u x %u in all.",
+                effort->steps, effort->step_samples, effort->step_width, effort->step_height);
+    fputs("</p>\n", to);
+}
+
 static void print_report(FILE *to, const struct bench *bench)
 {
     char *machine = bench_machine_text(bench);
+    const char *name = bench->suite->name;
     fprintf(to,
             "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-            "<title>weald bench: %s</title>\n<style>\n"
-            "body{font:15px/1.45 sans-serif;margin:2em;color:#222;max-width:110em}\n"
-            "table{border-collapse:collapse;font-size:13px;margin:1em 0}\n"
-            "th,td{padding:.2em .6em;border-bottom:1px solid #ddd;text-align:right}\n"
-            "th[colspan]{text-align:center}\n"
-            "td:first-child,th:first-child,.passes{text-align:left}\n.passes{font-size:11px}\n"
-            "svg text{font:12px sans-serif}\n.strip{display:flex;flex-wrap:wrap;gap:.7em}\n"
-            "figure{margin:0;width:240px}\nfigure img{width:240px;display:block}\n"
-            "figcaption{font-size:13px}\nsection{margin-top:3em}\nth{font-weight:600}\n"
-            "pre{background:#f4f4f2;padding:1em}\n</style></head><body>\n<h1>weald bench: %s</h1>\n"
-            "<p>%s. Effort: %s, %u x %u pixels, %u frames; errors against path-traced pictures of "
-            "%u samples a pixel.</p>\n<pre id=\"machine\">",
-            bench->suite->name, bench->suite->name, bench->suite->summary, bench->effort.name,
-            bench->effort.width, bench->effort.height, bench->effort.frames,
-            bench->suite->measures & BENCH_POPPING ? bench->effort.step_samples
-                                                   : bench->effort.truth_samples);
+            "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
+            "<title>weald bench: %s</title>\n<style>\n%s</style></head><body>\n<header><h1>weald bench: %s</h1>\n<p>%c%s.</p>\n",
+            name, BENCH_STYLE, name, bench->suite->summary[0] - 'a' + 'A', bench->suite->summary + 1);
+    print_effort(to, bench);
+    fputs("</header>\n<pre id=\"machine\">", to);
     print_escaped(to, machine);
     fputs("</pre>\n", to);
     free(machine);
     print_glance(to, bench);
-    for (size_t i = 0; i < bench->row_count; i++) {
-        const struct bench_row *row = &bench->rows[i];
-        if (!is_first_of_place(bench, i))
-            continue;
-        fputs("<section><h2>", to);
-        print_escaped(to, row->scene);
-        fprintf(to, ", %s</h2>\n<p>%.0f trees; ready in %.1f s.</p>\n", row->camera,
-                row->values[BENCH_TREES], row->values[BENCH_START_S]);
-        bench_print_plot(to, bench, row);
-        print_table(to, bench, row);
-        print_strip(to, bench, row);
-        fputs("</section>\n", to);
+    if (bench->suite->settings[0]) {
+        fputs("<h3>As trees become more</h3>\n<div class=\"plots\">\n", to);
+        bench_print_growth(to, bench, BENCH_FRAME_MS);
+        bench_print_growth(to, bench, BENCH_DEVICE_MB);
+        fputs("</div>\n", to);
     }
+    for (size_t i = 0; i < bench->row_count; i++)
+        if (is_first_of_place(bench, i))
+            print_place(to, bench, &bench->rows[i]);
     fputs("</body></html>\n", to);
 }
 

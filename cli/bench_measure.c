@@ -34,12 +34,14 @@ static void describe_passes(const struct wd_frame_stats *stats, struct bench_row
     size_t used = 0;
     for (uint32_t i = 0; i < stats->pass_count; i++) {
         const struct wd_pass_time *pass = &stats->passes[i];
+        if (pass->depth > 0)
+            continue;
         gpu_ms += pass->gpu_ms;
         cpu_ms += pass->cpu_ms;
         if (used < sizeof row->passes)
             used +=
                 (size_t)snprintf(row->passes + used, sizeof row->passes - used, "%s%s=%.3f+%.3f",
-                                 i ? ";" : "", pass->name, pass->gpu_ms, pass->cpu_ms);
+                                 used ? ";" : "", pass->name, pass->gpu_ms, pass->cpu_ms);
     }
     row->values[BENCH_GPU_MS] = gpu_ms;
     row->values[BENCH_CPU_MS] = cpu_ms;
@@ -82,12 +84,15 @@ enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_cam
         .samples = 1,
         .method = row->method,
     };
+    const double of_suite_s = stage->bench->suite->budget_s;
+    const double budget_s = of_suite_s > 0 ? fmin(of_suite_s, effort->budget_s) : effort->budget_s;
+    const uint32_t least = of_suite_s > 0 ? 1 : effort->least_frames;
     double frames[MAX_FRAMES], ignored, begin_s;
     uint32_t count = 0;
     enum wd_result result = draw(stage, &params, &ignored); /* warms up */
     begin_s = cli_seconds();
     while (result == WD_OK && count < effort->frames && count < MAX_FRAMES &&
-           (count < effort->least_frames || cli_seconds() - begin_s < effort->budget_s))
+           (count < least || cli_seconds() - begin_s < budget_s))
         result = draw(stage, &params, &frames[count++]);
     params.timing = WD_TIME_PASSES;
     if (result == WD_OK)
@@ -98,6 +103,7 @@ enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_cam
     row->values[BENCH_FRAME_MS] = bench_percentile(frames, count, 0.5);
     row->values[BENCH_FRAME_P95_MS] = bench_percentile(frames, count, 0.95);
     row->values[BENCH_FRAME_P99_MS] = bench_percentile(frames, count, 0.99);
+    row->values[BENCH_FRAMES] = count;
     return WD_OK;
 }
 
@@ -123,8 +129,9 @@ enum wd_result bench_truth(struct bench_stage *stage, const char *name,
     struct stat status;
     wd_forest_get_info(stage->forest, &info);
     char *path =
-        bench_path(bench, "reference/%s-%s-%016llx-%ux%u-%u.exr", stage->scene, name,
-                   (unsigned long long)info.hash, params->width, params->height, params->samples);
+        bench_path(bench, "reference/%s-%s-%016llx-%ux%u-%u-%u.exr", stage->scene, name,
+                   (unsigned long long)info.hash, params->width, params->height, params->samples,
+                   params->stream);
     enum wd_result result = WD_OK;
     if (stat(path, &status) == 0) {
         result = wd_picture_read_exr(picture, path, &bench->session->log);
@@ -181,6 +188,32 @@ static enum wd_result compare_pictures(struct bench_stage *stage, struct wd_pict
     return result;
 }
 
+/* The mean of two pictures of half the samples each. What either is away from that mean has the
+ * spread of what the mean is away from the truth. */
+static enum wd_result trace_halves(struct bench_stage *stage,
+                                   const struct wd_reference_picture_params *params,
+                                   struct wd_picture *truth, struct bench_row *row)
+{
+    struct wd_reference_picture_params half = *params;
+    struct wd_picture other = {0};
+    struct wd_comparison noise;
+    half.samples = (params->samples + 1) / 2;
+    enum wd_result result = bench_truth(stage, row->camera, &half, truth);
+    half.stream = 1;
+    if (result == WD_OK)
+        result = bench_truth(stage, row->camera, &half, &other);
+    for (size_t i = 0; result == WD_OK && i < (size_t)3 * params->width * params->height; i++)
+        truth->color[i] = 0.5f * (truth->color[i] + other.color[i]);
+    if (result == WD_OK)
+        result = wd_picture_compare(&noise, truth, &other, NULL, &stage->bench->session->log);
+    if (result == WD_OK) {
+        row->values[BENCH_NOISE_FLIP] = noise.flip;
+        row->values[BENCH_NOISE_BLOCKS] = noise.block_rmse_pct;
+    }
+    wd_picture_finish(&other);
+    return result;
+}
+
 enum wd_result bench_measure_error(struct bench_stage *stage, const struct wd_camera *camera,
                                    struct bench_row *row)
 {
@@ -201,7 +234,7 @@ enum wd_result bench_measure_error(struct bench_stage *stage, const struct wd_ca
         .layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID,
     };
     struct wd_picture truth = {0}, picture = {0};
-    enum wd_result result = bench_truth(stage, row->camera, &trace, &truth);
+    enum wd_result result = trace_halves(stage, &trace, &truth, row);
     if (result == WD_OK)
         result = wd_renderer_render(stage->renderer, &params, &picture);
     if (result == WD_OK)

@@ -1,21 +1,22 @@
-/* Plots of the report, as SVG: time across, error up, one dot a method; the best is at the lower
- * left. */
+/* Plots of the report, as SVG: time against error, one dot a method, the best at the lower left; and
+ * time or memory against trees, one line a method. Colours are the style sheet's. */
 #include "bench.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { WIDTH = 640, HEIGHT = 340, LEFT = 60, RIGHT = WIDTH - 20, TOP = 16, BOTTOM = HEIGHT - 44 };
-enum { LABELS_MAX = 32, LABEL_HEIGHT = 13, LETTER_WIDTH = 7 };
+enum { WIDTH = 620, HEIGHT = 350, LEFT = 58, RIGHT = WIDTH - 16, TOP = 22, BOTTOM = HEIGHT - 44 };
+enum { LABELS_MAX = 32, LABEL_HEIGHT = 14, LETTER_WIDTH = 7 };
 
-const char *bench_method_color(const struct bench *bench, const char *method)
+/* The same for a method in every report, whatever others it is measured with. */
+uint32_t bench_method_color(const struct bench *bench, const char *method)
 {
-    static const char *const colors[] = {"#1b6ca8", "#c8553d", "#4b8f29", "#8e44ad", "#b8860b",
-                                         "#0f8b8d", "#d81b60", "#5d6d7e", "#7f5539", "#111111"};
-    for (size_t i = 0; bench->methods[i]; i++)
-        if (strcmp(bench->methods[i], method) == 0)
-            return colors[i % (sizeof colors / sizeof *colors)];
-    return "#999999";
+    const char *const *names = wd_method_names();
+    uint32_t i = 0;
+    (void)bench;
+    while (names[i] && strcmp(names[i], method) != 0)
+        i++;
+    return i % 10;
 }
 
 bool bench_same_place(const struct bench_row *a, const struct bench_row *b)
@@ -23,33 +24,67 @@ bool bench_same_place(const struct bench_row *a, const struct bench_row *b)
     return !strcmp(a->scene, b->scene) && !strcmp(a->camera, b->camera);
 }
 
-/* --- scales
- * --------------------------------------------------------------------------------------- */
+bool bench_is_best(const struct bench *bench, const struct bench_row *row, uint32_t column)
+{
+    const double ms = row->values[BENCH_FRAME_MS], error = row->values[column];
+    for (size_t i = 0; i < bench->row_count; i++) {
+        const struct bench_row *other = &bench->rows[i];
+        const double *values = other->values;
+        if (bench_same_place(other, row) && values[BENCH_FRAME_MS] <= ms &&
+            values[column] <= error && (values[BENCH_FRAME_MS] < ms || values[column] < error))
+            return false;
+    }
+    return isfinite(ms) && isfinite(error);
+}
+
+/* --- scales -------------------------------------------------------------------------------- */
 
 struct scale {
     double low, high, from, to; /* values, and where they stand; a logarithmic scale holds log10s */
+    bool logarithmic;
 };
 
 static double place_on(const struct scale *scale, double value)
 {
+    if (scale->logarithmic)
+        value = log10(fmax(value, 1e-3));
     return scale->from +
            (value - scale->low) / (scale->high - scale->low) * (scale->to - scale->from);
 }
 
-static struct scale scale_of(const struct bench *bench, const struct bench_row *place,
-                             uint32_t column, bool logarithmic)
+/* Of the rows at `place`, or of all rows of that scene's name where the plot is about growth. */
+struct plot {
+    const struct bench *bench;
+    const struct bench_row *place; /* NULL: growth */
+    uint32_t x_column, y_column;
+    struct scale x, y;
+};
+
+/* Growth is of the suite's first scene, whose label has the setting behind a blank. */
+static bool is_of_plot(const struct plot *plot, const struct bench_row *row)
 {
-    struct scale scale = {.low = INFINITY, .high = -INFINITY};
-    for (size_t i = 0; i < bench->row_count; i++) {
-        double value = bench->rows[i].values[column];
-        if (!bench_same_place(&bench->rows[i], place) || !isfinite(value))
+    if (!isfinite(row->values[plot->x_column]) || !isfinite(row->values[plot->y_column]))
+        return false;
+    if (plot->place)
+        return bench_same_place(row, plot->place);
+    const char *scene = plot->bench->suite->scenes[0];
+    size_t length = strlen(scene);
+    return strncmp(row->scene, scene, length) == 0 && row->scene[length] == ' ';
+}
+
+static struct scale scale_of(const struct plot *plot, uint32_t column, bool logarithmic)
+{
+    struct scale scale = {.low = INFINITY, .high = -INFINITY, .logarithmic = logarithmic};
+    for (size_t i = 0; i < plot->bench->row_count; i++) {
+        double value = plot->bench->rows[i].values[column];
+        if (!is_of_plot(plot, &plot->bench->rows[i]))
             continue;
         value = logarithmic ? log10(fmax(value, 1e-3)) : value;
         scale.low = fmin(scale.low, value);
         scale.high = fmax(scale.high, value);
     }
     double room =
-        logarithmic ? 0.12 : 0.1 * (scale.high - scale.low) + 0.02 * fabs(scale.high) + 1e-9;
+        logarithmic ? 0.15 : 0.12 * (scale.high - scale.low) + 0.01 * fabs(scale.high) + 1e-9;
     bool positive = scale.low >= 0;
     scale.low -= room;
     scale.high += room;
@@ -68,33 +103,40 @@ static double step_of(double range)
                                  : 10 * power;
 }
 
-static void print_times(FILE *to, const struct scale *x)
+static void print_line(FILE *to, const struct plot *plot, const struct scale *scale, double value)
+{
+    double at = place_on(scale, value), size = fabs(value);
+    const char *unit = size >= 1e9 ? " G" : size >= 1e6 ? " M" : size >= 1e4 ? " k" : "";
+    double number = value / (size >= 1e9 ? 1e9 : size >= 1e6 ? 1e6 : size >= 1e4 ? 1e3 : 1);
+    if (scale == &plot->x)
+        fprintf(to,
+                "<path class=\"grid\" d=\"M%.1f %d V%d\"/><text x=\"%.1f\" y=\"%d\" "
+                "text-anchor=\"middle\">%.4g%s</text>\n",
+                at, TOP, BOTTOM, at, BOTTOM + 17, number, unit);
+    else
+        fprintf(to,
+                "<path class=\"grid\" d=\"M%d %.1f H%d\"/><text x=\"%d\" y=\"%.1f\" "
+                "text-anchor=\"end\">%.4g%s</text>\n",
+                LEFT, at, RIGHT, LEFT - 7, at + 4, number, unit);
+}
+
+/* Lines at 1, 2 and 5 times powers of ten; where they would crowd, at the powers alone. */
+static void print_axis(FILE *to, const struct plot *plot, const struct scale *scale)
 {
     static const int lines[] = {1, 2, 5};
-    for (int power = -1; power <= 6; power++)
-        for (size_t i = 0; i < 3; i++) {
-            double value = lines[i] * pow(10, power), at = place_on(x, log10(value));
-            if (at < LEFT || at > RIGHT)
-                continue;
-            fprintf(to, "<path d=\"M%.1f %d V%d\" stroke=\"#e4e4e4\"/>", at, TOP, BOTTOM);
-            fprintf(to, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%g</text>\n", at,
-                    BOTTOM + 16, value);
+    double range = scale->high - scale->low, step = step_of(range);
+    for (int power = -3; scale->logarithmic && power <= 12; power++)
+        for (size_t i = 0; i < (range > 2.5 ? 1 : 3); i++) {
+            double value = lines[i] * pow(10, power);
+            if (log10(value) > scale->low && log10(value) < scale->high)
+                print_line(to, plot, scale, value);
         }
+    for (double value = ceil(scale->low / step) * step;
+         !scale->logarithmic && value <= scale->high; value += step)
+        print_line(to, plot, scale, fabs(value) < step * 1e-6 ? 0 : value);
 }
 
-static void print_errors(FILE *to, const struct scale *y)
-{
-    double step = step_of(y->high - y->low);
-    for (double value = ceil(y->low / step) * step; value <= y->high; value += step) {
-        double at = place_on(y, value);
-        fprintf(to, "<path d=\"M%d %.1f H%d\" stroke=\"#e4e4e4\"/>", LEFT, at, RIGHT);
-        fprintf(to, "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.4g</text>\n", LEFT - 6, at + 4,
-                fabs(value) < step * 1e-6 ? 0 : value);
-    }
-}
-
-/* --- labels
- * --------------------------------------------------------------------------------------- */
+/* --- labels -------------------------------------------------------------------------------- */
 
 struct label {
     double x, y, width; /* left end of its middle line */
@@ -114,76 +156,181 @@ static bool is_free(const struct labels *labels, const struct label *label)
             return false;
     }
     return label->x >= LEFT && label->x + label->width <= WIDTH && label->y > TOP - 4 &&
-           label->y < BOTTOM;
+           label->y < BOTTOM - 4;
 }
 
 /* Beside the dot, or as near above or below it as there is room. */
 static struct label find_room(const struct labels *labels, double x, double y, size_t letters)
 {
-    struct label best = {x + 10, y, (double)letters * LETTER_WIDTH};
-    for (int i = 0; i < 24; i++) {
+    struct label best = {x + 11, y, (double)letters * LETTER_WIDTH};
+    for (int i = 0; i < 32; i++) {
         struct label label = best;
         label.y = y + (i / 2 % 2 ? 1 : -1) * ((i / 2 + 1) / 2) * LABEL_HEIGHT * 0.8;
-        label.x = i % 2 ? x - 10 - label.width : x + 10;
+        label.x = i % 2 ? x - 11 - label.width : x + 11;
         if (is_free(labels, &label))
             return label;
     }
     return best;
 }
 
-static void print_dot(FILE *to, const char *name, const char *color, double x, double y,
-                      struct labels *labels)
+static void add_label(struct labels *labels, struct label label)
 {
-    struct label label = find_room(labels, x, y, strlen(name));
-    double end = label.x > x ? label.x - 1 : label.x + label.width + 1;
-    fprintf(to, "<path d=\"M%.1f %.1f L%.1f %.1f\" stroke=\"%s\" stroke-opacity=\".5\"/>", x, y,
-            end, label.y, color);
-    fprintf(to, "<circle class=\"method\" cx=\"%.1f\" cy=\"%.1f\" r=\"6\" fill=\"%s\"/>", x, y,
-            color);
-    fprintf(to, "<text x=\"%.1f\" y=\"%.1f\" fill=\"%s\">%s</text>\n", label.x, label.y + 4, color,
-            name);
     if (labels->count < LABELS_MAX)
         labels->items[labels->count++] = label;
 }
 
-/* Other labels keep off the dots. */
-static void keep_off(struct labels *labels, double x, double y)
+static void print_label(FILE *to, const struct plot *plot, const struct bench_row *row, double x,
+                        double y, struct labels *labels)
 {
-    if (labels->count < LABELS_MAX)
-        labels->items[labels->count++] = (struct label){x - 6, y, 12};
+    struct label label = find_room(labels, x, y, strlen(row->method));
+    double end = label.x > x ? label.x - 1 : label.x + label.width + 1;
+    uint32_t color = bench_method_color(plot->bench, row->method);
+    fprintf(to,
+            "<g class=\"m%u\"><path class=\"lead\" d=\"M%.1f %.1f L%.1f %.1f\"/>"
+            "<text x=\"%.1f\" y=\"%.1f\">%s</text></g>\n",
+            color, x, y, end, label.y, label.x, label.y + 4, row->method);
+    add_label(labels, label);
 }
 
-void bench_print_plot(FILE *to, const struct bench *bench, const struct bench_row *place)
+/* --- what is plotted ----------------------------------------------------------------------- */
+
+static void print_frame(FILE *to, const struct plot *plot, const char *across)
 {
-    uint32_t column = isfinite(place->values[bench->metric]) ? bench->metric : BENCH_DEVICE_MB;
-    struct scale x = scale_of(bench, place, BENCH_FRAME_MS, true);
-    struct scale y = scale_of(bench, place, column, false);
-    struct labels labels = {.count = 0};
-    if (!(x.high > x.low) || !(y.high > y.low))
+    char title[64];
+    bench_column_title(plot->y_column, title);
+    fprintf(to, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s\">\n", WIDTH,
+            HEIGHT, title);
+    print_axis(to, plot, &plot->x);
+    print_axis(to, plot, &plot->y);
+    fprintf(to, "<path class=\"axis\" d=\"M%d %dV%dH%d\"/>\n", LEFT, TOP, BOTTOM, RIGHT);
+    fprintf(to, "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%s</text>", RIGHT, HEIGHT - 8, across);
+    fprintf(to, "<text class=\"title\" x=\"%d\" y=\"%d\">%s</text>\n", 4, 12, title);
+}
+
+static const struct bench_row *next_faster(const struct plot *plot, double above_ms)
+{
+    const struct bench_row *next = NULL;
+    for (size_t i = 0; i < plot->bench->row_count; i++) {
+        const struct bench_row *row = &plot->bench->rows[i];
+        double ms = row->values[BENCH_FRAME_MS];
+        if (is_of_plot(plot, row) && ms > above_ms &&
+            bench_is_best(plot->bench, row, plot->y_column) &&
+            (!next || ms < next->values[BENCH_FRAME_MS]))
+            next = row;
+    }
+    return next;
+}
+
+static void print_best(FILE *to, const struct plot *plot)
+{
+    const struct bench_row *row = next_faster(plot, -1);
+    char command = 'M';
+    fprintf(to, "<path class=\"best\" d=\"");
+    for (; row; row = next_faster(plot, row->values[BENCH_FRAME_MS])) {
+        fprintf(to, "%c%.1f %.1f", command, place_on(&plot->x, row->values[plot->x_column]),
+                place_on(&plot->y, row->values[plot->y_column]));
+        command = 'L';
+    }
+    fprintf(to, "\"/>\n");
+}
+
+static void print_noise(FILE *to, const struct plot *plot)
+{
+    uint32_t column = plot->y_column == BENCH_COMPARISON       ? BENCH_NOISE_FLIP
+                      : plot->y_column == BENCH_COMPARISON + 3 ? BENCH_NOISE_BLOCKS
+                                                               : BENCH_COLUMNS;
+    double noise = column < BENCH_COLUMNS ? plot->place->values[column] : NAN;
+    if (!(noise > plot->y.low && noise < plot->y.high))
         return;
-    x.from = LEFT, x.to = RIGHT;
-    y.from = BOTTOM, y.to = TOP;
-    fprintf(to, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" width=\"%d\" height=\"%d\">\n", WIDTH,
-            HEIGHT, WIDTH, HEIGHT);
-    print_times(to, &x);
-    print_errors(to, &y);
-    fprintf(to, "<path d=\"M%d %dV%dH%d\" fill=\"none\" stroke=\"#555\"/>\n", LEFT, TOP, BOTTOM,
-            RIGHT);
-    fprintf(to, "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">median frame, ms</text>", WIDTH / 2,
-            HEIGHT - 8);
-    fprintf(to, "<text x=\"%d\" y=\"%d\">%s</text>\n", LEFT + 6, TOP + 4,
-            bench_column_name(column));
+    double at = place_on(&plot->y, noise);
+    fprintf(to,
+            "<path class=\"noise\" d=\"M%d %.1fH%d\"/><text class=\"faint\" x=\"%d\" y=\"%.1f\" "
+            "text-anchor=\"end\">the reference's own noise</text>\n",
+            LEFT, at, RIGHT, RIGHT - 4, at - 5);
+}
+
+/* Dots first, as labels keep off them. */
+static void print_dots(FILE *to, const struct plot *plot)
+{
+    struct labels labels = {.count = 0};
     for (int pass = 0; pass < 2; pass++)
-        for (size_t i = 0; i < bench->row_count; i++) {
-            const struct bench_row *row = &bench->rows[i];
-            double cx = place_on(&x, log10(fmax(row->values[BENCH_FRAME_MS], 1e-3)));
-            double cy = place_on(&y, row->values[column]);
-            if (!bench_same_place(row, place) || !isfinite(row->values[column]))
+        for (size_t i = 0; i < plot->bench->row_count; i++) {
+            const struct bench_row *row = &plot->bench->rows[i];
+            if (!is_of_plot(plot, row))
                 continue;
-            if (pass == 0)
-                keep_off(&labels, cx, cy);
-            else
-                print_dot(to, row->method, bench_method_color(bench, row->method), cx, cy, &labels);
+            double x = place_on(&plot->x, row->values[plot->x_column]);
+            double y = place_on(&plot->y, row->values[plot->y_column]);
+            if (pass == 1) {
+                print_label(to, plot, row, x, y, &labels);
+                continue;
+            }
+            add_label(&labels, (struct label){x - 6, y, 12});
+            fprintf(to,
+                    "<circle class=\"method m%u\" cx=\"%.1f\" cy=\"%.1f\" r=\"5.5\"><title>%s: "
+                    "%.4g, %.4g</title></circle>\n",
+                    bench_method_color(plot->bench, row->method), x, y, row->method,
+                    row->values[plot->x_column], row->values[plot->y_column]);
         }
+}
+
+void bench_print_plot(FILE *to, const struct bench *bench, const struct bench_row *place,
+                      uint32_t column)
+{
+    struct plot plot = {bench, place, BENCH_FRAME_MS, column, {0}, {0}};
+    plot.x = scale_of(&plot, BENCH_FRAME_MS, true);
+    plot.y = scale_of(&plot, column, false);
+    if (!(plot.x.high > plot.x.low) || !(plot.y.high > plot.y.low))
+        return;
+    plot.x.from = LEFT, plot.x.to = RIGHT;
+    plot.y.from = BOTTOM, plot.y.to = TOP;
+    print_frame(to, &plot, "median frame, ms");
+    print_noise(to, &plot);
+    print_best(to, &plot);
+    print_dots(to, &plot);
+    fprintf(to, "</svg>\n");
+}
+
+/* A method's line through its rows, which stand in the order of growing scenes, and its name at the end. */
+static void print_growth_line(FILE *to, const struct plot *plot, const char *method,
+                              struct labels *labels)
+{
+    const struct bench_row *last = NULL;
+    uint32_t color = bench_method_color(plot->bench, method);
+    fprintf(to, "<path class=\"growth m%u\" d=\"", color);
+    for (size_t i = 0; i < plot->bench->row_count; i++) {
+        const struct bench_row *row = &plot->bench->rows[i];
+        if (strcmp(row->method, method) != 0 || !is_of_plot(plot, row))
+            continue;
+        fprintf(to, "%c%.1f %.1f", last ? 'L' : 'M', place_on(&plot->x, row->values[plot->x_column]),
+                place_on(&plot->y, row->values[plot->y_column]));
+        last = row;
+    }
+    fprintf(to, "\"/>\n");
+    for (size_t i = 0; i < plot->bench->row_count; i++) {
+        const struct bench_row *row = &plot->bench->rows[i];
+        if (!strcmp(row->method, method) && is_of_plot(plot, row))
+            fprintf(to, "<circle class=\"method m%u\" cx=\"%.1f\" cy=\"%.1f\" r=\"4\"/>", color,
+                    place_on(&plot->x, row->values[plot->x_column]),
+                    place_on(&plot->y, row->values[plot->y_column]));
+    }
+    if (last)
+        print_label(to, plot, last, place_on(&plot->x, last->values[plot->x_column]),
+                    place_on(&plot->y, last->values[plot->y_column]), labels);
+}
+
+void bench_print_growth(FILE *to, const struct bench *bench, uint32_t column)
+{
+    struct plot plot = {bench, NULL, BENCH_TREES, column, {0}, {0}};
+    struct labels labels = {.count = 0};
+    plot.x = scale_of(&plot, BENCH_TREES, true);
+    plot.y = scale_of(&plot, column, true);
+    if (!(plot.x.high > plot.x.low) || !(plot.y.high > plot.y.low))
+        return;
+    plot.x.high += 0.12 * (plot.x.high - plot.x.low); /* for the names */
+    plot.x.from = LEFT, plot.x.to = RIGHT;
+    plot.y.from = BOTTOM, plot.y.to = TOP;
+    print_frame(to, &plot, "trees");
+    for (size_t i = 0; bench->methods[i]; i++)
+        print_growth_line(to, &plot, bench->methods[i], &labels);
     fprintf(to, "</svg>\n");
 }

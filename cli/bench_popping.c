@@ -7,15 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK = 4 };
+enum { BLOCK = 4, LEAST_BLOCKS = 6 }; /* of a tree, for its step to be more than noise */
 
 /* Levels as WD_VIEW_LOD colours them: bits of what of a tree shows in a block. */
 enum level { FULL = 1, REDUCED = 2, BILLBOARD = 4, CANOPY = 8 };
+enum { CANOPY_BOUNDARY = BENCH_BOUNDARIES - 1 };
 
-/* What of its nearest tree a block shows. */
+/* What a block shows. */
 struct seen {
-    uint32_t tree; /* 0: none, or several */
-    uint32_t levels;
+    uint32_t tree;   /* that fills most of it; 0: none does */
+    uint32_t levels; /* of that tree */
+    uint32_t any;    /* levels of all its trees, if they fill most of it; else 0 */
 };
 
 /* One frame in blocks. */
@@ -80,7 +82,7 @@ static struct seen see_block(const struct wd_picture *levels, uint32_t column, u
     for (uint32_t i = 0; i < BLOCK * BLOCK && pixels <= BLOCK * BLOCK / 2; i++) {
         size_t first =
             (size_t)(row * BLOCK + i / BLOCK) * levels->width + column * BLOCK + i % BLOCK;
-        seen = (struct seen){levels->tree_id[first], 0};
+        seen = (struct seen){.tree = levels->tree_id[first]};
         pixels = 0;
         for (uint32_t k = 0; k < BLOCK * BLOCK; k++) {
             size_t at =
@@ -94,11 +96,28 @@ static struct seen see_block(const struct wd_picture *levels, uint32_t column, u
     return pixels > BLOCK * BLOCK / 2 ? seen : (struct seen){0};
 }
 
+/* The far canopy shows a tree by lot in each pixel: no tree fills a block of it. */
+static uint32_t see_any(const struct wd_picture *levels, uint32_t column, uint32_t row)
+{
+    uint32_t pixels = 0, any = 0;
+    for (uint32_t k = 0; k < BLOCK * BLOCK; k++) {
+        size_t at = (size_t)(row * BLOCK + k / BLOCK) * levels->width + column * BLOCK + k % BLOCK;
+        if (levels->tree_id[at] == 0)
+            continue;
+        pixels++;
+        any |= level_of(levels->color + 3 * at);
+    }
+    return pixels > BLOCK * BLOCK / 2 ? any : 0;
+}
+
 static void see_blocks(const struct wd_picture *levels, const struct popping *popping,
                        struct seen *seen)
 {
-    for (uint32_t i = 0; i < popping->columns * popping->rows; i++)
-        seen[i] = see_block(levels, i % popping->columns, i / popping->columns);
+    for (uint32_t i = 0; i < popping->columns * popping->rows; i++) {
+        uint32_t column = i % popping->columns, row = i / popping->columns;
+        seen[i] = see_block(levels, column, row);
+        seen[i].any = see_any(levels, column, row);
+    }
 }
 
 /* --- steps
@@ -132,58 +151,67 @@ static void popping_finish(struct popping *popping)
     free(popping->excess);
 }
 
-/* The boundary whose both sides a tree shows in two frames one after the other, or
- * BENCH_BOUNDARIES. */
+/* The boundary whose both sides a block shows in two frames one after the other, or
+ * BENCH_BOUNDARIES: of one tree, or between trees and far canopy. */
 static int boundary_of(const struct seen *before, const struct seen *now)
 {
-    static const uint32_t sides[BENCH_BOUNDARIES] = {FULL | REDUCED, REDUCED | BILLBOARD,
-                                                     FULL | BILLBOARD, BILLBOARD | CANOPY};
+    static const uint32_t sides[CANOPY_BOUNDARY] = {FULL | REDUCED, REDUCED | BILLBOARD,
+                                                    FULL | BILLBOARD};
     uint32_t levels = before->levels | now->levels;
     int boundary = 0;
+    if (before->any && now->any && (before->any | now->any) == (BILLBOARD | CANOPY))
+        return CANOPY_BOUNDARY;
     if (!now->tree || before->tree != now->tree)
         return BENCH_BOUNDARIES;
-    while (boundary < BENCH_BOUNDARIES && levels != sides[boundary])
+    while (boundary < CANOPY_BOUNDARY && levels != sides[boundary])
         boundary++;
-    return boundary;
+    return boundary < CANOPY_BOUNDARY ? boundary : BENCH_BOUNDARIES;
 }
 
-/* Mean excess of a tree's blocks that cross a boundary: noise of single blocks averages out. */
-static void add_tree(struct popping *popping, uint32_t tree, int boundary, const double *excess)
+/* How much more block `i` changed between the two frames than the truth's; below 0: less. */
+static double excess_of(const struct popping *popping, size_t i)
+{
+    const struct frame *a = &popping->frames[0], *b = &popping->frames[1];
+    return fabs(b->drawn[i] - a->drawn[i]) - fabs(b->truth[i] - a->truth[i]);
+}
+
+/* Mean excess of a tree's blocks that cross a boundary, or of all that turn to canopy: noise of
+ * single blocks averages out. */
+static void add_tree(struct popping *popping, uint32_t tree, int boundary)
 {
     const struct seen *before = popping->frames[0].seen, *now = popping->frames[1].seen;
     uint32_t count = 0;
     double sum = 0;
     for (size_t i = 0; i < (size_t)popping->columns * popping->rows; i++)
-        if (now[i].tree == tree && boundary_of(&before[i], &now[i]) == boundary) {
-            sum += excess[i];
+        if ((boundary == CANOPY_BOUNDARY || now[i].tree == tree) &&
+            boundary_of(&before[i], &now[i]) == boundary) {
+            sum += excess_of(popping, i);
             count++;
         }
-    if (count > 0)
+    if (count >= LEAST_BLOCKS)
         popping->step[boundary] = fmax(popping->step[boundary], sum / count);
 }
 
-static void add_crossings(struct popping *popping, const double *excess)
+static void add_crossings(struct popping *popping)
 {
     const struct seen *before = popping->frames[0].seen, *now = popping->frames[1].seen;
     uint32_t last_tree = 0;
     int last = BENCH_BOUNDARIES;
     for (size_t i = 0; i < (size_t)popping->columns * popping->rows; i++) {
         int boundary = boundary_of(&before[i], &now[i]);
-        if (boundary < BENCH_BOUNDARIES && (now[i].tree != last_tree || boundary != last))
-            add_tree(popping, last_tree = now[i].tree, last = boundary, excess);
+        bool same = boundary == last && (now[i].tree == last_tree || boundary == CANOPY_BOUNDARY);
+        if (boundary < BENCH_BOUNDARIES && !same)
+            add_tree(popping, last_tree = now[i].tree, last = boundary);
     }
 }
 
 static void add_step(struct popping *popping, uint32_t step)
 {
-    const struct frame *now = &popping->frames[step % 2], *before = &popping->frames[1 - step % 2];
-    double *excess = popping->excess + popping->count;
     if (step == 0)
         return;
     for (size_t i = 0; i < (size_t)popping->columns * popping->rows; i++)
-        popping->excess[popping->count++] = fmax(
-            fabs(now->drawn[i] - before->drawn[i]) - fabs(now->truth[i] - before->truth[i]), 0);
-    add_crossings(popping, excess);
+        popping->excess[popping->count++] = fmax(excess_of(popping, i), 0);
+    add_crossings(popping);
 }
 
 /* A slow walk ahead: half a degree of change a frame for things 25 m to the side. */

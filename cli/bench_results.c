@@ -11,15 +11,18 @@
 const char *bench_column_name(uint32_t column)
 {
     static const char *const names[] = {
-        "trees", "start_s", "frame_ms", "frame_p95_ms", "frame_p99_ms", "gpu_ms", "cpu_ms",
-        "draw_calls", "triangles", "device_mb", "host_peak_mb"};
+        "trees", "start_s", "frame_ms", "frame_p95_ms", "frame_p99_ms", "frames", "gpu_ms",
+        "cpu_ms", "draw_calls", "triangles", "device_mb", "host_peak_mb"};
+    static const char *const noise[] = {"noise_flip", "noise_block_rmse_pct"};
     static const char *const popping[] = {
         "popping_mean_pct", "popping_p999_pct", "popping_step_pct", "step_full_reduced_pct",
         "step_reduced_billboard_pct", "step_full_billboard_pct", "step_billboard_canopy_pct"};
     if (column < BENCH_COMPARISON)
         return names[column];
-    if (column < BENCH_POPPING_MEAN)
+    if (column < BENCH_NOISE_FLIP)
         return wd_comparison_names()[column - BENCH_COMPARISON];
+    if (column < BENCH_POPPING_MEAN)
+        return noise[column - BENCH_NOISE_FLIP];
     return popping[column - BENCH_POPPING_MEAN];
 }
 

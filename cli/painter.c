@@ -69,7 +69,8 @@ static void print_passes(const struct wd_renderer *renderer)
     wd_renderer_get_stats(renderer, &stats);
     printf("%-16s %10s %10s   (one sample)\n", "pass", "GPU ms", "CPU ms");
     for (uint32_t i = 0; i < stats.pass_count; i++)
-        printf("%-16s %10.2f %10.2f\n", stats.passes[i].name, stats.passes[i].gpu_ms,
+        printf("%*s%-*s %10.2f %10.2f\n", 2 * (int)stats.passes[i].depth, "",
+               16 - 2 * (int)stats.passes[i].depth, stats.passes[i].name, stats.passes[i].gpu_ms,
                stats.passes[i].cpu_ms);
     printf("%-16s %10.2f\n", "whole frame", stats.frame_ms);
     if (stats.discs)

@@ -31,6 +31,7 @@ struct wd_reference_picture_params {
     uint32_t samples;       /* paths a pixel; 0: 64 */
     uint32_t bounces;       /* times that light is scattered; 0: 8 */
     uint32_t layers;        /* wd_layer_bits wanted, all but velocity; 0: display */
+    uint32_t stream;        /* pictures of other streams, else alike, have noise of their own */
     const char *checkpoint; /* a file that holds an unfinished picture: taken up if it is there,
                                written when stopped and now and then, removed at the end; NULL: none */
 };

@@ -130,6 +130,7 @@ struct wd_pass_time {
     const char *name; /* "shadow", "trees", "terrain", "light", ... */
     double gpu_ms;    /* 0 without WD_TIME_PASSES */
     double cpu_ms;
+    uint32_t depth;   /* 0: a pass; more: a part of the pass before it, whose time holds its own */
 };
 struct wd_frame_stats {
     double frame_ms; /* wall clock of one sample from begin to finished */

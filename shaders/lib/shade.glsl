@@ -245,6 +245,9 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 within = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
     vec3 sunlit = within * place.sides.x + transmitted * place.sides.y + place.gloss;
     wd_around around = light_around(place.normal, shelter, ground_share);
+    /* Upright ground is where the world is cut off: before it lies bright haze, as the path tracer has it. */
+    if (pixel.surface == 0u && abs(pixel.normal.z) < 0.01)
+        around.front += 0.5 * frame.sky_irradiance;
     vec3 skylit = around.front * (within + 1.6 * WAX * place.waxed) + around.back * transmitted;
     vec3 light = frame.sun_irradiance * sun_share * sunlit + skylit;
     return light * PER_PI;

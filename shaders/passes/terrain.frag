@@ -71,7 +71,7 @@ void main()
     if (in_curtain > 0.0) {
         look.albedo = frame.soil * (0.75 + 0.25 * cos(in_rel.z * 1.3));
         look.normal = curtain_normal();
-        look.openness = 0.5;
+        look.openness = 1.0;
     }
     out_albedo = vec4(look.albedo, look.openness);
     out_normal = vec4(look.normal * 0.5 + 0.5, float(WD_MATERIAL_GROUND) / 3.0);

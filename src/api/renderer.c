@@ -193,18 +193,18 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
 }
 
 /* The pass to count a scope in: one of the same name within the same scope, or a new one. */
-static struct wd_pass_time *pass_of(struct wd_renderer *renderer, uint32_t depths[WD_MAX_PASSES],
+static struct wd_pass_time *pass_of(struct wd_renderer *renderer,
                                     const struct wd_scope_time *scope)
 {
-    for (uint32_t i = renderer->pass_count; i-- > 0 && depths[i] >= scope->depth;) {
-        if (depths[i] == scope->depth && !strcmp(renderer->passes[i].name, scope->name))
-            return &renderer->passes[i];
+    for (uint32_t i = renderer->pass_count; i-- > 0 && renderer->passes[i].depth >= scope->depth;) {
+        struct wd_pass_time *pass = &renderer->passes[i];
+        if (pass->depth == scope->depth && !strcmp(pass->name, scope->name))
+            return pass;
     }
     if (renderer->pass_count == WD_MAX_PASSES)
         return NULL;
-    depths[renderer->pass_count] = scope->depth;
     struct wd_pass_time *pass = &renderer->passes[renderer->pass_count++];
-    *pass = (struct wd_pass_time){.name = scope->name};
+    *pass = (struct wd_pass_time){.name = scope->name, .depth = scope->depth};
     return pass;
 }
 
@@ -212,11 +212,10 @@ static struct wd_pass_time *pass_of(struct wd_renderer *renderer, uint32_t depth
 void wd_renderer_keep_times(struct wd_renderer *renderer)
 {
     const struct wd_frames *ring = &renderer->frame.ring;
-    uint32_t depths[WD_MAX_PASSES];
     renderer->pass_count = 0;
     for (uint32_t i = 0; i < ring->last_scope_count; i++) {
         const struct wd_scope_time *scope = &ring->last_scopes[i];
-        struct wd_pass_time *pass = pass_of(renderer, depths, scope);
+        struct wd_pass_time *pass = pass_of(renderer, scope);
         if (!pass)
             continue;
         pass->gpu_ms += scope->gpu_us * 1e-3;

@@ -106,7 +106,7 @@ static void trace_pixel(struct pass *pass, uint32_t x, uint32_t y, uint32_t from
     const struct wd_trace_view *view = &pass->job->view;
     float *sum = pass->sums->radiance + 3 * ((size_t)y * view->width + x);
     for (uint32_t i = from; i < pass->target; i++) {
-        struct wd_sampler sampler = wd_sampler_of(x, y, i);
+        struct wd_sampler sampler = wd_sampler_of(x, y, pass->job->stream, i);
         float place[2];
         wd_sampler_next(&sampler, place);
         struct wd_vec3 ray = view_ray(view, (float)x + place[0], (float)y + place[1]);

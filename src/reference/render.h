@@ -33,6 +33,7 @@ struct wd_trace_job {
     const struct wd_tracer *tracer;
     struct wd_trace_view view;
     unsigned threads;
+    uint32_t stream; /* of random numbers */
     const struct wd_progress *progress; /* stage "samples" */
     struct wd_trace_counts counts;      /* added to */
     bool stopped;                       /* the progress asked to stop */

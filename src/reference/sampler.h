@@ -12,9 +12,12 @@ struct wd_sampler {
     uint32_t dimension;
 };
 
-static inline struct wd_sampler wd_sampler_of(uint32_t x, uint32_t y, uint32_t index)
+/* Points of two streams have nothing in common. */
+static inline struct wd_sampler wd_sampler_of(uint32_t x, uint32_t y, uint32_t stream,
+                                              uint32_t index)
 {
-    return (struct wd_sampler){wd_hash2(x, y), index, 0};
+    uint32_t pixel = wd_hash2(x, y);
+    return (struct wd_sampler){stream ? wd_hash2(pixel, stream) : pixel, index, 0};
 }
 
 static inline uint32_t wd_reverse_bits(uint32_t x)

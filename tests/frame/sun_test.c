@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "world/sun.h"
+#include "shared/air.h"
 #include "frame/sun_field.h"
 #include "shared/hash.h"
 #include "shared/wind.h"
@@ -72,6 +73,35 @@ static void test_nightfall(void **state)
     assert_true(moonlight > 1e-7f && moonlight < before);
     assert_true(night.sun_direction[2] > 0 && night.sun_direction[0] > 0); /* across from the sun */
     assert_true(night.sky_irradiance[2] > night.sky_irradiance[0]);
+}
+
+/* Irradiance of a wall that faces a unit vector level with the ground: summed up over the sky. */
+static float wall_summed(const struct wd_frame_uniforms *frame, float x, float y)
+{
+    enum { STEPS = 96 };
+    double sum = 0;
+    for (int i = 0; i < STEPS * STEPS; i++) {
+        float rise = ((float)(i / STEPS) + 0.5f) / STEPS, across = sqrtf(1 - rise * rise);
+        float turn = ((float)(i % STEPS) + 0.5f) * (6.2831853f / STEPS);
+        struct wd_vec3 toward = {across * cosf(turn), across * sinf(turn), rise};
+        float facing = toward.x * x + toward.y * y;
+        if (facing > 0)
+            sum += (double)(facing * wd_sky_toward(frame, toward).y);
+    }
+    return (float)(sum * 6.2831853 / (STEPS * STEPS));
+}
+
+/* Shading's polynomial keeps to the sum on every side of a wall, also that turned from the sun. */
+static void test_walls(void **state)
+{
+    (void)state;
+    for (int elevation = 5; elevation <= 75; elevation += 10)
+        for (int turn = 0; turn <= 180; turn += 30) {
+            struct wd_frame_uniforms u = sun_at(90 - turn, elevation);
+            float told = u.sky_form[0][1] + u.sky_form[8][1] + u.sky_form[1][1];
+            float summed = wall_summed(&u, 1, 0);
+            assert_true(told > 0.93f * summed && told < 1.15f * summed);
+        }
 }
 
 /* The horizon's glow takes up where the sky ends. */
@@ -165,7 +195,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_direction), cmocka_unit_test(test_sun_and_sky),
         cmocka_unit_test(test_nightfall), cmocka_unit_test(test_horizon),
-        cmocka_unit_test(test_sun_field), cmocka_unit_test(test_wind),
+        cmocka_unit_test(test_sun_field), cmocka_unit_test(test_wind), cmocka_unit_test(test_walls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

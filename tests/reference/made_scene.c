@@ -110,7 +110,7 @@ struct wd_vec3 made_scene_look(const struct made_scene *made, struct wd_vec3 dir
     struct wd_vec3 sum = {0};
     for (uint32_t i = 0; i < samples; i++) {
         struct wd_vec3 radiance = wd_path_radiance(&made->tracer, WD_V3(0, 0, 0), wd_v3_unit(direction),
-                                                   wd_sampler_of(3, 7, i), &counts);
+                                                   wd_sampler_of(3, 7, 0, i), &counts);
         sum = wd_v3_mad(sum, radiance, 1 / (float)samples);
     }
     assert_int_equal(counts.self_hits, 0);

@@ -229,7 +229,7 @@ static void test_sampler(void **state)
     for (uint32_t dimension = 0; dimension < 5; dimension++) {
         unsigned squares = 0, strips = 0;
         for (uint32_t i = 32; i < 48; i++) {
-            struct wd_sampler sampler = wd_sampler_of(12, 5, i);
+            struct wd_sampler sampler = wd_sampler_of(12, 5, 0, i);
             float point[2];
             sampler.dimension = dimension;
             wd_sampler_next(&sampler, point);
