@@ -187,7 +187,7 @@ static void test_chosen_directions(void **state)
     enum { POINTS = 60000 };
     double sphere = 0, disc = 0;
     for (uint32_t i = 0; i < POINTS; i++) {
-        struct wd_sampler sampler = wd_sampler_of(1, 2, i);
+        struct wd_sampler sampler = wd_sampler_of(1, 2, 0, i);
         float part[2], within[2];
         wd_sampler_next(&sampler, part);
         wd_sampler_next(&sampler, within);
