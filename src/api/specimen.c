@@ -85,6 +85,7 @@ void wd_specimen_destroy(struct wd_specimen **specimen)
         return;
     wd_tree_model_finish(&(*specimen)->model);
     wd_species_drop_models(&(*specimen)->species, 1);
+    wd_clip_mesh_finish(&(*specimen)->clip_mesh);
     wd_arena_finish(&(*specimen)->arena);
     free((*specimen)->source);
     free(*specimen);

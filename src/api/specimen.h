@@ -2,6 +2,7 @@
 #ifndef WD_API_SPECIMEN_H
 #define WD_API_SPECIMEN_H
 
+#include "tree/clip_mesh.h"
 #include "tree/import.h"
 #include "weald/tree.h"
 
@@ -9,6 +10,7 @@ struct wd_specimen {
     struct wd_species species; /* in its season */
     struct wd_grow_params params;
     struct wd_clip_volume clip; /* what params.clip points at */
+    struct wd_clip_mesh clip_mesh; /* {0}, or what `clip` is of */
     struct wd_tree_model model;
     char *source;              /* the file that the species is from */
     double month;              /* 0: summer */

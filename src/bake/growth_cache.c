@@ -6,6 +6,7 @@
 #include <meshoptimizer.h>
 
 #include "base/memory.h"
+#include "tree/clip_mesh.h"
 #include "tree/import.h"
 #include "tree/thinning.h"
 
@@ -22,6 +23,19 @@ static const uint32_t MAX_FORMS = 4; /* that a leaf can name */
 
 /* --- keys -------------------------------------------------------------------------------- */
 
+/* What a volume holds that trees are cut to. */
+static uint64_t clip_key(uint64_t key, const struct wd_clip_volume *clip)
+{
+    if (!clip)
+        return key;
+    key = wd_cache_key(key, clip->min_m, sizeof clip->min_m);
+    key = wd_cache_key(key, clip->max_m, sizeof clip->max_m);
+    key = wd_cache_key(key, clip->positions_m,
+                       3 * (size_t)clip->vertex_count * sizeof *clip->positions_m);
+    return wd_cache_key(key, clip->indices,
+                        3 * (size_t)clip->triangle_count * sizeof *clip->indices);
+}
+
 uint64_t wd_species_key(const struct wd_species *species)
 {
     struct wd_species values;
@@ -33,28 +47,22 @@ uint64_t wd_species_key(const struct wd_species *species)
     values.habitat.region = NULL;
     values.orders = NULL;
     values.model.leaves = values.model.wood = NULL;
+    values.clip_file = NULL;
+    values.clip = NULL;
     uint64_t key = wd_cache_key(wd_cache_code_key(), &values, sizeof values);
+    key = clip_key(key, species->clip ? &species->clip->volume : NULL);
     for (size_t i = 0; i < species->order_count; i++)
         key = wd_cache_key(key, &species->orders[i], sizeof species->orders[i]);
     return key;
 }
 
-/* How an individual is grown; of a volume that it is cut to, what that holds. */
+/* How an individual is grown. */
 static uint64_t params_key(uint64_t key, const struct wd_grow_params *params)
 {
     struct wd_grow_params values;
     memcpy(&values, params, sizeof values);
     values.clip = NULL;
-    key = wd_cache_key(key, &values, sizeof values);
-    const struct wd_clip_volume *clip = params->clip;
-    if (!clip)
-        return key;
-    key = wd_cache_key(key, clip->min_m, sizeof clip->min_m);
-    key = wd_cache_key(key, clip->max_m, sizeof clip->max_m);
-    key = wd_cache_key(key, clip->positions_m,
-                       3 * (size_t)clip->vertex_count * sizeof *clip->positions_m);
-    return wd_cache_key(key, clip->indices,
-                        3 * (size_t)clip->triangle_count * sizeof *clip->indices);
+    return clip_key(wd_cache_key(key, &values, sizeof values), params->clip);
 }
 
 /* What an imported mesh is, byte by byte. */

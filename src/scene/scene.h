@@ -48,10 +48,11 @@ struct wd_scene_share {
 };
 
 enum wd_layer_placement { WD_PLACE_GRID, WD_PLACE_POISSON, WD_PLACE_CANOPY };
-/* A species whose individuals are cut to a box: rows of them are a hedge (W9). */
+/* A species whose individuals are cut to a box or a mesh: rows of them are a hedge (W9). */
 struct wd_scene_clip {
     const char *name;        /* species */
-    float box_m[3];          /* width along the tree's own x, depth, height */
+    float box_m[3];          /* width along the tree's own x, depth, height; 0: a mesh */
+    const char *mesh;        /* NULL, or a model file */
 };
 
 struct wd_scene_layer {

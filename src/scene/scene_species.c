@@ -198,7 +198,44 @@ static bool load_all(struct loader *loader, struct wd_scene *scene)
     return ok;
 }
 
+/* The mesh itself is read later, with the models. */
+static bool cut_to_mesh(const struct wd_keys_place *map, struct wd_species *species,
+                        const struct wd_scene_clip *clip)
+{
+    char *file = wd_path_beside(wd_keys_path(map), clip->mesh);
+    bool ok = wd_species_is_model_file(file) ||
+              wd_keys_error(map, clip->name, "found %.200s to cut to; allowed are .obj, .gltf, "
+                            ".glb, .fbx and .dae", file);
+    ok = ok && (wd_file_exists(file) ||
+                wd_keys_error(map, clip->name, "there is no file %.200s", file));
+    species->clip_file = wd_arena_strdup(wd_keys_arena(map), file);
+    free(file);
+    return ok;
+}
+
 /* Free-growing forms and artists' models cannot be cut. */
+static bool cut_hedge(const struct wd_keys_place *map, struct wd_species *species,
+                      const struct wd_scene_clip *clip)
+{
+    double height_m = (double)clip->box_m[2];
+    if (species->model.file || species->order_count == 0)
+        return wd_keys_error(map, clip->name, "%.60s %s; allowed are grown species with branches",
+                             clip->name,
+                             species->model.file ? "is an artist's model" : "has no branches");
+    if ((clip->mesh != NULL) == (height_m > 0))
+        return wd_keys_error(map, clip->name, "found %s; allowed is one of box_m and mesh",
+                             clip->mesh ? "both box_m and mesh" : "neither box_m nor mesh");
+    if (clip->mesh)
+        return cut_to_mesh(map, species, clip);
+    if (!(height_m >= (double)species->height_range_m[0] &&
+          height_m <= (double)species->height_range_m[1]))
+        return wd_keys_error(map, clip->name, "the box is %g m high; the species' file allows "
+                             "%g to %g", height_m, (double)species->height_range_m[0],
+                             (double)species->height_range_m[1]);
+    memcpy(species->clip_box_m, clip->box_m, sizeof species->clip_box_m);
+    return true;
+}
+
 static bool cut_hedges(const struct loader *loader, struct wd_scene *scene)
 {
     struct wd_keys_place map = {loader->root->reader, loader->root, "clips", 0};
@@ -211,18 +248,7 @@ static bool cut_hedges(const struct loader *loader, struct wd_scene *scene)
                                clip->name);
             continue;
         }
-        struct wd_species *species = &scene->species[index];
-        if (species->model.file || species->order_count == 0)
-            ok = wd_keys_error(&map, clip->name, "%.60s %s; allowed are grown species with "
-                               "branches", clip->name,
-                               species->model.file ? "is an artist's model" : "has no branches");
-        else if (!(clip->box_m[2] >= species->height_range_m[0] &&
-                   clip->box_m[2] <= species->height_range_m[1]))
-            ok = wd_keys_error(&map, clip->name, "the box is %g m high; the species' file allows "
-                               "%g to %g", (double)clip->box_m[2],
-                               (double)species->height_range_m[0],
-                               (double)species->height_range_m[1]);
-        memcpy(species->clip_box_m, clip->box_m, sizeof species->clip_box_m);
+        ok = cut_hedge(&map, &scene->species[index], clip) && ok;
     }
     return ok;
 }

@@ -200,8 +200,10 @@ static const struct wd_keys quality_table = GROUP("quality", quality_keys, quali
 #define CLIP(member) offsetof(struct wd_scene_clip, member)
 static const struct wd_key clip_keys[] = {
     {"box_m", WD_KEY_FLOATS, CLIP(box_m), 0.1, 50,
-     .doc = "Width, depth and height of the box, in metres.", .length = 3,
-     .flags = WD_KEY_REQUIRED},
+     .doc = "Width, depth and height of the box, in metres.", .length = 3},
+    {"mesh", WD_KEY_STRING, CLIP(mesh),
+     .doc = "In place of a box: a closed mesh in metres, y up (.obj, .gltf, .glb, .fbx, .dae), "
+            "beside the scene; the middle of its bounds goes over the foot."},
     {0},
 };
 static const struct wd_keys clip_table = {"clip", clip_keys, sizeof(struct wd_scene_clip), NULL};
@@ -215,8 +217,8 @@ static const struct wd_key scene_keys[] = {
      .doc = "Names of species and their files, beside the scene; others are looked for in species/ "
             "and ../species/ beside the scene, then among the installed ones."},
     {"clips", WD_KEY_MAP, SCENE(clips), .table = &clip_table, .count_offset = SCENE(clip_count),
-     .doc = "Names of species whose individuals are cut to a box, as plants of a hedge are. A name "
-            "of its own in \"species\" keeps the same species' free trees apart."},
+     .doc = "Names of species whose individuals are cut to a box or a mesh, as plants of a hedge are. "
+            "A name of its own in \"species\" keeps the same species' free trees apart."},
     {"openness", WD_KEY_NUMBER_MAP, SCENE(openness), 0, 1, .count_offset = SCENE(openness_count),
      .doc = "How openly a species' trees have grown: {\"oak\": 1} is as wide and low crowned as in a "
             "meadow, 0 as among close neighbours; without it 0.2, as in a stand. A name of its own in "

@@ -170,6 +170,8 @@ struct wd_species {
     } model;
     float openness;           /* in scenes: 0 grown among neighbours .. 1 in the open */
     float clip_box_m[3];      /* width, depth, height of the box that a hedge is cut to; 0: none */
+    const char *clip_file;    /* or the closed mesh that it is cut to: clip_box_m is then its size, */
+    struct wd_clip_mesh *clip; /* once it is read: wd_species_import_models */
     struct wd_tree_import *imported; /* the model once read: wd_species_import_models */
     float flexibility;        /* wind: top displacement over height at 10 m/s, share */
 };

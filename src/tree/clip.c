@@ -12,18 +12,23 @@ struct wd_clip_volume wd_clip_box(const float size_m[3])
     };
 }
 
+static const char *name_of(const struct wd_clip_volume *volume)
+{
+    return volume->name ? volume->name : "clip volume";
+}
+
 static bool check_mesh(const struct wd_clip_volume *volume, const struct wd_log *log)
 {
     if (volume->triangle_count > MAX_TRIANGLES)
-        return wd_error(log, "clip volume has %u triangles; allowed are %d",
-                        volume->triangle_count, MAX_TRIANGLES);
+        return wd_error(log, "%s has %u triangles; allowed to cut to are %d",
+                        name_of(volume), volume->triangle_count, MAX_TRIANGLES);
     for (uint32_t i = 0; i < 3 * volume->triangle_count; i++)
         if (volume->indices[i] >= volume->vertex_count)
-            return wd_error(log, "clip volume: index %u of triangle %u is %u; it has %u vertices",
-                            i % 3, i / 3, volume->indices[i], volume->vertex_count);
+            return wd_error(log, "%s: index %u of triangle %u is %u; it has %u vertices",
+                            name_of(volume), i % 3, i / 3, volume->indices[i], volume->vertex_count);
     for (uint32_t i = 0; i < 3 * volume->vertex_count; i++)
         if (!isfinite(volume->positions_m[i]))
-            return wd_error(log, "clip volume: vertex %u is not a finite place", i / 3);
+            return wd_error(log, "%s: vertex %u is not a finite place", name_of(volume), i / 3);
     return true;
 }
 
@@ -39,17 +44,18 @@ static void set_bounds(struct wd_clip_grid *grid, const struct wd_clip_volume *v
         }
 }
 
-static bool check_bounds(const struct wd_clip_grid *grid, const struct wd_log *log)
+static bool check_bounds(const struct wd_clip_grid *grid, const char *name,
+                         const struct wd_log *log)
 {
     for (int axis = 0; axis < 3; axis++) {
         double low = (double)grid->min_m[axis], high = (double)grid->max_m[axis];
         if (!(high - low >= 0.1 && low >= -100 && high <= 100))
-            return wd_error(log, "clip volume reaches from %g to %g m along %c; allowed are 0.1 m "
-                                 "or more, within 100 m of the foot", low, high, "xyz"[axis]);
+            return wd_error(log, "%s reaches from %g to %g m along %c; allowed are 0.1 m or more, "
+                                 "within 100 m of the foot", name, low, high, "xyz"[axis]);
     }
     if (!(grid->max_m[2] >= 0.2f && grid->min_m[2] <= 0.5f * grid->max_m[2]))
-        return wd_error(log, "clip volume stands from %g to %g m above the foot; allowed is a top "
-                             "at 0.2 m or more and a bottom at half of that or less",
+        return wd_error(log, "%s stands from %g to %g m above the foot; allowed is a top at 0.2 m or "
+                             "more and a bottom at half of that or less", name,
                         (double)grid->min_m[2], (double)grid->max_m[2]);
     return true;
 }
@@ -119,11 +125,11 @@ static bool fill_columns(struct wd_clip_grid *grid, const struct wd_clip_volume 
         filled += grid->columns[i] != 0;
     }
     if (open > WD_CLIP_SIDE * WD_CLIP_SIDE / 100)
-        return wd_error(log, "clip volume is not closed: %d of %d lines from below pass through an "
-                             "odd number of its triangles", open, WD_CLIP_SIDE * WD_CLIP_SIDE);
+        return wd_error(log, "%s is not closed: %d of %d lines from below pass through an odd number "
+                             "of its triangles", name_of(volume), open, WD_CLIP_SIDE * WD_CLIP_SIDE);
     grid->area_m2 *= (float)filled / (WD_CLIP_SIDE * WD_CLIP_SIDE);
     if (filled == 0)
-        return wd_error(log, "clip volume is empty");
+        return wd_error(log, "%s is empty", name_of(volume));
     return true;
 }
 
@@ -134,7 +140,7 @@ bool wd_clip_grid_init(struct wd_clip_grid *grid, const struct wd_clip_volume *v
     if (!grid->box && !check_mesh(volume, log))
         return false;
     set_bounds(grid, volume);
-    if (!check_bounds(grid, log))
+    if (!check_bounds(grid, name_of(volume), log))
         return false;
     float width = grid->max_m[0] - grid->min_m[0], depth = grid->max_m[1] - grid->min_m[1];
     grid->area_m2 = width * depth;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "tree/clip_mesh.h"
 #include "tree/coverage.h"
 #include "tree/foliage.h"
 #include "tree/fronds.h"
@@ -260,7 +261,7 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     struct wd_grow_params resolved = *params;
     const struct wd_clip_volume own = wd_clip_box(species->clip_box_m);
     if (!resolved.clip && species->clip_box_m[2] > 0)
-        resolved.clip = &own;
+        resolved.clip = species->clip ? &species->clip->volume : &own;
     if (!wd_grow_params_resolve(&resolved, species, log))
         return false;
     struct wd_tree_form form = wd_tree_form_of(species, &resolved);

@@ -9,6 +9,7 @@
 /* What a hedge is cut to, in metres from its foot: a box, or the inside of a closed mesh. The foot
  * should lie under it: one plant fills about as far as it is high. */
 struct wd_clip_volume {
+    const char *name;            /* for messages; NULL: "clip volume" */
     float min_m[3], max_m[3];    /* the box; not read where there are triangles */
     const float *positions_m;    /* three a vertex */
     const uint32_t *indices;     /* three a triangle, either way round */

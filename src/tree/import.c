@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "tree/clip_mesh.h"
 #include "tree/import_parts.h"
 #include "tree/model_reduce.h"
 #include "tree/vec.h"
@@ -287,17 +288,39 @@ static bool import_species(struct wd_species *species, const struct wd_log *log)
     return true;
 }
 
+/* The mesh that a hedge is cut to. */
+static bool import_clip(struct wd_species *species, const struct wd_log *log)
+{
+    struct wd_clip_mesh mesh;
+    if (!wd_clip_mesh_read(&mesh, species->clip_file, log))
+        return false;
+    if (!(mesh.size_m[2] >= species->height_range_m[0] &&
+          mesh.size_m[2] <= species->height_range_m[1])) {
+        wd_clip_mesh_finish(&mesh);
+        return wd_error(log, "%s is %g m high; the file of %s, which is to be cut to it, allows %g "
+                             "to %g", species->clip_file, (double)mesh.size_m[2], species->name,
+                        (double)species->height_range_m[0], (double)species->height_range_m[1]);
+    }
+    species->clip = wd_alloc(sizeof *species->clip);
+    *species->clip = mesh;
+    memcpy(species->clip_box_m, mesh.size_m, sizeof species->clip_box_m);
+    return true;
+}
+
 bool wd_species_import_models(struct wd_species *species, size_t count,
                               const struct wd_progress *progress, const struct wd_log *log)
 {
     size_t total = 0, done = 0;
     for (size_t i = 0; i < count; i++)
-        total += species[i].model.file != NULL;
+        total += species[i].model.file || species[i].clip_file;
     for (size_t i = 0; i < count; i++) {
-        if (!species[i].model.file)
+        if (!species[i].model.file && !species[i].clip_file)
             continue;
-        if (!wd_progress_report(progress, "reading models", done++, total) ||
-            !import_species(&species[i], log))
+        if (!wd_progress_report(progress, "reading models", done++, total))
+            return false;
+        if (species[i].model.file && !import_species(&species[i], log))
+            return false;
+        if (species[i].clip_file && !import_clip(&species[i], log))
             return false;
     }
     return true;
@@ -310,5 +333,9 @@ void wd_species_drop_models(struct wd_species *species, size_t count)
             wd_tree_import_finish(species[i].imported);
         free(species[i].imported);
         species[i].imported = NULL;
+        if (species[i].clip)
+            wd_clip_mesh_finish(species[i].clip);
+        free(species[i].clip);
+        species[i].clip = NULL;
     }
 }

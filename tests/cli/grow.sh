@@ -99,6 +99,28 @@ expect 0 . render "$out/hedge.json" -o "$out/hedge.png" $small --gpu-validate
 sed 's/"clips": {"hedge"/"clips": {"hedges"/' "$out/hedge.json" >"$out/wrong.json"
 expect 1 'has the species "hedges"' check "$out/wrong.json"
 
+# Scenes cut to meshes too.
+hedge_scene() { # NAME CLIP: the hedge's scene with another clip
+    sed "s|{\"box_m\": \[1.1, 0.7, 1.7\]}|$2|" "$out/hedge.json" >"$out/$1.json"
+}
+printf 'v %s\n' '-0.6 nan -0.4' '0.6 0 0' '0 1 0' >"$out/nan.obj"
+echo 'f 1 2 3' >>"$out/nan.obj"
+hedge_scene meshed '{"mesh": "box.obj"}'
+hedge_scene leaky '{"mesh": "open.obj"}'
+hedge_scene broken '{"mesh": "nan.obj"}'
+hedge_scene lost '{"mesh": "lost.obj"}'
+hedge_scene text '{"mesh": "hedge.json"}'
+hedge_scene both '{"mesh": "box.obj", "box_m": [1, 1, 1]}'
+hedge_scene neither '{}'
+# shellcheck disable=SC2086  # $small is many words
+expect 0 . render "$out/meshed.json" -o "$out/meshed.png" $small --gpu-validate
+expect 1 'open.obj is not closed' render "$out/leaky.json" -o "$out/a.png" -q
+expect 1 'nan.obj.*' render "$out/broken.json" -o "$out/a.png" -q
+expect 1 'there is no file .*lost.obj' check "$out/lost.json"
+expect 1 'allowed are .obj, .gltf, .glb, .fbx and .dae' check "$out/text.json"
+expect 1 'both box_m and mesh' check "$out/both.json"
+expect 1 'neither box_m nor mesh' check "$out/neither.json"
+
 # What cannot be.
 expect 2 'no output named' grow oak
 expect 2 'must end in .glb, .obj, .png or .exr' grow oak -o "$out/a.fbx"
