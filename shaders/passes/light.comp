@@ -24,11 +24,14 @@ layout(scalar, set = 0, binding = 10) readonly buffer Tiles { wd_tile_lists list
 layout(set = 0, binding = 11) uniform sampler2D overlay;
 layout(set = 0, binding = 12) uniform sampler2D canopy_light;
 layout(set = 0, binding = 13) uniform sampler2D sky_map;
+layout(scalar, set = 0, binding = 14) readonly buffer Waters { float river_m[]; };
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
 #define CANOPY_LIGHT_AT(at) textureLod(canopy_light, at, 0.0)
 #define SKY_MAP sky_map
+
+#define WATER_AT(index) river_m[index]
 
 #include "lib/noise.glsl"
 #include "lib/sky.glsl"
@@ -36,16 +39,37 @@ layout(scalar, push_constant) uniform Push { wd_light_push push; };
 #include "lib/gbuffer.glsl"
 #include "lib/tree.glsl"
 #include "lib/crown.glsl"
+#include "lib/river.glsl"
 #include "lib/water.glsl"
 #include "lib/shade.glsl"
+
+/* How far off the eye meets water before what is `distance_m` off; negative: it does not. */
+float water_ahead_m(vec3 direction, float distance_m)
+{
+    float at_m = water_distance(direction);
+    if (at_m >= distance_m || !water_reaches(direction * at_m))
+        at_m = -1.0;
+    if (push.has_rivers == 0u || distance_m >= WD_SKY_M)
+        return at_m;
+    vec3 end = direction * distance_m;
+    float zero_m = float(frame.camera_mm[2]) * 0.001 + frame.camera_frac_m.z;
+    float surface_m = river_level(end.xy + push.camera_m) - zero_m;
+    if (surface_m <= end.z || surface_m >= 0.0)
+        return at_m;
+    float share = wd_river_share(end.z, surface_m);
+    float nearer_m = river_level(end.xy * share + push.camera_m);
+    if (nearer_m > 0.5 * WD_NO_WATER_M)
+        share = wd_river_share(end.z, nearer_m - zero_m);
+    return at_m > 0.0 ? min(at_m, distance_m * share) : distance_m * share;
+}
 
 /* Ground or sky as the eye gets it, through water and air. */
 vec3 seen(uvec2 at, vec3 radiance, vec3 direction, float distance_m, float sun_share,
           float ground_share)
 {
     if ((PARTS & WD_PART_WATER) != 0u) {
-        float water_m = water_distance(direction);
-        if (water_m > 0.0 && water_m < distance_m && water_reaches(direction * water_m)) {
+        float water_m = water_ahead_m(direction, distance_m);
+        if (water_m > 0.0) {
             float depth_m = distance_m < WD_SKY_M ? distance_m - water_m : 1e4;
             radiance = water_radiance(radiance, direction, water_m, depth_m, sun_share,
                                       pixel_noise(at, frame.sample_index));

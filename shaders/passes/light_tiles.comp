@@ -27,6 +27,8 @@ uint pixel_parts(ivec2 at)
     float water_m = water_distance(ray); /* in units of the ray: along the view axis */
     if (water_m > 0.0 && water_m * depth < frame.near_m)
         found |= WD_PART_WATER;
+    if (push.has_rivers != 0u && !pixel_is_sky(depth))
+        found |= WD_PART_WATER;
     return found;
 }
 

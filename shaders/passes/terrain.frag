@@ -11,6 +11,10 @@ layout(set = 0, binding = 4) uniform sampler2D slopes;
 layout(set = 0, binding = 5) uniform sampler2D cover_map; /* x: of the place, y: about it */
 layout(scalar, set = 0, binding = 6) readonly buffer Holes { uint holes[]; };
 
+layout(scalar, set = 0, binding = 7) readonly buffer Waters { float water_m[]; };
+
+#define WATER_AT(index) water_m[index]
+#include "lib/river.glsl"
 #define WD_STREWN_SHOWN (IS_NEAR != 0u)
 #include "shared/ground_cover.h"
 
@@ -66,7 +70,8 @@ void main()
                             level - log2(view.slopes_texel_m)).xy;
     vec2 cover = textureLod(cover_map, local_m * view.cover_scale,
                             level - log2(view.cover_texel_m)).xy;
-    wd_ground_look look = wd_ground_cover(in_rel, slope.x, slope.y, cover.x, cover.y,
+    float river_m = water_m.length() > 1 ? river_level(local_m) : WD_NO_WATER_M;
+    wd_ground_look look = wd_ground_cover(in_rel, slope.x, slope.y, cover.x, cover.y, river_m,
                                           footprint_of(distance_m, slope));
     if (in_curtain > 0.0) {
         look.albedo = frame.soil * (0.75 + 0.25 * cos(in_rel.z * 1.3));

@@ -183,8 +183,8 @@ WD_FUNC WD_VECTOR wd_soil_albedo(WD_FRAME_IN float height_m, float steep, float 
     return wd_v3_mix(albedo, earth, 0.75f * worn);
 }
 
-WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float steep, float cover,
-                                   float floor_share, WD_STRUCT wd_ground_noise n,
+WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float above_water_m, float steep,
+                                   float cover, float floor_share, WD_STRUCT wd_ground_noise n,
                                    WD_STRUCT wd_ground_strewn strewn, float footprint_m)
 {
     WD_VECTOR albedo = wd_soil_albedo(WD_FRAME_PASS height_m, steep, cover, floor_share, n,
@@ -193,7 +193,6 @@ WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float steep, floa
     float bare = WD_SMOOTH(0.85f, 1.15f, steep / WD_FRAME(rock_slope) + 0.30f * n.middle
                                          + 0.15f * n.small_ + WD_CLAMP(over, 0.0f, 0.9f));
     albedo = wd_v3_mix(albedo, wd_rock_albedo(WD_FRAME_PASS height_m, n, footprint_m), bare);
-    float above_water_m = height_m - WD_FRAME(water_level_m);
     /* sedges on wet ground, then mud and sand; narrow, however level the shore is */
     float damp = 1.0f - WD_SMOOTH(0.3f, 1.1f, above_water_m + 0.8f * n.small_ + 0.4f * n.middle);
     albedo = wd_v3_mix(albedo, wd_v3_mul(WD_FRAME_V3(grass), WD_V3(0.72f, 0.85f, 0.75f)),
@@ -208,20 +207,21 @@ WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float steep, floa
 }
 
 /* `rel`: the place; `slope`: rise over run east and north; `cover`: of the canopy, 0..1; `woods`: its
- * mean about the place (world/cover.h). */
+ * mean about the place (world/cover.h); `river_m`: height of the surface of a map's water there. */
 WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, float slope_east,
                                                  float slope_north, float cover, float woods,
-                                                 float footprint_m)
+                                                 float river_m, float footprint_m)
 {
     float height_m = rel.z + WD_FLOAT(WD_FRAME(camera_mm[2])) * 0.001f;
+    float above_water_m = height_m - WD_MAX(WD_FRAME(water_level_m), river_m);
     WD_STRUCT wd_ground_noise n = wd_ground_noise_at(WD_FRAME_PASS rel.x, rel.y, footprint_m);
     float floor_share = wd_floor_share(cover, woods, n);
     WD_STRUCT wd_ground_strewn strewn =
         wd_ground_strewn_at(WD_FRAME_PASS rel.x, rel.y, floor_share, footprint_m);
     float steep = WD_SQRT(slope_east * slope_east + slope_north * slope_north);
     float snow = wd_snow_share(WD_FRAME_PASS height_m, steep, n);
-    WD_VECTOR albedo = wd_ground_albedo(WD_FRAME_PASS height_m, steep, cover, floor_share, n,
-                                        strewn, footprint_m);
+    WD_VECTOR albedo = wd_ground_albedo(WD_FRAME_PASS height_m, above_water_m, steep, cover,
+                                        floor_share, n, strewn, footprint_m);
     WD_STRUCT wd_ground_look look;
     look.albedo = wd_v3_clamp(wd_v3_mix(albedo, WD_SNOW_ALBEDO, snow), 0.0f, 1.0f);
     float rough = 1.0f + WD_SMOOTH(0.7f, 1.2f, steep / WD_FRAME(rock_slope)) * 1.5f;

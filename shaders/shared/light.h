@@ -12,6 +12,7 @@ struct wd_light_push {
     uint32_t variants;   /* models a species */
     uint32_t tile_columns, tile_rows;
     uint32_t is_sea;     /* the water goes on beyond the terrain */
+    uint32_t has_rivers; /* a map shows waters at their own heights */
     WD_VEC2(extent_m);   /* of the terrain */
     WD_VEC2(canopy_scale); /* of the canopy's light: image coordinates = metres * scale */
     uint32_t has_overlay; /* a method has blended trees over the G-buffer */

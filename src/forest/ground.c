@@ -231,11 +231,15 @@ static bool upload_samples(struct wd_ground *ground, struct wd_gpu *gpu)
     size_t count = (size_t)terrain->width * terrain->height;
     size_t hole_bytes = terrain->hole ? (count + 3) & ~(size_t)3 : 4;
     const uint8_t none[4] = {0};
+    size_t water_bytes = terrain->water_m ? count * sizeof(float) : sizeof none;
     return make_buffer(&ground->heights, gpu, "terrain heights", count * sizeof(float)) &&
            wd_buffer_upload(gpu, &ground->heights, 0, terrain->height_m, count * sizeof(float)) &&
            make_buffer(&ground->holes, gpu, "terrain holes", hole_bytes) &&
            wd_buffer_upload(gpu, &ground->holes, 0, terrain->hole ? terrain->hole : none,
-                            terrain->hole ? count : sizeof none);
+                            terrain->hole ? count : sizeof none) &&
+           make_buffer(&ground->waters, gpu, "waters", water_bytes) &&
+           wd_buffer_upload(gpu, &ground->waters, 0,
+                            terrain->water_m ? (const void *)terrain->water_m : none, water_bytes);
 }
 
 bool wd_ground_init(struct wd_ground *ground, struct wd_gpu *gpu, const struct wd_world *world,
@@ -259,6 +263,7 @@ void wd_ground_finish(struct wd_ground *ground, struct wd_gpu *gpu)
 {
     wd_buffer_finish(&ground->heights, gpu);
     wd_buffer_finish(&ground->holes, gpu);
+    wd_buffer_finish(&ground->waters, gpu);
     wd_image_finish(&ground->slopes, gpu);
     wd_image_finish(&ground->cover, gpu);
     if (ground->sampler)
@@ -300,6 +305,7 @@ void wd_ground_use(struct wd_ground *ground, struct wd_cmd *cmd)
 {
     wd_cmd_use_buffer(cmd, &ground->heights, WD_USE_SHADER_READ);
     wd_cmd_use_buffer(cmd, &ground->holes, WD_USE_SHADER_READ);
+    wd_cmd_use_buffer(cmd, &ground->waters, WD_USE_SHADER_READ);
     wd_cmd_use_image(cmd, &ground->slopes, WD_USE_SHADER_READ);
     wd_cmd_use_image(cmd, &ground->cover, WD_USE_SHADER_READ);
 }

@@ -21,6 +21,7 @@ struct wd_ground {
     const struct wd_terrain *terrain; /* must outlive this */
     struct wd_buffer heights;         /* float[width * height], metres above the world's zero */
     struct wd_buffer holes;           /* uint8_t[width * height] padded to 4; 4 bytes without holes */
+    struct wd_buffer waters;          /* float[width * height]: terrain->water_m; 4 bytes without */
     struct wd_image slopes;           /* R16G16_SFLOAT, mips: rise over run eastward, northward */
     struct wd_image cover;            /* RG8, mips: of the canopy; its mean about */
     VkSampler sampler;                /* trilinear, clamped, for both */

@@ -1,8 +1,10 @@
 #include "reference/path.h"
 
 #include "shared/air.h"
+#include "shared/river.h"
 #include "shared/waves.h"
 #include "tree/vec.h"
+#include "world/river.h"
 
 /* Scatterings after which paths may end by chance. */
 enum { SURE_BOUNCES = 2 };
@@ -114,8 +116,8 @@ static void escape_to_map(struct path *path)
 
 /* --- water ----------------------------------------------------------------------------------- */
 
-/* How far off the ray meets the water from above; infinite if it does not. */
-static float water_ahead_m(const struct path *path)
+/* How far off the ray meets the level water from above; infinite if it does not. */
+static float level_water_m(const struct path *path)
 {
     const struct wd_frame_uniforms *frame = frame_of(path);
     const struct wd_trace_ground *ground = &path->tracer->scene->ground;
@@ -132,6 +134,35 @@ static float water_ahead_m(const struct path *path)
     bool within = x_m > 0 && y_m > 0 && x_m < wd_terrain_extent_x_m(terrain) &&
                   y_m < wd_terrain_extent_y_m(terrain);
     return within ? at_m : INFINITY;
+}
+
+/* The same of a map's waters: a ray that ends `hit_m` off under one has come through its surface. */
+static float river_m(const struct path *path, float hit_m)
+{
+    const struct wd_trace_ground *ground = &path->tracer->scene->ground;
+    struct wd_vec3 from = path->ray.from, direction = path->ray.direction;
+    double zero_m = (double)from.z + ground->origin_m[2];
+    float share = 1, end_m = direction.z * hit_m;
+    if (!ground->terrain->water_m || path->under_water || hit_m >= INFINITY || end_m >= -1e-6f)
+        return INFINITY;
+    for (int guess = 0; guess < 2; guess++) {
+        float at_m = hit_m * share;
+        double x_m = (double)(from.x + direction.x * at_m) + ground->origin_m[0];
+        double y_m = (double)(from.y + direction.y * at_m) + ground->origin_m[1];
+        float level_m = wd_river_level(ground->terrain, x_m, y_m);
+        float surface_m = (float)((double)level_m - zero_m);
+        if (guess == 0 && (surface_m <= end_m || surface_m >= 0))
+            return INFINITY;
+        if (level_m > 0.5f * WD_NO_WATER_M)
+            share = wd_river_share(end_m, surface_m);
+    }
+    return hit_m * share;
+}
+
+/* How far off the ray meets water, before what is `hit_m` off or behind that. */
+static float water_ahead_m(const struct path *path, float hit_m)
+{
+    return fminf(level_water_m(path), river_m(path, hit_m));
 }
 
 /* Light from below: what the water itself throws back, and, dimmed, what lies at `bottom_m`. */
@@ -229,7 +260,7 @@ static bool scatter(struct path *path, const struct wd_trace_hit *hit)
 static bool advance(struct path *path)
 {
     struct wd_trace_hit hit = nearest(path);
-    float water_m = water_ahead_m(path);
+    float water_m = water_ahead_m(path, hit.at_m);
     bool primary = path->bounce == 0 && !path->mirrored && !path->under_water;
     if (primary)
         path->seen_m = fminf(hit.at_m, water_m);

@@ -189,6 +189,8 @@ struct wd_scene {
         double level_m;      /* above the world's zero */
         float color[3];      /* linear, of deep water */
         double clarity_m;    /* depth at which the ground fades by e */
+        struct wd_scene_map map; /* rivers and lakes, each at its own height */
+        double depth_m;      /* how deep their beds are dug */
     } water;
     struct {
         float grass[3], soil[3], rock[3], litter[3]; /* linear albedo */

@@ -129,6 +129,11 @@ static const struct wd_key water_keys[] = {
      "Height of the water above the world's zero, in metres."},
     {"color", WD_KEY_COLOR, IN(water, color), .fallback = "[0.008, 0.02, 0.018]",
      .doc = "Colour of deep water (linear)."},
+    {"map", WD_KEY_OBJECT, IN(water, map), .table = &wd_scene_map_keys,
+     .doc = "Raster of rivers and lakes: each lies as high as its shores let it, a river falls with "
+            "the terrain. With or without \"enabled\", which is about level_m."},
+    {"depth_m", WD_KEY_DOUBLE, IN(water, depth_m), 0.1, 100, "1.5",
+     "How deep beds of waters of the map are dug, in metres."},
     {"clarity_m", WD_KEY_DOUBLE, IN(water, clarity_m), 0, 100, "2.5",
      "Depth at which the ground fades by e, in metres.", .flags = WD_KEY_EXCLUSIVE_MIN},
     {0},

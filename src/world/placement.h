@@ -55,6 +55,8 @@ bool wd_placement_fill(const struct wd_placement *placement,
 bool wd_canopy_fill(const struct wd_placement *placement, const struct wd_placement_params *params,
                     struct wd_tree_list *list);
 bool wd_layer_map_load(struct wd_placement *placement, const struct wd_placement_params *params);
+/* What a map's value says, 0..1. */
+float wd_map_probability(const struct wd_scene_map *map, float value);
 bool wd_layer_tables_init(struct wd_placement *placement, const struct wd_placement_params *params);
 bool wd_too_many_trees(const struct wd_placement_params *params, const char *what);
 

@@ -105,6 +105,7 @@ void wd_terrain_finish(struct wd_terrain *terrain)
 {
     free(terrain->height_m);
     free(terrain->hole);
+    free(terrain->water_m);
     free(terrain->crs);
     *terrain = (struct wd_terrain){0};
 }

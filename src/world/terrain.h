@@ -15,6 +15,7 @@ struct wd_terrain {
     float *height_m;         /* width * height, above the world's zero */
     uint8_t *hole;           /* per sample: 1 where the raster had no data and the rule is "cut";
                                 NULL: no holes. Heights there are filled all the same */
+    float *water_m;          /* per sample: height of water that a map shows (world/river.h); NULL */
     float min_m, max_m;
     char *crs;               /* WKT of the projected coordinates, or NULL */
     uint64_t filled_samples; /* samples without data that were filled */

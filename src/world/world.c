@@ -8,6 +8,7 @@
 #include "world/cover.h"
 #include "world/inventory.h"
 #include "world/placement.h"
+#include "world/river.h"
 
 static const uint64_t default_max_trees = UINT64_C(64) << 20;
 enum { INVENTORY_LAYER = 255 };
@@ -148,6 +149,8 @@ static bool make(struct wd_world *world, struct wd_inventory *inventories,
             return false;
     bool fitted;
     if (!wd_world_make_terrain(&world->terrain, inventories, params, &fitted))
+        return false;
+    if (!wd_rivers_init(&world->terrain, scene, params->log))
         return false;
     params->terrain = &world->terrain;
     world->inventories = wd_alloc_array(scene->inventory_count, sizeof *world->inventories);

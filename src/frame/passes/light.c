@@ -39,9 +39,10 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     };
     bool ok = wd_pipeline_init_compute(&pass->view, gpu, &params);
     params.shader = (struct wd_spirv)SPIRV(light_comp);
-    params.bindings.count = 14;
+    params.bindings.count = 15;
     for (uint32_t binding = 11; binding < 14; binding++)
         params.bindings.types[binding] = IMAGE;
+    params.bindings.types[14] = BUFFER;
     for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
         const uint32_t constants[] = {wd_tile_list_parts(list), list};
         params.constants = (struct wd_spec_constants){2, constants};
@@ -127,6 +128,7 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
         .sun_height = pass->sun_field.height,
         .variants = params->forest->variants ? params->forest->variants : 1,
         .is_sea = wd_water_is_sea(params->forest->ground.terrain, params->frame->water_level_m),
+        .has_rivers = params->forest->ground.terrain->water_m != NULL,
         .has_overlay = params->overlay == WD_OVERLAY_OVER,
         .extent_m = {(float)wd_terrain_extent_x_m(params->forest->ground.terrain),
                      (float)wd_terrain_extent_y_m(params->forest->ground.terrain)},
@@ -217,6 +219,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(push.has_overlay ? &targets->overlay : &targets->albedo, pass->nearest),
         WD_BIND_IMAGE(&params->forest->canopy_light, params->forest->ground.sampler),
         WD_BIND_IMAGE(&params->forest->sky, params->forest->look_sampler),
+        WD_BIND_BUFFER(&params->forest->ground.waters),
     };
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);

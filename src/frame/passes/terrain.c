@@ -44,12 +44,12 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint
     const struct wd_graphics_params params = {
         .vertex = SPIRV(terrain_vert),
         .fragment = SPIRV(terrain_frag),
-        .bindings = {7,
+        .bindings = {8,
                      {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .constants = {2, constants},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
@@ -115,6 +115,7 @@ void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(&ground->slopes, ground->sampler),
         WD_BIND_IMAGE(&ground->cover, ground->sampler),
         WD_BIND_BUFFER(&ground->holes),
+        WD_BIND_BUFFER(&ground->waters),
     };
     const struct wd_pipeline *pipelines = pass->pipelines[ground->terrain->hole != NULL];
     uint32_t detailed = (uint32_t)pass->patches.detailed;

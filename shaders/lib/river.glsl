@@ -1,0 +1,14 @@
+/* Waters of a map on the device. Expects `frame`, WATER_AT(index) and wd_ground's grid of samples. */
+#include "shared/river.h"
+
+/* Height of the surface over the world's zero; local metres. */
+float river_level(vec2 local_m)
+{
+    vec2 at = clamp(local_m / frame.terrain_cell_m, vec2(0.0),
+                    vec2(frame.terrain_width, frame.terrain_height) - 1.001);
+    uvec2 cell = uvec2(at);
+    vec2 share = at - vec2(cell);
+    uint south = cell.y * frame.terrain_width + cell.x, north = south + frame.terrain_width;
+    return wd_river_between(WATER_AT(south), WATER_AT(south + 1u), WATER_AT(north),
+                            WATER_AT(north + 1u), share.x, share.y);
+}
