@@ -1,10 +1,13 @@
 #!/bin/sh
 # Runs the table of rows in docs/methods.md: each row is drawn (or told) twice, with its option and
 # against another setting, and the two must differ, or agree, as the table says.
-#   rows.sh WEALD ROOT
+#   rows.sh WEALD ROOT [FOLDER]
+# With a folder, larger pictures are drawn and each row's two are left there side by side, as ROW.png.
 set -u
 weald=$1
 root=$2
+folder=${3:-}
+size=${folder:+--size 288x216 --samples 4}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 scene=$root/tests/methods/rows.json
@@ -23,7 +26,8 @@ run() {
         "$weald" info "$scene" "$@" -q >"$out" 2>"$scratch/errors"
         ;;
     *)
-        "$weald" render "$scene" -o "$scratch/picture.png" "$@" -q 2>"$scratch/errors" &&
+        # shellcheck disable=SC2086 # words of an option
+        "$weald" render "$scene" -o "$scratch/picture.png" $size "$@" -q 2>"$scratch/errors" &&
             mv "$scratch/picture.png" "$out"
         ;;
     esac
@@ -40,6 +44,9 @@ while IFS='|' read -r _ row _ with against must _; do
     # words of a row are options without blanks in them
     # shellcheck disable=SC2086
     if run $with && first=$out && run $against && second=$out; then
+        [ -z "$folder" ] || [ "${with%% *}" = info ] ||
+            ffmpeg -v error -y -f png_pipe -i "$first" -f png_pipe -i "$second" \
+                -filter_complex hstack "$folder/$row.png" </dev/null
         if cmp -s "$first" "$second"; then found=agree; else found=differ; fi
         if [ "$found" = "$(echo $must)" ]; then
             covered=$((covered + 1))
