@@ -28,6 +28,7 @@ static const struct figure {
     {"continuum-frame-ms", bench_continuum_frame},
     {"continuum-vs-octree", bench_continuum_vs_octree},
     {"continuum-floor-ratio", bench_continuum_floor},
+    {"continuum-moving-ratio", bench_continuum_moving},
     {"continuum-gpu-mb", bench_continuum_memory},
     {"scale-1e6-1e9-ratio", bench_scale_ratio},
     {"scale-gpu-mb", bench_scale_memory},

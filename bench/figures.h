@@ -29,6 +29,7 @@ bool bench_wind_cost(const char *gpu);
 bool bench_continuum_frame(const char *gpu);
 bool bench_continuum_vs_octree(const char *gpu);
 bool bench_continuum_floor(const char *gpu);
+bool bench_continuum_moving(const char *gpu);
 bool bench_continuum_memory(const char *gpu);
 bool bench_scale_ratio(const char *gpu);
 bool bench_scale_memory(const char *gpu);

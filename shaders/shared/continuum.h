@@ -116,7 +116,7 @@ struct wd_splat_view {
     uint32_t tree_capacity, item_capacity;
     /* What the frame before saw, to leave out what it hid. 0: nothing is known. */
     uint32_t has_history;
-    uint32_t still;              /* the camera has not moved since */
+    uint32_t still;              /* the camera has not turned since either */
     WD_MAT4(history_from_rel);   /* clip coordinates then of what is at rel now */
     uint32_t pyramid_first[WD_PYRAMID_LEVELS];
 };

@@ -27,6 +27,7 @@ struct continuum {
         struct wd_buffer pyramid; /* float[], of the camera's newest frame */
         uint32_t width, height;   /* 0: there is none */
         double eye_m[3];
+        struct wd_camera camera;
         float clip_from_rel[4][4];
     } history;
     struct wd_binding view; /* struct wd_splat_view of the view being drawn */
@@ -131,25 +132,19 @@ static bool fit_pyramid(struct continuum *c, struct wd_cmd *cmd, const struct wd
     return make_work(&c->history.pyramid, cmd->gpu, "depth pyramid", size);
 }
 
-/* Beyond this, margins do not make up for what the camera has uncovered since. */
-static const double HISTORY_REACH_M = 2.0;
-
+/* What was hidden from one place may be seen from any other: a camera that has moved knows nothing,
+ * and one that has turned knows of what it saw all of. */
 static void set_history(const struct continuum *c, struct wd_splat_view *values,
                         const struct wd_view *view)
 {
     const struct history *history = &c->history;
-    float shift[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-    double squared = 0.0;
-    for (int k = 0; k < 3; k++) {
-        double moved = view->eye_m[k] - history->eye_m[k];
-        shift[3][k] = (float)moved;
-        squared += moved * moved;
-    }
+    const struct wd_camera *was = &history->camera, *is = &view->camera;
     pyramid_offsets(values->pyramid_first, view->width, view->height);
-    wd_matrix_multiply(values->history_from_rel, (float(*)[4])history->clip_from_rel, shift);
+    memcpy(values->history_from_rel, history->clip_from_rel, sizeof values->history_from_rel);
     values->has_history = history->width == view->width && history->height == view->height &&
-                          squared < HISTORY_REACH_M * HISTORY_REACH_M;
-    values->still = squared == 0.0;
+                          !memcmp(view->eye_m, history->eye_m, sizeof history->eye_m);
+    values->still = was->yaw_rad == is->yaw_rad && was->pitch_rad == is->pitch_rad &&
+                    was->fov_rad == is->fov_rad;
 }
 
 /* Where trees that stand for others find the ground's slope. */
@@ -464,6 +459,7 @@ static void continuum_keep(void *state, const struct wd_tree_draw *draw)
     c->history.width = view->width;
     c->history.height = view->height;
     memcpy(c->history.eye_m, view->eye_m, sizeof c->history.eye_m);
+    c->history.camera = view->camera;
     memcpy(c->history.clip_from_rel, view->clip_from_rel, sizeof c->history.clip_from_rel);
 }
 

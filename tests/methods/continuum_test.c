@@ -108,6 +108,65 @@ static void nothing_seen_is_left_out(void **state)
     frame_test_finish(&test);
 }
 
+/* Before the stem of the tallest tree, near enough that it hides what stands behind. */
+static struct wd_scene_camera camera_at_stem(const struct frame_test *test)
+{
+    const struct wd_tree *tallest = test->world.trees;
+    for (size_t i = 1; i < test->world.tree_count; i++) {
+        if (WD_TREE_HEIGHT_M(test->world.trees[i]) > WD_TREE_HEIGHT_M(*tallest))
+            tallest = &test->world.trees[i];
+    }
+    struct wd_scene_camera camera = test->scene.cameras[WALK];
+    camera.position_m[0] = tallest->x_mm * 0.001;
+    camera.position_m[1] = tallest->y_mm * 0.001 - 0.5;
+    camera.position_m[2] = 1.0;
+    camera.yaw_deg = camera.pitch_deg = 0.0;
+    return camera;
+}
+
+/* Pixels that differ between a view after another one and the same without a past. */
+static size_t pixels_left_out(struct frame_test *test, const struct wd_scene_camera *before,
+                              const struct wd_scene_camera *after)
+{
+    struct frame_picture whole, culled;
+    size_t other = 0;
+    wd_frame_drop_forest(&test->frame);
+    for (int i = 0; i < 3; i++) { /* the second one leaves out what the first one hid */
+        test->scene.cameras[WALK] = i < 2 ? *before : *after;
+        frame_test_draw(test, "continuum", WALK, &culled);
+        if (i < 2)
+            frame_picture_finish(&culled);
+    }
+    wd_frame_drop_forest(&test->frame);
+    frame_test_draw(test, "continuum", WALK, &whole);
+    for (size_t i = 0; i < pixels_of(&whole); i++)
+        other += whole.depth[i] != culled.depth[i];
+    frame_picture_finish(&whole);
+    frame_picture_finish(&culled);
+    return other;
+}
+
+/* A camera that jumps sees at once what the frame before hid. */
+static void a_jump_leaves_nothing_out(void **state)
+{
+    static const double jumps[][4] = {/* east, north, up in metres, turn in degrees */
+                                      {0.6, 0, 0, 0}, {0, 0, 0, 25}, {1.0, 1.2, 0.5, -8}};
+    (void)state;
+    struct frame_test test;
+    frame_test_init(&test, root, 0);
+    const struct wd_scene_camera walk = test.scene.cameras[WALK];
+    const struct wd_scene_camera from[] = {walk, camera_at_stem(&test)};
+    for (size_t i = 0; i < 2 * sizeof jumps / sizeof jumps[0]; i++) {
+        struct wd_scene_camera to = from[i % 2];
+        for (int k = 0; k < 3; k++)
+            to.position_m[k] += jumps[i / 2][k];
+        to.yaw_deg += jumps[i / 2][3];
+        assert_int_equal(pixels_left_out(&test, &from[i % 2], &to), 0);
+    }
+    test.scene.cameras[WALK] = walk;
+    frame_test_finish(&test);
+}
+
 static size_t count_trees(const struct frame_picture *picture, uint32_t *pixels_of_tree)
 {
     size_t covered = 0;
@@ -232,9 +291,12 @@ int main(int argc, char **argv)
         cmocka_unit_test(every_tree_is_in_one_cluster_and_its_bounds),
         cmocka_unit_test(two_passes_give_the_picture_of_one),
         cmocka_unit_test(nothing_seen_is_left_out),
+        cmocka_unit_test(a_jump_leaves_nothing_out),
         cmocka_unit_test(kept_cascades_are_as_if_drawn),
         cmocka_unit_test(discs_fall_as_the_error_rises),
         cmocka_unit_test(large_trees_have_the_ids_of_octree),
     };
+    if (argc > 2)
+        cmocka_set_test_filter(argv[2]);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
