@@ -108,7 +108,7 @@ static bool choose_methods(struct bench *bench)
     char *rest = NULL;
     bool ok = true;
     if (!list)
-        for (; names[count] && count < 31; count++)
+        for (; count < 31 && names[count]; count++)
             bench->methods[count] = names[count];
     for (char *word = list ? strtok_r(list, ",", &rest) : NULL; word && ok && count < 31;
          word = strtok_r(NULL, ",", &rest)) {

@@ -133,7 +133,7 @@ void bench_print_passes(FILE *to, const struct bench *bench, const struct bench_
 /* The column's name in words: "frame p95, ms". */
 void bench_column_title(uint32_t column, char title[64]);
 /* Which of the style sheet's colours a method has. */
-uint32_t bench_method_color(const struct bench *bench, const char *method);
+uint32_t bench_method_color(const char *method);
 bool bench_same_place(const struct bench_row *a, const struct bench_row *b);
 /* Whether no method at that place is both faster and lower in `column`. */
 bool bench_is_best(const struct bench *bench, const struct bench_row *row, uint32_t column);

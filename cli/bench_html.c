@@ -133,7 +133,7 @@ static void print_table(FILE *to, const struct bench *bench, const struct bench_
         if (!bench_same_place(row, place))
             continue;
         fprintf(to, "<tr class=\"result\"><td class=\"m%u\">%s</td>",
-                bench_method_color(bench, row->method), row->method);
+                bench_method_color(row->method), row->method);
         for (uint32_t c = BENCH_FRAME_MS; c < BENCH_COLUMNS; c++)
             if (column_used(bench, c))
                 print_value(to, row->values[c], false);
@@ -163,7 +163,7 @@ static void print_strip(FILE *to, const struct bench *bench, const struct bench_
         fprintf(to,
                 "<figcaption><b class=\"m%u\">%s</b> FLIP %.3f, blocks %.2g %%, %.4g "
                 "ms</figcaption></figure>\n",
-                bench_method_color(bench, row->method), row->method, row->values[BENCH_COMPARISON],
+                bench_method_color(row->method), row->method, row->values[BENCH_COMPARISON],
                 row->values[BENCH_COMPARISON + 3], row->values[BENCH_FRAME_MS]);
     }
     fputs("</div>\n", to);
@@ -231,7 +231,7 @@ static bool is_first_of_place(const struct bench *bench, size_t index)
 
 static void print_glance_row(FILE *to, const struct bench *bench, const char *method, bool error)
 {
-    fprintf(to, "<tr><td class=\"m%u\">%s</td>", bench_method_color(bench, method), method);
+    fprintf(to, "<tr><td class=\"m%u\">%s</td>", bench_method_color(method), method);
     for (size_t i = 0; i < bench->row_count; i++) {
         const struct bench_row *place = &bench->rows[i], *row;
         if (!is_first_of_place(bench, i))

@@ -61,13 +61,13 @@ static double longest_bar(const struct bench *bench, const struct bench_row *pla
     return longest_ms;
 }
 
-static void print_bar(FILE *to, const struct bench *bench, const struct bench_row *row,
+static void print_bar(FILE *to, const struct bench_row *row,
                       struct names *names, double longest_ms)
 {
     struct pass pass;
     double sum_ms = 0;
     fprintf(to, "<div class=\"name m%u\">%s</div><div class=\"bar\">",
-            bench_method_color(bench, row->method), row->method);
+            bench_method_color(row->method), row->method);
     for (const char *at = row->passes; at && (at = take_pass(at, &pass));) {
         double ms = pass.gpu_ms + pass.cpu_ms;
         sum_ms += ms;
@@ -75,7 +75,7 @@ static void print_bar(FILE *to, const struct bench *bench, const struct bench_ro
                 name_index(names, pass.name), 88 * ms / longest_ms, pass.name, pass.gpu_ms,
                 pass.cpu_ms);
     }
-    fprintf(to, "<b>%.4g ms</b></div>\n", sum_ms);
+    fprintf(to, "<b>%.*f ms</b></div>\n", sum_ms < 100 ? 1 : 0, sum_ms);
 }
 
 void bench_print_passes(FILE *to, const struct bench *bench, const struct bench_row *place)
@@ -90,6 +90,6 @@ void bench_print_passes(FILE *to, const struct bench *bench, const struct bench_
     fputs("</p>\n<div class=\"bars\">\n", to);
     for (size_t i = 0; i < bench->row_count; i++)
         if (bench_same_place(&bench->rows[i], place))
-            print_bar(to, bench, &bench->rows[i], &names, longest_ms);
+            print_bar(to, &bench->rows[i], &names, longest_ms);
     fputs("</div>\n", to);
 }

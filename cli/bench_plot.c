@@ -9,11 +9,10 @@ enum { WIDTH = 620, HEIGHT = 350, LEFT = 58, RIGHT = WIDTH - 16, TOP = 22, BOTTO
 enum { LABELS_MAX = 32, LABEL_HEIGHT = 14, LETTER_WIDTH = 7 };
 
 /* The same for a method in every report, whatever others it is measured with. */
-uint32_t bench_method_color(const struct bench *bench, const char *method)
+uint32_t bench_method_color(const char *method)
 {
     const char *const *names = wd_method_names();
     uint32_t i = 0;
-    (void)bench;
     while (names[i] && strcmp(names[i], method) != 0)
         i++;
     return i % 10;
@@ -179,12 +178,12 @@ static void add_label(struct labels *labels, struct label label)
         labels->items[labels->count++] = label;
 }
 
-static void print_label(FILE *to, const struct plot *plot, const struct bench_row *row, double x,
+static void print_label(FILE *to, const struct bench_row *row, double x,
                         double y, struct labels *labels)
 {
     struct label label = find_room(labels, x, y, strlen(row->method));
     double end = label.x > x ? label.x - 1 : label.x + label.width + 1;
-    uint32_t color = bench_method_color(plot->bench, row->method);
+    uint32_t color = bench_method_color(row->method);
     fprintf(to,
             "<g class=\"m%u\"><path class=\"lead\" d=\"M%.1f %.1f L%.1f %.1f\"/>"
             "<text x=\"%.1f\" y=\"%.1f\">%s</text></g>\n",
@@ -261,14 +260,14 @@ static void print_dots(FILE *to, const struct plot *plot)
             double x = place_on(&plot->x, row->values[plot->x_column]);
             double y = place_on(&plot->y, row->values[plot->y_column]);
             if (pass == 1) {
-                print_label(to, plot, row, x, y, &labels);
+                print_label(to, row, x, y, &labels);
                 continue;
             }
             add_label(&labels, (struct label){x - 6, y, 12});
             fprintf(to,
                     "<circle class=\"method m%u\" cx=\"%.1f\" cy=\"%.1f\" r=\"5.5\"><title>%s: "
                     "%.4g, %.4g</title></circle>\n",
-                    bench_method_color(plot->bench, row->method), x, y, row->method,
+                    bench_method_color(row->method), x, y, row->method,
                     row->values[plot->x_column], row->values[plot->y_column]);
         }
 }
@@ -295,7 +294,7 @@ static void print_growth_line(FILE *to, const struct plot *plot, const char *met
                               struct labels *labels)
 {
     const struct bench_row *last = NULL;
-    uint32_t color = bench_method_color(plot->bench, method);
+    uint32_t color = bench_method_color(method);
     fprintf(to, "<path class=\"growth m%u\" d=\"", color);
     for (size_t i = 0; i < plot->bench->row_count; i++) {
         const struct bench_row *row = &plot->bench->rows[i];
@@ -314,7 +313,7 @@ static void print_growth_line(FILE *to, const struct plot *plot, const char *met
                     place_on(&plot->y, row->values[plot->y_column]));
     }
     if (last)
-        print_label(to, plot, last, place_on(&plot->x, last->values[plot->x_column]),
+        print_label(to, last, place_on(&plot->x, last->values[plot->x_column]),
                     place_on(&plot->y, last->values[plot->y_column]), labels);
 }
 

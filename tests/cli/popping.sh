@@ -81,7 +81,7 @@ canopy() {
     found=$(jq -c '[.rows[] | .step_billboard_canopy_pct]' "$dir/results.json")
 }
 canopy 60
-check "canopy: steps of $found" jq -ne "[$found[] | numbers] | length > 0"
+check "canopy: steps of $found" jq -ne "[${found}[] | numbers] | length > 0"
 canopy 0
-check "canopy: none without a boundary: $found" jq -ne "[$found[] | numbers] | length == 0"
+check "canopy: none without a boundary: $found" jq -ne "[${found}[] | numbers] | length == 0"
 finish
