@@ -39,7 +39,7 @@ static const struct cli_option option_table[] = {
     {"variants", 0, "N", CLI_KIND_WHOLE, AT(variants), 1, 64, CLI_GROW,
      "this many individuals side by side, of seeds from --seed on"},
     {"form", 0, "NAME", CLI_KIND_TEXT, AT(form), 0, 0, CLI_GROW,
-     "what a picture shows: full, reduced, cards, or as seen in scenes (default: full)"},
+     "what a picture shows: full, reduced, cards, or seen (as in scenes) (default: full)"},
     {"camera-distance", 0, "METRES", CLI_KIND_REAL, AT(distance_m), 0.1, 1900, CLI_GROW,
      "picture from a person's eye this far off (default: all of the tree in the frame)"},
     {"sheet", 0, NULL, CLI_KIND_FLAG, AT(sheet), 0, 0, CLI_GROW,
