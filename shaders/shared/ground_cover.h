@@ -20,6 +20,7 @@ struct wd_ground_noise {
     float small_; /* 2 m */
     float fine;   /* 0.5 m and less */
     float bump_east, bump_north; /* slope that the smaller ones add */
+    float wave_east, wave_north; /* slope of the 2 m one, for drifts */
 };
 
 /* Tufts, clods and crumbs: 0.5 m, 0.13 m and 32 mm. */
@@ -49,6 +50,8 @@ WD_FUNC WD_STRUCT wd_ground_noise wd_ground_noise_at(WD_FRAME_IN float east_m, f
                * wd_noise_share(footprint_m, 14);
     n.small_ = wave.x;
     n.fine = fine.x;
+    n.wave_east = wave.y;
+    n.wave_north = wave.z;
     n.bump_east = wave.y * 0.05f + fine.y * 0.18f;
     n.bump_north = wave.z * 0.05f + fine.z * 0.18f;
     return n;
@@ -226,10 +229,12 @@ WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, floa
     look.albedo = wd_v3_clamp(wd_v3_mix(albedo, WD_SNOW_ALBEDO, snow), 0.0f, 1.0f);
     float rough = 1.0f + WD_SMOOTH(0.7f, 1.2f, steep / WD_FRAME(rock_slope)) * 1.5f;
     rough *= 1.0f - 0.75f * snow; /* it fills what is uneven */
+    float drift = 0.09f * snow; /* wind has laid it in low waves */
     float tilt = strewn.plain * (1.0f - snow);
-    look.normal = wd_v3_normalize(
-        WD_V3(-slope_east - n.bump_east * rough - tilt * strewn.hit.tilt_east,
-              -slope_north - n.bump_north * rough - tilt * strewn.hit.tilt_north, 1.0f));
+    float east = slope_east + n.bump_east * rough + drift * n.wave_east;
+    float north = slope_north + n.bump_north * rough + drift * n.wave_north;
+    look.normal = wd_v3_normalize(WD_V3(-east - tilt * strewn.hit.tilt_east,
+                                        -north - tilt * strewn.hit.tilt_north, 1.0f));
     look.openness = 0.85f + 0.15f * WD_CLAMP(1.0f + 2.0f * n.fine, 0.0f, 1.0f);
     return look;
 }
