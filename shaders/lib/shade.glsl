@@ -148,6 +148,7 @@ float leaf_gloss(wd_pixel pixel, float roughness, float near)
 struct wd_place {
     vec3 rel;           /* where it is taken to be */
     vec3 normal;        /* for skylight and for the shadow maps */
+    vec3 sheet;         /* normal of a leaf's side that is to the sun, where maps hold leaves; or none */
     float own;          /* share of the sun left after the tree's own leaves */
     float ahead_m;      /* how far toward the sun to go before asking the maps */
     vec2 sides;         /* share of the sun reflected and transmitted toward the eye */
@@ -161,6 +162,7 @@ wd_place ground_place(wd_pixel pixel)
     wd_place place;
     place.rel = pixel.rel;
     place.normal = pixel.normal;
+    place.sheet = vec3(0.0);
     place.own = 1.0;
     place.ahead_m = 0.0;
     place.sides = vec2(max(dot(pixel.normal, frame.sun_direction), 0.0), 0.0);
@@ -212,6 +214,8 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, uint cascade
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, crown_is_sward(crown)); /* blades bend over */
     place.gloss = (leaf_gloss(pixel, model.roughness, near) + WAX * 0.39) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
+    float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
+    place.sheet = mapped > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
     return place;
 }
 
@@ -235,7 +239,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     }
     ground_share = ground_shadow(place.rel);
     vec3 ahead = place.rel + frame.sun_direction * place.ahead_m;
-    sun_share = place.own * ground_share * tree_shadow(ahead, place.normal, cascade, noise);
+    sun_share = place.own * ground_share
+                * tree_shadow(ahead, place.normal, place.sheet, cascade, noise);
     if (pixel.surface == 0u) { /* no maps so far out: the canopy's cover stands for its shadow */
         float out_of_maps = smoothstep(0.75, 1.0, pixel.axis_m / frame.cascade_far_m.w);
         float beam = 0.67 / max(frame.sun_direction.z, 0.05);

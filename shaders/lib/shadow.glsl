@@ -10,14 +10,28 @@ uint shadow_cascade(float axis_m, float noise)
     return uint(dot(beyond, vec4(1.0)));
 }
 
+/* How much nearer the sun a sheet is a texture coordinate to the right and up of a place on it: without
+ * that, the tilted sheet shadows itself in stripes. */
+vec2 sheet_slope(vec3 sheet, uint cascade)
+{
+    mat4 m = frame.shadow_from_rel[cascade];
+    vec3 right = vec3(m[0].x, m[1].x, m[2].x), up = vec3(m[0].y, m[1].y, m[2].y);
+    vec3 toward = vec3(m[0].z, m[1].z, m[2].z);
+    float facing = max(dot(sheet, toward) * inversesqrt(dot(toward, toward)), 0.25);
+    return -vec2(dot(sheet, right) / dot(right, right), dot(sheet, up) / dot(up, up))
+           * (length(toward) / facing);
+}
+
 /* Share of the sun that trees let through to `rel`. The disc of taps (Vogel 1979) is as wide as
- * the penumbra of a caster some 10 m off, at least a texel and a half. */
-float tree_shadow(vec3 rel, vec3 normal, uint cascade, float noise)
+ * the penumbra of a caster some 10 m off, at least a texel and a half. `sheet`: normal of the leaf that
+ * the place is on, toward the sun, or none. */
+float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
 {
     if (cascade >= WD_CASCADES || frame.shadow_taps == 0u)
         return 1.0;
     float texel_m = frame.cascade_texel_m[cascade];
-    vec3 from = rel + normal * texel_m * 1.2 + frame.sun_direction * texel_m * 0.8;
+    vec3 off = mix(normal, sheet, dot(sheet, sheet));
+    vec3 from = rel + off * texel_m * 1.2 + frame.sun_direction * texel_m * 0.8;
     vec3 at = (frame.shadow_from_rel[cascade] * vec4(from, 1.0)).xyz;
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0))))
         return 1.0;
@@ -25,10 +39,12 @@ float tree_shadow(vec3 rel, vec3 normal, uint cascade, float noise)
     float radius = max(1.5, 0.05 / texel_m) * texel;
     float turn = noise * 6.2831853;
     vec2 spin = vec2(cos(turn), sin(turn));
+    vec2 slope = sheet_slope(sheet, cascade);
     float lit = 0.0;
     for (uint i = 0u; i < frame.shadow_taps; i++) {
         float r = sqrt((float(i) + 0.5) / float(frame.shadow_taps)) * radius;
-        lit += texture(shadow_map, vec4(at.xy + spin * r, float(cascade), at.z));
+        lit += texture(shadow_map, vec4(at.xy + spin * r, float(cascade),
+                                        at.z + dot(slope, spin) * r));
         spin = vec2(-0.7373688 * spin.x - 0.6754903 * spin.y,
                     0.6754903 * spin.x - 0.7373688 * spin.y); /* the golden angle on */
     }
