@@ -15,7 +15,7 @@ table() {
     shift
     awk -F, -v columns="$*" '
     function short(number) {
-        return number == "" ? "-" : sprintf(number >= 100 ? "%.0f" : number >= 10 ? "%.1f" : "%.2g", number)
+        return number == "" ? "-" : sprintf(number >= 100 ? "%.0f" : number >= 10 ? "%.1f" : "%.3g", number)
     }
     /^#/ { next }
     $1 == "scene" { n = split(columns, names, " "); for (i = 1; i <= NF; i++) at[$i] = i; next }
@@ -50,13 +50,16 @@ fill() {
         d};/<!-- \/$1 -->/!d}" "$page"
 }
 
+trap : INT TERM # weald leaves what it has; then its time is noted, too
 for suite; do
     work=out/suites/$suite
     kept=docs/bench/$suite
     mkdir -p "$work" "$kept"
     begin=$(date +%s)
-    "$build/cli/weald" bench --suite "$suite" --gpu software -o "$work"
+    status=0
+    "$build/cli/weald" bench --suite "$suite" --gpu software -o "$work" || status=$?
     echo "$(($(date +%s) - begin))" >>"$work/seconds"
+    [ "$status" -eq 0 ] || exit "$status"
     cp "$work/results.csv" "$work/results.json" "$work/report.html" "$kept/"
     case $suite in
     seeds | quality) table "$suite" frame_ms flip block_rmse_pct | fill "$suite" ;;
