@@ -52,7 +52,7 @@ struct cli_options {
     uint32_t variants, max_trees, grow_seed;
     double frames_per_second, time_s, max_error_px, budget_ms;
     double height_m, dbh_cm, age_years, openness, detail, month, distance_m; /* of grow */
-    const char *season, *form, *clip;
+    const char *season, *form, *clip, *layers;
     struct cli_words settings, method_options;
     enum wd_view_mode view;
     bool help, json, quiet, quick, reference, times, gpu_validate, walk, sheet,

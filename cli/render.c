@@ -11,6 +11,50 @@
 /* Paths a pixel of --reference, unless asked for otherwise. */
 enum { REFERENCE_SAMPLES = 64 };
 
+/* The layers that a list such as "color,cryptomatte" names; 0 after a complaint. */
+static uint32_t parse_layers(struct cli_session *session, const char *text)
+{
+    static const struct {
+        const char *name;
+        uint32_t bits;
+    } layers[] = {{"color", WD_LAYER_COLOR},       {"depth", WD_LAYER_DEPTH},
+                  {"normal", WD_LAYER_NORMAL},     {"albedo", WD_LAYER_ALBEDO},
+                  {"species", WD_LAYER_SPECIES},   {"tree_id", WD_LAYER_TREE_ID},
+                  {"velocity", WD_LAYER_VELOCITY}, {"cryptomatte", WD_LAYER_CRYPTOMATTE},
+                  {"all", WD_LAYER_ALL}};
+    uint32_t found = 0;
+    for (const char *at = text; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+        size_t i = 0, length = strcspn(at, ",");
+        while (i < sizeof layers / sizeof *layers &&
+               (strlen(layers[i].name) != length || strncmp(layers[i].name, at, length)))
+            i++;
+        if (i == sizeof layers / sizeof *layers) {
+            cli_fail(session,
+                     "--layers: there is no layer \"%.*s\"; there are: color, depth, normal, "
+                     "albedo, species, tree_id, velocity, cryptomatte, all",
+                     (int)length, at);
+            return 0;
+        }
+        found |= layers[i].bits;
+    }
+    return found;
+}
+
+static bool settle_layers(struct cli_session *session, struct cli_plan *plan)
+{
+    const struct cli_options *options = session->options;
+    bool layers = plan->kind == CLI_OUTPUT_EXR || plan->kind == CLI_OUTPUT_NUMBERED_EXR;
+    plan->params.layers = layers ? WD_LAYER_ALL : WD_LAYER_DISPLAY;
+    if (!options->layers)
+        return true;
+    if (!layers)
+        return cli_fail(session, "--layers is for .exr files");
+    plan->params.layers = parse_layers(session, options->layers);
+    if (options->reference && plan->params.layers & WD_LAYER_CRYPTOMATTE)
+        return cli_fail(session, "--reference has no layer cryptomatte");
+    return plan->params.layers != 0;
+}
+
 static bool make_plan(struct cli_session *session, struct cli_plan *plan)
 {
     const struct cli_options *options = session->options;
@@ -40,7 +84,7 @@ static bool make_plan(struct cli_session *session, struct cli_plan *plan)
     if (options->budget_ms > 0 && !plan->film)
         return cli_fail(session, "--budget-ms is for films and the viewer: a still must not depend on a "
                                  "clock; --max-error bounds its error");
-    if (!cli_error_check(session))
+    if (!cli_error_check(session) || !settle_layers(session, plan))
         return false;
     return cli_method_check(session);
 }
@@ -62,8 +106,6 @@ static void choose_picture(const struct cli_session *session, const struct wd_fo
     params->max_error_px = options->max_error_px;
     params->time_s = params->previous_time_s = options->time_s;
     params->timing = options->times ? WD_TIME_PASSES : WD_TIME_OFF;
-    bool layers = plan->kind == CLI_OUTPUT_EXR || plan->kind == CLI_OUTPUT_NUMBERED_EXR;
-    params->layers = layers ? WD_LAYER_ALL : WD_LAYER_DISPLAY;
 }
 
 void cli_say_written(struct cli_session *session, const struct cli_plan *plan, const char *what)

@@ -76,8 +76,12 @@ enum wd_layer_bits {
     WD_LAYER_SPECIES = 1 << 5,
     WD_LAYER_TREE_ID = 1 << 6,
     WD_LAYER_VELOCITY = 1 << 7,
-    WD_LAYER_ALL = 0xff,
+    WD_LAYER_CRYPTOMATTE = 1 << 8, /* trees by coverage; each sample is read back for it */
+    WD_LAYER_ALL = 0xff,           /* but that one */
 };
+
+/* Trees of a pixel that WD_LAYER_CRYPTOMATTE keeps, by falling coverage. */
+enum { WD_RANKS = 6 };
 
 #define WD_LEAST_ERROR_PX 0.25
 #define WD_MOST_ERROR_PX 32.0
@@ -114,6 +118,8 @@ struct wd_picture {
     uint32_t *tree_id; /* 0: no tree */
     float *velocity_px; /* 2 a pixel: where this surface moved since the previous time, in pixels,
                            x right, y down */
+    uint32_t *rank_tree; /* WD_RANKS a pixel: ids of trees by falling coverage; 0: no more */
+    float *rank_share;   /* and the share of the pixel's samples that show each */
 };
 
 /* Draws one picture. Deterministic for the same device.
@@ -171,7 +177,8 @@ char *wd_device_list(void);
 /* --- writing pictures ------------------------------------------------------------------- */
 
 /* Writes `picture` whole or not at all. ".png" takes the display layer, ".exr" every layer there
- * is (R G B, Z in metres, N.X N.Y N.Z, albedo.R .G .B, species, tree_id, velocity.X .Y).
+ * is (R G B, Z in metres, N.X N.Y N.Z, albedo.R .G .B, species, tree_id, velocity.X .Y; ranks as
+ * Cryptomatte 1.2: weald_tree00.R .G .B .A to weald_tree02, trees named "tree_ID" in the manifest).
  * Errors: WD_ERROR_INPUT for another ending or a missing layer, WD_ERROR_OUTPUT. */
 enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
                                 const struct wd_log *log);

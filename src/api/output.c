@@ -6,6 +6,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "output/cryptomatte.h"
 #include "output/exr.h"
 #include "output/film.h"
 #include "output/image.h"
@@ -41,13 +42,59 @@ static enum wd_result write_png(const struct wd_picture *picture, const char *pa
     return ok ? WD_OK : WD_ERROR_OUTPUT;
 }
 
-enum { MAX_CHANNELS = 16 };
+enum { MAX_CHANNELS = 32 };
 
 static void add_channels(struct wd_exr_channel *channels, size_t *count, const char *const *names,
                          const float *data, uint32_t stride)
 {
     for (uint32_t k = 0; data && k < stride; k++)
         channels[(*count)++] = (struct wd_exr_channel){names[k], WD_EXR_FLOAT, data + k, stride};
+}
+
+/* Ids as floats and their coverage, two ranks of a pixel in each RGBA layer, and what readers need to
+ * know of them. All of it lives until finish_ranks. */
+struct ranks {
+    struct wd_cryptomatte matte;
+    float *values; /* 2 * WD_RANKS a pixel */
+    char *manifest;
+    struct wd_exr_text texts[4];
+};
+
+/* The keys hold the first seven digits of the hash of "weald_tree". */
+#define MATTE_KEY "cryptomatte/9f4781b/"
+
+static void add_ranks(struct ranks *ranks, const struct wd_picture *picture,
+                      struct wd_exr_channel *channels, struct wd_exr_params *params)
+{
+    static const char *const names[2 * WD_RANKS] = {
+        "weald_tree00.R", "weald_tree00.G", "weald_tree00.B", "weald_tree00.A",
+        "weald_tree01.R", "weald_tree01.G", "weald_tree01.B", "weald_tree01.A",
+        "weald_tree02.R", "weald_tree02.G", "weald_tree02.B", "weald_tree02.A"};
+    size_t count = (size_t)picture->width * picture->height * WD_RANKS;
+    if (!picture->rank_tree)
+        return;
+    wd_cryptomatte_init(&ranks->matte, picture->rank_tree, count);
+    ranks->values = wd_alloc_array(count * 2, sizeof *ranks->values);
+    for (size_t i = 0; i < count; i++) {
+        ranks->values[2 * i] = wd_cryptomatte_find(&ranks->matte, picture->rank_tree[i]);
+        ranks->values[2 * i + 1] = picture->rank_share[i];
+    }
+    ranks->manifest = wd_cryptomatte_manifest(&ranks->matte);
+    const struct wd_exr_text texts[4] = {{MATTE_KEY "name", "weald_tree"},
+                                         {MATTE_KEY "hash", "MurmurHash3_32"},
+                                         {MATTE_KEY "conversion", "uint32_to_float32"},
+                                         {MATTE_KEY "manifest", ranks->manifest}};
+    memcpy(ranks->texts, texts, sizeof texts);
+    params->texts = ranks->texts;
+    params->text_count = 4;
+    add_channels(channels, &params->channel_count, names, ranks->values, 2 * WD_RANKS);
+}
+
+static void finish_ranks(struct ranks *ranks)
+{
+    wd_cryptomatte_finish(&ranks->matte);
+    free(ranks->values);
+    free(ranks->manifest);
 }
 
 static enum wd_result write_exr(const struct wd_picture *picture, const char *path,
@@ -70,11 +117,15 @@ static enum wd_result write_exr(const struct wd_picture *picture, const char *pa
     if (picture->tree_id)
         channels[params.channel_count++] =
             (struct wd_exr_channel){"tree_id", WD_EXR_UINT, picture->tree_id, 1};
-    if (params.channel_count == 0) {
+    if (params.channel_count == 0 && !picture->rank_tree) {
         wd_error(log, "%s: the picture has no layer that an EXR file could hold", path);
         return WD_ERROR_INPUT;
     }
-    return wd_exr_write(path, &params, log) ? WD_OK : WD_ERROR_OUTPUT;
+    struct ranks ranks = {0};
+    add_ranks(&ranks, picture, channels, &params);
+    bool ok = wd_exr_write(path, &params, log);
+    finish_ranks(&ranks);
+    return ok ? WD_OK : WD_ERROR_OUTPUT;
 }
 
 enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,

@@ -16,6 +16,8 @@ void wd_picture_finish(struct wd_picture *picture)
     free(picture->species);
     free(picture->tree_id);
     free(picture->velocity_px);
+    free(picture->rank_tree);
+    free(picture->rank_share);
     *picture = (struct wd_picture){0};
 }
 
@@ -124,12 +126,35 @@ static bool read_trees(struct wd_picture *picture, struct wd_renderer *renderer,
     return true;
 }
 
+bool wd_picture_count_trees(struct wd_renderer *renderer)
+{
+    struct wd_coverage *coverage = &renderer->coverage;
+    if (!wd_frames_wait(&renderer->frame.ring))
+        return false;
+    uint32_t *surface = read_target(renderer, &renderer->frame.targets.surface, 4);
+    struct wd_tree tree = {0};
+    uint32_t before = 0;
+    if (!surface)
+        return false;
+    for (size_t i = 0; i < coverage->pixels; i++) {
+        if (surface[i] && (surface[i] == before ||
+                           wd_forest_tree_at(&renderer->device, surface[i] - 1, &tree))) {
+            before = surface[i];
+            wd_coverage_add(coverage, i, tree.id);
+        }
+    }
+    free(surface);
+    return true;
+}
+
 bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers)
 {
     struct wd_targets *targets = &renderer->frame.targets;
     size_t pixels = (size_t)targets->width * targets->height;
     picture->width = targets->width;
     picture->height = targets->height;
+    if (layers & WD_LAYER_CRYPTOMATTE)
+        wd_coverage_rank(&renderer->coverage, renderer->frame.params.samples, picture);
     if (layers & WD_LAYER_DISPLAY &&
         !(picture->display = read_target(renderer, &targets->display, 4)))
         return false;

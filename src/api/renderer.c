@@ -180,7 +180,8 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
         .samples = samples < max_samples ? samples : max_samples,
         .view_mode = (uint32_t)params->view,
         .max_error_px = (float)params->max_error_px,
-        .gbuffer = params->layers & ~(uint32_t)(WD_LAYER_DISPLAY | WD_LAYER_COLOR)
+        .gbuffer = params->layers & WD_LAYER_CRYPTOMATTE ? WD_GBUFFER_READ_EACH
+                   : params->layers & ~(uint32_t)(WD_LAYER_DISPLAY | WD_LAYER_COLOR)
                        ? WD_GBUFFER_READ
                        : WD_GBUFFER_OWN,
         .velocity = params->layers & WD_LAYER_VELOCITY ? WD_VELOCITY_ON : WD_VELOCITY_OFF,
@@ -241,6 +242,8 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
             return WD_ERROR_DEVICE;
         if (i == 0)
             wd_renderer_keep_times(renderer);
+        if (renderer->coverage.first && !wd_picture_count_trees(renderer))
+            return WD_ERROR_DEVICE;
     }
     if (!wd_frames_wait(&frame->ring))
         return WD_ERROR_DEVICE;
@@ -259,9 +262,12 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
     if (result != WD_OK)
         return result;
     uint32_t layers = params->layers ? params->layers : WD_LAYER_DISPLAY;
+    if (layers & WD_LAYER_CRYPTOMATTE)
+        wd_coverage_init(&renderer->coverage, (size_t)params->width * params->height);
     result = render_samples(renderer);
     if (result == WD_OK && !wd_picture_read(picture, renderer, layers))
         result = WD_ERROR_DEVICE;
+    wd_coverage_finish(&renderer->coverage);
     if (result != WD_OK)
         wd_picture_finish(picture);
     return result;

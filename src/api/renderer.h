@@ -2,6 +2,7 @@
 #ifndef WD_API_RENDERER_H
 #define WD_API_RENDERER_H
 
+#include "api/coverage.h"
 #include "api/forest.h"
 #include "frame/frame.h"
 #include "weald/renderer.h"
@@ -22,6 +23,7 @@ struct wd_renderer {
     uint32_t pass_count;
     double frame_ms;
     double gpu_ms;  /* of the newest frame drawn live; 0: not known */
+    struct wd_coverage coverage; /* of the picture being made, where it is asked for */
     uint64_t discs; /* of the newest picture; 0: not counted */
 };
 
@@ -30,6 +32,8 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
                                    const struct wd_render_params *params, uint32_t max_samples);
 /* Fetches the layers of the frame just finished. */
 bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers);
+/* Adds what the sample just finished shows to renderer->coverage. */
+bool wd_picture_count_trees(struct wd_renderer *renderer);
 /* Takes over the pass times of the newest finished frame. */
 void wd_renderer_keep_times(struct wd_renderer *renderer);
 

@@ -256,10 +256,11 @@ static void record_light(const struct recording *r)
     wd_cmd_scope_begin(r->cmd, "light");
     wd_light_pass_record(&frame->light, r->cmd, &light);
     wd_cmd_scope_end(r->cmd);
+    enum wd_gbuffer_use use = frame->params.gbuffer;
+    if (blends(r) && (use == WD_GBUFFER_READ_EACH || (use == WD_GBUFFER_READ && is_last(r))))
+        record_layers(r);
     if (!is_last(r))
         return;
-    if (blends(r) && frame->params.gbuffer == WD_GBUFFER_READ)
-        record_layers(r);
     if (frame->params.velocity == WD_VELOCITY_ON) {
         wd_cmd_scope_begin(r->cmd, "velocity");
         wd_light_pass_record_velocity(&frame->light, r->cmd, &light, &frame->velocity_px);

@@ -21,6 +21,7 @@ struct wd_frame_params {
     enum wd_gbuffer_use {
         WD_GBUFFER_OWN,  /* for the frame's own passes */
         WD_GBUFFER_READ, /* its layers are read afterwards: trees stand in all of them */
+        WD_GBUFFER_READ_EACH, /* after every sample */
     } gbuffer;
     uint32_t page_budget; /* pages of trees on demand to plant for a view, at most; 0: all it needs */
     float max_error_px;   /* see struct wd_render_params; 0: the method's own */

@@ -449,6 +449,60 @@ static void exr_files_keep_ids_and_depths(void **state)
     wd_picture_finish(&p);
 }
 
+/* Ranks are what one-sample pictures of the same samples would count. */
+static void ranks_are_the_samples_trees(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_render_params params = suite_params(suite->forest, "over");
+    params.samples = 8;
+    params.layers = WD_LAYER_CRYPTOMATTE | WD_LAYER_TREE_ID;
+    struct wd_picture p = render(suite, &params);
+    size_t parted = 0, whole = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        const uint32_t *tree = &p.rank_tree[i * WD_RANKS];
+        const float *share = &p.rank_share[i * WD_RANKS];
+        float sum = 0.0f;
+        bool found = p.tree_id[i] == 0; /* of the last sample, which counts as one */
+        for (int k = 0; k < WD_RANKS; k++) {
+            assert_true((tree[k] != 0) == (share[k] > 0.0f));
+            assert_true(k == 0 || share[k] <= share[k - 1]);
+            assert_true(share[k] * 8.0f == floorf(share[k] * 8.0f));
+            for (int j = 0; j < k; j++)
+                assert_true(tree[k] == 0 || tree[j] != tree[k]);
+            found = found || tree[k] == p.tree_id[i] || tree[WD_RANKS - 1] != 0;
+            sum += share[k];
+        }
+        assert_true(found && sum <= 1.0f);
+        assert_true(sum > 0.0f || p.tree_id[i] == 0);
+        parted += sum > 0.0f && sum < 1.0f;
+        whole += sum == 1.0f;
+    }
+    assert_true(parted > PIXELS / 100 && whole > PIXELS / 20);
+    wd_picture_finish(&p);
+}
+
+static void cryptomatte_files_say_what_they_hold(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_render_params params = suite_params(suite->forest, "over");
+    params.samples = 4;
+    params.layers = WD_LAYER_CRYPTOMATTE;
+    struct wd_picture p = render(suite, &params);
+    const char *path = suite_path(suite, "matte.exr");
+    struct wd_exr_image image;
+    assert_int_equal(wd_picture_write(&p, path, &suite->log), WD_OK);
+    assert_true(wd_exr_read(&image, path, &suite->log));
+    assert_int_equal(image.plane_count, 2 * WD_RANKS);
+    const float *id = wd_exr_find(&image, "weald_tree00.R")->data;
+    const float *share = wd_exr_find(&image, "weald_tree00.G")->data;
+    for (size_t i = 0; i < PIXELS; i++) {
+        assert_true(share[i] == p.rank_share[i * WD_RANKS]);
+        assert_true((id[i] != 0.0f) == (p.rank_tree[i * WD_RANKS] != 0));
+    }
+    wd_exr_image_finish(&image);
+    wd_picture_finish(&p);
+}
+
 static void pictures_need_a_known_ending(void **state)
 {
     struct suite *suite = *state;
@@ -551,6 +605,8 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(surfaces_move_against_the_camera, &suite),
         cmocka_unit_test_prestate(wind_moves_trees_and_nothing_else, &suite),
         cmocka_unit_test_prestate(exr_files_keep_ids_and_depths, &suite),
+        cmocka_unit_test_prestate(ranks_are_the_samples_trees, &suite),
+        cmocka_unit_test_prestate(cryptomatte_files_say_what_they_hold, &suite),
         cmocka_unit_test_prestate(pictures_need_a_known_ending, &suite),
         cmocka_unit_test_prestate(far_coordinates_lose_nothing, &suite),
     };

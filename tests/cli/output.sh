@@ -24,6 +24,10 @@ out=$scratch/out
     expect 0 '1x1' render "$tiny" -o "$out/pixel.png" $soft --size 1x1
     expect 0 . render "$tiny" -o "$out/own.png" $soft --method continuum
     expect 0 . render "$tiny" -o "$out/coarse.png" $soft --method continuum --max-error 8
+    expect 0 'matte.exr: ' render "$tiny" -o "$out/matte.exr" $soft --samples 4 \
+        --layers color,cryptomatte
+    expect 2 'there is no layer "colour"' render "$tiny" -o "$out/none.exr" $soft --layers depth,colour
+    expect 2 'layers is for .exr' render "$tiny" -o "$out/none.png" $soft --layers depth
     expect 0 'layers.exr: ' render "$tiny" -o "$out/layers.exr" $soft
 }
 check 'threads change no picture' cmp "$out/a.png" "$out/threads.png"
@@ -43,6 +47,10 @@ check 'EXR can be read' test "$size" = 160,90
 for layer in Z N.X albedo.R species tree_id velocity.X; do
     check "EXR names layer $layer" grep -aqF "$layer" "$out/layers.exr"
 done
+for key in name hash conversion manifest MurmurHash3_32 uint32_to_float32 tree_1; do
+    check "a matte's header holds $key" grep -aqF "$key" "$out/matte.exr"
+done
+check 'a matte holds no other layer' sh -c "! grep -aqF albedo '$out/matte.exr'"
 check '--quiet prints nothing' sh -c \
     "'$weald' render '$tiny' -o '$out/q.png' $soft --quiet 2>&1 | ( ! grep . )"
 
