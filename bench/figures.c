@@ -30,6 +30,8 @@ static const struct figure {
     {"continuum-floor-ratio", bench_continuum_floor},
     {"continuum-moving-ratio", bench_continuum_moving},
     {"continuum-gpu-mb", bench_continuum_memory},
+    {"continuum-flip", bench_continuum_flip},
+    {"continuum-popping", bench_continuum_popping},
     {"scale-1e6-1e9-ratio", bench_scale_ratio},
     {"scale-gpu-mb", bench_scale_memory},
     {"scale-flight-worst", bench_scale_flight},

@@ -31,6 +31,8 @@ bool bench_continuum_vs_octree(const char *gpu);
 bool bench_continuum_floor(const char *gpu);
 bool bench_continuum_moving(const char *gpu);
 bool bench_continuum_memory(const char *gpu);
+bool bench_continuum_flip(const char *gpu);
+bool bench_continuum_popping(const char *gpu);
 bool bench_scale_ratio(const char *gpu);
 bool bench_scale_memory(const char *gpu);
 bool bench_scale_flight(const char *gpu);

@@ -104,6 +104,8 @@ static const struct cli_option option_table[] = {
      "check every use of Vulkan, end at the first error"},
     {"threads", 0, "N", CLI_KIND_WHOLE, AT(threads), 1, 1024, SCENE_COMMANDS | CLI_GROW | CLI_BENCH,
      "processor threads (default: one a processor); changes no picture"},
+    {"single", 0, NULL, CLI_KIND_FLAG, AT(single), 0, 0, CLI_VIEW,
+     "show each frame by itself: samples of frames before are not laid under it"},
     {"walk", 0, NULL, CLI_KIND_FLAG, AT(walk), 0, 0, CLI_VIEW,
      "begin on foot instead of in the air"},
     {"screenshots", 0, "DIR", CLI_KIND_TEXT, AT(screenshots), 0, 0, CLI_VIEW,

@@ -55,7 +55,7 @@ struct cli_options {
     const char *season, *form, *clip, *layers;
     struct cli_words settings, method_options;
     enum wd_view_mode view;
-    bool help, json, quiet, quick, reference, times, gpu_validate, walk, sheet,
+    bool help, json, quiet, quick, reference, times, gpu_validate, walk, single, sheet,
          faithful;
 };
 

@@ -55,6 +55,12 @@ void viewer_act_lod(struct viewer_state *viewer)
         viewer_notice(viewer, "red: mesh, yellow: reduced mesh, blue: billboard");
 }
 
+void viewer_act_accumulate(struct viewer_state *viewer)
+{
+    viewer->accumulates = !viewer->accumulates;
+    viewer_notice(viewer, viewer->accumulates ? "samples of many frames" : "one sample a frame");
+}
+
 void viewer_act_times(struct viewer_state *viewer)
 {
     viewer->times_shown = !viewer->times_shown;

@@ -22,6 +22,7 @@ static const struct binding {
     {SDLK_f, 0, viewer_act_gait},         {SDLK_m, 0, viewer_act_method},
     {SDLK_l, 0, viewer_act_lod},          {SDLK_t, 0, viewer_act_times},
     {SDLK_h, 0, viewer_act_help},         {SDLK_g, 0, viewer_act_grab},
+    {SDLK_b, 0, viewer_act_accumulate},
     {SDLK_p, 0, viewer_act_play},         {SDLK_c, 0, viewer_act_next_camera},
     {SDLK_ESCAPE, 0, viewer_act_quit},    {SDLK_c, KMOD_SHIFT, viewer_act_save_camera},
     {SDLK_F12, 0, viewer_act_screenshot}, {SDLK_F9, 0, viewer_act_report},

@@ -50,6 +50,7 @@ struct viewer_state {
     struct wd_budget budget; /* where the parameters ask for one */
     char notice[256];
     double notice_until_s;
+    bool accumulates;
     bool grabbed, times_shown, help_shown, quit;
     bool stale;     /* the swapchain no longer fits the window */
     bool minimised; /* told so by the window system */
@@ -71,6 +72,7 @@ void viewer_input_step(struct viewer_state *viewer);
 void viewer_act_gait(struct viewer_state *viewer);
 void viewer_act_method(struct viewer_state *viewer);
 void viewer_act_lod(struct viewer_state *viewer);
+void viewer_act_accumulate(struct viewer_state *viewer);
 void viewer_act_times(struct viewer_state *viewer);
 void viewer_act_help(struct viewer_state *viewer);
 void viewer_act_grab(struct viewer_state *viewer);

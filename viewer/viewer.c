@@ -88,6 +88,7 @@ static enum wd_result choose_start(struct viewer_state *viewer)
     viewer->motion.gait = params->walk ? VIEWER_WALK : VIEWER_FLY;
     viewer->path_time_s = params->path ? 0 : -1;
     viewer->budget = wd_budget_of(params->budget_ms);
+    viewer->accumulates = !params->single;
     viewer->camera_name =
         params->camera ? params->camera : wd_forest_camera_name(viewer->forest, 0);
     const char *name;
@@ -206,6 +207,7 @@ static enum wd_result draw_forest(struct viewer_state *viewer,
         .method = viewer->method,
         .view = viewer->view,
         .max_error_px = viewer_error_px(viewer),
+        .accumulation = viewer->accumulates ? WD_ACCUMULATE : WD_ACCUMULATE_NOT,
         .timing = viewer->times_shown ? WD_TIME_PASSES : WD_TIME_OFF,
     };
     struct wd_vulkan_target target = {

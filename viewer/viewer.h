@@ -13,6 +13,7 @@ struct wd_viewer_params {
     uint32_t width, height;     /* of the window; 0: 1280x720 */
     double max_error_px;        /* see struct wd_render_params; 0: the method's own */
     double budget_ms;           /* of a frame, held by the error; 0: none */
+    bool single;                /* each frame by itself: nothing is accumulated */
     bool walk;                  /* begin on foot */
     const char *screenshot_dir; /* NULL: the working directory */
     const char *report_path;    /* where lines of JSON about the state go; NULL: nowhere */

@@ -101,6 +101,11 @@ struct wd_render_params {
                                crown's surface: what is finer may be missing from a single sample. Trees
                                less than about twice as wide are drawn as one for several, and triangles of
                                wood and pages of trees on demand are chosen alike. */
+    /* WD_ACCUMULATE: one jittered sample, laid over what the pictures before this one of the same renderer,
+     * method, view and size have shown of the same surfaces: moved along with camera and wind, and begun
+     * anew where something else has come into view. For live views; `samples`, previous_camera and
+     * previous_time_s are not used. A still camera in a still world comes to the picture of many samples. */
+    enum wd_accumulation { WD_ACCUMULATE_NOT, WD_ACCUMULATE } accumulation;
     enum wd_time_mode { WD_TIME_OFF, WD_TIME_PASSES } timing; /* per-pass times, at some cost */
 };
 

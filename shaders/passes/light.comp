@@ -116,7 +116,7 @@ void main()
         vec4 over = texelFetch(overlay, at, 0);
         radiance.rgb = radiance.rgb * (1.0 - over.a) + over.rgb;
     }
-    if (frame.sample_index > 0u)
+    if (frame.adds != 0u)
         radiance += imageLoad(radiance_image, at);
     imageStore(radiance_image, at, radiance);
 }

@@ -60,7 +60,7 @@ void main()
     if (!pixel_is_sky(depth))
         color = view_color(gbuffer_pixel(at, depth), uvec2(at));
     vec4 radiance = vec4(color, 1.0);
-    if (frame.sample_index > 0u)
+    if (frame.adds != 0u)
         radiance += imageLoad(radiance_image, at);
     imageStore(radiance_image, at, radiance);
 }

@@ -80,6 +80,7 @@ struct wd_frame_uniforms {
     uint32_t width, height;          /* of the picture */
     uint32_t terrain_width, terrain_height; /* samples */
     uint32_t sample_index, sample_count;
+    uint32_t adds;                   /* 1: radiance comes on top of the samples before */
     uint32_t view_mode;
     uint32_t shadow_taps;            /* 0: no shadows */
 };

@@ -184,6 +184,7 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
                    : params->layers & ~(uint32_t)(WD_LAYER_DISPLAY | WD_LAYER_COLOR)
                        ? WD_GBUFFER_READ
                        : WD_GBUFFER_OWN,
+        .gathering = params->accumulation == WD_ACCUMULATE ? WD_GATHER_ON : WD_GATHER_OFF,
         .velocity = params->layers & WD_LAYER_VELOCITY ? WD_VELOCITY_ON : WD_VELOCITY_OFF,
     };
     renderer->frame.ring.timing = params->timing == WD_TIME_PASSES ? WD_TIMING_ON : WD_TIMING_OFF;

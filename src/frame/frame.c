@@ -10,7 +10,8 @@ bool wd_frame_init(struct wd_frame *frame, struct wd_gpu *gpu)
     *frame = (struct wd_frame){.gpu = gpu};
     bool ok = wd_frames_init(&frame->ring, gpu) && wd_tree_pipelines_init(&frame->trees, gpu) &&
               wd_terrain_pass_init(&frame->terrain, gpu) &&
-              wd_light_pass_init(&frame->light, gpu) && wd_post_pass_init(&frame->post, gpu);
+              wd_light_pass_init(&frame->light, gpu) && wd_post_pass_init(&frame->post, gpu) &&
+              wd_accumulate_pass_init(&frame->accumulate, gpu);
     if (!ok)
         wd_frame_finish(frame);
     return ok;
@@ -25,6 +26,7 @@ void wd_frame_finish(struct wd_frame *frame)
     wd_terrain_pass_finish(&frame->terrain, frame->gpu);
     wd_light_pass_finish(&frame->light, frame->gpu);
     wd_post_pass_finish(&frame->post, frame->gpu);
+    wd_accumulate_pass_finish(&frame->accumulate, frame->gpu);
     wd_targets_finish(&frame->targets, frame->gpu);
     wd_buffer_finish(&frame->velocity_px, frame->gpu);
     wd_methods_finish(&frame->methods, frame->gpu);
@@ -45,11 +47,31 @@ static bool prepare_velocity(struct wd_frame *frame)
     return wd_buffer_init(&frame->velocity_px, frame->gpu, &params);
 }
 
+/* Forgets what has been gathered of something else; else the frame before is the one gathered last. */
+static void prepare_gathering(struct wd_frame *frame)
+{
+    struct wd_frame_params *params = &frame->params;
+    struct wd_gathered *gathered = &frame->gathered;
+    if (params->gathering == WD_GATHER_OFF || gathered->method != params->method ||
+        gathered->view_mode != params->view_mode || frame->accumulate.width != params->width ||
+        frame->accumulate.height != params->height) {
+        wd_accumulate_pass_reset(&frame->accumulate);
+        *gathered = (struct wd_gathered){.method = params->method, .view_mode = params->view_mode};
+    }
+    if (params->gathering == WD_GATHER_OFF)
+        return;
+    params->samples = 1;
+    params->velocity = WD_VELOCITY_ON;
+    params->previous_camera = gathered->frames ? gathered->camera : params->camera;
+    params->previous_time_s = gathered->frames ? gathered->time_s : params->time_s;
+}
+
 bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *params)
 {
     struct wd_targets *targets = &frame->targets;
     uint32_t shadow_size = (uint32_t)params->forest->scene->quality.shadow_size;
     frame->params = *params;
+    prepare_gathering(frame);
     if (targets->width != params->width || targets->height != params->height ||
         targets->shadow_size != shadow_size) {
         if (!wd_frames_wait(&frame->ring))
@@ -67,11 +89,16 @@ bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *para
 void wd_frame_drop_forest(struct wd_frame *frame)
 {
     memset(frame->kept, 0, sizeof frame->kept);
+    wd_accumulate_pass_reset(&frame->accumulate);
+    frame->gathered = (struct wd_gathered){0};
     wd_methods_drop_forest(&frame->methods, frame->gpu);
     wd_light_pass_drop_forest(&frame->light, frame->gpu);
 }
 
 /* --- recording --------------------------------------------------------------------------- */
+
+/* Sub-pixel offsets that gathered frames take in turn. */
+enum { GATHERED_OFFSETS = 64 };
 
 /* What the steps of one sample share. */
 struct recording {
@@ -80,6 +107,7 @@ struct recording {
     struct wd_view view, cascades[WD_CASCADES];
     struct wd_frame_uniforms values;
     struct wd_binding uniforms;
+    uint32_t index; /* of the sample */
 };
 
 static struct wd_tree_draw tree_draw_of(const struct recording *r, const struct wd_view *view,
@@ -213,7 +241,7 @@ static bool blends(const struct recording *r)
 
 static bool is_last(const struct recording *r)
 {
-    return r->values.sample_index + 1 == r->values.sample_count;
+    return r->index + 1 == r->frame->params.samples;
 }
 
 /* Trees that are blended over the rest, back to front. */
@@ -268,6 +296,28 @@ static void record_light(const struct recording *r)
     }
 }
 
+/* Lays the one sample over those of the frames before. */
+static void record_gathering(const struct recording *r)
+{
+    struct wd_frame *frame = r->frame;
+    struct wd_gathered *gathered = &frame->gathered;
+    const struct wd_frame_params *params = &frame->params;
+    bool still = !memcmp(&params->camera, &params->previous_camera, sizeof params->camera) &&
+                 params->time_s == params->previous_time_s;
+    const struct wd_accumulate_params accumulate = {
+        .targets = &frame->targets,
+        .uniforms = r->uniforms,
+        .velocity_px = &frame->velocity_px,
+        .motion = still ? WD_MOTION_NONE : WD_MOTION_SOME,
+    };
+    wd_cmd_scope_begin(r->cmd, "accumulate");
+    wd_accumulate_pass_record(&frame->accumulate, r->cmd, &accumulate);
+    wd_cmd_scope_end(r->cmd);
+    gathered->camera = params->camera;
+    gathered->time_s = params->time_s;
+    gathered->frames++;
+}
+
 static void record_display(const struct recording *r)
 {
     const struct wd_post_params post = {
@@ -298,6 +348,7 @@ static double calm_m(const struct wd_forest_device *forest)
 static void prepare_recording(struct recording *r, uint32_t index)
 {
     const struct wd_frame_params *params = &r->frame->params;
+    bool gathers = params->gathering == WD_GATHER_ON;
     const struct wd_uniforms_params uniforms = {
         .forest = params->forest,
         .camera = params->camera,
@@ -307,8 +358,9 @@ static void prepare_recording(struct recording *r, uint32_t index)
         .width = params->width,
         .height = params->height,
         .shadow_size = r->frame->targets.shadow_size,
-        .sample_index = index,
-        .sample_count = params->samples,
+        .sample_index = gathers ? r->frame->gathered.frames % GATHERED_OFFSETS : index,
+        .sample_count = gathers ? GATHERED_OFFSETS : params->samples,
+        .adds = index > 0,
         .view_mode = params->view_mode,
         .calm_m = params->method->cascades == WD_CASCADES_KEPT ? calm_m(params->forest) : 0.0,
     };
@@ -322,7 +374,7 @@ static void prepare_recording(struct recording *r, uint32_t index)
 
 void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index)
 {
-    struct recording r = {.frame = frame, .cmd = cmd};
+    struct recording r = {.frame = frame, .cmd = cmd, .index = index};
     prepare_recording(&r, index);
     if (cmd->failed)
         return;
@@ -331,8 +383,12 @@ void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index)
         record_shadows(&r);
     record_gbuffer(&r);
     record_light(&r);
+    if (frame->params.gathering == WD_GATHER_ON)
+        record_gathering(&r);
     if (index + 1 == frame->params.samples)
         record_display(&r);
-    if (cmd->failed)
+    if (cmd->failed) {
         memset(frame->kept, 0, sizeof frame->kept);
+        wd_accumulate_pass_reset(&frame->accumulate);
+    }
 }

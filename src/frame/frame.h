@@ -2,6 +2,7 @@
 #ifndef WD_FRAME_FRAME_H
 #define WD_FRAME_FRAME_H
 
+#include "frame/passes/accumulate.h"
 #include "frame/passes/light.h"
 #include "frame/passes/post.h"
 #include "frame/passes/terrain.h"
@@ -26,6 +27,9 @@ struct wd_frame_params {
     uint32_t page_budget; /* pages of trees on demand to plant for a view, at most; 0: all it needs */
     float max_error_px;   /* see struct wd_render_params; 0: the method's own */
     enum wd_velocity { WD_VELOCITY_OFF, WD_VELOCITY_ON } velocity;
+    /* Frames are one sample each, jittered in turn, and gathered along motion. The previous camera and
+     * time are those of the frame before; velocity must be on. */
+    enum wd_gathering { WD_GATHER_OFF, WD_GATHER_ON } gathering;
 };
 
 struct wd_frame {
@@ -37,6 +41,14 @@ struct wd_frame {
     struct wd_terrain_pass terrain;
     struct wd_light_pass light;
     struct wd_post_pass post;
+    struct wd_accumulate_pass accumulate;
+    struct wd_gathered {             /* what accumulate holds */
+        struct wd_camera camera;
+        double time_s;
+        const struct wd_method *method;
+        uint32_t view_mode;
+        uint32_t frames; /* gathered since it was forgotten */
+    } gathered;
     struct wd_methods methods;       /* states of those used so far */
     void *method_state;              /* of params.method */
     struct wd_kept_cascade {         /* what the shadow maps hold, as far as it may be kept */

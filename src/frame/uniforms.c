@@ -117,6 +117,7 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
     *uniforms = (struct wd_frame_uniforms){
         .sample_index = params->sample_index,
         .sample_count = params->sample_count,
+        .adds = params->adds,
         .view_mode = params->view_mode,
         .shadow_taps = (uint32_t)scene->quality.shadow_taps,
     };

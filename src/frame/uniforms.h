@@ -10,6 +10,7 @@ struct wd_uniforms_params {
     struct wd_camera camera, previous_camera;
     double time_s, previous_time_s;
     uint32_t width, height, shadow_size;
+    uint32_t adds; /* as in struct wd_frame_uniforms */
     uint32_t sample_index, sample_count;
     uint32_t view_mode;
     double calm_m; /* of struct wd_cascades_params */

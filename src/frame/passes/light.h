@@ -38,7 +38,7 @@ struct wd_light_inputs {
 bool wd_light_pass_inputs(struct wd_light_pass *pass, struct wd_cmd *cmd,
                           const struct wd_light_params *params, struct wd_light_inputs *inputs);
 
-/* Stores radiance where frame->sample_index is 0, else adds to it. */
+/* Stores radiance, or adds to it where frame->adds says so. */
 void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
                           const struct wd_light_params *params);
 

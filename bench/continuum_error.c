@@ -1,0 +1,183 @@
+/* continuum against the path-traced truth: its error where trees are 1 to 1,024 pixels tall, and how
+ * much more its pictures change from frame to frame than the truth's. */
+#include "figures.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "weald/compare.h"
+#include "weald/reference.h"
+
+static const char *const SCENE = "scenes/bench75k.json";
+enum { SAMPLES = 16 };
+
+/* Drawn and traced, of one forest. */
+struct pair {
+    struct wd_forest *forest;
+    struct wd_renderer *renderer;
+    struct wd_reference *reference;
+    struct wd_picture drawn, traced;
+};
+
+static bool pair_open(struct pair *pair, const char *gpu)
+{
+    const struct wd_forest_params forest = {.scene_path = SCENE};
+    const struct wd_renderer_params renderer = {.gpu = gpu};
+    const struct wd_reference_params reference = {0};
+    *pair = (struct pair){0};
+    return wd_forest_create(&pair->forest, &forest) == WD_OK &&
+           wd_renderer_create(&pair->renderer, &renderer) == WD_OK &&
+           wd_renderer_set_forest(pair->renderer, pair->forest) == WD_OK &&
+           wd_reference_create(&pair->reference, pair->forest, &reference) == WD_OK;
+}
+
+static void pair_close(struct pair *pair)
+{
+    wd_picture_finish(&pair->drawn);
+    wd_picture_finish(&pair->traced);
+    wd_reference_destroy(&pair->reference);
+    wd_renderer_destroy(&pair->renderer);
+    wd_forest_destroy(&pair->forest);
+}
+
+struct shot {
+    struct wd_camera camera;
+    uint32_t width, height, paths;
+};
+
+static bool shoot(struct pair *pair, const struct shot *shot)
+{
+    const uint32_t layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID;
+    const struct wd_render_params draw = {.camera = shot->camera,
+                                          .width = shot->width,
+                                          .height = shot->height,
+                                          .samples = SAMPLES,
+                                          .method = "continuum",
+                                          .layers = layers};
+    const struct wd_reference_picture_params trace = {.camera = shot->camera,
+                                                      .width = shot->width,
+                                                      .height = shot->height,
+                                                      .samples = shot->paths,
+                                                      .layers = layers};
+    wd_picture_finish(&pair->drawn);
+    wd_picture_finish(&pair->traced);
+    return wd_renderer_render(pair->renderer, &draw, &pair->drawn) == WD_OK &&
+           wd_reference_render(pair->reference, &trace, &pair->traced) == WD_OK;
+}
+
+/* --- error by height in pixels ----------------------------------------------------------------- */
+
+/* Toward the middle of the square kilometre, 30 degrees down, so far off that trees of the mean height
+ * have so many pixels. */
+static struct shot shot_of_height(const struct wd_forest *forest, int tall_px)
+{
+    static const double TREE_M = 15.0, PIXELS_PER_RADIAN = 624.0, DOWN_RAD = 0.523598775598;
+    struct shot shot = {.width = 96, .height = 72, .paths = 128};
+    if (tall_px <= 2)
+        shot = (struct shot){.width = 48, .height = 24, .paths = 512};
+    double distance_m = TREE_M * PIXELS_PER_RADIAN / tall_px;
+    double middle_m = wd_forest_ground_m(forest, 500, 500) + 0.5 * TREE_M;
+    shot.camera = (struct wd_camera){
+        .position_m = {500.0, 500.0 - distance_m * cos(DOWN_RAD),
+                       middle_m + distance_m * sin(DOWN_RAD)},
+        .pitch_rad = -DOWN_RAD,
+        .fov_rad = 2.0 * atan(0.5 * shot.height / PIXELS_PER_RADIAN),
+    };
+    return shot;
+}
+
+bool bench_continuum_flip(const char *gpu)
+{
+    struct pair pair;
+    struct wd_comparison found;
+    double sum = 0.0;
+    int count = 0;
+    bool ok = pair_open(&pair, gpu);
+    for (int tall_px = 1; ok && tall_px <= 1024; tall_px *= 2, count++) {
+        const struct shot shot = shot_of_height(pair.forest, tall_px);
+        ok = shoot(&pair, &shot) &&
+             wd_picture_compare(&found, &pair.traced, &pair.drawn, NULL, NULL) == WD_OK;
+        if (!ok)
+            break;
+        printf("trees of %4d px: FLIP %.3f, coverage %+5.1f %%, radiance of trees %+5.1f %%\n",
+               tall_px, found.flip, found.coverage_bias_pct, found.tree_bias_pct);
+        fflush(stdout);
+        sum += found.flip;
+    }
+    pair_close(&pair);
+    if (ok)
+        printf("continuum-flip %.3f FLIP\n", sum / count);
+    return ok;
+}
+
+/* --- change from frame to frame ---------------------------------------------------------------- */
+
+enum { WIDTH = 96, HEIGHT = 56, BLOCK = 4, BLOCKS = WIDTH / BLOCK * (HEIGHT / BLOCK), STEPS = 5 };
+static const double STEP_M = 0.25;
+
+struct blocks {
+    double luma[BLOCKS]; /* as shown, 0..1 */
+};
+
+static void fill_blocks(struct blocks *blocks, const struct wd_picture *picture)
+{
+    *blocks = (struct blocks){0};
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        const uint8_t *p = picture->display + 4 * i;
+        uint32_t block = i / WIDTH / BLOCK * (WIDTH / BLOCK) + i % WIDTH / BLOCK;
+        blocks->luma[block] +=
+            (0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2]) / (255.0 * BLOCK * BLOCK);
+    }
+}
+
+static double change_of(const struct blocks *before, const struct blocks *now)
+{
+    double sum = 0.0;
+    for (int i = 0; i < BLOCKS; i++)
+        sum += fabs(now->luma[i] - before->luma[i]);
+    return sum / BLOCKS;
+}
+
+static bool add_view(struct pair *pair, const char *view, double changes[2])
+{
+    struct shot shot = {.width = WIDTH, .height = HEIGHT, .paths = 256};
+    struct blocks drawn[2], traced[2];
+    double own[2] = {0.0, 0.0};
+    if (wd_forest_get_camera(pair->forest, view, &shot.camera) != WD_OK)
+        return false;
+    for (int step = 0; step < STEPS; step++) {
+        int now = step % 2;
+        if (!shoot(pair, &shot) ||
+            wd_picture_expose_alike(&pair->traced, &pair->drawn, NULL) != WD_OK)
+            return false;
+        fill_blocks(&drawn[now], &pair->drawn);
+        fill_blocks(&traced[now], &pair->traced);
+        if (step > 0) {
+            own[0] += change_of(&drawn[1 - now], &drawn[now]) / (STEPS - 1);
+            own[1] += change_of(&traced[1 - now], &traced[now]) / (STEPS - 1);
+        }
+        shot.camera.position_m[0] += STEP_M * sin(shot.camera.yaw_rad);
+        shot.camera.position_m[1] += STEP_M * cos(shot.camera.yaw_rad);
+    }
+    printf("%-9s change of blocks a frame: drawn %.5f, traced %.5f, ratio %.2f\n", view, own[0],
+           own[1], own[0] / own[1]);
+    fflush(stdout);
+    for (int i = 0; i < 2; i++)
+        changes[i] += own[i];
+    return true;
+}
+
+/* A slow walk ahead, both exposed alike. Of both views together. */
+bool bench_continuum_popping(const char *gpu)
+{
+    struct pair pair;
+    double changes[2] = {0.0, 0.0};
+    bool ok = pair_open(&pair, gpu) && add_view(&pair, "overview", changes) &&
+              add_view(&pair, "walk", changes);
+    pair_close(&pair);
+    if (ok)
+        printf("continuum-popping %.2f x\n", changes[0] / changes[1]);
+    return ok;
+}
