@@ -23,8 +23,8 @@ lint: ## static checks
 	@scripts/deps.sh lint
 	@scripts/lint.sh $(BUILD)
 
-bench: deps ## measure everything, or one figure with ONLY=NAME
-	@bench/run $(BUILD) $(ONLY)
+bench: deps ## measure everything, or one figure with ONLY=NAME (of soak: SECONDS=600)
+	@bench/run $(BUILD) $(ONLY) $(SECONDS)
 
 suites: build ## weald bench in full, results and reports in docs/bench (stopped, it goes on)
 	@scripts/suites.sh $(BUILD)
