@@ -10,7 +10,7 @@ extern const double bias_elevation_deg[BIAS_VIEWS];
 
 struct bias_form {
     const char *name;
-    const char *settings[8]; /* of the forest, NULL after the last */
+    const char *settings[9]; /* of the forest, NULL after the last */
     bool used[BIAS_HEIGHTS];                 /* drawn there by default */
 };
 extern const struct bias_form bias_forms[BIAS_FORMS]; /* the first is the reference */

@@ -36,11 +36,12 @@ float card_layer(uint layer_lod)
     return float(layer_lod & 0xffffu);
 }
 
-/* A card's stored normal in world axes; seen from behind, a card shows its mirror image. `card`:
+/* A card's stored normal, a mean whose length is kept, in world axes; seen from behind, a card shows its mirror image. `card`:
  * turn, tint_show, normal, ratio_flags. */
 vec3 card_world_normal(vec3 stored, uvec4 card)
 {
     vec3 normal = stored * 2.0 - 1.0;
+    float mean_length = length(normal);
     uint flags = card.w;
     vec2 turn = unpackSnorm2x16(card.x);
     float ratio = unpackHalf2x16(flags).x;
@@ -51,5 +52,5 @@ vec3 card_world_normal(vec3 stored, uvec4 card)
     vec3 own = vec3(unpackSnorm2x16(card.z), (flags & WD_CARD_LEVEL) != 0u ? 1.0 : 0.0);
     if ((flags & WD_CARD_BEHIND) != 0u)
         normal -= 2.0 * dot(normal, own) * own;
-    return normalize(normal);
+    return normal * (mean_length / max(length(normal), 1e-5));
 }

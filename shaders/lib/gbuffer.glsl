@@ -13,7 +13,7 @@ wd_pixel gbuffer_pixel(ivec2 at, float depth)
     vec4 normal = texelFetch(gbuffer_normal, at, 0);
     pixel.albedo = albedo.rgb;
     pixel.openness = albedo.a;
-    pixel.normal = normalize(normal.xyz * 2.0 - 1.0 + vec3(0.0, 0.0, 1e-6));
+    pixel_set_normal(pixel, normal.xyz * 2.0 - 1.0);
     pixel.material = uint(normal.w * 3.0 + 0.5);
     pixel.surface = texelFetch(gbuffer_surface, at, 0).x;
     if (frame.snow > 0.0 && pixel.surface != 0u && frame.view_mode != WD_MODE_LOD)

@@ -116,15 +116,33 @@ float sunlit_seen(vec3 eye)
     return wide + mix(1.5, 2.8, smoothstep(0.0, 1.0, eye.z)) * exp(-1.9 * apart);
 }
 
-/* One leaf with its own normal: which side the sun and the eye are on. Where the normal is but the
+/* Where normals spread about their mean, how far one lies along some direction varies by this, squared.
+ * Of a number with mean m and variance v about (sqrt(m^2 + 2 v / pi) + m) / 2 is the mean of what is
+ * above zero. */
+float facing_spread(vec3 facing)
+{
+    return max(1.0 - dot(facing, facing), 0.0) * (1.0 / 3.0);
+}
+
+float facing_lit(vec3 facing)
+{
+    float mean = dot(facing, frame.sun_direction);
+    return 0.5 * (sqrt(mean * mean + 0.6366 * facing_spread(facing)) + mean);
+}
+
+/* One leaf with its own normal, turned to the eye: which side the sun and the eye are on. Where the normal is but the
  * crown's (`plain` 0), leaves lie every way behind it: of those seen, the sun lights the seen side of as
  * many as both directions are apart from opposite. */
-vec2 leaf_blade(vec3 normal, vec3 eye, float plain)
+vec2 leaf_blade(vec3 facing, vec3 eye, float plain)
 {
-    float facing = dot(normal, frame.sun_direction) * (dot(normal, eye) < 0.0 ? -1.0 : 1.0);
-    float same = 1.0 - angle_of(dot(eye, frame.sun_direction)) * PER_PI;
-    vec2 sides = vec2(max(facing, 0.0), max(-facing, 0.0));
-    return sides * mix(vec2(same, 1.0 - same), vec2(1.0), plain);
+    float toward = dot(facing, eye), spread = facing_spread(facing);
+    float seen = sqrt(toward * toward + 0.6366 * spread), along = dot(eye, frame.sun_direction);
+    float raw = dot(facing, frame.sun_direction);
+    float mean = seen * along + (raw - toward * along) * (toward / max(seen, 1e-4));
+    float left = max(raw * raw + spread - mean * mean, 0.0);
+    float same = 1.0 - angle_of(along) * PER_PI;
+    float root = sqrt(mean * mean + 0.6366 * left);
+    return 0.5 * vec2(root + mean, root - mean) * mix(vec2(same, 1.0 - same), vec2(1.0), plain);
 }
 
 /* Of light along the normal, a leaf's wax mirrors this (refractive index 1.4), and 1.6 times as much of
@@ -165,7 +183,7 @@ wd_place ground_place(wd_pixel pixel)
     place.sheet = vec3(0.0);
     place.own = 1.0;
     place.ahead_m = 0.0;
-    place.sides = vec2(max(dot(pixel.normal, frame.sun_direction), 0.0), 0.0);
+    place.sides = vec2(facing_lit(pixel.facing), 0.0);
     place.transmittance = vec3(0.0);
     place.gloss = 0.0;
     place.waxed = 0.0;
@@ -208,7 +226,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, uint cascade
     vec3 outward = crown_normal(crown, place.rel);
     float cosine = dot(eye, frame.sun_direction);
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
-    place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.normal, eye, plain), near);
+    place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.facing, eye, plain), near);
     place.sides *= mix(sunlit_seen(eye), 1.0, mapped);
     place.transmittance = model.transmittance;
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, crown_is_sward(crown)); /* blades bend over */

@@ -142,7 +142,8 @@ void main()
     if (frame.view_mode == WD_MODE_LOD)
         albedo = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * openness);
     vec2 scale = vec2(in_pose.w, abs(in_pose.z));
-    vec3 normal = normalize(world_vector(sum.normal, scale) + vec3(0.0, 0.0, 1e-5));
+    vec3 normal = world_vector(sum.normal * per, scale);
+    normal *= length(sum.normal * per) / max(length(normal), 1e-5);
 #ifdef VIEW_DEPTH
     vec3 rel = in_foot.xyz + world_vector(place, vec2(abs(in_pose.z), in_pose.w));
     vec4 clip = frame.clip_from_rel * vec4(rel, 1.0);

@@ -72,7 +72,8 @@ wd_canopy_pixel canopy_of(uint index, vec3 ray, uint random)
     vec4 normal = textureLod(view_normal, uv, lod);
     float leaf = textureLod(view_depth, uv, lod).a;
     vec3 albedo = textureLod(view_albedo, uv, lod).rgb * mix(vec3(1.0), tree_tint(tree, models[model]), leaf);
-    vec3 turned = tree_normal(pose, normal.xyz * 2.0 - 1.0 + vec3(0.0, 0.0, 1e-5));
+    vec3 mean = normal.xyz * 2.0 - 1.0;
+    vec3 turned = tree_normal(pose, mean + vec3(0.0, 0.0, 1e-5)) * min(length(mean), 1.0);
     return wd_canopy_pixel(packUnorm4x8(vec4(sqrt(albedo), normal.a)),
                            packUnorm4x8(vec4(turned * 0.5 + 0.5, 0.0)), index + 1u);
 }

@@ -1,6 +1,7 @@
 #version 460
 /* One colour; noise decides what of it covers, and which of its trees a pixel shows. */
 #include "shared/frame.h"
+#include "shared/forest.h"
 #include "shared/hash.h"
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
@@ -8,12 +9,14 @@ layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in vec4 in_color;
 layout(location = 2) flat in vec4 in_normal;
-layout(location = 3) flat in vec4 in_cells;
+layout(location = 3) flat in vec3 in_cells;
 layout(location = 4) flat in uvec4 in_flat;
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_surface;
+
+#include "lib/card_material.glsl"
 
 void main()
 {
@@ -27,6 +30,6 @@ void main()
     if (frame.view_mode == WD_MODE_LOD)
         albedo = vec3(0.5, 0.05, 0.6) * (0.3 + 0.7 * in_normal.a);
     out_albedo = vec4(albedo, in_normal.a);
-    out_normal = vec4(in_normal.xyz * 0.5 + 0.5, float(WD_MATERIAL_CARD) / 3.0);
+    out_normal = vec4(in_normal.xyz * 0.5 + 0.5, float(card_material(in_cells.z, noise)) / 3.0);
     out_surface = tree + 1u;
 }

@@ -14,7 +14,7 @@ layout(scalar, push_constant) uniform Push { wd_impostor_push push; };
 layout(location = 0) out vec2 out_uv;
 layout(location = 1) flat out vec4 out_color;  /* linear; a: coverage */
 layout(location = 2) flat out vec4 out_normal; /* a: sky openness */
-layout(location = 3) flat out vec4 out_cells;  /* of noise across and down; w: unused */
+layout(location = 3) flat out vec3 out_cells;  /* of noise across and down; z: share of leaves */
 layout(location = 4) flat out uvec4 out_flat;  /* first tree, trees, random */
 
 vec3 linear_of(vec3 c)
@@ -24,30 +24,35 @@ vec3 linear_of(vec3 c)
 
 struct side_look {
     vec4 color, normal;
+    float leaf;
 };
 
 side_look side_of(wd_octant_look look, uint axis, float toward)
 {
     uint side = axis * 2u + (toward > 0.0 ? 0u : 1u);
     vec4 color = unpackUnorm4x8(look.color[side]), normal = unpackUnorm4x8(look.normal[side]);
-    return side_look(vec4(linear_of(color.rgb), color.a), vec4(normal.xyz * 2.0 - 1.0, normal.a));
+    float leaf = unpackUnorm4x8(look.leaf[side / 4u])[side % 4u];
+    return side_look(vec4(linear_of(color.rgb), color.a), vec4(normal.xyz * 2.0 - 1.0, normal.a),
+                     leaf);
 }
 
 /* Each side counts by the area that it shows: what the eye sees is then covered as much as by the
  * sides together. `area` is the sprite's over a side's. */
 side_look mixed_sides(wd_octant_look look, vec3 toward, float area)
 {
-    side_look sum = side_look(vec4(0.0), vec4(0.0));
+    side_look sum = side_look(vec4(0.0), vec4(0.0), 0.0);
     float covered = 0.0;
     for (uint axis = 0u; axis < 3u; axis++) {
         side_look side = side_of(look, axis, toward[axis]);
         float weight = abs(toward[axis]) * side.color.a;
         sum.color.rgb += weight * side.color.rgb;
         sum.normal += weight * side.normal;
+        sum.leaf += weight * side.leaf;
         covered += weight;
     }
     sum.color.rgb /= max(covered, 1e-6);
     sum.normal /= max(covered, 1e-6);
+    sum.leaf /= max(covered, 1e-6);
     sum.color.a = clamp(covered / area, 0.0, 1.0);
     return sum;
 }
@@ -94,9 +99,9 @@ void main()
     }
     out_uv = side * 0.5 + 0.5;
     out_color = look.color;
-    out_normal = vec4(normalize(look.normal.xyz + vec3(0.0, 0.0, 1e-4)), look.normal.a);
-    out_cells = vec4(noise_cells(extent_m.x, distance_m), noise_cells(extent_m.y, distance_m), 0.0,
-                     0.0);
+    out_normal = look.normal;
+    out_cells = vec3(noise_cells(extent_m.x, distance_m), noise_cells(extent_m.y, distance_m),
+                     look.leaf);
     out_flat = uvec4(impostor.first_tree, impostor.tree_count, wd_hash2(index, vertex / 4u), 0u);
     gl_Position = look.color.a > 0.0 ? frame.clip_from_rel * vec4(rel, 1.0)
                                      : vec4(0.0, 0.0, 0.0, 1.0);

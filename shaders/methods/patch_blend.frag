@@ -55,7 +55,7 @@ void main()
     pixel.rel = pixel.ray * pixel.axis_m;
     pixel.albedo = albedo.rgb * mix(vec3(1.0), tint_show.rgb * 2.0, leaf);
     pixel.openness = packed.a;
-    pixel.normal = card_world_normal(packed.xyz, in_card);
+    pixel_set_normal(pixel, card_world_normal(packed.xyz, in_card));
     pixel.material = card_material(leaf, in_more.z);
     pixel.surface = in_more.z;
     float sun_share, ground_share;

@@ -103,7 +103,8 @@ void main()
     uint seed = in_entry.x * 6u + t.picture.side;
     uvec2 at = uvec2(gl_FragCoord.xy) % push.tile_pixels;
     float noise = wd_hash_unit(wd_hash2(seed, at.x | at.y << 16));
-    float toward_m = depth_m(t, card, textureLod(card_depth, card.uv, lod));
+    vec4 depth = textureLod(card_depth, card.uv, lod);
+    float toward_m = depth_m(t, card, depth);
     float slice_m = t.picture.size_m / float(t.picture.slices);
     float from_m = float(t.picture.slice) * slice_m;
     bool inside = all(greaterThanEqual(card.uv.xy, vec2(0.0)))
@@ -112,7 +113,8 @@ void main()
         discard;
     vec4 normal = textureLod(card_normal, card.uv, lod - float(WD_CARD_NORMAL_MIP));
     vec3 turned = world_normal(t, card, normal.xyz * 2.0 - 1.0);
-    out_albedo = vec4(albedo.rgb * wd_tree_tint(t.tree, t.model), 1.0);
-    out_normal = vec4(normalize(turned + vec3(0.0, 0.0, 1e-5)) * 0.5 + 0.5, normal.a);
+    albedo.rgb *= mix(vec3(1.0), wd_tree_tint(t.tree, t.model), depth.a);
+    out_albedo = vec4(albedo.rgb, WD_OCTANT_SHOWN + (1.0 - WD_OCTANT_SHOWN) * depth.a);
+    out_normal = vec4(turned * 0.5 + 0.5, normal.a);
     gl_FragDepth = (toward_m - from_m) / slice_m * 0.999 + 0.001;
 }

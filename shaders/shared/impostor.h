@@ -20,7 +20,7 @@ struct wd_impostor {
     uint32_t first_tree, tree_count; /* octree order: the trees it stands for */
     WD_OCTANT_LOOK look;
 };
-WD_STATIC_ASSERT_SIZE(wd_impostor, 72);
+WD_STATIC_ASSERT_SIZE(wd_impostor, 80);
 
 struct wd_impostor_push {
     uint32_t first;  /* impostor of vertex 0, where they are not listed */

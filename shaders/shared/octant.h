@@ -7,13 +7,18 @@
 /* Sides: seen from east (+x), west, north (+y), south, above (+z), below. */
 #define WD_OCTANT_SIDES 6
 
-/* 48 bytes. An empty side is 0. */
+/* 56 bytes. An empty side is 0. */
 struct wd_octant_look {
     uint32_t color[WD_OCTANT_SIDES];  /* R in the low byte, G, B: sRGB albedo of what shows;
                                          A: share of the side that it covers */
-    uint32_t normal[WD_OCTANT_SIDES]; /* its mean normal * 0.5 + 0.5, world axes; A: sky openness */
+    uint32_t normal[WD_OCTANT_SIDES]; /* its mean normal * 0.5 + 0.5, world axes, shorter where they
+                                         spread; A: sky openness */
+    uint32_t leaf[2]; /* share of it that is leaf: bits 8 s .. of side s, four sides a word */
 };
-WD_STATIC_ASSERT_SIZE(wd_octant_look, 48);
+WD_STATIC_ASSERT_SIZE(wd_octant_look, 56);
+
+/* Opacity of wood in pictures of octants; that of leaves is 1, of nothing 0. */
+#define WD_OCTANT_SHOWN 0.2
 
 /* The frame of a picture from a side: right and up in it, toward the viewer. */
 struct wd_octant_frame {

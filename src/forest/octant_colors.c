@@ -32,7 +32,7 @@ static void take_octant(void *user, uint32_t owner, const struct wd_octant_pictu
                         const struct wd_octant_mean *means)
 {
     struct wd_octant_look *look = (struct wd_octant_look *)user + owner;
-    wd_octant_mean_pack(means, &look->color[picture->side], &look->normal[picture->side]);
+    wd_octant_mean_pack(means, look, picture->side);
 }
 
 /* Puts `below`, of which `share` of the side is seen, under what is there. */
@@ -43,6 +43,7 @@ static void add_below(struct wd_octant_mean *sum, const struct wd_octant_mean *b
         sum->normal[k] += share * below->normal[k];
     }
     sum->openness += share * below->openness;
+    sum->leaf += share * below->leaf;
     sum->coverage += share * below->coverage;
 }
 
@@ -67,7 +68,7 @@ static struct wd_octant_mean side_of_children(const struct wd_octant_look *const
         if (!parts[part])
             continue;
         struct wd_octant_mean mean =
-            wd_octant_mean_of(parts[part]->color[side], parts[part]->normal[side], linear);
+            wd_octant_mean_of(parts[part], side, linear);
         const struct wd_octant_look *front = parts[part ^ 1u << axis];
         float seen = 0.25f;
         if (average == WD_OCTANT_PLAIN)
@@ -95,14 +96,13 @@ static void add_children(struct wd_octant_look *looks, const struct wd_octree *o
             child = octree->octants[child].next_sibling;
         }
         for (uint32_t side = 0; side < WD_OCTANT_SIDES && octant->child_count; side++) {
-            struct wd_octant_mean own =
-                wd_octant_mean_of(looks[i].color[side], looks[i].normal[side], linear);
+            struct wd_octant_mean own = wd_octant_mean_of(&looks[i], side, linear);
             struct wd_octant_mean below = side_of_children(parts, side, average, linear);
             struct wd_octant_mean both = {0};
             /* trees of both levels stand among each other: each hides half of where they cross */
             add_below(&both, &own, 1.0f - 0.5f * below.coverage);
             add_below(&both, &below, 1.0f - 0.5f * own.coverage);
-            wd_octant_mean_pack(&both, &looks[i].color[side], &looks[i].normal[side]);
+            wd_octant_mean_pack(&both, &looks[i], side);
         }
     }
 }
@@ -230,7 +230,7 @@ static void take_slice(void *user, uint32_t owner, const struct wd_octant_pictur
     for (uint32_t i = 0; i < c * c; i++) {
         const uint32_t steps[3] = {i % c, c - 1 - i / c, picture->slice};
         struct wd_octant_look *look = &f->grid[cell_index(&axes, steps, c)];
-        wd_octant_mean_pack(&means[i], &look->color[side], &look->normal[side]);
+        wd_octant_mean_pack(&means[i], look, side);
     }
 }
 

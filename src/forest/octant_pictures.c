@@ -20,32 +20,43 @@ enum { ATLAS_PIXELS = 2048, MAX_ENTRIES = 1 << 19, ENTRY_VERTICES = 6 };
 
 /* --- means ------------------------------------------------------------------------------- */
 
-struct wd_octant_mean wd_octant_mean_of(uint32_t color, uint32_t normal, const float linear[256])
+struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint32_t side,
+                                        const float linear[256])
 {
+    uint32_t color = look->color[side], normal = look->normal[side];
+    uint32_t leaf = look->leaf[side / 4] >> (8 * (side % 4)) & 0xffu;
     struct wd_octant_mean mean = {.coverage = (float)(color >> 24) / 255.0f};
     for (int k = 0; k < 3; k++) {
         mean.color[k] = mean.coverage * linear[color >> (8 * k) & 0xffu];
         mean.normal[k] = mean.coverage * ((float)(normal >> (8 * k) & 0xffu) / 127.5f - 1.0f);
     }
     mean.openness = mean.coverage * (float)(normal >> 24) / 255.0f;
+    mean.leaf = mean.coverage * (float)leaf / 255.0f;
     return mean;
 }
 
-void wd_octant_mean_pack(const struct wd_octant_mean *mean, uint32_t *color, uint32_t *normal)
+void wd_octant_mean_pack(const struct wd_octant_mean *mean, struct wd_octant_look *look,
+                         uint32_t side)
 {
+    uint32_t *color = &look->color[side], *normal = &look->normal[side], at = 8 * (side % 4);
     *color = *normal = 0;
+    look->leaf[side / 4] &= ~(0xffu << at);
     if (mean->coverage < 0.5f / 255.0f)
         return;
-    float scale = 1.0f / mean->coverage, length = 0.0f;
-    for (int k = 0; k < 3; k++)
-        length += mean->normal[k] * mean->normal[k];
-    length = fmaxf(sqrtf(length), 1e-9f);
+    float scale = 1.0f / mean->coverage;
     for (int k = 0; k < 3; k++) {
         *color |= (uint32_t)wd_srgb_encode(mean->color[k] * scale) << (8 * k);
-        *normal |= (uint32_t)wd_unorm_encode(mean->normal[k] / length * 0.5f + 0.5f) << (8 * k);
+        *normal |= (uint32_t)wd_unorm_encode(mean->normal[k] * scale * 0.5f + 0.5f) << (8 * k);
     }
     *color |= (uint32_t)wd_unorm_encode(mean->coverage) << 24;
     *normal |= (uint32_t)wd_unorm_encode(mean->openness * scale) << 24;
+    look->leaf[side / 4] |= (uint32_t)wd_unorm_encode(mean->leaf * scale) << at;
+}
+
+static float leaf_of(float opacity)
+{
+    const float wood = (float)WD_OCTANT_SHOWN;
+    return fmaxf(opacity - wood, 0.0f) / (1.0f - wood);
 }
 
 /* Of a square of pixels whose least is (x, y). */
@@ -64,6 +75,7 @@ static struct wd_octant_mean mean_of_pixels(const struct wd_octant_pictures *p, 
                 sum.normal[k] += weight * ((float)normal[k] / 127.5f - 1.0f);
             }
             sum.openness += weight * (float)normal[3] / 255.0f;
+            sum.leaf += weight * leaf_of((float)albedo[3] / 255.0f);
             sum.coverage += weight;
         }
     }

@@ -8,11 +8,13 @@
 
 /* Mean of what a cell shows: sums over its pixels, colours linear. */
 struct wd_octant_mean {
-    float color[3], normal[3], openness; /* weighted by coverage */
-    float coverage;                      /* 0..1 */
+    float color[3], normal[3], openness, leaf; /* weighted by coverage */
+    float coverage;                            /* 0..1 */
 };
-struct wd_octant_mean wd_octant_mean_of(uint32_t color, uint32_t normal, const float linear[256]);
-void wd_octant_mean_pack(const struct wd_octant_mean *mean, uint32_t *color, uint32_t *normal);
+struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint32_t side,
+                                        const float linear[256]);
+void wd_octant_mean_pack(const struct wd_octant_mean *mean, struct wd_octant_look *look,
+                         uint32_t side);
 
 /* A cube and who asked for it. */
 struct wd_octant_cube {
