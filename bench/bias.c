@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "scene/species.h"
 
-enum { MAX_TREES = 64 };
+enum { MAX_TREES = 256 };
 
 #define MESHES "quality.mesh_distance_m=1000000", "quality.reduced_distance_m=1000000"
 #define REDUCED "quality.mesh_distance_m=0", "quality.reduced_distance_m=1000000"
@@ -29,7 +29,10 @@ const struct bias_form bias_forms[BIAS_FORMS] = {
     {"splats", {"method=continuum", NO_MESHES}, {false, true, true, true}},
 };
 const int bias_height_px[BIAS_HEIGHTS] = {512, 128, 32, 8};
-static const int tree_counts[BIAS_HEIGHTS] = {1, 4, 24, MAX_TREES};
+static const int tree_counts[BIAS_HEIGHTS] = {1, 4, 24, 64}; /* in a picture */
+/* Pictures of a form go on from one stretch of the row to the next: what a form leaves to chance is
+ * drawn by each tree's own lot. */
+static const int stretches[BIAS_HEIGHTS] = {1, 2, 2, 4};
 /* 64 samples a pixel of the reference: squares of pictures that are so many times as fine. */
 static const int reference_zoom[BIAS_HEIGHTS] = {4, 8, 8, 8};
 static const int reference_shifts[BIAS_HEIGHTS] = {2, 1, 1, 1};
@@ -79,10 +82,10 @@ void bias_stand_finish(struct bias_stand *stand)
     rmdir(stand->folder);
 }
 
-/* The camera that shows the middle trees of the row `height_px` tall, shifted by parts of one of
- * its pixels; far away, so that all are seen alike. */
+/* The camera that shows trees near the row's middle `height_px` tall, shifted by parts of one of its
+ * pixels; far away, so that all are seen alike. */
 static struct wd_render_params view_of(const struct bias_stand *stand, int height, int view,
-                                       int zoom, double shift_x, double shift_y)
+                                       int zoom, int stretch, double shift_x, double shift_y)
 {
     const double pi = 3.14159265358979323846;
     double pixels_per_m = zoom * bias_height_px[height] / stand->height_m;
@@ -92,10 +95,11 @@ static struct wd_render_params view_of(const struct bias_stand *stand, int heigh
     struct wd_render_params params = {.samples = 1, .layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID};
     params.width = (uint32_t)ceil(wide * pixels_per_m / zoom) * (uint32_t)zoom;
     params.height = (uint32_t)ceil(tall * pixels_per_m / zoom) * (uint32_t)zoom;
-    double middle = MAX_TREES * stand->spacing_m, x = shift_x / pixels_per_m;
+    double middle = MAX_TREES * stand->spacing_m + (stretch - 0.5 * (stretches[height] - 1)) * wide;
+    double x = shift_x / pixels_per_m;
     double y = shift_y / pixels_per_m;
     params.camera = (struct wd_camera){
-        .position_m = {middle + x, middle - distance * cos(elevation) - y * sin(elevation),
+        .position_m = {middle + x, MAX_TREES * stand->spacing_m - distance * cos(elevation) - y * sin(elevation),
                        0.5 * stand->height_m + distance * sin(elevation) + y * cos(elevation)},
         .pitch_rad = -elevation,
         .fov_rad = 2 * atan(0.5 * params.height / pixels_per_m / distance),
@@ -125,15 +129,16 @@ static bool show(struct bias_shown *shown, struct wd_renderer *renderer,
     return true;
 }
 
+/* `pictures`: how many make the one that is kept; 0: this is not of it. */
 static void add_reference(struct bias_shown *sum, struct bias_shown *part, int zoom, int pictures)
 {
     size_t z = (size_t)zoom;
-    float share = 1.0f / (float)(zoom * zoom * pictures);
+    float share = 1.0f / (float)(zoom * zoom * (pictures ? pictures : 1));
     sum->width = part->width / (uint32_t)zoom;
     sum->height = part->height / (uint32_t)zoom;
     if (!sum->luminance)
         sum->luminance = wd_alloc_array((size_t)sum->width * sum->height, sizeof(float));
-    for (size_t y = 0; y < part->height; y++)
+    for (size_t y = 0; y < part->height && pictures; y++)
         for (size_t x = 0; x < part->width; x++)
             sum->luminance[y / z * sum->width + x / z] +=
                 part->luminance[y * part->width + x] * share;
@@ -143,20 +148,20 @@ static void add_reference(struct bias_shown *sum, struct bias_shown *part, int z
 }
 
 bool bias_show_reference(struct bias_shown *sum, struct wd_renderer *renderer,
-                           const struct bias_stand *stand, int height, int view)
+                         const struct bias_stand *stand, int height, int view)
 {
     int side = reference_shifts[height], count = side * side, zoom = reference_zoom[height];
     *sum = (struct bias_shown){0};
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count * stretches[height]; i++) {
         struct bias_shown part;
-        double x = (i % side + 0.5) / side - 0.5, y = (i / side + 0.5) / side - 0.5;
-        struct wd_render_params params = view_of(stand, height, view, zoom, x, y);
+        double x = (i % side + 0.5) / side - 0.5, y = (i / side % side + 0.5) / side - 0.5;
+        struct wd_render_params params = view_of(stand, height, view, zoom, i / count, x, y);
         if (!show(&part, renderer, &params))
             return false;
-        add_reference(sum, &part, zoom, count);
+        add_reference(sum, &part, zoom, i < count ? count : 0);
     }
     sum->radiance /= sum->covered > 0 ? sum->covered : 1;
-    sum->covered /= zoom * zoom * count;
+    sum->covered /= zoom * zoom * count * stretches[height];
     return true;
 }
 
@@ -180,7 +185,8 @@ bool bias_measure(struct bias *bias, struct wd_renderer *renderer, const struct 
     for (int i = 0; i < count; i++) {
         struct bias_shown shown;
         struct wd_render_params params =
-            view_of(stand, height, view, 1, (double)(i % side) / side, (double)(i / side) / side);
+            view_of(stand, height, view, 1, i % stretches[height], (double)(i % side) / side,
+                    (double)(i / side) / side);
         if (!show(&shown, renderer, &params))
             return false;
         if (i == 0)

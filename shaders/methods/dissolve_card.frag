@@ -1,16 +1,16 @@
 #version 460
-/* Branches and leaves of a one-view billboard: whichever stands in front of the other comes first.
- * What shows is decided by noise, as for cards, so that a tree can dissolve. */
+/* Branches and leaves of a one-view billboard, each with its own picture: of what the whole tree covers
+ * a texel shows as many leaves as stand in front there. What shows is decided by noise, as for cards, so that a tree can dissolve. */
 #include "shared/frame.h"
 #include "shared/dissolve.h"
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 4) uniform sampler2DArray leaf_albedo;
 layout(set = 0, binding = 5) uniform sampler2DArray leaf_normal;
-layout(set = 0, binding = 6) uniform sampler2DArray leaf_depth;
-layout(set = 0, binding = 7) uniform sampler2DArray wood_albedo;
-layout(set = 0, binding = 8) uniform sampler2DArray wood_normal;
-layout(set = 0, binding = 9) uniform sampler2DArray wood_depth;
+layout(set = 0, binding = 6) uniform sampler2DArray wood_albedo;
+layout(set = 0, binding = 7) uniform sampler2DArray wood_normal;
+layout(set = 0, binding = 8) uniform sampler2DArray card_albedo;
+layout(set = 0, binding = 9) uniform sampler2DArray card_leaf;
 
 #include "lib/tree.glsl"
 #include "lib/card.glsl"
@@ -30,16 +30,12 @@ void main()
     vec3 uv = vec3(in_uv, card_layer(in_more.x));
     vec4 leaf = textureLod(leaf_albedo, uv, lod), wood = textureLod(wood_albedo, uv, lod);
     vec4 tint_show = unpackUnorm4x8(in_card.y);
-    float leaf_share = card_opacity(leaf.a, lod) * tint_show.a;
-    float wood_share = card_opacity(wood.a, lod) * tint_show.a;
-    bool wood_first = textureLod(wood_depth, uv, lod).r > textureLod(leaf_depth, uv, lod).r;
-    float first = wood_first ? wood_share : leaf_share;
-    float second = wood_first ? leaf_share : wood_share;
+    float covered = card_opacity(textureLod(card_albedo, uv, lod).a, lod) * tint_show.a;
     float noise = card_noise(in_uv, lod, in_more.y, frame.sample_index);
-    if (noise >= first + (1.0 - first) * second)
+    if (noise >= covered)
         discard;
-    bool is_wood = wood_first == (noise < first);
     float normal_lod = lod - float(WD_CARD_NORMAL_MIP);
+    bool is_wood = noise >= covered * textureLod(card_leaf, uv, normal_lod).x;
     vec4 packed = is_wood ? textureLod(wood_normal, uv, normal_lod)
                           : textureLod(leaf_normal, uv, normal_lod);
     vec3 albedo = is_wood ? wood.rgb : leaf.rgb * tint_show.rgb * 2.0;

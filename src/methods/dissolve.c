@@ -36,7 +36,8 @@ static const uint32_t tree_mesh_frag[] =
 
 /* Leaves are drawn as prefixes of their lists in steps of 1 / LEAF_STEPS; the shader cuts them to the
  * exact share. */
-enum { LEAF_STEPS = 8, GROUP_TREES = 64, LEAF_BINDINGS = 8, CARD_BINDINGS = 10 };
+enum { LEAF_STEPS = 8, GROUP_TREES = 64, LEAF_BINDINGS = 8, CARD_BINDINGS = 10,
+       PART_PLANES = 2 /* of leaves and of wood: albedo and normal */ };
 
 /* Trees of one model whose leaves have the same prefix. */
 struct leafy {
@@ -49,7 +50,7 @@ struct dissolve {
     struct wd_pipeline cards;
     struct wd_cells groups;
     struct wd_leaf_order order;
-    struct wd_image leaf_planes[WD_PLANES], wood_planes[WD_PLANES];
+    struct wd_image leaf_planes[PART_PLANES], wood_planes[PART_PLANES];
     struct wd_cell_list seen;
     struct wd_selection selection; /* wood, and billboards as its cards */
     struct leafy *leafy;
@@ -116,10 +117,10 @@ static void dissolve_finish(void *state, struct wd_gpu *gpu)
 
 /* --- the forest -------------------------------------------------------------------------- */
 
-static bool bake(struct wd_image planes[WD_PLANES], struct wd_gpu *gpu,
+static bool bake(struct wd_image planes[PART_PLANES], struct wd_gpu *gpu,
                  struct wd_forest_device *forest, enum wd_bake_parts parts)
 {
-    struct wd_image *images[WD_PLANES] = {&planes[0], &planes[1], &planes[2]};
+    struct wd_image *images[WD_PLANES] = {&planes[WD_PLANE_ALBEDO], &planes[WD_PLANE_NORMAL]};
     uint32_t from_cache;
     return wd_forest_bake_cards(forest, gpu, parts, images, WD_CARD_DEPTH_ALL, &forest->progress,
                                 &from_cache);
@@ -139,7 +140,7 @@ static bool dissolve_use_forest(void *state, struct wd_gpu *gpu, struct wd_fores
 static void dissolve_drop_forest(void *state, struct wd_gpu *gpu)
 {
     struct dissolve *dissolve = state;
-    for (int plane = 0; plane < WD_PLANES; plane++) {
+    for (int plane = 0; plane < PART_PLANES; plane++) {
         wd_image_finish(&dissolve->leaf_planes[plane], gpu);
         wd_image_finish(&dissolve->wood_planes[plane], gpu);
     }
@@ -216,7 +217,7 @@ static int by_key(const void *a, const void *b)
 
 static void use_images(struct dissolve *dissolve, struct wd_cmd *cmd)
 {
-    for (int plane = 0; plane < WD_PLANES; plane++) {
+    for (int plane = 0; plane < PART_PLANES; plane++) {
         wd_cmd_use_image(cmd, &dissolve->leaf_planes[plane], WD_USE_SHADER_READ);
         wd_cmd_use_image(cmd, &dissolve->wood_planes[plane], WD_USE_SHADER_READ);
     }
@@ -324,12 +325,14 @@ static void draw_billboards(const struct dissolve *dissolve, const struct wd_tre
     memcpy(memory, dissolve->selection.cards, count * sizeof(struct wd_instance));
     struct wd_binding bindings[CARD_BINDINGS] = {draw->uniforms, WD_BIND_BUFFER(&forest->trees),
                                                  WD_BIND_BUFFER(&forest->models), instances};
-    for (int plane = 0; plane < WD_PLANES; plane++) {
+    for (int plane = 0; plane < PART_PLANES; plane++) {
         VkSampler sampler =
             plane == WD_PLANE_ALBEDO ? forest->card_sampler : forest->point_sampler;
         bindings[4 + plane] = WD_BIND_IMAGE(&dissolve->leaf_planes[plane], sampler);
-        bindings[7 + plane] = WD_BIND_IMAGE(&dissolve->wood_planes[plane], sampler);
+        bindings[6 + plane] = WD_BIND_IMAGE(&dissolve->wood_planes[plane], sampler);
     }
+    bindings[8] = WD_BIND_IMAGE(&forest->card_albedo, forest->card_sampler);
+    bindings[9] = WD_BIND_IMAGE(&forest->card_leaf, forest->point_sampler);
     const struct wd_one_view_push push = {
         .variants = forest->variants,
         .pixels_per_radian = draw->view->pixels_per_radian,
