@@ -138,6 +138,7 @@ enum wd_result cli_specimens_picture(struct cli_session *session, struct wd_rend
         .layers = view->layers,
         .view = session->options->view,
         .method = view->method,
+        .timing = view->timing,
     };
     enum wd_result result =
         wd_forest_create_specimens(&forest, specimens, count, (double)view->width / view->height,

@@ -11,6 +11,7 @@ struct cli_specimen_view {
     double distance_m; /* of the eye; 0: so that all is in the frame */
     enum wd_specimen_form form;
     const char *method;
+    enum wd_time_mode timing;
 };
 
 /* Draws specimens on plain ground; free the picture with wd_picture_finish whatever the result. */

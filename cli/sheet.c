@@ -6,11 +6,12 @@
 #include <string.h>
 
 #include "grow.h"
+#include "sheet_error.h"
 
 enum {
     DEFAULT_CELL_PX = 230,
     LETTER_PX = 9, /* a line, before scaling */
-    LINES = 3,     /* below each cell */
+    LINES = 4,     /* below each cell */
     GAP_PX = 6,
     AGES = 6,
     FORMS = 4,
@@ -148,46 +149,82 @@ static enum wd_result draw_age(struct sheet *sheet, uint32_t row, uint32_t index
     return result;
 }
 
-/* What a picture shows of the tree: pixels covered, and their mean luminance. */
-struct tally {
-    double pixels, radiance;
-};
-
-static struct tally tally_of(const struct wd_picture *picture)
+/* What a form shows of the tree, drawn again with one sample: such a picture's edges hold no ground. */
+static enum wd_result take_shown(struct sheet *sheet, const struct wd_specimen *specimen,
+                                 const struct form *form, uint32_t zoom, struct cli_shown *shown)
 {
-    struct tally tally = {0};
-    for (size_t i = 0; i < (size_t)picture->width * picture->height; i++) {
-        const float *c = picture->color + 3 * i;
-        if (!picture->tree_id[i])
-            continue;
-        tally.pixels++;
-        tally.radiance += 0.2126 * (double)c[0] + 0.7152 * (double)c[1] + 0.0722 * (double)c[2];
+    struct cli_session *session = sheet->session;
+    const struct cli_specimen_view view = {
+        .width = sheet->cell_px * zoom,
+        .height = sheet->cell_px * zoom,
+        .samples = 1,
+        .layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID,
+        .form = form->form,
+        .method = form->method ? form->method : session->options->method,
+        .timing = WD_TIME_PASSES,
+    };
+    struct wd_picture picture = {0};
+    enum wd_result result =
+        cli_specimens_picture(session, sheet->renderer, &specimen, 1, &view, &picture);
+    if (result == WD_OK && !cli_shown_take(shown, &picture, zoom)) {
+        cli_fail(session, "out of memory");
+        result = WD_ERROR_MEMORY;
     }
-    if (tally.pixels > 0)
-        tally.radiance /= tally.pixels;
-    return tally;
+    wd_picture_finish(&picture);
+    return result;
 }
 
-static void label_form(struct sheet *sheet, uint32_t row, uint32_t index,
-                       const struct wd_specimen *specimen, const struct tally *tally,
-                       const struct tally *full)
+static void label_size(struct sheet *sheet, uint32_t row, uint32_t index,
+                       const struct wd_specimen *specimen)
 {
     struct wd_specimen_level level;
+    struct wd_frame_stats stats;
     char text[64] = "";
+    wd_renderer_get_stats(sheet->renderer, &stats);
     if (forms[index].form == WD_SPECIMEN_CARDS)
-        snprintf(text, sizeof text, "crossed billboards");
-    else if (!forms[index].method && wd_specimen_get_level(specimen, index, &level))
+        snprintf(text, sizeof text, "8 triangles");
+    else if (forms[index].method)
+        snprintf(text, sizeof text, "%llu discs", (unsigned long long)stats.discs);
+    else if (wd_specimen_get_level(specimen, index, &level))
         snprintf(text, sizeof text, "%u triangles", level.wood_triangles + level.leaf_triangles);
     label(sheet, row, AGES + index, 0, text);
-    snprintf(text, sizeof text, "%ux%u px", sheet->cell_px, sheet->cell_px);
-    if (index > 0 && full->pixels > 0)
-        snprintf(text, sizeof text, "cover %+.1f%%", 100 * (tally->pixels / full->pixels - 1));
+}
+
+static void label_error(struct sheet *sheet, uint32_t row, uint32_t index,
+                        const struct cli_form_error *error)
+{
+    char text[64];
+    snprintf(text, sizeof text, "cover %+.1f%%", error->coverage_pct);
     label(sheet, row, AGES + index, 1, text);
-    if (index > 0 && full->radiance > 0) {
-        snprintf(text, sizeof text, "light %+.1f%%",
-                 100 * (tally->radiance / full->radiance - 1));
-        label(sheet, row, AGES + index, 2, text);
+    snprintf(text, sizeof text, "light %+.1f%%", error->radiance_pct);
+    label(sheet, row, AGES + index, 2, text);
+    snprintf(text, sizeof text, "picture %.0f%%", error->picture_pct);
+    label(sheet, row, AGES + index, 3, text);
+}
+
+/* Errors are against the full mesh, with `zoom` squared samples a pixel. */
+static enum wd_result draw_form(struct sheet *sheet, uint32_t row, uint32_t index,
+                                const struct wd_specimen *specimen, const struct cli_shown *full,
+                                uint32_t zoom)
+{
+    struct wd_picture cell = {0};
+    struct cli_shown shown = {0};
+    enum wd_result result = draw_cell(sheet, specimen, &forms[index], row, AGES + index, &cell);
+    wd_picture_finish(&cell);
+    if (result == WD_OK)
+        result = take_shown(sheet, specimen, &forms[index], 1, &shown);
+    if (result == WD_OK) {
+        struct cli_form_error error = cli_form_error_of(&shown, full);
+        char text[64];
+        label_size(sheet, row, index, specimen);
+        label_error(sheet, row, index, &error);
+        snprintf(text, sizeof text, "%.18s %+.1f%% %+.1f%% %.0f%%", forms[index].title,
+                 error.coverage_pct, error.radiance_pct, error.picture_pct);
+        cli_say(sheet->session, "%s: %s (against the full mesh, %u samples a pixel)\n",
+                sheet->species[row], text, zoom * zoom);
     }
+    cli_shown_finish(&shown);
+    return result;
 }
 
 static enum wd_result draw_forms(struct sheet *sheet, uint32_t row)
@@ -195,19 +232,14 @@ static enum wd_result draw_forms(struct sheet *sheet, uint32_t row)
     const struct wd_specimen_params params = {
         .source = sheet->species[row], .openness = 0.5, .log = sheet->session->log};
     struct wd_specimen *specimen;
-    struct tally full = {0};
+    struct cli_shown full = {0};
+    uint32_t zoom = cli_shown_zoom(sheet->cell_px);
     enum wd_result result = wd_specimen_create(&specimen, &params);
-    for (uint32_t i = 0; i < FORMS && result == WD_OK; i++) {
-        struct wd_picture cell = {0};
-        result = draw_cell(sheet, specimen, &forms[i], row, AGES + i, &cell);
-        if (result == WD_OK) {
-            struct tally tally = tally_of(&cell);
-            if (i == 0)
-                full = tally;
-            label_form(sheet, row, i, specimen, &tally, &full);
-        }
-        wd_picture_finish(&cell);
-    }
+    if (result == WD_OK)
+        result = take_shown(sheet, specimen, &forms[0], zoom, &full);
+    for (uint32_t i = 0; i < FORMS && result == WD_OK; i++)
+        result = draw_form(sheet, row, i, specimen, &full, zoom);
+    cli_shown_finish(&full);
     wd_specimen_destroy(&specimen);
     return result;
 }
