@@ -59,6 +59,16 @@ static exr_pixel_type_t pixel_type(enum wd_exr_type type)
                                                                        : EXR_PIXEL_UINT;
 }
 
+/* Colours are linear, with the primaries and the white of sRGB (Rec. 709, D65). */
+static exr_result_t note_colours(exr_context_t context, int part)
+{
+    static const exr_attr_chromaticities_t srgb = {0.64f, 0.33f, 0.30f, 0.60f,
+                                                   0.15f, 0.06f, 0.3127f, 0.3290f};
+    exr_result_t result = exr_attr_set_chromaticities(context, part, "chromaticities", &srgb);
+    return result ? result
+                  : exr_attr_set_string(context, part, "colorSpace", "linear sRGB (Rec. 709, D65)");
+}
+
 static exr_result_t write_header(struct writer *writer)
 {
     const struct wd_exr_params *params = writer->params;
@@ -75,6 +85,8 @@ static exr_result_t write_header(struct writer *writer)
         result = exr_add_channel(context, part, params->channels[i].name,
                                  pixel_type(params->channels[i].type), EXR_PERCEPTUALLY_LOGARITHMIC,
                                  1, 1);
+    if (!result)
+        result = note_colours(context, part);
     for (size_t i = 0; i < params->text_count && !result; i++)
         result = exr_attr_set_string(context, part, params->texts[i].name, params->texts[i].value);
     return result ? result : exr_write_header(context);

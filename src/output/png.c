@@ -16,6 +16,18 @@ void wd_image8_finish(struct wd_image8 *image)
     *image = (struct wd_image8){0};
 }
 
+/* sRGB, and for readers that do not know it what comes nearest: its primaries, its white and the
+ * gamma 1 / 2.2 (PNG specification, third edition, 11.3.2.5). */
+static int note_colours(spng_ctx *context)
+{
+    /* in hundred-thousandths */
+    struct spng_chrm_int srgb = {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
+    int result = spng_set_srgb(context, 0); /* perceptual */
+    if (!result)
+        result = spng_set_gama_int(context, 45455);
+    return result ? result : spng_set_chrm_int(context, &srgb);
+}
+
 static int encode(spng_ctx *context, FILE *stream, const void *pixels, uint32_t width,
                   uint32_t height, uint8_t bit_depth)
 {
@@ -28,7 +40,7 @@ static int encode(spng_ctx *context, FILE *stream, const void *pixels, uint32_t 
     if (!result)
         result = spng_set_ihdr(context, &header);
     if (!result)
-        result = spng_set_srgb(context, 0); /* perceptual */
+        result = note_colours(context);
     if (!result)
         result = spng_encode_image(context, pixels, size, SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
     return result;
@@ -83,7 +95,8 @@ static int decode(spng_ctx *context, FILE *stream, struct wd_image8 *image)
     if (result)
         return result;
     *image = (struct wd_image8){header.width, header.height, wd_alloc(size)};
-    return spng_decode_image(context, image->pixels, size, SPNG_FMT_RGB8, 0);
+    result = spng_decode_image(context, image->pixels, size, SPNG_FMT_RGB8, 0);
+    return result ? result : spng_decode_chunks(context); /* to the file's end */
 }
 
 bool wd_png_read(struct wd_image8 *image, const char *path, const struct wd_log *log)

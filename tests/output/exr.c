@@ -75,6 +75,14 @@ static void texts_stand_in_the_header(void **state)
     size_t size = fread(header, 1, sizeof header, file);
     fclose(file);
     assert_non_null(memmem(header, size, "EPSG:32611", 10));
+    static const char noted[] = "chromaticities\0chromaticities\0\x20\0\0";
+    const char *at = memmem(header, size, noted, sizeof noted);
+    assert_non_null(at);
+    float primaries[8];
+    memcpy(primaries, at + sizeof noted, sizeof primaries);
+    assert_float_equal(primaries[0], 0.64, 1e-6);
+    assert_float_equal(primaries[7], 0.3290, 1e-6);
+    assert_non_null(memmem(header, size, "linear sRGB", 11));
     free(layers);
 }
 

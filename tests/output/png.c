@@ -30,6 +30,9 @@ static void files_say_srgb_and_16_bits_stay(void **state)
     fclose(file);
     assert_int_equal(bytes[24], 16); /* bit depth */
     assert_non_null(memmem(bytes, size, "sRGB", 4));
+    assert_non_null(memmem(bytes, size, "gAMA\x00\x00\xb1\x8f", 8)); /* 45455 */
+    static const uint8_t white[] = {'c', 'H', 'R', 'M', 0, 0, 0x7a, 0x26, 0, 0, 0x80, 0x84};
+    assert_non_null(memmem(bytes, size, white, sizeof white)); /* 31270, 32900 */
     struct wd_image8 image;
     assert_true(wd_png_read(&image, f->path, &f->log));
     assert_true(image.pixels[0] == 0 && image.pixels[3] == 255 && image.pixels[4] == 128);

@@ -1,0 +1,113 @@
+/* Haze: contrast falls to 2% at the distance that a scene calls its visibility (Koschmieder 1924). */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "shared/air.h"
+#include "world/surroundings.h"
+
+static const float FLAT_TERRAIN_M[4] = {0, 0, 0, 0};
+
+static struct wd_frame_uniforms air_of(double visibility_m, double height_m, double elevation_deg)
+{
+    struct wd_scene scene = {0};
+    struct wd_world world = {0};
+    struct wd_frame_uniforms frame = {0};
+    world.terrain.width = world.terrain.height = 2;
+    world.terrain.height_m = (float *)FLAT_TERRAIN_M;
+    scene.fog.visibility_m = visibility_m;
+    scene.fog.height_m = height_m;
+    scene.sun.elevation_deg = elevation_deg;
+    scene.sun.angular_diameter_deg = 0.53;
+    scene.sun.strength = scene.sky.strength = 1;
+    scene.sky.turbidity = 2.5;
+    wd_surroundings_fill(&frame, &scene, &world);
+    return frame;
+}
+
+/* Of something black before the horizon, over the horizon's own light; green. */
+static float contrast(const struct wd_frame_uniforms *frame, float distance_m)
+{
+    struct wd_vec3 level = {0, 1, 0};
+    struct wd_vec3 horizon = wd_horizon_toward(frame, level, 1);
+    struct wd_vec3 black = wd_fog_apply(frame, WD_V3(0, 0, 0), level, distance_m, 1);
+    return (horizon.y - black.y) / horizon.y;
+}
+
+static void test_visibility(void **state)
+{
+    (void)state;
+    static const double visibilities_m[] = {200, 5000, 30000, 60000};
+    for (int i = 0; i < 4; i++) {
+        struct wd_frame_uniforms frame = air_of(visibilities_m[i], 1e6, 35);
+        float at_m = (float)visibilities_m[i];
+        assert_float_equal(contrast(&frame, at_m), 0.02, 0.0005);
+        assert_float_equal(contrast(&frame, 0.5f * at_m), sqrtf(0.02f), 0.002);
+        assert_float_equal(contrast(&frame, 0), 1, 1e-6);
+    }
+}
+
+/* Far ridges fade step by step into the horizon, dark ones bluer than it; nothing overshoots. */
+static void test_ridges_to_50_km(void **state)
+{
+    (void)state;
+    struct wd_frame_uniforms frame = air_of(40000, 1200, 35);
+    struct wd_vec3 level = {0.7071068f, 0.7071068f, 0}, dark = {0.01f, 0.015f, 0.008f};
+    struct wd_vec3 horizon = wd_horizon_toward(&frame, level, 1);
+    float before = 0;
+    for (int km = 1; km <= 50; km++) {
+        struct wd_vec3 seen = wd_fog_apply(&frame, dark, level, 1000.0f * (float)km, 1);
+        assert_true(seen.y > before && seen.y < horizon.y);
+        assert_true(seen.z / seen.x > horizon.z / horizon.x);
+        before = seen.y;
+    }
+    assert_true(before > 0.95f * horizon.y);
+}
+
+/* From a mountain over the haze one sees farther, and as far up as down. */
+static void test_height(void **state)
+{
+    (void)state;
+    struct wd_frame_uniforms frame = air_of(20000, 800, 35);
+    float below = contrast(&frame, 10000);
+    frame.camera_mm[2] = 2000 * 1000;
+    assert_true(contrast(&frame, 10000) > 2 * below);
+    struct wd_vec3 down = {0, 0.9805807f, -0.1961161f}, up = {0, 0.9805807f, 0.1961161f};
+    float there = wd_fog_through(&frame, down, 5000).y;
+    frame.camera_mm[2] -= (int32_t)(5000 * 1000 * 0.1961161);
+    assert_float_equal(wd_fog_through(&frame, up, 5000).y, there, 1e-4);
+}
+
+/* Night: whatever the sun's depth, light is finite, above nothing, and far below day's. */
+static void test_night(void **state)
+{
+    (void)state;
+    for (int elevation = 5; elevation >= -90; elevation--) {
+        struct wd_frame_uniforms frame = air_of(30000, 1200, elevation);
+        for (int i = 0; i < 64; i++) {
+            float z = (float)(i % 8) / 8, turn = 0.8f * (float)i;
+            struct wd_vec3 d = {sqrtf(1 - z * z) * cosf(turn), sqrtf(1 - z * z) * sinf(turn), z};
+            struct wd_vec3 sky = wd_sky_toward(&frame, d);
+            struct wd_vec3 far = wd_fog_apply(&frame, sky, d, 20000, 1);
+            assert_true(isfinite(sky.x + sky.y + sky.z + far.x + far.y + far.z));
+            assert_true(sky.x > 0 && sky.y > 0 && sky.z > 0 && far.x > 0 && far.z > 0);
+            if (elevation < -9)
+                assert_true(sky.y < 1e-4f);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_visibility),
+        cmocka_unit_test(test_ridges_to_50_km),
+        cmocka_unit_test(test_height),
+        cmocka_unit_test(test_night),
+    };
+    return cmocka_run_group_tests_name("air", tests, NULL, NULL);
+}
