@@ -260,6 +260,15 @@ static enum wd_result open_renderer(struct bench_stage *stage)
     return result;
 }
 
+/* All methods but continuum keep every tree. */
+static bool keeps_trees(const struct bench *bench)
+{
+    for (size_t i = 0; bench->methods[i]; i++)
+        if (strcmp(bench->methods[i], "continuum") != 0)
+            return true;
+    return false;
+}
+
 /* The effort's, then the suite's, then the user's, which win. */
 static void gather_settings(const struct bench *bench, const char *of_suite, const char **settings)
 {
@@ -267,8 +276,8 @@ static void gather_settings(const struct bench *bench, const char *of_suite, con
     size_t count = 0;
     for (size_t i = 0; bench->effort.settings[i]; i++)
         settings[count++] = bench->effort.settings[i];
-    if (!bench->session->options->operand_count)
-        settings[count++] = "planting=stored"; /* for methods that keep every tree */
+    if (!bench->session->options->operand_count && keeps_trees(bench))
+        settings[count++] = "planting=stored";
     if (of_suite)
         settings[count++] = of_suite;
     for (uint32_t i = 0; i < words->count; i++)
