@@ -211,6 +211,13 @@ void select_tree(uint index, float share)
     float distance_m = ORTHOGRAPHIC != 0u ? 1.0 : max(length(middle), 0.1);
     vec3 toward = ORTHOGRAPHIC != 0u ? frame.sun_direction : -normalize(middle);
 
+    float shown = 1.0;
+    if (ORTHOGRAPHIC == 0u && view.near_leaves_m > 0.0)
+        shown = wd_near_splats(wd_near_distance_m(tree, model.crown_base_m / model.height_m, foot),
+                               view.near_leaves_m);
+    if (shown <= 0.0)
+        return;
+
     wd_wind wind = tree_wind();
     wind.gust = view.calm != 0u ? 0.0 : wind.gust;
     vec3 sway = tree_sway_in(wind, tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
@@ -260,9 +267,9 @@ void select_tree(uint index, float share)
     if (slot >= view.tree_capacity)
         return;
     splat_trees[slot] = splats;
-    add_splats(slot, uint(ceil(each * float(strata))));
+    add_splats(slot, uint(ceil(shown * each * float(strata))));
     if (wood)
-        add_wood(slot, triangles);
+        add_wood(slot, uint(ceil(shown * float(triangles))));
 }
 
 /* How many times over a cluster's crowns may cover what is seen of it: what lies deeper is hidden all

@@ -85,6 +85,34 @@ WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
 #define WD_CLUSTER_LEVEL(cluster) (((cluster).count >> 8) & 0x1fu)
 #define WD_CLUSTER_GRAIN_M(cluster) (WD_FLOAT((cluster).count >> 16) * 0.01f)
 
+/* Crowns nearer than a distance are drawn leaf by leaf, up to this many times it also: from there
+ * leaves come in by noise while all splats stand, then the splats thin out. */
+#define WD_NEAR_REACH 1.5f
+
+/* From the eye to a crown, taken for an upright cylinder. `foot` of the tree, as seen from the eye;
+ * `base`: height of its lowest living branch over its own. */
+WD_FUNC float wd_near_distance_m(WD_STRUCT wd_tree tree, float base, WD_VECTOR foot)
+{
+    float height_m = WD_TREE_HEIGHT_M(tree);
+    float above_m = foot.z + base * height_m, below_m = -foot.z - height_m;
+    float beside_m = WD_SQRT(foot.x * foot.x + foot.y * foot.y) - 0.5f * WD_TREE_CROWN_M(tree);
+    float up_m = WD_MAX(WD_MAX(above_m, below_m), 0.0f), side_m = WD_MAX(beside_m, 0.0f);
+    return WD_SQRT(up_m * up_m + side_m * side_m);
+}
+
+/* Shares that show of a tree's mesh and of its splats. */
+WD_FUNC float wd_near_mesh(float distance_m, float near_m)
+{
+    float t = (WD_NEAR_REACH * near_m - distance_m) / ((WD_NEAR_REACH - 1.0f) * near_m);
+    return WD_CLAMP(2.0f * t, 0.0f, 1.0f);
+}
+
+WD_FUNC float wd_near_splats(float distance_m, float near_m)
+{
+    float t = (distance_m - near_m) / ((WD_NEAR_REACH - 1.0f) * near_m);
+    return WD_CLAMP(2.0f * t, 0.0f, 1.0f);
+}
+
 /* Levels of the depth pyramid. A texel of level l holds the farthest depth of a square of 2^(l + 1)
  * pixels; rows of a level follow each other, levels begin at pyramid_first. */
 #define WD_PYRAMID_LEVELS 7
@@ -107,6 +135,7 @@ struct wd_splat_view {
     float detail;            /* level of detail is chosen as if the picture had so many times its pixels
                                 each way: what the error bound asks for */
     uint32_t min_splats;     /* of a tree */
+    float near_leaves_m;     /* crowns as near are drawn leaf by leaf; 0: none */
     float wood_px;           /* trees taller than about this have triangles of wood */
     uint32_t cluster_count, variants;
     uint32_t page_count;     /* their clusters follow the others */

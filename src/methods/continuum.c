@@ -4,6 +4,7 @@
  * splatted into one visibility buffer, which is resolved into the same G-buffer that every method
  * fills. */
 #include "methods/continuum_forest.h"
+#include "methods/continuum_near.h"
 #include "methods/continuum_pipelines.h"
 #include "methods/method.h"
 
@@ -33,6 +34,7 @@ struct continuum {
     struct wd_binding view; /* struct wd_splat_view of the view being drawn */
     struct wd_forest_device *device; /* whose pages this plants */
     struct wd_page_list pages; /* of that view */
+    struct wd_selection near;  /* drawn leaf by leaf */
 };
 
 static bool continuum_init(void *state, struct wd_gpu *gpu)
@@ -94,6 +96,7 @@ static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
     wd_continuum_forest_finish(&c->forest, gpu);
+    wd_selection_finish(&c->near);
     c->history.width = c->history.height = 0;
 }
 
@@ -180,6 +183,12 @@ static float detail_of(const struct wd_tree_draw *draw)
     return (float)(spacing_px / draw->max_error_px);
 }
 
+/* 0: none, or trees are on demand and not known here. */
+static float near_leaves_m(const struct wd_forest_device *forest)
+{
+    return forest->pages.capacity ? 0.0f : (float)forest->scene->methods.continuum.near_leaves_m;
+}
+
 static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
 {
     const struct wd_view *view = draw->view;
@@ -212,8 +221,10 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
     memcpy(values->clip_from_rel, view->clip_from_rel, sizeof values->clip_from_rel);
     memcpy(values->planes, view->frustum.planes, sizeof values->planes);
     set_slopes(values, &draw->forest->ground, view);
-    if (!shadow)
+    if (!shadow) {
         set_history(c, values, view);
+        values->near_leaves_m = near_leaves_m(draw->forest);
+    }
     if (shadow) {
         values->density = (float)options->shadow_density * detail * detail;
         values->min_splats = WD_SPLAT_STRATA;
@@ -377,6 +388,8 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     wd_cmd_scope_begin(cmd, "pages");
     select_pages(c, draw);
     wd_cmd_scope_end(cmd);
+    if (draw->pass == WD_PASS_CAMERA)
+        wd_near_trees_select(&c->near, draw, near_leaves_m(draw->forest));
     upload_view(c, draw);
     if (!fit_pixels(c, cmd, draw->view) || !fit_pyramid(c, cmd, draw->view))
         cmd->failed = true;
@@ -430,9 +443,10 @@ static void continuum_draw(void *state, const struct wd_tree_draw *draw)
 {
     if (draw->cmd->failed)
         return;
-    if (draw->pass == WD_PASS_CAMERA)
+    if (draw->pass == WD_PASS_CAMERA) {
         draw_camera(state, draw);
-    else
+        wd_tree_draw_selection(draw, &((struct continuum *)state)->near, WD_DRAW_GROUPED);
+    } else
         draw_cascade(state, draw);
 }
 

@@ -43,6 +43,9 @@ static const struct wd_key continuum_keys[] = {
     {"wood_px", WD_KEY_DOUBLE, OPTION(continuum, wood_px), 1, 1e6, "32",
      "Trees taller than this many pixels have their stem and boughs drawn as triangles.",
      .row = "continuum"},
+    {"near_leaves_m", WD_KEY_DOUBLE, OPTION(continuum, near_leaves_m), 0, 1000, "1.5",
+     "Trees whose crowns are nearer than this, in metres, are drawn leaf by leaf; up to half as far "
+     "again in part. 0: none.", .row = "continuum"},
     {0},
 };
 static const struct wd_keys continuum_table = TABLE(continuum);

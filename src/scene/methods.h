@@ -20,6 +20,7 @@ struct wd_continuum_options {
     double shadow_density; /* of a cascade's texel */
     int64_t min_splats; /* of a tree */
     double wood_px;     /* trees taller than this have wood of triangles */
+    double near_leaves_m; /* crowns nearer than this are drawn leaf by leaf; 0: none */
 };
 
 struct wd_lod_options {

@@ -167,6 +167,48 @@ static void a_jump_leaves_nothing_out(void **state)
     frame_test_finish(&test);
 }
 
+/* --- near leaves ------------------------------------------------------------------------- */
+
+/* Whatever the distance, leaves or splats stand in whole: nothing shines through. */
+static void splats_go_only_where_leaves_stand(void **state)
+{
+    (void)state;
+    for (float distance_m = 0.0f; distance_m < 4.0f; distance_m += 0.01f) {
+        float mesh = wd_near_mesh(distance_m, 2.0f), splats = wd_near_splats(distance_m, 2.0f);
+        assert_true(mesh == 1.0f || splats == 1.0f);
+    }
+    assert_true(wd_near_mesh(1.9f, 2.0f) == 1.0f && wd_near_splats(1.9f, 2.0f) == 0.0f);
+    assert_true(wd_near_mesh(3.1f, 2.0f) == 0.0f && wd_near_splats(3.1f, 2.0f) == 1.0f);
+}
+
+/* Amid a crown, what is near is the mesh that octree draws there. */
+static void near_leaves_are_the_mesh(void **state)
+{
+    (void)state;
+    struct frame_test test;
+    frame_test_init(&test, root, 0);
+    const struct wd_scene_camera walk = test.scene.cameras[WALK];
+    struct wd_scene_camera camera = camera_at_stem(&test);
+    camera.position_m[2] = 8.0;
+    test.scene.cameras[WALK] = camera;
+    struct frame_picture octree, continuum;
+    frame_test_draw(&test, "octree", WALK, &octree);
+    frame_test_draw(&test, "continuum", WALK, &continuum);
+    size_t near = 0, same = 0;
+    for (size_t i = 0; i < pixels_of(&octree); i++) {
+        bool is_near = octree.surface[i] && octree.depth[i] > 0.1f; /* over the near plane's 0.1 m */
+        near += is_near;
+        same += is_near && octree.surface[i] == continuum.surface[i] &&
+                octree.depth[i] == continuum.depth[i];
+    }
+    print_message("%zu of %zu near pixels are the same\n", same, near);
+    assert_true(near > pixels_of(&octree) / 20 && same > near * 98 / 100);
+    frame_picture_finish(&octree);
+    frame_picture_finish(&continuum);
+    test.scene.cameras[WALK] = walk;
+    frame_test_finish(&test);
+}
+
 static size_t count_trees(const struct frame_picture *picture, uint32_t *pixels_of_tree)
 {
     size_t covered = 0;
@@ -292,6 +334,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(two_passes_give_the_picture_of_one),
         cmocka_unit_test(nothing_seen_is_left_out),
         cmocka_unit_test(a_jump_leaves_nothing_out),
+        cmocka_unit_test(splats_go_only_where_leaves_stand),
+        cmocka_unit_test(near_leaves_are_the_mesh),
         cmocka_unit_test(kept_cascades_are_as_if_drawn),
         cmocka_unit_test(discs_fall_as_the_error_rises),
         cmocka_unit_test(large_trees_have_the_ids_of_octree),

@@ -1,0 +1,52 @@
+#include "methods/continuum_near.h"
+
+#include "shared/continuum.h"
+
+struct search {
+    struct wd_selection *found;
+    const struct wd_tree_draw *draw;
+    float near_m;
+};
+
+static void add_tree(const struct search *search, uint32_t index)
+{
+    const struct wd_forest_device *forest = search->draw->forest;
+    const struct wd_view *view = search->draw->view;
+    const struct wd_tree *tree = &forest->world->trees[index];
+    uint32_t model = wd_forest_model_of(forest, tree);
+    struct wd_vec3 foot = {(float)(tree->x_mm * 0.001 - view->eye_m[0]),
+                           (float)(tree->y_mm * 0.001 - view->eye_m[1]),
+                           (float)(tree->z_mm * 0.001 - view->eye_m[2])};
+    float distance_m = wd_near_distance_m(*tree, forest->host_models[model].crown_base_m /
+                                                     forest->host_models[model].height_m, foot);
+    float show = wd_near_mesh(distance_m, search->near_m);
+    if (show > 0.0f && wd_tree_in_view(view, tree))
+        wd_selection_add_mesh(search->found, &(struct wd_mesh_choice){model, WD_LEVEL_MESH, 0},
+                              index, show);
+}
+
+static void visit(const struct search *search, uint32_t index)
+{
+    const struct wd_octant *octants = search->draw->forest->world->octree.octants;
+    const struct wd_octant *octant = &octants[index];
+    float min[3], max[3];
+    for (int k = 0; k < 3; k++) {
+        min[k] = (float)((double)octant->min_m[k] - search->draw->view->eye_m[k]);
+        max[k] = (float)((double)octant->max_m[k] - search->draw->view->eye_m[k]);
+    }
+    if (wd_box_distance(min, max) > search->near_m * WD_NEAR_REACH)
+        return;
+    for (uint32_t i = octant->begin; i < octant->own_end; i++)
+        add_tree(search, i);
+    uint32_t child = octant->first_child;
+    for (uint32_t i = 0; i < octant->child_count; i++, child = octants[child].next_sibling)
+        visit(search, child);
+}
+
+void wd_near_trees_select(struct wd_selection *near, const struct wd_tree_draw *draw, float near_m)
+{
+    const struct search search = {near, draw, near_m};
+    wd_selection_clear(near);
+    if (near_m > 0.0f && draw->forest->world->octree.count)
+        visit(&search, 0);
+}
