@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "forest/canopy_light.h"
+#include "forest/sky.h"
 #include "frame/uniforms.h"
 
 static void set_weather(struct wd_scene *scene)
@@ -82,7 +83,9 @@ static bool make_forest(struct picture_test *test)
     return wd_ground_init(&test->forest.ground, &test->gpu, &test->world, &test->log) &&
            wd_buffer_init(&test->forest.trees, &test->gpu, &trees) &&
            wd_buffer_upload(&test->gpu, &test->forest.trees, 0, &none, sizeof none) &&
-           make_canopy_light(test);
+           make_canopy_light(test) &&
+           wd_sky_upload(&test->forest.sky, &test->gpu, &test->world.sky) &&
+           wd_sampler_init(&test->forest.look_sampler, &test->gpu, WD_SAMPLER_TRILINEAR_REPEAT);
 }
 
 bool picture_init(struct picture_test *test, uint32_t width, uint32_t height, uint32_t cells,
@@ -114,6 +117,9 @@ void picture_finish(struct picture_test *test)
     wd_ground_finish(&test->forest.ground, &test->gpu);
     wd_buffer_finish(&test->forest.trees, &test->gpu);
     wd_image_finish(&test->forest.canopy_light, &test->gpu);
+    wd_image_finish(&test->forest.sky, &test->gpu);
+    if (test->forest.look_sampler)
+        vkDestroySampler(test->gpu.device, test->forest.look_sampler, NULL);
     wd_targets_finish(&test->targets, &test->gpu);
     wd_terrain_pass_finish(&test->terrain, &test->gpu);
     wd_light_pass_finish(&test->light, &test->gpu);
@@ -183,6 +189,7 @@ static bool draw_sample(struct picture_test *test, const struct wd_camera *camer
         *mapped = test->uniforms;
     wd_ground_use(&test->forest.ground, &cmd);
     wd_cmd_use_image(&cmd, &test->forest.canopy_light, WD_USE_SHADER_READ);
+    wd_cmd_use_image(&cmd, &test->forest.sky, WD_USE_SHADER_READ);
     wd_cmd_use_buffer(&cmd, &test->forest.trees, WD_USE_SHADER_READ);
     record(test, &cmd, binding);
     return wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE) && wd_frames_wait(&test->frames);
