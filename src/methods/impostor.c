@@ -29,20 +29,28 @@ static const uint32_t impostor_frag[] =
  * would be larger than groups of trees. */
 enum { CLUSTER_SPAN = 64, MOST_CLUSTERS = 512, NO_CLUSTER = UINT32_MAX };
 
-/* One draw: a cluster's cells, or those octants that are one impostor each. */
-struct cluster_range {
+/* A cluster: its cells, in the order of the trees that they are of. */
+struct cluster {
+    uint32_t first, count; /* in cell_trees */
+    float cell_m;
+};
+
+/* One draw of cells. */
+struct part {
     uint32_t first, count; /* impostors */
 };
 
 struct impostors {
     struct wd_pipeline pipeline;
     struct wd_buffer table;      /* struct wd_impostor[]: octants, then cells of clusters */
-    struct cluster_range *clusters; /* by chosen octant */
+    struct cluster *clusters;    /* by chosen octant */
+    uint32_t *cell_trees;        /* by cell of all clusters: the tree that it is of */
+    uint32_t cells_first;        /* impostor of the first of these */
     uint32_t *cluster_of;        /* by octant: into clusters, or NO_CLUSTER */
     struct wd_selection selection;
     uint32_t *singles;           /* octants drawn as one impostor */
     size_t single_count, single_capacity;
-    struct cluster_range *drawn; /* clusters drawn */
+    struct part *drawn;          /* of clusters */
     size_t drawn_count, drawn_capacity;
     void *shadows; /* state of `octree`, which draws them */
 };
@@ -105,13 +113,13 @@ static uint32_t choose_clusters(struct impostors *impostors, const struct wd_oct
     return count;
 }
 
-/* The tree whose foot is nearest to a place: that a cell of a cluster is of. */
-static uint32_t nearest_tree(const struct wd_cells *cells, const struct wd_world *world, double x_m,
-                             double y_m)
+/* The tree of an octant whose foot is nearest to a place: that a cell of a cluster is of. */
+static uint32_t nearest_tree(const struct wd_cells *cells, const struct wd_world *world,
+                             const struct wd_octant *octant, double x_m, double y_m)
 {
     int column = (int)floor((x_m - cells->min_m[0]) / cells->cell_m);
     int row = (int)floor((y_m - cells->min_m[1]) / cells->cell_m);
-    uint32_t nearest = 0;
+    uint32_t nearest = octant->begin;
     double least = INFINITY;
     for (int reach = 0; reach < 64 && least == INFINITY; reach++) {
         for (int j = row - reach; j <= row + reach; j++) {
@@ -120,6 +128,8 @@ static uint32_t nearest_tree(const struct wd_cells *cells, const struct wd_world
                     continue;
                 size_t cell = (size_t)j * cells->columns + (size_t)i;
                 for (uint32_t k = cells->first[cell]; k < cells->first[cell + 1]; k++) {
+                    if (cells->trees[k] < octant->begin || cells->trees[k] >= octant->end)
+                        continue;
                     const struct wd_tree *tree = &world->trees[cells->trees[k]];
                     double x = tree->x_mm * 0.001 - x_m, y = tree->y_mm * 0.001 - y_m;
                     if (x * x + y * y < least) {
@@ -148,31 +158,57 @@ static void fill_octants(struct wd_impostor *table, const struct wd_octree *octr
     }
 }
 
+/* By trees, so that an octant's cells are one range of its cluster's. */
+static int by_tree(const void *a, const void *b)
+{
+    const struct wd_impostor *one = a, *other = b;
+    if (one->first_tree != other->first_tree)
+        return one->first_tree < other->first_tree ? -1 : 1;
+    for (int k = 0; k < 3; k++) {
+        if (one->min_m[k] != other->min_m[k])
+            return one->min_m[k] < other->min_m[k] ? -1 : 1;
+    }
+    return 0;
+}
+
+/* `cells` of one cluster become impostors. */
+static void fill_cluster(struct wd_impostor *table, const struct wd_octant *octant, float size_m,
+                         const struct wd_cluster_cell *cells, uint32_t count,
+                         const struct wd_cells *trees, const struct wd_world *world)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        struct wd_impostor *impostor = &table[i];
+        *impostor = (struct wd_impostor){.size_m = size_m, .tree_count = 1, .look = cells[i].look};
+        for (int axis = 0; axis < 3; axis++)
+            impostor->min_m[axis] =
+                octant->cube_min_m[axis] + size_m * (float)((cells[i].at >> 8 * axis) & 0xffu);
+        impostor->first_tree = nearest_tree(trees, world, octant,
+                                            impostor->min_m[0] + 0.5 * size_m,
+                                            impostor->min_m[1] + 0.5 * size_m);
+    }
+    qsort(table, count, sizeof *table, by_tree);
+}
+
 static void fill_clusters(struct impostors *impostors, struct wd_impostor *table, uint32_t first,
                           const struct wd_world *world, const uint32_t *chosen,
                           const struct wd_octant_clusters *clusters)
 {
-    struct wd_cells cells;
-    wd_cells_init(&cells, world, wd_cells_size(world, 1.0));
+    struct wd_cells trees;
+    wd_cells_init(&trees, world, wd_cells_size(world, 1.0));
+    impostors->cells_first = first;
     impostors->clusters = wd_alloc_array(clusters->octant_count, sizeof *impostors->clusters);
+    impostors->cell_trees = wd_alloc_array(clusters->cell_count, sizeof *impostors->cell_trees);
     for (uint32_t i = 0; i < clusters->octant_count; i++) {
         const struct wd_octant *octant = &world->octree.octants[chosen[i]];
         float size_m = octant->cube_size_m / (float)clusters->cluster_size;
         uint32_t begin = clusters->first_cell[i], end = clusters->first_cell[i + 1];
-        impostors->clusters[i] = (struct cluster_range){first + begin, end - begin};
-        for (uint32_t k = begin; k < end; k++) {
-            const struct wd_cluster_cell *cell = &clusters->cells[k];
-            struct wd_impostor *impostor = &table[first + k];
-            *impostor =
-                (struct wd_impostor){.size_m = size_m, .tree_count = 1, .look = cell->look};
-            for (int axis = 0; axis < 3; axis++)
-                impostor->min_m[axis] =
-                    octant->cube_min_m[axis] + size_m * (float)((cell->at >> 8 * axis) & 0xffu);
-            impostor->first_tree = nearest_tree(&cells, world, impostor->min_m[0] + 0.5 * size_m,
-                                                impostor->min_m[1] + 0.5 * size_m);
-        }
+        impostors->clusters[i] = (struct cluster){begin, end - begin, size_m};
+        fill_cluster(table + first + begin, octant, size_m, clusters->cells + begin, end - begin,
+                     &trees, world);
     }
-    wd_cells_finish(&cells);
+    for (uint32_t i = 0; i < clusters->cell_count; i++)
+        impostors->cell_trees[i] = table[first + i].first_tree;
+    wd_cells_finish(&trees);
 }
 
 static bool upload_table(struct impostors *impostors, struct wd_gpu *gpu,
@@ -230,6 +266,7 @@ static void impostor_drop_forest(void *state, struct wd_gpu *gpu)
     wd_buffer_finish(&impostors->table, gpu);
     wd_selection_finish(&impostors->selection);
     free(impostors->clusters);
+    free(impostors->cell_trees);
     free(impostors->cluster_of);
     free(impostors->singles);
     free(impostors->drawn);
@@ -244,30 +281,67 @@ struct visit {
     struct impostors *impostors;
     const struct wd_tree_draw *draw;
     struct wd_level_rule rule;
-    float cards_m;         /* only billboards beyond */
-    float area_px, cell_area_px;
+    float cards_m;   /* only billboards beyond */
+    float area_px;
+    bool whole;      /* a cluster shows or hides as a whole (--faithful) */
 };
 
-static bool replace(const struct visit *v, uint32_t index, float distance_m)
+/* Cells of trees before this one, within a cluster. */
+static uint32_t cells_before(const struct impostors *impostors, const struct cluster *cluster,
+                             uint32_t tree)
+{
+    uint32_t low = cluster->first, high = cluster->first + cluster->count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (impostors->cell_trees[middle] < tree)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static bool covers_less(const struct visit *v, float size_m, float distance_m)
+{
+    float side_px = size_m / distance_m * v->draw->view->pixels_per_radian;
+    return side_px * side_px < v->area_px;
+}
+
+/* Draws an octant's part of a cluster where its cells are small enough. */
+static bool draw_part(const struct visit *v, uint32_t cluster_index,
+                      const struct wd_octant *octant, float distance_m)
+{
+    struct impostors *impostors = v->impostors;
+    if (cluster_index == NO_CLUSTER ||
+        !covers_less(v, impostors->clusters[cluster_index].cell_m, distance_m))
+        return false;
+    const struct cluster *cluster = &impostors->clusters[cluster_index];
+    uint32_t first = cells_before(impostors, cluster, octant->begin);
+    uint32_t end = cells_before(impostors, cluster, octant->end);
+    if (first == end)
+        return false; /* its trees are in its neighbours' cells */
+    *wd_push(impostors->drawn, impostors->drawn_count, impostors->drawn_capacity) =
+        (struct part){impostors->cells_first + first, end - first};
+    return true;
+}
+
+/* `around`: the cluster of the least octant about this one that has one. */
+static bool replace(const struct visit *v, uint32_t index, uint32_t around, float distance_m)
 {
     struct impostors *impostors = v->impostors;
     const struct wd_octant *octant = &v->draw->forest->world->octree.octants[index];
-    float side_px = octant->cube_size_m / distance_m * v->draw->view->pixels_per_radian;
-    uint32_t cluster = impostors->cluster_of[index];
     if (distance_m < v->cards_m)
         return false;
-    if (cluster != NO_CLUSTER && side_px * side_px < v->cell_area_px) {
-        *wd_push(impostors->drawn, impostors->drawn_count, impostors->drawn_capacity) =
-            impostors->clusters[cluster];
+    if ((!v->whole && draw_part(v, around, octant, distance_m)) ||
+        draw_part(v, impostors->cluster_of[index], octant, distance_m))
         return true;
-    }
-    if (side_px * side_px >= v->area_px)
+    if (!covers_less(v, octant->cube_size_m, distance_m))
         return false;
     *wd_push(impostors->singles, impostors->single_count, impostors->single_capacity) = index;
     return true;
 }
 
-static void visit(const struct visit *v, uint32_t index)
+static void visit(const struct visit *v, uint32_t index, uint32_t around)
 {
     const struct wd_octant *octants = v->draw->forest->world->octree.octants;
     const struct wd_octant *octant = &octants[index];
@@ -283,7 +357,8 @@ static void visit(const struct visit *v, uint32_t index)
         squared += outside * outside;
     }
     float distance_m = sqrtf(squared);
-    if (wd_frustum_box(&view->frustum, min, max) == WD_OUTSIDE || replace(v, index, distance_m))
+    if (wd_frustum_box(&view->frustum, min, max) == WD_OUTSIDE ||
+        replace(v, index, around, distance_m))
         return;
     if (distance_m < v->cards_m) {
         for (uint32_t i = octant->begin; i < octant->own_end; i++)
@@ -292,9 +367,10 @@ static void visit(const struct visit *v, uint32_t index)
         wd_selection_add_range(selection, &(struct wd_range){octant->begin, octant->own_end,
                                                              WD_CARD_VERTICES});
     }
+    uint32_t own = v->impostors->cluster_of[index];
     uint32_t child = octant->first_child;
     for (uint32_t i = 0; i < octant->child_count; i++, child = octants[child].next_sibling)
-        visit(v, child);
+        visit(v, child, own == NO_CLUSTER ? around : own);
 }
 
 static void impostor_select(void *state, const struct wd_tree_draw *draw)
@@ -305,18 +381,17 @@ static void impostor_select(void *state, const struct wd_tree_draw *draw)
         wd_method_octree.select(impostors->shadows, draw);
         return;
     }
-    float cells = (float)options->cluster_size;
     struct visit v = {
         .impostors = impostors,
         .draw = draw,
         .rule = wd_level_rule_of(draw->forest, draw->view, draw->pass),
         .area_px = (float)options->area_px,
-        .cell_area_px = (float)options->area_px * cells * cells,
+        .whole = options->faithful,
     };
     v.cards_m = wd_level_card_distance(&v.rule, draw->forest->max_tree_height_m);
     wd_selection_clear(&impostors->selection);
     impostors->single_count = impostors->drawn_count = 0;
-    visit(&v, 0);
+    visit(&v, 0, NO_CLUSTER);
     wd_cmd_use_buffer(draw->cmd, &impostors->table, WD_USE_SHADER_READ);
 }
 

@@ -126,7 +126,7 @@ static const struct wd_key impostor_keys[] = {
      .row = "G4"},
     {"faithful", WD_KEY_BOOL, OPTION(impostor, faithful), .fallback = "false",
      .doc = "An octant's side is the plain mean of its children's: the far ones do not show through "
-            "the near ones, and crowns thin out.", .row = "G2"},
+            "the near ones, and crowns thin out. A cluster shows or hides as a whole.", .row = "G2"},
     {0},
 };
 static const struct wd_keys impostor_table = TABLE(impostor);
