@@ -12,9 +12,11 @@ bool pixel_is_sky(float depth)
     return depth <= 0.0;
 }
 
-/* How often the ray fits between the eye and the water's surface, or a negative number. */
+/* How often the ray fits between the eye and the water's surface, or a negative number. No branch
+ * hangs on the eye's height alone: llvmpipe makes a shader anew for each such value. */
 float water_distance(vec3 ray)
 {
     float drop = frame.water_level_m - float(frame.camera_mm[2]) * 0.001 - frame.camera_frac_m.z;
-    return drop < 0.0 && ray.z < -1e-6 ? drop / ray.z : -1.0;
+    float at = drop / ray.z;
+    return ray.z < -1e-6 && at > 0.0 ? at : -1.0;
 }

@@ -24,21 +24,23 @@ vec3 mirrored_surface(ivec2 at)
  * w: 1 where it meets something. */
 vec4 mirrored_shore(vec3 rel, vec3 mirrored, float noise)
 {
-    vec4 found = vec4(0.0);
+    ivec2 met = ivec2(-1);
     float way_m = 1.5 * (0.7 + 0.6 * noise), step_m = way_m;
+    vec4 from = frame.clip_from_rel * vec4(rel, 1.0);
+    vec4 per_m = frame.clip_from_rel * vec4(mirrored, 0.0);
     for (int i = 0; i < 18; i++) {
-        vec4 clip = frame.clip_from_rel * vec4(rel + mirrored * way_m, 1.0);
+        vec4 clip = from + per_m * way_m;
         vec2 screen = (clip.xy / max(clip.w, 1e-3) * 0.5 + 0.5) * vec2(frame.width, frame.height);
         ivec2 at = ivec2(clamp(screen, vec2(0.0), vec2(frame.width, frame.height) - 1.0));
-        bool inside = clip.w > 0.1 && vec2(at) == floor(screen);
         float axis_m = frame.near_m / max(texelFetch(gbuffer_depth, at, 0).x, 1e-9);
         float behind_m = clip.w - axis_m;
-        if (found.w == 0.0 && inside && behind_m > 0.0 && behind_m < step_m * 2.5 + 8.0)
-            found = vec4(mirrored_surface(at), 1.0);
+        bool inside = all(bvec3(clip.w > 0.1, equal(vec2(at), floor(screen))));
+        bool meets = all(bvec4(met.x < 0, inside, behind_m > 0.0, behind_m < step_m * 2.5 + 8.0));
+        met = mix(met, at, bvec2(meets));
         step_m = way_m * 0.5;
         way_m += step_m;
     }
-    return found;
+    return met.x < 0 ? vec4(0.0) : vec4(mirrored_surface(met), 1.0);
 }
 
 /* `below` is the radiance of what lies under the surface, `depth_m` the way to it in water. */

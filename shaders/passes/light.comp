@@ -10,7 +10,9 @@ layout(local_size_x = WD_TILE, local_size_y = WD_TILE) in;
 layout(constant_id = 0) const uint PARTS = WD_PART_ALL;
 layout(constant_id = 1) const uint LIST = 0;
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+/* No uniform block: llvmpipe bakes values of those into shaders, and would make this long one anew for
+ * each view of water. */
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1) uniform sampler2D gbuffer_albedo;
 layout(set = 0, binding = 2) uniform sampler2D gbuffer_normal;
 layout(set = 0, binding = 3) uniform usampler2D gbuffer_surface;

@@ -6,7 +6,7 @@
 
 layout(local_size_x = WD_TILE, local_size_y = WD_TILE) in;
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1) uniform sampler2D gbuffer_albedo;
 layout(set = 0, binding = 2) uniform sampler2D gbuffer_normal;
 layout(set = 0, binding = 3) uniform usampler2D gbuffer_surface;

@@ -33,7 +33,7 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     struct wd_compute_params params = {
         .shader = SPIRV(light_view_comp),
         .bindings = {10,
-                     {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER,
+                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
