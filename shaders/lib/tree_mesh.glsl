@@ -1,5 +1,5 @@
-/* A vertex of a tree's mesh where it stands. Expects `frame`, `push` (wd_tree_push), `trees`,
- * `models`, SHADOW and the libraries tree and tree_vertex. */
+/* A vertex of a tree's mesh where it stands. Expects `frame` (of a storage buffer: see light.comp),
+ * `push` (wd_tree_push), `trees`, `models`, SHADOW and the libraries tree and tree_vertex. */
 
 /* Of a mesh, in the model's frame. */
 struct mesh_corner {

@@ -7,7 +7,7 @@
 layout(constant_id = 0) const uint SHADOW = 0u;
 layout(constant_id = 1) const uint DETAIL = 0u;
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Corners { wd_leaf_vertex corners[]; };

@@ -6,7 +6,7 @@
 
 layout(constant_id = 1) const uint DETAIL = 0u;
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 5) uniform sampler2DArray looks;
 layout(set = 0, binding = 6) uniform sampler2DArray look_details;
 layout(scalar, push_constant) uniform Push { wd_tree_push push; };

@@ -4,7 +4,7 @@
 #include "shared/forest.h"
 #include "shared/hash.h"
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_packed_vertex vertices[]; };

@@ -73,13 +73,12 @@ static void set_gbuffer(struct wd_graphics_params *params)
 static bool init_leaves(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t detail)
 {
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const uint32_t constants[] = {0, detail};
     struct wd_graphics_params params = {
         .vertex = SPIRV(dissolve_leaf_vert),
         .fragment = SPIRV(tree_mesh_frag),
-        .bindings = {LEAF_BINDINGS, {uniform, buffer, buffer, buffer, buffer, image, image, buffer}},
+        .bindings = {LEAF_BINDINGS, {buffer, buffer, buffer, buffer, buffer, image, image, buffer}},
         .push_size = sizeof(struct wd_leafy_push),
         .constants = {2, constants},
     };

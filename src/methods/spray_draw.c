@@ -22,7 +22,7 @@ bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
         .vertex = {tree_spray_vert, sizeof tree_spray_vert, "tree_spray.vert"},
         .fragment = {tree_spray_frag, sizeof tree_spray_frag, "tree_mesh.frag"},
         .bindings = {8,
-                     {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                     {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
