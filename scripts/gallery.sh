@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 build=${1:-build}
 size=${2:-1920x1080}
 samples=${3:-6}
-paths=${4:-4}
+paths=${4:-3}
 data=${DATA:-../shared/data}
 work=out/gallery-$size
 shown=docs/img/gallery
