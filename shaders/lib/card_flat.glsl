@@ -36,8 +36,8 @@ float card_layer(uint layer_lod)
     return float(layer_lod & 0xffffu);
 }
 
-/* A card's stored normal, a mean whose length is kept, in world axes; seen from behind, a card shows its mirror image. `card`:
- * turn, tint_show, normal, ratio_flags. */
+/* A card's stored normal, a mean whose length is kept, in world axes; seen from behind, a card shows
+ * its mirror image. `card`: turn, tint_show, normal, ratio_flags. */
 vec3 card_world_normal(vec3 stored, uvec4 card)
 {
     vec3 normal = stored * 2.0 - 1.0;

@@ -130,9 +130,9 @@ float facing_lit(vec3 facing)
     return 0.5 * (sqrt(mean * mean + 0.6366 * facing_spread(facing)) + mean);
 }
 
-/* One leaf with its own normal, turned to the eye: which side the sun and the eye are on. Where the normal is but the
- * crown's (`plain` 0), leaves lie every way behind it: of those seen, the sun lights the seen side of as
- * many as both directions are apart from opposite. */
+/* One leaf with its own normal, turned to the eye: which side the sun and the eye are on. Where the
+ * normal is but the crown's (`plain` 0), leaves lie every way behind it: of those seen, the sun lights
+ * the seen side of as many as both directions are apart from opposite. */
 vec2 leaf_blade(vec3 facing, vec3 eye, float plain)
 {
     float toward = dot(facing, eye), spread = facing_spread(facing);

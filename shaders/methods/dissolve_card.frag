@@ -1,6 +1,7 @@
 #version 460
 /* Branches and leaves of a one-view billboard, each with its own picture: of what the whole tree covers
- * a texel shows as many leaves as stand in front there. What shows is decided by noise, as for cards, so that a tree can dissolve. */
+ * a texel shows as many leaves as stand in front there. What shows is decided by noise, as for cards,
+ * so that a tree can dissolve. */
 #include "shared/frame.h"
 #include "shared/dissolve.h"
 

@@ -25,7 +25,8 @@ struct wd_exr_params {
     size_t text_count;
 };
 
-/* ZIP-compressed scan lines; colours are noted to be linear with the primaries of sRGB; the file appears whole or not at all. */
+/* ZIP-compressed scan lines; colours are noted to be linear with the primaries of sRGB; the file
+ * appears whole or not at all. */
 bool wd_exr_write(const char *path, const struct wd_exr_params *params, const struct wd_log *log);
 
 /* One channel of a file that was read. */

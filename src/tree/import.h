@@ -27,7 +27,8 @@ void wd_tree_import_look(const struct wd_tree_import *import, const struct wd_lo
                          uint32_t layer);
 
 /* Imports the model of every species that has one, and takes proportions and heights from it where
- * the species file says nothing; reads the meshes that hedges are cut to. Progress stage "reading models". The imports belong to the
+ * the species file says nothing; reads the meshes that hedges are cut to. Progress stage "reading
+ * models". The imports belong to the
  * species: wd_species_drop_models. */
 bool wd_species_import_models(struct wd_species *species, size_t count,
                               const struct wd_progress *progress, const struct wd_log *log);
