@@ -212,9 +212,11 @@ void select_tree(uint index, float share)
     vec3 toward = ORTHOGRAPHIC != 0u ? frame.sun_direction : -normalize(middle);
 
     float shown = 1.0;
-    if (ORTHOGRAPHIC == 0u && view.near_leaves_m > 0.0)
+    float near_m = wd_near_reach_m(tree, splat_models[model_index].grain, view.near_leaves_m,
+                                   view.near_grains);
+    if (ORTHOGRAPHIC == 0u && near_m > 0.0)
         shown = wd_near_splats(wd_near_distance_m(tree, model.crown_base_m / model.height_m, foot),
-                               view.near_leaves_m);
+                               near_m);
     if (shown <= 0.0)
         return;
 

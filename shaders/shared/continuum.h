@@ -60,6 +60,7 @@ struct wd_splat_model {
     float lower[WD_GAIN_SIDES];           /* share of the leaves seen that show the lower side */
     float wood_spread;                    /* the first n of N triangles have (n / N)^this of all
                                              bark's area */
+    float grain;                          /* root of a mean triangle's area over the crown's width */
     uint32_t wood_first, wood_count;      /* triangles, large ones first */
 };
 
@@ -100,6 +101,12 @@ WD_FUNC float wd_near_distance_m(WD_STRUCT wd_tree tree, float base, WD_VECTOR f
     return WD_SQRT(up_m * up_m + side_m * side_m);
 }
 
+/* Distance up to which a tree is drawn leaf by leaf. */
+WD_FUNC float wd_near_reach_m(WD_STRUCT wd_tree tree, float grain, float leaves_m, float grains)
+{
+    return WD_MAX(leaves_m, grain * WD_TREE_CROWN_M(tree) * grains);
+}
+
 /* Shares that show of a tree's mesh and of its splats. */
 WD_FUNC float wd_near_mesh(float distance_m, float near_m)
 {
@@ -135,7 +142,8 @@ struct wd_splat_view {
     float detail;            /* level of detail is chosen as if the picture had so many times its pixels
                                 each way: what the error bound asks for */
     uint32_t min_splats;     /* of a tree */
-    float near_leaves_m;     /* crowns as near are drawn leaf by leaf; 0: none */
+    float near_leaves_m;     /* crowns as near are drawn leaf by leaf */
+    float near_grains;       /* or within so many times their grain; both 0: none */
     float wood_px;           /* trees taller than about this have triangles of wood */
     uint32_t cluster_count, variants;
     uint32_t page_count;     /* their clusters follow the others */

@@ -183,10 +183,18 @@ static float detail_of(const struct wd_tree_draw *draw)
     return (float)(spacing_px / draw->max_error_px);
 }
 
-/* 0: none, or trees are on demand and not known here. */
-static float near_leaves_m(const struct wd_forest_device *forest)
+/* None in cascades, nor where trees are on demand and not known here. */
+static struct wd_near_rule near_rule_of(const struct continuum *c, const struct wd_tree_draw *draw)
 {
-    return forest->pages.capacity ? 0.0f : (float)forest->scene->methods.continuum.near_leaves_m;
+    const struct wd_continuum_options *options = &draw->forest->scene->methods.continuum;
+    struct wd_near_rule rule = {.grains = c->forest.grains};
+    if (draw->forest->pages.capacity || draw->pass == WD_PASS_SHADOW)
+        return rule;
+    rule.leaves_m = (float)options->near_leaves_m;
+    if (options->near_px > 0.0)
+        rule.reach = draw->view->pixels_per_radian * detail_of(draw) / (float)options->near_px;
+    rule.farthest_m = fmaxf(rule.leaves_m, rule.reach * c->forest.coarsest_m);
+    return rule;
 }
 
 static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
@@ -223,7 +231,9 @@ static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
     set_slopes(values, &draw->forest->ground, view);
     if (!shadow) {
         set_history(c, values, view);
-        values->near_leaves_m = near_leaves_m(draw->forest);
+        const struct wd_near_rule rule = near_rule_of(c, draw);
+        values->near_leaves_m = rule.leaves_m;
+        values->near_grains = rule.reach;
     }
     if (shadow) {
         values->density = (float)options->shadow_density * detail * detail;
@@ -388,8 +398,9 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     wd_cmd_scope_begin(cmd, "pages");
     select_pages(c, draw);
     wd_cmd_scope_end(cmd);
+    const struct wd_near_rule near = near_rule_of(c, draw);
     if (draw->pass == WD_PASS_CAMERA)
-        wd_near_trees_select(&c->near, draw, near_leaves_m(draw->forest));
+        wd_near_trees_select(&c->near, draw, &near);
     upload_view(c, draw);
     if (!fit_pixels(c, cmd, draw->view) || !fit_pyramid(c, cmd, draw->view))
         cmd->failed = true;

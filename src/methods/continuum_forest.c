@@ -141,6 +141,18 @@ static bool make_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu, const char
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
 }
 
+/* Of the full mesh: wood, leaves and flowers. */
+static float grain_of(const struct wd_forest_device *forest, uint32_t index,
+                      const struct wd_splat_model *model)
+{
+    const struct wd_mesh_range *range = &forest->meshes.ranges[index][WD_LEVEL_MESH];
+    size_t triangles = range->index_count / 3;
+    for (int kind = 0; kind < WD_LEAF_SETS; kind++)
+        triangles += (size_t)range->sets[kind].leaf_count * range->sets[kind].index_count / 3;
+    float area_m2 = model->leaf_area_m2 + model->wood_area_m2;
+    return sqrtf(area_m2 / (float)(triangles ? triangles : 1)) / forest->host_models[index].crown_m;
+}
+
 static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
                           const struct wd_splats *splats, uint32_t models)
 {
@@ -172,6 +184,20 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
     return ok;
 }
 
+/* Grains of the models and the greatest of a stored tree. */
+static void measure_grains(struct wd_continuum_forest *own, const struct wd_forest_device *forest,
+                           struct wd_splats *splats)
+{
+    const struct wd_world *world = forest->world;
+    own->grains = wd_alloc_array(forest->model_count, sizeof *own->grains);
+    for (uint32_t i = 0; i < forest->model_count; i++)
+        own->grains[i] = splats[i].model.grain = grain_of(forest, i, &splats[i].model);
+    for (size_t i = 0; i < world->tree_count; i++) {
+        float share = own->grains[wd_forest_model_of(forest, &world->trees[i])];
+        own->coarsest_m = fmaxf(own->coarsest_m, share * WD_TREE_CROWN_M(world->trees[i]));
+    }
+}
+
 static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
                         struct wd_forest_device *forest)
 {
@@ -185,8 +211,10 @@ static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
     wd_jobs_run(0, forest->model_count, load_splats, &work);
     wd_jobs_run(0, species, make_look, &work);
     wd_jobs_run(0, forest->model_count, sample_model, &work);
-    bool ok = !atomic_load(&work.failed) &&
-              upload_splats(own, gpu, work.splats, forest->model_count);
+    bool ok = !atomic_load(&work.failed);
+    if (ok)
+        measure_grains(own, forest, work.splats);
+    ok = ok && upload_splats(own, gpu, work.splats, forest->model_count);
     for (uint32_t i = 0; i < forest->model_count; i++)
         wd_splats_finish(&work.splats[i]);
     free(work.splats);
@@ -220,5 +248,6 @@ void wd_continuum_forest_finish(struct wd_continuum_forest *own, struct wd_gpu *
     struct wd_buffer *buffers[] = {&own->clusters, &own->splats, &own->looks, &own->wood, &own->models};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
+    free(own->grains);
     *own = (struct wd_continuum_forest){0};
 }

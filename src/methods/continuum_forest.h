@@ -12,6 +12,8 @@ struct wd_continuum_forest {
     struct wd_buffer wood;     /* struct wd_splat_wood of all models */
     struct wd_buffer models;   /* struct wd_splat_model a model */
     uint32_t cluster_count;
+    float *grains;     /* [model]: as in struct wd_splat_model */
+    float coarsest_m;  /* the greatest grain of a stored tree */
 };
 
 /* Samples the splats of every model and gathers the trees in clusters. */

@@ -5,7 +5,7 @@
 struct search {
     struct wd_selection *found;
     const struct wd_tree_draw *draw;
-    float near_m;
+    struct wd_near_rule rule;
 };
 
 static void add_tree(const struct search *search, uint32_t index)
@@ -19,7 +19,9 @@ static void add_tree(const struct search *search, uint32_t index)
                            (float)(tree->z_mm * 0.001 - view->eye_m[2])};
     float distance_m = wd_near_distance_m(*tree, forest->host_models[model].crown_base_m /
                                                      forest->host_models[model].height_m, foot);
-    float show = wd_near_mesh(distance_m, search->near_m);
+    const struct wd_near_rule *rule = &search->rule;
+    float near_m = wd_near_reach_m(*tree, rule->grains[model], rule->leaves_m, rule->reach);
+    float show = near_m > 0.0f ? wd_near_mesh(distance_m, near_m) : 0.0f;
     if (show > 0.0f && wd_tree_in_view(view, tree))
         wd_selection_add_mesh(search->found, &(struct wd_mesh_choice){model, WD_LEVEL_MESH, 0},
                               index, show);
@@ -34,7 +36,7 @@ static void visit(const struct search *search, uint32_t index)
         min[k] = (float)((double)octant->min_m[k] - search->draw->view->eye_m[k]);
         max[k] = (float)((double)octant->max_m[k] - search->draw->view->eye_m[k]);
     }
-    if (wd_box_distance(min, max) > search->near_m * WD_NEAR_REACH)
+    if (wd_box_distance(min, max) > search->rule.farthest_m * WD_NEAR_REACH)
         return;
     for (uint32_t i = octant->begin; i < octant->own_end; i++)
         add_tree(search, i);
@@ -43,10 +45,11 @@ static void visit(const struct search *search, uint32_t index)
         visit(search, child);
 }
 
-void wd_near_trees_select(struct wd_selection *near, const struct wd_tree_draw *draw, float near_m)
+void wd_near_trees_select(struct wd_selection *near, const struct wd_tree_draw *draw,
+                          const struct wd_near_rule *rule)
 {
-    const struct search search = {near, draw, near_m};
+    const struct search search = {near, draw, *rule};
     wd_selection_clear(near);
-    if (near_m > 0.0f && draw->forest->world->octree.count)
+    if (rule->farthest_m > 0.0f && draw->forest->world->octree.count)
         visit(&search, 0);
 }

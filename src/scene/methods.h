@@ -21,6 +21,7 @@ struct wd_continuum_options {
     int64_t min_splats; /* of a tree */
     double wood_px;     /* trees taller than this have wood of triangles */
     double near_leaves_m; /* crowns nearer than this are drawn leaf by leaf; 0: none */
+    double near_px;       /* so are those whose mesh's triangles are so large on screen; 0: none */
 };
 
 struct wd_lod_options {
