@@ -1,4 +1,4 @@
-/* What the frame before hid. Expects `view`, `pyramid` and lib/pyramid.glsl. */
+/* What the frame before hid, or in a second round this one so far. Expects `view`, `pyramid` and lib/pyramid.glsl. */
 
 /* A rectangle of pixels of that frame and the nearest depth in it. */
 struct wd_screen_box {
@@ -39,4 +39,23 @@ float lowest_seen(wd_screen_box box)
         }
     }
     return -1.0;
+}
+
+/* Whether other things stood in front of all of a box. */
+bool was_hidden(vec3 low, vec3 high)
+{
+    vec2 from = vec2(1e9), to = vec2(-1e9);
+    float nearest_m = 1e9;
+    for (uint i = 0u; i < 8u; i++) {
+        bvec3 side = bvec3((i & 1u) != 0u, (i & 2u) != 0u, (i & 4u) != 0u);
+        vec4 clip = view.history_from_rel * vec4(mix(low, high, side), 1.0);
+        vec2 at = (clip.xy / max(clip.w, 1e-3) * 0.5 + 0.5) * vec2(view.width, view.height);
+        from = min(from, at);
+        to = max(to, at);
+        nearest_m = min(nearest_m, clip.w);
+    }
+    if (nearest_m < 1.0)
+        return false;
+    wd_screen_box box = clamp_screen_box(from - 1.0, to + 1.0, nearest_m);
+    return box.known && lowest_seen(box) < 0.0;
 }

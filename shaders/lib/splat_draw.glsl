@@ -80,6 +80,7 @@ void main()
         first = 0u;
         step_size = 1u;
     }
+    index += SMALL != 0u ? counts.done_small : counts.done_items;
     if (index >= (SMALL != 0u ? counts.small_items : counts.items))
         return;
     if (SMALL != 0u)

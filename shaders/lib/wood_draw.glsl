@@ -51,7 +51,7 @@ void draw_triangle(vec3 a, vec3 b, vec3 c, uint id)
 
 void main()
 {
-    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x + counts.done_wood;
     if (group >= counts.wood_items)
         return;
     wd_splat_item item = items[group];

@@ -1,10 +1,12 @@
 #version 460
-/* How many workgroups the next stage needs, in two dimensions: one may be too short. */
+/* How many workgroups the next stage needs, in two dimensions: one may be too short. AGAIN begins the
+ * second round: what has been put off is chosen from, and the rest is done. */
 #include "shared/continuum.h"
 
 layout(local_size_x = 1) in;
 
 layout(constant_id = 0) const uint THREADS = 64u; /* of a splat's group */
+layout(constant_id = 1) const uint AGAIN = 0u;
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) buffer Counts { wd_splat_counts counts; };
@@ -20,8 +22,13 @@ void main()
     counts.items = min(counts.items, view.item_capacity);
     counts.small_items = min(counts.small_items, view.item_capacity - counts.items);
     counts.wood_items = min(counts.wood_items, view.item_capacity);
-    groups.select = groups_of(counts.clusters);
-    groups.splat = groups_of(counts.items);
-    groups.small = groups_of((counts.small_items + THREADS - 1u) / THREADS);
-    groups.wood = groups_of(counts.wood_items);
+    if (AGAIN != 0u) {
+        counts.done_items = counts.items;
+        counts.done_small = counts.small_items;
+        counts.done_wood = counts.wood_items;
+    }
+    groups.select = groups_of(AGAIN != 0u ? counts.put_off : counts.clusters);
+    groups.splat = groups_of(counts.items - counts.done_items);
+    groups.small = groups_of((counts.small_items - counts.done_small + THREADS - 1u) / THREADS);
+    groups.wood = groups_of(counts.wood_items - counts.done_wood);
 }

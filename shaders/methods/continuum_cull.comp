@@ -13,29 +13,12 @@ layout(scalar, set = 0, binding = 4) writeonly buffer Visible { uint visible[]; 
 
 layout(scalar, set = 0, binding = 5) readonly buffer Pyramid { float pyramid[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer Pages { uint pages[]; }; /* slots */
+layout(scalar, set = 0, binding = 7) buffer PutOff { uint put_off[]; };
 
 #include "lib/frustum.glsl"
 #include "lib/pyramid.glsl"
 #include "lib/occlusion.glsl"
-
-/* Whether the frame before saw other things in front of all of the box. */
-bool was_hidden(vec3 low, vec3 high)
-{
-    vec2 from = vec2(1e9), to = vec2(-1e9);
-    float nearest_m = 1e9;
-    for (uint i = 0u; i < 8u; i++) {
-        bvec3 side = bvec3((i & 1u) != 0u, (i & 2u) != 0u, (i & 4u) != 0u);
-        vec4 clip = view.history_from_rel * vec4(mix(low, high, side), 1.0);
-        vec2 at = (clip.xy / max(clip.w, 1e-3) * 0.5 + 0.5) * vec2(view.width, view.height);
-        from = min(from, at);
-        to = max(to, at);
-        nearest_m = min(nearest_m, clip.w);
-    }
-    if (nearest_m < 1.0)
-        return false;
-    wd_screen_box box = clamp_screen_box(from - 1.0, to + 1.0, nearest_m);
-    return box.known && lowest_seen(box) < 0.0;
-}
+#include "lib/put_off.glsl"
 
 void main()
 {
@@ -56,7 +39,12 @@ void main()
                                 clusters[index].max_mm[2]));
     if (box_is_outside(low, high))
         return;
-    if (view.has_history != 0u && was_hidden(low, high))
+    if (view.has_history != 0u && was_hidden(low, high)) {
+        if (view.moved != 0u) {
+            put_off_trees(2u * index, ~0u);
+            put_off_trees(2u * index + 1u, ~0u);
+        }
         return;
+    }
     visible[atomicAdd(counts.clusters, 1u)] = index;
 }

@@ -5,6 +5,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint LEVEL = 0u;
+layout(constant_id = 1) const uint TREES_ALONE = 0u; /* 1: the ground is not there yet */
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) readonly buffer Pixels { uvec2 pixels[]; };
@@ -17,7 +18,9 @@ float pixel_depth(uvec2 at)
 {
     at = min(at, uvec2(view.width, view.height) - 1u);
     uint bits = pixels[at.y * view.width + at.x].y;
-    return bits != 0u ? uintBitsToFloat(bits) : texelFetch(terrain_depth, ivec2(at), 0).x;
+    if (bits != 0u || TREES_ALONE != 0u)
+        return uintBitsToFloat(bits);
+    return texelFetch(terrain_depth, ivec2(at), 0).x;
 }
 
 float square_depth(uvec2 at)

@@ -8,6 +8,7 @@
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* as view.orthographic */
+layout(constant_id = 2) const uint AGAIN = 0u; /* 1: the second round, of what was put off */
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) uniform View { wd_splat_view view; };
@@ -23,10 +24,12 @@ layout(scalar, set = 0, binding = 9) writeonly buffer Items { wd_splat_item item
 layout(scalar, set = 0, binding = 10) writeonly buffer WoodItems { wd_splat_item wood_items[]; };
 layout(scalar, set = 0, binding = 11) readonly buffer Pyramid { float pyramid[]; };
 layout(set = 0, binding = 12) uniform sampler2D slopes;
+layout(scalar, set = 0, binding = 13) buffer PutOff { uint put_off[]; };
 
 #include "lib/frustum.glsl"
 #include "lib/pyramid.glsl"
 #include "lib/occlusion.glsl"
+#include "lib/put_off.glsl"
 #include "lib/tree.glsl"
 
 /* Reach of crowns that lean and sway, as octree's selection has it. */
@@ -193,8 +196,8 @@ vec2 slope_under(vec3 foot, float wide_m)
 }
 
 /* `share` of the trees around stand for all: a tree is drawn as wide as the ground that it stands for
- * asks, as high as it is, and its splats grow with it. */
-void select_tree(uint index, float share)
+ * asks, as high as it is, and its splats grow with it. `place`: bit of the masks of put_off. */
+void select_tree(uint index, float share, uint place)
 {
     wd_tree tree = trees[index];
     if (tree.size == 0u)
@@ -245,12 +248,16 @@ void select_tree(uint index, float share)
     splats.facing = model_facing(pose, toward);
     float own_across = pose.across;
     pose.across *= stretch;
-    if (ORTHOGRAPHIC == 0u && view.has_history != 0u)
-        strata = seen_strata(tree, foot, toward, pose, model_index, sway,
-                             max(splats.radius, splats.wood_radius) * max(own_across, pose.up),
-                             strata);
-    if (strata == 0u)
-        return;
+    if (ORTHOGRAPHIC == 0u && view.has_history != 0u) {
+        uint seen = seen_strata(tree, foot, toward, pose, model_index, sway,
+                                max(splats.radius, splats.wood_radius) * max(own_across, pose.up),
+                                strata);
+        if (seen == 0u && view.moved != 0u)
+            put_off_trees(place >> 5u, 1u << (place & 31u));
+        if (seen == 0u)
+            return;
+        strata = view.moved != 0u ? strata : seen;
+    }
 
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
@@ -312,17 +319,39 @@ wd_drawn drawn_of(wd_cluster cluster)
 
 /* A loop, since software devices run idle lanes to the end. In the order of reversed bits any prefix
  * of a cluster's trees is spread over all of it. */
+void select_trees(uint index, wd_cluster cluster, uvec2 range, uint mask)
+{
+    wd_drawn drawn = drawn_of(cluster);
+    uint records = (cluster.count & WD_CLUSTER_PAGED) != 0u ? WD_CLUSTER_TREES : cluster.count;
+    uint end = min(range.y, drawn.count);
+    for (uint i = range.x + gl_LocalInvocationID.x; i < end; i += gl_WorkGroupSize.x) {
+        uint at = bitfieldReverse(i) >> 26;
+        if (at < records && (mask >> (i & 31u) & 1u) != 0u)
+            select_tree(cluster.first + at, drawn.share, index * WD_CLUSTER_TREES + i);
+    }
+}
+
+/* Those of a word of the masks that are seen past what is drawn by now. */
+void select_put_off(uint word)
+{
+    uint index = word >> 1u, first = (word & 1u) * 32u;
+    wd_cluster cluster = clusters[index];
+    vec3 low = rel_of_mm(ivec3(cluster.min_mm[0], cluster.min_mm[1], cluster.min_mm[2]));
+    vec3 high = rel_of_mm(ivec3(cluster.max_mm[0], cluster.max_mm[1], cluster.max_mm[2]));
+    if (!was_hidden(low, high))
+        select_trees(index, cluster, uvec2(first, first + 32u), put_off[word]);
+}
+
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (AGAIN != 0u) {
+        if (group < counts.put_off)
+            select_put_off(put_off[view.put_off_words + group]);
+        return;
+    }
     if (group >= counts.clusters)
         return;
-    wd_cluster cluster = clusters[visible[group]];
-    wd_drawn drawn = drawn_of(cluster);
-    uint records = (cluster.count & WD_CLUSTER_PAGED) != 0u ? WD_CLUSTER_TREES : cluster.count;
-    for (uint i = gl_LocalInvocationID.x; i < drawn.count; i += gl_WorkGroupSize.x) {
-        uint at = bitfieldReverse(i) >> 26;
-        if (at < records)
-            select_tree(cluster.first + at, drawn.share);
-    }
+    uint index = visible[group];
+    select_trees(index, clusters[index], uvec2(0u, WD_CLUSTER_TREES), ~0u);
 }

@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint STORES = 0u; /* 1: hands the means back to the picture */
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1, rgba32f) uniform image2D radiance_image;
 layout(set = 0, binding = 2) uniform usampler2D gbuffer_surface;
 layout(set = 0, binding = 3) uniform sampler2D gbuffer_depth;

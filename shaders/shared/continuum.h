@@ -3,6 +3,9 @@
  *   clusters --cull--> visible clusters --select--> visible trees and splat items
  *            --splat--> visibility buffer --resolve--> G-buffer or cascade
  *
+ * Where the camera has moved, trees that the frame before hid are put off: select and splat run again
+ * for those of them that what is drawn by then does not hide.
+ *
  * A tree is drawn as splats: discs of equal area sampled from its surface. Its count follows the
  * pixels it covers; any window of a stratum's splats is a fair sample of that part of the crown. */
 #ifndef WD_SHARED_CONTINUUM_H
@@ -153,13 +156,18 @@ struct wd_splat_view {
     uint32_t tree_capacity, item_capacity;
     /* What the frame before saw, to leave out what it hid. 0: nothing is known. */
     uint32_t has_history;
+    uint32_t moved;              /* what it hid may be seen by now: it is put off */
     uint32_t still;              /* the camera has not turned since either */
+    uint32_t put_off_words;      /* masks of 32 trees each that are put off, two a cluster; then their
+                                    list */
     WD_MAT4(history_from_rel);   /* clip coordinates then of what is at rel now */
     uint32_t pyramid_first[WD_PYRAMID_LEVELS];
 };
 
 struct wd_splat_counts {
     uint32_t clusters, trees, items, small_items, wood_items;
+    uint32_t put_off;                             /* words of masks */
+    uint32_t done_items, done_small, done_wood;   /* that are in the visibility buffer already */
 };
 /* Indirect dispatches that follow from them. */
 struct wd_splat_groups {

@@ -3,12 +3,10 @@
  * All that depends on single trees happens on the device: clusters are culled, trees chosen and
  * splatted into one visibility buffer, which is resolved into the same G-buffer that every method
  * fills. */
-#include "methods/continuum_forest.h"
-#include "methods/continuum_near.h"
 #include "methods/continuum_pipelines.h"
+#include "methods/continuum_view.h"
 #include "methods/method.h"
 
-#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,15 +21,12 @@ struct continuum {
     struct wd_continuum_pipelines pipelines;
     struct wd_continuum_forest forest;
     struct wd_buffer visible, counts, groups, trees, items, wood_items, pixels;
-    uint32_t tree_capacity, item_capacity;
-    struct history {
-        struct wd_buffer pyramid; /* float[], of the camera's newest frame */
-        uint32_t width, height;   /* 0: there is none */
-        double eye_m[3];
-        struct wd_camera camera;
-        float clip_from_rel[4][4];
-    } history;
-    struct wd_binding view; /* struct wd_splat_view of the view being drawn */
+    struct wd_buffer put_off; /* uint32_t[]: see shaders/lib/put_off.glsl */
+    uint32_t tree_capacity, item_capacity, cluster_capacity;
+    struct wd_buffer pyramid; /* float[], of the camera's newest frame */
+    struct wd_continuum_history history;
+    struct wd_splat_view values; /* of the view being drawn */
+    struct wd_binding view;      /* the same, for the device */
     struct wd_forest_device *device; /* whose pages this plants */
     struct wd_page_list pages; /* of that view */
     struct wd_selection near;  /* drawn leaf by leaf */
@@ -49,7 +44,7 @@ static void continuum_finish(void *state, struct wd_gpu *gpu)
     struct continuum *c = state;
     wd_continuum_pipelines_finish(&c->pipelines, gpu);
     wd_buffer_finish(&c->pixels, gpu);
-    wd_buffer_finish(&c->history.pyramid, gpu);
+    wd_buffer_finish(&c->pyramid, gpu);
     wd_page_list_finish(&c->pages);
 }
 
@@ -75,9 +70,13 @@ static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_fore
     wd_pages_forget(&forest->pages);
     c->tree_capacity = trees < MAX_TREES ? (uint32_t)trees : MAX_TREES;
     c->item_capacity = MAX_ITEMS;
-    return wd_continuum_forest_init(&c->forest, gpu, forest) &&
+    bool ok = wd_continuum_forest_init(&c->forest, gpu, forest);
+    c->cluster_capacity = c->forest.cluster_count + (uint32_t)(paged / WD_PAGE_CLUSTER);
+    return ok &&
            make_work(&c->visible, gpu, "visible clusters",
-                     (c->forest.cluster_count + paged / WD_PAGE_CLUSTER) * sizeof(uint32_t)) &&
+                     c->cluster_capacity * sizeof(uint32_t)) &&
+           make_work(&c->put_off, gpu, "trees put off",
+                     (VkDeviceSize)c->cluster_capacity * 4 * sizeof(uint32_t)) &&
            make_work(&c->counts, gpu, "splat counts", sizeof(struct wd_splat_counts)) &&
            make_work(&c->groups, gpu, "splat groups", sizeof(struct wd_splat_groups)) &&
            make_work(&c->trees, gpu, "splat trees",
@@ -91,7 +90,7 @@ static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_fore
 static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
-    struct wd_buffer *buffers[] = {&c->visible, &c->counts, &c->groups,
+    struct wd_buffer *buffers[] = {&c->visible, &c->counts, &c->groups, &c->put_off,
                                    &c->trees,   &c->items,  &c->wood_items};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
@@ -112,138 +111,43 @@ static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_
     return make_work(&c->pixels, cmd->gpu, "visibility", size);
 }
 
-_Static_assert((int)WD_SPLAT_PLANES == (int)WD_FRUSTUM_PLANES, "planes are copied whole");
-
-static uint32_t pyramid_offsets(uint32_t first[WD_PYRAMID_LEVELS], uint32_t width, uint32_t height)
-{
-    uint32_t total = 0;
-    for (uint32_t level = 0; level < WD_PYRAMID_LEVELS; level++) {
-        uint32_t texel = 2u << level;
-        first[level] = total;
-        total += (width + texel - 1) / texel * ((height + texel - 1) / texel);
-    }
-    return total;
-}
-
 static bool fit_pyramid(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
 {
     uint32_t first[WD_PYRAMID_LEVELS];
-    VkDeviceSize size = pyramid_offsets(first, view->width, view->height) * sizeof(float);
-    if (c->history.pyramid.size >= size)
+    VkDeviceSize size = wd_pyramid_offsets(first, view->width, view->height) * sizeof(float);
+    if (c->pyramid.size >= size)
         return true;
-    wd_cmd_defer_buffer(cmd, &c->history.pyramid);
-    return make_work(&c->history.pyramid, cmd->gpu, "depth pyramid", size);
+    wd_cmd_defer_buffer(cmd, &c->pyramid);
+    return make_work(&c->pyramid, cmd->gpu, "depth pyramid", size);
 }
 
-/* What was hidden from one place may be seen from any other: a camera that has moved knows nothing,
- * and one that has turned knows of what it saw all of. */
-static void set_history(const struct continuum *c, struct wd_splat_view *values,
-                        const struct wd_view *view)
+static bool sees_all_at_once(const struct continuum *c)
 {
-    const struct history *history = &c->history;
-    const struct wd_camera *was = &history->camera, *is = &view->camera;
-    pyramid_offsets(values->pyramid_first, view->width, view->height);
-    memcpy(values->history_from_rel, history->clip_from_rel, sizeof values->history_from_rel);
-    values->has_history = history->width == view->width && history->height == view->height &&
-                          !memcmp(view->eye_m, history->eye_m, sizeof history->eye_m);
-    values->still = was->yaw_rad == is->yaw_rad && was->pitch_rad == is->pitch_rad &&
-                    was->fov_rad == is->fov_rad;
+    return !c->values.has_history || !c->values.moved;
 }
 
-/* Where trees that stand for others find the ground's slope. */
-static void set_slopes(struct wd_splat_view *values, const struct wd_ground *ground,
-                       const struct wd_view *view)
+static void upload_view(struct continuum *c, struct wd_cmd *cmd)
 {
-    double texel_m = ground->slopes_step * ground->terrain->cell_m;
-    const uint32_t size[2] = {ground->slopes.width, ground->slopes.height};
-    for (int k = 0; k < 2; k++) {
-        values->slopes_scale[k] = (float)(1.0 / (texel_m * size[k]));
-        values->slopes_offset[k] =
-            (float)((view->eye_m[k] / texel_m + 0.5) / size[k]); /* of rel (0, 0) */
-    }
-    values->slopes_texel_m = (float)texel_m;
+    struct wd_splat_view *values = wd_cmd_upload(cmd, sizeof *values, &c->view);
+    if (values)
+        *values = c->values;
 }
 
-/* Of a cascade: texels that a metre spans. */
-static float texels_per_m(const struct wd_view *view)
+static void fill_view(struct continuum *c, const struct wd_tree_draw *draw)
 {
-    float squared = 0.0f;
-    for (int k = 0; k < 3; k++)
-        squared += view->clip_from_rel[k][0] * view->clip_from_rel[k][0];
-    return 0.5f * sqrtf(squared) * (float)view->width;
-}
-
-/* Pixels each way, over the picture's own, that the error bound asks level of detail to be chosen for.
- * Maps that are kept for later frames do not follow it. */
-static float detail_of(const struct wd_tree_draw *draw)
-{
-    double spacing_px = 1.0 / sqrt(draw->forest->scene->methods.continuum.density);
-    if (draw->max_error_px <= 0.0f || (draw->pass == WD_PASS_SHADOW && draw->view->box.calm))
-        return 1.0f;
-    return (float)(spacing_px / draw->max_error_px);
-}
-
-/* None in cascades, nor where trees are on demand and not known here. */
-static struct wd_near_rule near_rule_of(const struct continuum *c, const struct wd_tree_draw *draw)
-{
-    const struct wd_continuum_options *options = &draw->forest->scene->methods.continuum;
-    struct wd_near_rule rule = {.grains = c->forest.grains};
-    if (draw->forest->pages.capacity || draw->pass == WD_PASS_SHADOW)
-        return rule;
-    rule.leaves_m = (float)options->near_leaves_m;
-    if (options->near_px > 0.0)
-        rule.reach = draw->view->pixels_per_radian * detail_of(draw) / (float)options->near_px;
-    rule.farthest_m = fmaxf(rule.leaves_m, rule.reach * c->forest.coarsest_m);
-    return rule;
-}
-
-static void upload_view(struct continuum *c, const struct wd_tree_draw *draw)
-{
-    const struct wd_view *view = draw->view;
-    struct wd_splat_view *values = wd_cmd_upload(draw->cmd, sizeof *values, &c->view);
-    if (!values)
-        return;
-    const struct wd_continuum_options *options = &draw->forest->scene->methods.continuum;
-    bool shadow = draw->pass == WD_PASS_SHADOW;
-    float detail = detail_of(draw);
-    *values = (struct wd_splat_view){
-        .plane_count = view->frustum.count,
-        .orthographic = shadow,
-        .calm = shadow && view->box.calm,
-        .pixels = view->pixels_per_radian,
-        .near_m = 0.1f,
-        .typical_m = 0.7f * draw->forest->max_tree_height_m,
-        .width = view->width,
-        .height = view->height,
-        .texels = 1,
-        .density = (float)options->density * detail * detail,
-        .detail = detail,
-        .min_splats = (uint32_t)options->min_splats,
-        .wood_px = (float)options->wood_px,
-        .cluster_count = c->forest.cluster_count,
+    const struct wd_continuum_view_params params = {
+        .draw = draw,
+        .forest = &c->forest,
+        .history = &c->history,
+        /* without these, ids of a second round could not be told from those of the first */
+        .puts_off = c->gpu->features & WD_GPU_FEATURE_INT64_ATOMICS,
         .page_count = (uint32_t)c->pages.count,
-        .variants = draw->forest->variants,
         .tree_capacity = c->tree_capacity,
         .item_capacity = c->item_capacity,
+        .cluster_capacity = c->cluster_capacity,
     };
-    memcpy(values->clip_from_rel, view->clip_from_rel, sizeof values->clip_from_rel);
-    memcpy(values->planes, view->frustum.planes, sizeof values->planes);
-    set_slopes(values, &draw->forest->ground, view);
-    if (!shadow) {
-        set_history(c, values, view);
-        const struct wd_near_rule rule = near_rule_of(c, draw);
-        values->near_leaves_m = rule.leaves_m;
-        values->near_grains = rule.reach;
-    }
-    if (shadow) {
-        values->density = (float)options->shadow_density * detail * detail;
-        values->min_splats = WD_SPLAT_STRATA;
-        if (view->cascade > 0 && view->width % 2 == 0)
-            values->texels = 2; /* these cascades hold crowns, not leaves: shaders/lib/shade.glsl */
-        values->width /= values->texels;
-        values->height /= values->texels;
-        values->pixels = texels_per_m(view) / (float)values->texels;
-    }
+    wd_continuum_view_fill(&c->values, &params);
+    upload_view(c, draw->cmd);
 }
 
 /* --- pages ------------------------------------------------------------------------------- */
@@ -268,12 +172,12 @@ static void select_pages(struct continuum *c, const struct wd_tree_draw *draw)
         .eye_m = {view->eye_m[0], view->eye_m[1], view->eye_m[2]},
         .pixels = view->pixels_per_radian,
         .orthographic = shadow,
-        .whole_px = WD_WHOLE_TREE_PX / detail_of(draw),
+        .whole_px = WD_WHOLE_TREE_PX / wd_continuum_detail(draw),
         .budget = shadow ? (draw->page_budget + 3) / 4 : draw->page_budget,
         .most = (uint32_t)((shadow ? CASCADE_SHARE : CAMERA_SHARE) * pages->capacity),
     };
     if (shadow) {
-        query.pixels = texels_per_m(view);
+        query.pixels = wd_texels_per_m(view);
         query.whole_px *= 0.5f; /* a shadow is seen from nearer than it falls */
     }
     wd_pages_select(pages, draw->cmd, &query, &c->device->trees, &c->forest.clusters,
@@ -290,13 +194,15 @@ static struct wd_binding upload_pages(struct continuum *c, struct wd_cmd *cmd)
     return binding;
 }
 
-static void record_args(struct continuum *c, struct wd_cmd *cmd)
+enum round { FIRST_ROUND, SECOND_ROUND };
+
+static void record_args(struct continuum *c, struct wd_cmd *cmd, enum round begins)
 {
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->counts),
                                           WD_BIND_BUFFER(&c->groups)};
-    wd_cmd_bind(cmd, &c->pipelines.args, bindings);
+    wd_cmd_bind(cmd, &c->pipelines.args[begins], bindings);
     wd_cmd_dispatch(cmd, 1, 1, 1);
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_INDIRECT);
 }
@@ -304,24 +210,31 @@ static void record_args(struct continuum *c, struct wd_cmd *cmd)
 static void record_cull(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
-    wd_cmd_use_buffer(cmd, &c->history.pyramid, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->pyramid, WD_USE_COMPUTE_READ);
     wd_cmd_fill_buffer(cmd, &c->counts, 0);
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->visible, WD_USE_COMPUTE_WRITE);
+    if (!sees_all_at_once(c))
+        wd_cmd_fill_buffer(cmd, &c->put_off, 0);
+    wd_cmd_use_buffer(cmd, &c->put_off, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {draw->uniforms, c->view,
                                           WD_BIND_BUFFER(&c->forest.clusters),
                                           WD_BIND_BUFFER(&c->counts), WD_BIND_BUFFER(&c->visible),
-                                          WD_BIND_BUFFER(&c->history.pyramid),
-                                          upload_pages(c, cmd)};
+                                          WD_BIND_BUFFER(&c->pyramid),
+                                          upload_pages(c, cmd), WD_BIND_BUFFER(&c->put_off)};
     size_t clusters = c->forest.cluster_count + c->pages.count * WD_PAGE_CLUSTERS;
     wd_cmd_bind(cmd, &c->pipelines.cull, bindings);
     wd_cmd_dispatch_1d(cmd, (clusters + 63) / 64);
-    record_args(c, cmd);
+    record_args(c, cmd, FIRST_ROUND);
 }
 
-static void record_select(struct continuum *c, const struct wd_tree_draw *draw)
+static void record_select(struct continuum *c, const struct wd_tree_draw *draw, enum round round)
 {
     struct wd_cmd *cmd = draw->cmd;
+    const struct wd_pipeline *pipeline =
+        round == SECOND_ROUND ? &c->pipelines.choose_again : &c->pipelines.choose[draw->pass];
+    wd_cmd_use_buffer(cmd, &c->pyramid, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->put_off, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->visible, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->trees, WD_USE_COMPUTE_WRITE);
@@ -338,12 +251,13 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_BUFFER(&c->trees),
                                           WD_BIND_BUFFER(&c->items),
                                           WD_BIND_BUFFER(&c->wood_items),
-                                          WD_BIND_BUFFER(&c->history.pyramid),
+                                          WD_BIND_BUFFER(&c->pyramid),
                                           WD_BIND_IMAGE(&draw->forest->ground.slopes,
-                                                        draw->forest->ground.sampler)};
-    wd_cmd_bind(cmd, &c->pipelines.choose[draw->pass], bindings);
+                                                        draw->forest->ground.sampler),
+                                          WD_BIND_BUFFER(&c->put_off)};
+    wd_cmd_bind(cmd, pipeline, bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
-    record_args(c, cmd);
+    record_args(c, cmd, FIRST_ROUND);
 }
 
 /* Words of the visibility buffer that a pixel takes: id and depth, or depth alone. */
@@ -373,7 +287,6 @@ static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
     wd_cmd_use_buffer(cmd, &c->trees, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->items, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->wood_items, WD_USE_COMPUTE_READ);
-    clear_pixels(c, draw);
     for (uint32_t i = 0; i < 2 * WD_SHAPES; i++) {
         uint32_t ids = i / WD_SHAPES, kind = i % WD_SHAPES;
         const struct wd_pipeline *pipeline = &c->pipelines.draw[kind][draw->pass][ids];
@@ -391,28 +304,71 @@ static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
     }
 }
 
+static void record_pyramid(struct continuum *c, const struct wd_tree_draw *draw,
+                           const struct wd_pipeline *finest)
+{
+    struct wd_cmd *cmd = draw->cmd;
+    wd_cmd_use_image(cmd, &draw->targets->depth, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_READ);
+    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
+                                          WD_BIND_IMAGE(&draw->targets->depth, c->pipelines.nearest),
+                                          WD_BIND_BUFFER(&c->pyramid)};
+    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
+        uint32_t texels = 8 * (4u << i); /* pixels of a workgroup */
+        wd_cmd_use_buffer(cmd, &c->pyramid, WD_USE_COMPUTE_WRITE);
+        wd_cmd_bind(cmd, i ? &c->pipelines.pyramid[i] : finest, bindings);
+        wd_cmd_dispatch(cmd, (draw->view->width + texels - 1) / texels,
+                        (draw->view->height + texels - 1) / texels, 1);
+    }
+}
+
+/* What the frame before hid and what is drawn by now does not. */
+static void record_second_round(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    record_pyramid(c, draw, &c->pipelines.pyramid_of_trees);
+    wd_continuum_view_again(&c->values);
+    upload_view(c, draw->cmd);
+    if (draw->cmd->failed)
+        return;
+    record_args(c, draw->cmd, SECOND_ROUND);
+    record_select(c, draw, SECOND_ROUND);
+    record_draws(c, draw);
+}
+
+static void record_rounds(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    struct wd_cmd *cmd = draw->cmd;
+    wd_cmd_scope_begin(cmd, "select");
+    record_cull(c, draw);
+    record_select(c, draw, FIRST_ROUND);
+    wd_cmd_scope_end(cmd);
+    wd_cmd_scope_begin(cmd, "splat");
+    clear_pixels(c, draw);
+    record_draws(c, draw);
+    wd_cmd_scope_end(cmd);
+    if (sees_all_at_once(c))
+        return;
+    wd_cmd_scope_begin(cmd, "second round");
+    record_second_round(c, draw);
+    wd_cmd_scope_end(cmd);
+}
+
 static void continuum_select(void *state, const struct wd_tree_draw *draw)
 {
     struct continuum *c = state;
     struct wd_cmd *cmd = draw->cmd;
+    const struct wd_near_rule near = wd_continuum_near_rule(draw, &c->forest);
     wd_cmd_scope_begin(cmd, "pages");
     select_pages(c, draw);
     wd_cmd_scope_end(cmd);
-    const struct wd_near_rule near = near_rule_of(c, draw);
     if (draw->pass == WD_PASS_CAMERA)
         wd_near_trees_select(&c->near, draw, &near);
-    upload_view(c, draw);
+    fill_view(c, draw);
     if (!fit_pixels(c, cmd, draw->view) || !fit_pyramid(c, cmd, draw->view))
         cmd->failed = true;
     if (cmd->failed)
         return;
-    wd_cmd_scope_begin(cmd, "select");
-    record_cull(c, draw);
-    record_select(c, draw);
-    wd_cmd_scope_end(cmd);
-    wd_cmd_scope_begin(cmd, "splat");
-    record_draws(c, draw);
-    wd_cmd_scope_end(cmd);
+    record_rounds(c, draw);
     wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_GRAPHICS_READ);
     wd_cmd_use_buffer(cmd, &c->trees, WD_USE_GRAPHICS_READ);
     wd_cmd_use_buffer(cmd, &c->items, WD_USE_GRAPHICS_READ);
@@ -465,27 +421,10 @@ static void continuum_draw(void *state, const struct wd_tree_draw *draw)
 static void continuum_keep(void *state, const struct wd_tree_draw *draw)
 {
     struct continuum *c = state;
-    struct wd_cmd *cmd = draw->cmd;
-    const struct wd_view *view = draw->view;
-    if (cmd->failed)
+    if (draw->cmd->failed)
         return;
-    wd_cmd_use_image(cmd, &draw->targets->depth, WD_USE_COMPUTE_READ);
-    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_READ);
-    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
-                                          WD_BIND_IMAGE(&draw->targets->depth, c->pipelines.nearest),
-                                          WD_BIND_BUFFER(&c->history.pyramid)};
-    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
-        uint32_t texels = 8 * (4u << i); /* pixels of a workgroup */
-        wd_cmd_use_buffer(cmd, &c->history.pyramid, WD_USE_COMPUTE_WRITE);
-        wd_cmd_bind(cmd, &c->pipelines.pyramid[i], bindings);
-        wd_cmd_dispatch(cmd, (view->width + texels - 1) / texels,
-                        (view->height + texels - 1) / texels, 1);
-    }
-    c->history.width = view->width;
-    c->history.height = view->height;
-    memcpy(c->history.eye_m, view->eye_m, sizeof c->history.eye_m);
-    c->history.camera = view->camera;
-    memcpy(c->history.clip_from_rel, view->clip_from_rel, sizeof c->history.clip_from_rel);
+    record_pyramid(c, draw, &c->pipelines.pyramid[0]);
+    wd_continuum_history_keep(&c->history, draw->view);
 }
 
 /* Splats of the items first..first + count. */

@@ -93,32 +93,54 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     return wd_pipeline_init_graphics(&p->resolve_shadow, gpu, &params);
 }
 
+static bool init_level(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t level,
+                       uint32_t trees_alone)
+{
+    const uint32_t constants[] = {level, trees_alone};
+    const struct wd_compute_params params = {
+        .shader = SPIRV(pyramid_comp),
+        .bindings = {4, {UNIFORM, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
+        .constants = {2, constants},
+    };
+    return wd_pipeline_init_compute(pipeline, gpu, &params);
+}
+
 static bool init_pyramid(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++) {
-        const uint32_t constants[] = {i ? i + 1 : 0};
-        const struct wd_compute_params params = {
-            .shader = SPIRV(pyramid_comp),
-            .bindings = {4, {UNIFORM, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
-            .constants = {1, constants},
-        };
-        if (!wd_pipeline_init_compute(&p->pyramid[i], gpu, &params))
+        if (!init_level(&p->pyramid[i], gpu, i ? i + 1 : 0, 0))
             return false;
     }
-    return wd_sampler_init(&p->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP);
+    return init_level(&p->pyramid_of_trees, gpu, 0, 1) &&
+           wd_sampler_init(&p->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP);
 }
 
 static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
-    for (uint32_t pass = 0; pass < 2; pass++) {
-        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW};
+    struct wd_pipeline *const pipelines[] = {&p->choose[WD_PASS_CAMERA], &p->choose[WD_PASS_SHADOW],
+                                             &p->choose_again};
+    for (uint32_t i = 0; i < 3; i++) {
+        const uint32_t constants[] = {gpu->software ? 8 : 64, i == WD_PASS_SHADOW, i == 2};
         const struct wd_compute_params choose = {
             .shader = SPIRV(select_comp),
-            .bindings = {13, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+            .bindings = {14, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
                               BUFFER, BUFFER, BUFFER, BUFFER,
-                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
-            .constants = {2, constants}};
-        if (!wd_pipeline_init_compute(&p->choose[pass], gpu, &choose))
+                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
+            .constants = {3, constants}};
+        if (!wd_pipeline_init_compute(pipelines[i], gpu, &choose))
+            return false;
+    }
+    return true;
+}
+
+static bool init_args(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
+    for (uint32_t again = 0; again < 2; again++) {
+        const uint32_t constants[] = {gpu->software ? 8 : 64, again};
+        const struct wd_compute_params args = {.shader = SPIRV(args_comp),
+                                               .bindings = {3, {UNIFORM, BUFFER, BUFFER}},
+                                               .constants = {2, constants}};
+        if (!wd_pipeline_init_compute(&p->args[again], gpu, &args))
             return false;
     }
     return true;
@@ -126,23 +148,20 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 
 bool wd_continuum_pipelines_init(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
-    const uint32_t threads = gpu->software ? 8 : 64;
     const struct wd_compute_params cull = {
         .shader = SPIRV(cull_comp),
-        .bindings = {7, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
-    const struct wd_compute_params args = {.shader = SPIRV(args_comp),
-                                           .bindings = {3, {UNIFORM, BUFFER, BUFFER}},
-                                           .constants = {1, &threads}};
-    return wd_pipeline_init_compute(&p->cull, gpu, &cull) &&
-           wd_pipeline_init_compute(&p->args, gpu, &args) && init_choose(p, gpu) &&
-           init_draws(p, gpu) && init_resolve(p, gpu) && init_pyramid(p, gpu);
+        .bindings = {8, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
+    return wd_pipeline_init_compute(&p->cull, gpu, &cull) && init_args(p, gpu) &&
+           init_choose(p, gpu) && init_draws(p, gpu) && init_resolve(p, gpu) &&
+           init_pyramid(p, gpu);
 }
 
 void wd_continuum_pipelines_finish(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
-    struct wd_pipeline *pipelines[] = {&p->cull,       &p->args,       &p->choose[0],
-                                       &p->choose[1],  &p->resolve[0], &p->resolve[1],
-                                       &p->resolve_shadow};
+    struct wd_pipeline *pipelines[] = {&p->cull,       &p->args[0],    &p->args[1],
+                                       &p->choose[0],  &p->choose[1],  &p->choose_again,
+                                       &p->resolve[0], &p->resolve[1], &p->resolve_shadow,
+                                       &p->pyramid_of_trees};
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         wd_pipeline_finish(pipelines[i], gpu);
     for (uint32_t i = 0; i < WD_SHAPES * 2 * 2; i++)

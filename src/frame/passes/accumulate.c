@@ -11,8 +11,8 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint
     const struct wd_compute_params params = {
         .shader = {accumulate_comp, sizeof accumulate_comp, "accumulate_comp"},
         .bindings = {7,
-                     {buffer, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, image, image, buffer, buffer,
-                      buffer}},
+                     {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, image,
+                      image, buffer, buffer, buffer}},
         .push_size = sizeof(struct wd_accumulate_push),
         .constants = {1, &stores},
     };

@@ -1,0 +1,163 @@
+#include "methods/continuum_view.h"
+
+#include <math.h>
+#include <string.h>
+
+_Static_assert((int)WD_SPLAT_PLANES == (int)WD_FRUSTUM_PLANES, "planes are copied whole");
+
+uint32_t wd_pyramid_offsets(uint32_t first[WD_PYRAMID_LEVELS], uint32_t width, uint32_t height)
+{
+    uint32_t total = 0;
+    for (uint32_t level = 0; level < WD_PYRAMID_LEVELS; level++) {
+        uint32_t texel = 2u << level;
+        first[level] = total;
+        total += (width + texel - 1) / texel * ((height + texel - 1) / texel);
+    }
+    return total;
+}
+
+/* --- history ----------------------------------------------------------------------------- */
+
+void wd_continuum_history_keep(struct wd_continuum_history *history, const struct wd_view *view)
+{
+    history->width = view->width;
+    history->height = view->height;
+    memcpy(history->eye_m, view->eye_m, sizeof history->eye_m);
+    history->camera = view->camera;
+    memcpy(history->clip_from_rel, view->clip_from_rel, sizeof history->clip_from_rel);
+}
+
+/* What was hidden from one place may be seen from any other: of what it hid a camera that has moved
+ * knows nothing for certain, and one that has turned knows of what it saw all of. */
+static void set_history(struct wd_splat_view *values, const struct wd_continuum_view_params *params)
+{
+    const struct wd_continuum_history *history = params->history;
+    const struct wd_view *view = params->draw->view;
+    const struct wd_camera *was = &history->camera, *is = &view->camera;
+    wd_pyramid_offsets(values->pyramid_first, view->width, view->height);
+    memcpy(values->history_from_rel, history->clip_from_rel, sizeof values->history_from_rel);
+    for (int k = 0; k < 3; k++) {
+        float step_m = (float)(view->eye_m[k] - history->eye_m[k]);
+        for (int row = 0; row < 4; row++)
+            values->history_from_rel[3][row] += history->clip_from_rel[k][row] * step_m;
+    }
+    values->moved = memcmp(view->eye_m, history->eye_m, sizeof history->eye_m) != 0;
+    values->has_history = history->width == view->width && history->height == view->height &&
+                          (params->puts_off || !values->moved);
+    values->still = was->yaw_rad == is->yaw_rad && was->pitch_rad == is->pitch_rad &&
+                    was->fov_rad == is->fov_rad;
+}
+
+void wd_continuum_view_again(struct wd_splat_view *values)
+{
+    memcpy(values->history_from_rel, values->clip_from_rel, sizeof values->history_from_rel);
+    values->moved = 0;
+    values->still = 1;
+}
+
+/* --- the whole --------------------------------------------------------------------------- */
+
+/* Where trees that stand for others find the ground's slope. */
+static void set_slopes(struct wd_splat_view *values, const struct wd_ground *ground,
+                       const struct wd_view *view)
+{
+    double texel_m = ground->slopes_step * ground->terrain->cell_m;
+    const uint32_t size[2] = {ground->slopes.width, ground->slopes.height};
+    for (int k = 0; k < 2; k++) {
+        values->slopes_scale[k] = (float)(1.0 / (texel_m * size[k]));
+        values->slopes_offset[k] =
+            (float)((view->eye_m[k] / texel_m + 0.5) / size[k]); /* of rel (0, 0) */
+    }
+    values->slopes_texel_m = (float)texel_m;
+}
+
+float wd_texels_per_m(const struct wd_view *view)
+{
+    float squared = 0.0f;
+    for (int k = 0; k < 3; k++)
+        squared += view->clip_from_rel[k][0] * view->clip_from_rel[k][0];
+    return 0.5f * sqrtf(squared) * (float)view->width;
+}
+
+float wd_continuum_detail(const struct wd_tree_draw *draw)
+{
+    double spacing_px = 1.0 / sqrt(draw->forest->scene->methods.continuum.density);
+    if (draw->max_error_px <= 0.0f || (draw->pass == WD_PASS_SHADOW && draw->view->box.calm))
+        return 1.0f;
+    return (float)(spacing_px / draw->max_error_px);
+}
+
+struct wd_near_rule wd_continuum_near_rule(const struct wd_tree_draw *draw,
+                                           const struct wd_continuum_forest *forest)
+{
+    const struct wd_continuum_options *options = &draw->forest->scene->methods.continuum;
+    struct wd_near_rule rule = {.grains = forest->grains};
+    if (draw->forest->pages.capacity || draw->pass == WD_PASS_SHADOW)
+        return rule;
+    rule.leaves_m = (float)options->near_leaves_m;
+    if (options->near_px > 0.0)
+        rule.reach = draw->view->pixels_per_radian * wd_continuum_detail(draw) /
+                     (float)options->near_px;
+    rule.farthest_m = fmaxf(rule.leaves_m, rule.reach * forest->coarsest_m);
+    return rule;
+}
+
+static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw *draw)
+{
+    const struct wd_view *view = draw->view;
+    float detail = values->detail;
+    values->density =
+        (float)draw->forest->scene->methods.continuum.shadow_density * detail * detail;
+    values->min_splats = WD_SPLAT_STRATA;
+    if (view->cascade > 0 && view->width % 2 == 0)
+        values->texels = 2; /* these cascades hold crowns, not leaves: shaders/lib/shade.glsl */
+    values->width /= values->texels;
+    values->height /= values->texels;
+    values->pixels = wd_texels_per_m(view) / (float)values->texels;
+}
+
+static void set_camera(struct wd_splat_view *values, const struct wd_continuum_view_params *params)
+{
+    const struct wd_near_rule rule = wd_continuum_near_rule(params->draw, params->forest);
+    set_history(values, params);
+    values->near_leaves_m = rule.leaves_m;
+    values->near_grains = rule.reach;
+}
+
+void wd_continuum_view_fill(struct wd_splat_view *values,
+                            const struct wd_continuum_view_params *params)
+{
+    const struct wd_tree_draw *draw = params->draw;
+    const struct wd_view *view = draw->view;
+    const struct wd_continuum_options *options = &draw->forest->scene->methods.continuum;
+    bool shadow = draw->pass == WD_PASS_SHADOW;
+    float detail = wd_continuum_detail(draw);
+    *values = (struct wd_splat_view){
+        .plane_count = view->frustum.count,
+        .orthographic = shadow,
+        .calm = shadow && view->box.calm,
+        .pixels = view->pixels_per_radian,
+        .near_m = 0.1f,
+        .typical_m = 0.7f * draw->forest->max_tree_height_m,
+        .width = view->width,
+        .height = view->height,
+        .texels = 1,
+        .density = (float)options->density * detail * detail,
+        .detail = detail,
+        .min_splats = (uint32_t)options->min_splats,
+        .wood_px = (float)options->wood_px,
+        .cluster_count = params->forest->cluster_count,
+        .page_count = params->page_count,
+        .variants = draw->forest->variants,
+        .tree_capacity = params->tree_capacity,
+        .item_capacity = params->item_capacity,
+        .put_off_words = 2 * params->cluster_capacity,
+    };
+    memcpy(values->clip_from_rel, view->clip_from_rel, sizeof values->clip_from_rel);
+    memcpy(values->planes, view->frustum.planes, sizeof values->planes);
+    set_slopes(values, &draw->forest->ground, view);
+    if (shadow)
+        set_cascade(values, draw);
+    else
+        set_camera(values, params);
+}
