@@ -10,6 +10,7 @@
 #include "tree/fronds.h"
 #include "tree/leaf_spray.h"
 #include "tree/import.h"
+#include "tree/openness.h"
 #include "tree/wood.h"
 
 enum {
@@ -236,7 +237,9 @@ static void finish_model(struct wd_tree_model *model, const struct wd_skeleton *
     scale_mesh(&model->full, factor);
     scale_mesh(&model->reduced, factor);
     wd_leaf_box_scale(&model->leaf_box, factor);
+    model->leaf_area_m2 = factor * factor * foliage->area_m2;
     wd_tree_model_add_leaves(model);
+    wd_tree_model_fit_openness(model);
     if (has_leaf_triangles(model))
         fit_reduced(model);
     model->height_m = form->height_m;
@@ -246,7 +249,6 @@ static void finish_model(struct wd_tree_model *model, const struct wd_skeleton *
                                                  form->clip->max_m[1] - form->clip->min_m[1]);
     model->crown_base_m = factor * form->crown_base_m;
     model->dbh_m = factor * form->dbh_m;
-    model->leaf_area_m2 = factor * factor * foliage->area_m2;
 }
 
 bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,

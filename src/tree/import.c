@@ -9,6 +9,7 @@
 #include "tree/clip_mesh.h"
 #include "tree/import_parts.h"
 #include "tree/model_reduce.h"
+#include "tree/openness.h"
 #include "tree/vec.h"
 
 enum {
@@ -231,6 +232,7 @@ static bool import_file(struct wd_tree_import *import, const struct wd_species *
         wd_import_shade(&import->model.full);
         reduce(&import->model);
         wd_import_measure(&import->model);
+        wd_tree_model_fit_openness(&import->model);
         warn_of_pictures(&work);
         report(&work);
     }

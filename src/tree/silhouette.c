@@ -36,21 +36,23 @@ void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p
     at[1] = (wd_v3_dot(v, silhouette->up) - silhouette->low[1]) * silhouette->scale;
 }
 
-static float least(float a, float b, float c)
-{
-    float ab = a < b ? a : b;
-    return ab < c ? ab : c;
-}
-
-static float most(float a, float b, float c)
-{
-    float ab = a > b ? a : b;
-    return ab > c ? ab : c;
-}
-
 typedef float four_floats __attribute__((vector_size(16)));
 typedef int32_t four_ints __attribute__((vector_size(16)));
-typedef uint8_t four_bytes __attribute__((vector_size(4)));
+
+static four_floats choose(four_ints where, four_floats a, four_floats b)
+{
+    return (four_floats)((where & (four_ints)a) | (~where & (four_ints)b));
+}
+
+static four_floats least(four_floats a, four_floats b)
+{
+    return choose(a < b, a, b);
+}
+
+static four_floats most(four_floats a, four_floats b)
+{
+    return choose(a > b, a, b);
+}
 
 /* Points p with cross(way, p - from) * turn >= 0 lie inside. */
 struct edge {
@@ -68,18 +70,41 @@ static four_ints is_inside(const struct edge *edge, four_floats x, float y)
     return (across - edge->way[1] * (x - edge->from[0])) * edge->turn >= 0;
 }
 
-/* Four pixels at a time; what lies beyond x1 is left as it is. */
+/* Four pixels at a time, those inside of a row. */
+static four_ints inside_row(const struct edge edges[3], four_ints at, float y, int x1)
+{
+    four_floats middles = __builtin_convertvector(at, four_floats) + 0.5f;
+    return is_inside(&edges[0], middles, y) & is_inside(&edges[1], middles, y) &
+           is_inside(&edges[2], middles, y) & (at < x1);
+}
+
+/* What lies beyond x1 is left as it is. */
 static void cover_row(uint8_t *row, const struct edge edges[3], float y, int x0, int x1)
 {
     for (int x = x0; x < x1; x += 4) {
-        four_ints at = {x, x + 1, x + 2, x + 3};
-        four_floats middles = __builtin_convertvector(at, four_floats) + 0.5f;
-        four_ints inside = is_inside(&edges[0], middles, y) & is_inside(&edges[1], middles, y) &
-                           is_inside(&edges[2], middles, y) & (at < x1);
-        four_bytes covered;
+        four_ints at = {x, x + 1, x + 2, x + 3}, inside = inside_row(edges, at, y, x1);
+        uint64_t pairs[2];
+        uint32_t covered;
+        memcpy(pairs, &inside, sizeof pairs);
         memcpy(&covered, row + x, sizeof covered);
-        covered |= __builtin_convertvector(inside, four_bytes) & 1;
+        covered |= (uint32_t)((pairs[0] & 1) | (pairs[0] >> 24 & 0x100) | (pairs[1] & 1) << 16 |
+                              (pairs[1] >> 8 & 0x1000000));
         memcpy(row + x, &covered, sizeof covered);
+    }
+}
+
+/* Distance over the picture: at pixel 0, more a pixel right, and at most: what slivers have beyond
+ * that is error. */
+static void bring_row(float *row, const struct edge edges[3], float y, int x0, int x1,
+                      const float distance[3])
+{
+    for (int x = x0; x < x1; x += 4) {
+        four_ints at = {x, x + 1, x + 2, x + 3}, inside = inside_row(edges, at, y, x1);
+        four_floats own = distance[0] + distance[1] * __builtin_convertvector(at, four_floats);
+        four_floats front;
+        memcpy(&front, row + x, sizeof front);
+        front = choose(inside & (own > front) & (own <= distance[2]), own, front);
+        memcpy(row + x, &front, sizeof front);
     }
 }
 
@@ -89,33 +114,54 @@ struct box {
     int x0, x1, y0, y1;
 };
 
-static struct box box_of(const float a[2], const float b[2], const float c[2])
+/* First pixels whose middle is at x or beyond, within the picture; 0 for NaN. */
+static inline four_ints pixels(four_floats x)
 {
-    return (struct box){
-        .corners = {a, b, c},
-        .x0 = wd_silhouette_pixel(least(a[0], b[0], c[0])),
-        .x1 = wd_silhouette_pixel(most(a[0], b[0], c[0])),
-        .y0 = wd_silhouette_pixel(least(a[1], b[1], c[1])),
-        .y1 = wd_silhouette_pixel(most(a[1], b[1], c[1])),
-    };
+    const four_floats none = {0}, all = none + WD_SILHOUETTE;
+    four_floats from = least(choose(x > none, x, none), all) - 0.5f;
+    four_ints pixel = __builtin_convertvector(from, four_ints);
+    return pixel - (__builtin_convertvector(pixel, four_floats) < from);
 }
 
-static void cover_box(uint8_t *covered, const struct box *box)
+static inline struct box box_of(const float a[4], const float b[4], const float c[4])
+{
+    four_floats corners[3];
+    memcpy(&corners[0], a, sizeof *corners);
+    memcpy(&corners[1], b, sizeof *corners);
+    memcpy(&corners[2], c, sizeof *corners);
+    four_ints low = pixels(least(least(corners[0], corners[1]), corners[2]));
+    four_ints high = pixels(most(most(corners[0], corners[1]), corners[2]));
+    return (struct box){{a, b, c}, low[0], high[0], low[1], high[1]};
+}
+
+/* Covers the box's triangle, or brings `front` before it. */
+static void draw_box(uint8_t *covered, float *front, const struct box *box)
 {
     const float *a = box->corners[0], *b = box->corners[1], *c = box->corners[2];
-    float area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    float bx = b[0] - a[0], by = b[1] - a[1], cx = c[0] - a[0], cy = c[1] - a[1];
+    float area = bx * cy - cx * by;
     if (!(fabsf(area) > 1e-9f))
         return;
-    float turn = area > 0 ? 1 : -1;
+    float turn = area > 0 ? 1 : -1, over = 1 / area;
     const struct edge edges[3] = {edge_of(a, b, turn), edge_of(b, c, turn), edge_of(c, a, turn)};
-    for (int y = box->y0; y < box->y1; y++)
-        cover_row(covered + y * WD_SILHOUETTE, edges, (float)y + 0.5f, box->x0, box->x1);
+    float bz = b[2] - a[2], cz = c[2] - a[2];
+    float farthest = wd_maxf(wd_maxf(a[2], b[2]), c[2]);
+    float right = (bz * cy - cz * by) * over, down = (cz * bx - bz * cx) * over;
+    for (int y = box->y0; y < box->y1; y++) {
+        float middle = (float)y + 0.5f;
+        const float distance[3] = {a[2] + down * (middle - a[1]) + right * (0.5f - a[0]), right,
+                                   farthest};
+        if (covered)
+            cover_row(covered + y * WD_SILHOUETTE, edges, middle, box->x0, box->x1);
+        else
+            bring_row(front + y * WD_SILHOUETTE, edges, middle, box->x0, box->x1, distance);
+    }
 }
 
 /* Most triangles are small, and many lie between the middles of pixels: these are sorted out a
  * batch at a time, without a branch to be guessed. */
-static void cover_triangles(uint8_t *covered, float (*at)[2], const uint32_t *indices,
-                            uint32_t count)
+static void draw_triangles(uint8_t *covered, float *front, float (*at)[4], const uint32_t *indices,
+                           uint32_t count)
 {
     enum { BATCH = 256 };
     struct box boxes[BATCH];
@@ -126,7 +172,22 @@ static void cover_triangles(uint8_t *covered, float (*at)[2], const uint32_t *in
             kept += (boxes[kept].x0 < boxes[kept].x1) & (boxes[kept].y0 < boxes[kept].y1);
         }
         for (int n = 0; n < kept; n++)
-            cover_box(covered, &boxes[n]);
+            draw_box(covered, front, &boxes[n]);
+    }
+}
+
+/* Places of the vertices from `low` on. */
+static void place_vertices(float (*at)[4], const struct wd_silhouette *silhouette,
+                           const struct wd_tree_mesh *mesh, uint32_t low, uint32_t count)
+{
+    struct wd_vec3 right = wd_v3_scale(silhouette->right, silhouette->scale);
+    struct wd_vec3 up = wd_v3_scale(silhouette->up, silhouette->scale);
+    float x0 = silhouette->low[0] * silhouette->scale, y0 = silhouette->low[1] * silhouette->scale;
+    for (uint32_t i = 0; i < count; i++) {
+        struct wd_vec3 p = wd_v3_of(mesh->vertices[low + i].position_m);
+        at[i][0] = wd_v3_dot(p, right) - x0;
+        at[i][1] = wd_v3_dot(p, up) - y0;
+        at[i][2] = wd_v3_dot(p, silhouette->toward);
     }
 }
 
@@ -140,11 +201,19 @@ void wd_silhouette_cover(struct wd_silhouette *silhouette, const struct wd_tree_
     }
     if (low > high)
         return;
-    float(*at)[2] = wd_alloc_array((size_t)high + 1, sizeof *at);
-    for (uint32_t i = low; i <= high; i++)
-        wd_silhouette_project(silhouette, mesh->vertices[i].position_m, at[i]);
-    cover_triangles(silhouette->covered, at, mesh->indices + first, end - first);
+    float(*at)[4] = wd_alloc_array((size_t)high + 1, sizeof *at);
+    place_vertices(at + low, silhouette, mesh, low, high + 1 - low);
+    draw_triangles(silhouette->covered, NULL, at, mesh->indices + first, end - first);
     free(at);
+}
+
+void wd_silhouette_front(const struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
+                         float (*at)[4], float *front)
+{
+    place_vertices(at, silhouette, mesh, 0, mesh->vertex_count);
+    for (size_t i = 0; i < WD_SILHOUETTE * WD_SILHOUETTE; i++)
+        front[i] = -INFINITY;
+    draw_triangles(NULL, front, at, mesh->indices, mesh->index_count);
 }
 
 void wd_silhouette_clear(struct wd_silhouette *silhouette)
