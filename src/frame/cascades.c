@@ -84,17 +84,17 @@ static void cascade_box(struct wd_cascade_box *box, const struct wd_cascades_par
     box->center[2] -= box->radius + 32.0;
 }
 
-static void cascade_view(struct wd_view *cascade, const struct wd_view *view)
+static void cascade_view(struct wd_view *cascade, const struct wd_view *view, const double eye_m[3])
 {
     const struct wd_cascade_box *box = &cascade->box;
     cascade->camera = view->camera;
-    memcpy(cascade->eye_m, view->eye_m, sizeof cascade->eye_m);
+    memcpy(cascade->eye_m, eye_m, sizeof cascade->eye_m);
     cascade->pixels_per_radian = view->pixels_per_radian;
     cascade->lod_scale = view->lod_scale;
     const double *rows[3] = {box->right, box->up, box->toward};
     const double scale[3] = {1.0 / box->radius, 1.0 / box->radius, 1.0 / box->depth};
     for (int row = 0; row < 3; row++) {
-        double origin = (dot(view->eye_m, rows[row]) - box->center[row]) * scale[row];
+        double origin = (dot(eye_m, rows[row]) - box->center[row]) * scale[row];
         for (int k = 0; k < 3; k++)
             cascade->clip_from_rel[k][row] = (float)(rows[row][k] * scale[row]);
         cascade->clip_from_rel[3][row] = (float)origin;
@@ -123,15 +123,18 @@ static double cascade_end(const struct wd_cascades_params *params, int i)
     return near * pow(params->distance_m / near, (i + 1.0) / WD_CASCADES);
 }
 
-/* What stands before the plane, or throws its shadow of length `shadow_m` across it. */
-static void add_caster_plane(struct wd_frustum *frustum, const float plane[4],
-                             const float toward_sun[3], float shadow_m)
+/* What stands before the plane, or throws its shadow of length `shadow_m` across it. The plane counts
+ * from the view's eye. */
+static void add_caster_plane(struct wd_view *cascade, const float plane[4],
+                             const struct wd_cascades_params *params, float shadow_m)
 {
-    float *own = frustum->planes[frustum->count++];
+    float *own = cascade->frustum.planes[cascade->frustum.count++];
     float away = 0.0f;
     memcpy(own, plane, 4 * sizeof *own);
-    for (int k = 0; k < 3; k++)
-        away -= plane[k] * toward_sun[k];
+    for (int k = 0; k < 3; k++) {
+        away -= plane[k] * params->sun_direction[k];
+        own[3] += plane[k] * (float)(cascade->eye_m[k] - params->view->eye_m[k]);
+    }
     own[3] += fmaxf(away, 0.0f) * shadow_m + CASTER_MARGIN_M;
 }
 
@@ -148,15 +151,16 @@ static void keep_to_slice(struct wd_view *cascade, const struct wd_cascades_para
     const float beyond[4] = {forward[0], forward[1], forward[2], (float)-near};
     const float before[4] = {-forward[0], -forward[1], -forward[2], (float)far};
     float shadow_m = (float)(2.0 * params->max_height_m / fmax(params->sun_direction[2], 0.05));
-    add_caster_plane(&cascade->frustum, beyond, params->sun_direction, shadow_m);
-    add_caster_plane(&cascade->frustum, before, params->sun_direction, shadow_m);
+    add_caster_plane(cascade, beyond, params, shadow_m);
+    add_caster_plane(cascade, before, params, shadow_m);
     for (uint32_t i = 0; i < WD_FRUSTUM_SIDES; i++)
-        add_caster_plane(&cascade->frustum, seen->planes[i], params->sun_direction, shadow_m);
+        add_caster_plane(cascade, seen->planes[i], params, shadow_m);
 }
 
 void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,
                       const struct wd_cascades_params *params)
 {
+    const double *eye_m = params->eye_m ? params->eye_m : params->view->eye_m;
     double near = fmax(params->near_m, 0.66 * params->nearest_m);
     for (int i = 0; i < WD_CASCADES; i++) {
         double far = cascade_end(params, i);
@@ -164,7 +168,7 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
             .width = params->size, .height = params->size, .cascade = (uint32_t)i};
         const struct wd_cascade_box *box = &cascades[i].box;
         cascade_box(&cascades[i].box, params, near, far);
-        cascade_view(&cascades[i], params->view);
+        cascade_view(&cascades[i], params->view, eye_m);
         if (!box->calm)
             keep_to_slice(&cascades[i], params, near, far);
         memcpy(uniforms->shadow_from_rel[i], cascades[i].clip_from_rel,

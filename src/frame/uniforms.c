@@ -69,15 +69,15 @@ static void move_on_lens(struct wd_view_params *view, const struct wd_scene *sce
     view->offset_px[1] -= (float)(radius_m * disc[1] * px_per_m);
 }
 
+/* `steady`: the view of the whole picture, which its samples lie about. */
 static void fill_camera(struct wd_frame_uniforms *uniforms, struct wd_view *view,
-                        const struct wd_uniforms_params *params)
+                        struct wd_view *steady, const struct wd_uniforms_params *params)
 {
     const struct wd_scene *scene = params->forest->scene;
     struct wd_view_params camera = {params->camera, params->width, params->height, NEAR_M, {0}};
     struct exposure exposure = exposure_of(params->sample_index, params->sample_count);
-    struct wd_view steady;
-    wd_view_init(&steady, &camera);
-    memcpy(uniforms->steady_clip_from_rel, steady.clip_from_rel, sizeof steady.clip_from_rel);
+    wd_view_init(steady, &camera);
+    memcpy(uniforms->steady_clip_from_rel, steady->clip_from_rel, sizeof steady->clip_from_rel);
     camera.camera = moving_camera(params, exposure.time);
     for (int k = 0; k < 2; k++)
         camera.offset_px[k] = (float)exposure.pixel[k];
@@ -121,15 +121,17 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
         .view_mode = params->view_mode,
         .shadow_taps = (uint32_t)scene->quality.shadow_taps,
     };
-    fill_camera(uniforms, view, params);
+    struct wd_view steady;
+    fill_camera(uniforms, view, &steady, params);
     fill_previous(uniforms, params);
     wd_surroundings_fill(uniforms, scene, forest->world);
     memcpy(uniforms->leaf_scatter, forest->leaf_scatter, sizeof uniforms->leaf_scatter);
     struct wd_cascades_params sun = {
-        .view = view,
+        .view = &steady, /* all samples look into the first one's maps */
+        .eye_m = view->eye_m,
         .distance_m = (float)scene->quality.shadow_distance_m,
         .near_m = NEAR_M,
-        .nearest_m = wd_nearest_seen(forest, view),
+        .nearest_m = wd_nearest_seen(forest, &steady),
         .size = params->shadow_size,
         .max_z_m = forest->world->terrain.max_m + forest->max_tree_height_m,
         .max_height_m = forest->max_tree_height_m,

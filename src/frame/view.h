@@ -51,6 +51,7 @@ void wd_view_init(struct wd_view *view, const struct wd_view_params *params);
  * of its slice of the view frustum, in a frame fixed to the world, moved by whole texels. */
 struct wd_cascades_params {
     const struct wd_view *view;
+    const double *eye_m;     /* that matrices and planes count from; NULL: the view's */
     float sun_direction[3];  /* unit, toward the sun */
     float distance_m;        /* at which the last cascade ends */
     float near_m;

@@ -5,12 +5,14 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
 #include "world/sun.h"
 #include "shared/air.h"
 #include "frame/sun_field.h"
+#include "frame/view.h"
 #include "shared/hash.h"
 #include "shared/wind.h"
 
@@ -190,12 +192,59 @@ static void test_wind(void **state)
     assert_float_equal(along / 500, 0.6 * 0.04 * 0.8 * 20, 0.08); /* the mean tilt, downwind */
 }
 
+/* --- cascades --------------------------------------------------------------------------------- */
+
+/* Where a cascade has the place 5 m ahead of `from`. */
+static void place_in_cascade(float at[3], const struct wd_view *cascade, const double from_m[3])
+{
+    const double place_m[3] = {from_m[0], from_m[1] + 5.0, from_m[2]};
+    for (int row = 0; row < 3; row++) {
+        at[row] = cascade->clip_from_rel[3][row];
+        for (int k = 0; k < 3; k++)
+            at[row] += cascade->clip_from_rel[k][row] * (float)(place_m[k] - cascade->eye_m[k]);
+    }
+}
+
+/* An eye that a lens moves finds the same place of the same map, kept ones too. */
+static void test_cascades_of_moved_eyes(void **state)
+{
+    (void)state;
+    struct wd_view view, cascades[2][WD_CASCADES];
+    struct wd_frame_uniforms uniforms = sun_at(240, 38);
+    const struct wd_view_params camera = {
+        .camera = {.position_m = {60, 58, 4.4}, .fov_rad = 0.42}, .width = 320, .height = 180,
+        .near_m = 0.1f};
+    wd_view_init(&view, &camera);
+    for (int calm = 0; calm < 2; calm++) {
+        for (int i = 0; i < 50; i++) {
+            const double eye_m[3] = {60 + 0.1 * i, 58 - 0.07 * i, 4.4 + 0.05 * i};
+            struct wd_cascades_params params = {.view = &view, .distance_m = 700, .near_m = 0.1f,
+                                                .nearest_m = 2, .size = 2048, .max_z_m = 30,
+                                                .max_height_m = 10, .calm_m = calm ? 1e-6 : 0};
+            memcpy(params.sun_direction, uniforms.sun_direction, sizeof params.sun_direction);
+            wd_cascades_init(cascades[0], &uniforms, &params);
+            params.eye_m = eye_m;
+            wd_cascades_init(cascades[1], &uniforms, &params);
+            for (int c = 0; c < WD_CASCADES; c++) {
+                float at[2][3];
+                assert_memory_equal(&cascades[0][c].box, &cascades[1][c].box,
+                                    sizeof cascades[0][c].box);
+                place_in_cascade(at[0], &cascades[0][c], camera.camera.position_m);
+                place_in_cascade(at[1], &cascades[1][c], camera.camera.position_m);
+                for (int k = 0; k < 3; k++)
+                    assert_float_equal(at[0][k], at[1][k], 1e-5);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_direction), cmocka_unit_test(test_sun_and_sky),
         cmocka_unit_test(test_nightfall), cmocka_unit_test(test_horizon),
         cmocka_unit_test(test_sun_field), cmocka_unit_test(test_wind), cmocka_unit_test(test_walls),
+        cmocka_unit_test(test_cascades_of_moved_eyes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
