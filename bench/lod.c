@@ -44,6 +44,13 @@ static void note(struct lod_bench *bench, const char *species, const char *form,
     }
 }
 
+/* The reference is, of the heights that are measured. */
+static bool is_measured(const struct lod_bench *bench, int form, int height)
+{
+    return (bench->choice->heights >> height & 1) &&
+           (form == 0 || !bench->choice->used || bias_forms[form].used[height]);
+}
+
 static bool measure_form(struct lod_bench *bench, const struct bias_stand *stand,
                          const char *species, int form)
 {
@@ -51,7 +58,7 @@ static bool measure_form(struct lod_bench *bench, const struct bias_stand *stand
         int height = i / BIAS_VIEWS, view = i % BIAS_VIEWS;
         struct bias_shown *reference = &bench->reference[height][view];
         struct bias bias;
-        if (!(bench->choice->heights >> height & 1))
+        if (!is_measured(bench, form, height))
             continue;
         if (form == 0) {
             if (!bias_show_reference(reference, bench->renderer, stand, height, view))
@@ -137,7 +144,7 @@ static const char *const kinds[] = {"oak", "birch", "pine", "spruce", "coconut",
 
 static bool run_kinds(struct lod_worst *worst, const char *gpu)
 {
-    return lod_run(worst, &(struct lod_choice){gpu, kinds, ~0u, ~0u});
+    return lod_run(worst, &(struct lod_choice){gpu, kinds, ~0u, ~0u, true});
 }
 
 bool bench_lod_coverage(const char *gpu)

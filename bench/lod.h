@@ -9,6 +9,7 @@ struct lod_choice {
     const char *const *species; /* names, NULL after the last; none: all in ./species */
     unsigned forms;             /* bit i: bias_forms[i] */
     unsigned heights;           /* bit i: bias_height_px[i] */
+    bool used;                  /* forms only where they are drawn by default */
 };
 
 struct lod_worst {

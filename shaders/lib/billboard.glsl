@@ -18,6 +18,18 @@ uint nearest_card(vec2 toward)
     return facing.x >= facing.y && facing.x >= facing.z ? 0u : facing.y >= facing.z ? 1u : 2u;
 }
 
+/* Factor on width and height with which a billboard covers what the tree does. `level`: of the view,
+ * cosine of its elevation. */
+float billboard_growth(wd_model model, float level, float sine, bool from_above)
+{
+    float half_m = 0.5 * (model.top_m - model.bottom_m), depth_m = model.half_depth_m;
+    float tall_m = half_m * level + depth_m * sine * 0.8;
+    float drawn_m2 = from_above ? model.seen_m2.z * model.half_width_m * tall_m / (depth_m * depth_m)
+                                : model.seen_m2.x * tall_m / half_m;
+    float wanted_m2 = wd_seen_m2(model.seen_m2.x, model.seen_m2.y, model.seen_m2.z, sine);
+    return sqrt(clamp(wanted_m2 / max(drawn_m2, 1e-9), 0.5, 2.0));
+}
+
 /* Corner `side` (-1..1 right, -1..1 down) of the billboard seen from `toward` (unit). It is as tall
  * as stem and crown's depth together look from there. `one_view`: the first card's picture whatever
  * the side. */
@@ -40,8 +52,10 @@ wd_billboard billboard_corner(wd_model model, tree_pose pose, vec3 toward, vec2 
     float middle_m = 0.5 * (model.top_m + model.bottom_m) * pose.up;
     float tall_m = 0.5 * (model.top_m - model.bottom_m) * pose.up * level
                    + model.half_depth_m * pose.across * abs(toward.z) * 0.8;
-    board.offset = vec3(across * (side.x * model.half_width_m * pose.across), middle_m)
-                   - up * (side.y * tall_m);
+    float growth = billboard_growth(model, level, abs(toward.z), from_above);
+    middle_m += (growth - 1.0) * tall_m * level; /* the foot keeps its place */
+    board.offset = vec3(across * (side.x * growth * model.half_width_m * pose.across), middle_m)
+                   - up * (side.y * growth * tall_m);
     board.uv = vec2(side.x * mirror, side.y) * 0.5 + 0.5;
     return board;
 }
@@ -59,7 +73,8 @@ wd_card_flat billboard_flat(wd_billboard board, wd_model model, tree_pose pose, 
     constants.mirror = pose.mirror.x;
     constants.ratio = pose.up / pose.across;
     constants.layer = model.card_layer + board.card;
-    constants.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, 8.0);
+    constants.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0,
+                          float(WD_CARD_LAST_MIP));
     constants.random = tree.random ^ (board.card * 0x9e3779b9u);
     constants.surface = surface;
     return card_pack(constants);

@@ -33,16 +33,28 @@ struct card_tree {
 
 /* The crown as an ellipsoid: its middle's height over the foot, half its width and half its height.
  * Seen from the elevation e its outline is sqrt(h^2 cos^2 e + w^2 sin^2 e) high. */
+vec3 card_crown(card_tree t, float across, float up)
+{
+    float half_m = 0.5 * (t.model.height_m - t.model.crown_base_m) * up;
+    return vec3(t.model.height_m * up - half_m, 0.5 * t.model.crown_m * across, half_m);
+}
+
 vec3 card_crown(card_tree t)
 {
-    float half_m = 0.5 * (t.model.height_m - t.model.crown_base_m) * t.pose.up;
-    return vec3(t.model.height_m * t.pose.up - half_m, 0.5 * t.model.crown_m * t.pose.across,
-                half_m);
+    return card_crown(t, t.pose.across, t.pose.up);
 }
 
 float outline_half_m(vec3 crown, float sine)
 {
     return sqrt(mix(crown.z * crown.z, crown.y * crown.y, sine * sine));
+}
+
+/* Factor on width and height of a picture that would cover `drawn_m2` of the model. */
+float card_growth(card_tree t, float sine, float drawn_m2)
+{
+    vec3 seen = t.model.seen_m2;
+    float wanted_m2 = wd_seen_m2(seen.x, seen.y, seen.z, sine);
+    return sqrt(clamp(wanted_m2 / max(drawn_m2, 1e-9), 0.5, 2.0));
 }
 
 /* The more of what is seen of the crown is its top. */
@@ -64,7 +76,7 @@ card_tree card_tree_of(wd_tree tree, wd_model model)
     t.show = wd_layer_show(fades[WD_TREE_LAYER(tree)], distance_m);
     float tall_px = height_m * (SHADOW != 0u ? 1.0 / frame.cascade_texel_m[push.cascade]
                                              : push.pixels_per_radian / distance_m);
-    t.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, 8.0);
+    t.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, float(WD_CARD_LAST_MIP));
     t.level = level_share(card_crown(t), abs(t.toward.z));
     return t;
 }
@@ -113,6 +125,9 @@ card_frame level_card(card_tree t)
     float half_m = t.model.half_depth_m;
     vec3 crown = card_crown(t);
     float scale = outline_half_m(crown, t.toward.z) / crown.y;
+    vec3 own = card_crown(t, 1.0, 1.0);
+    half_m *= card_growth(t, t.toward.z,
+                          t.model.seen_m2.z * outline_half_m(own, t.toward.z) / own.y);
     card_frame card;
     card.middle = vec3(0.0, 0.0, crown.x);
     card.across = leaned(tree_offset(t.pose, vec3(half_m, 0.0, 0.0)), t.toward, scale);
@@ -152,12 +167,15 @@ card_frame upright_card(card_tree t, uint slot)
 
     vec3 crown = card_crown(t);
     float sine = min(abs(t.toward.z), 0.95);
-    float higher = outline_half_m(crown, sine) / (crown.z * sqrt(1.0 - sine * sine));
+    vec3 own = card_crown(t, 1.0, 1.0);
+    float growth = card_growth(t, sine, t.model.seen_m2.x * outline_half_m(own, sine) / own.z);
+    float higher = growth * outline_half_m(crown, sine) / (crown.z * sqrt(1.0 - sine * sine));
     float middle_m = 0.5 * (t.model.top_m + t.model.bottom_m) * t.pose.up;
     /* a long stem keeps its foot, a wide crown its middle */
     float fixed_m = crown.x * crown.y * crown.y / (crown.y * crown.y + crown.z * crown.z);
     card.middle = vec3(0.0, 0.0, fixed_m + (middle_m - fixed_m) * higher);
-    card.across = vec3(axis * (t.model.half_width_m * t.pose.across / max(facing, 0.6)), 0.0);
+    card.across =
+        vec3(axis * (growth * t.model.half_width_m * t.pose.across / max(facing, 0.6)), 0.0);
     card.down = vec3(0.0, 0.0, -0.5 * (t.model.top_m - t.model.bottom_m) * t.pose.up * higher);
     card.normal = vec3(vec2(axis.y, -axis.x) * t.pose.mirror.x, 0.0);
     return card;

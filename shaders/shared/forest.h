@@ -17,6 +17,9 @@
 #define WD_CARD_HEIGHT_TEXELS 256
 /* Normals and openness are kept from this mip on: colour and holes alone show finer ones. */
 #define WD_CARD_NORMAL_MIP 1
+/* The coarsest, 8 x 16 texels: of fewer, chance has too little to choose from, and trees of 8 pixels
+ * were covered up to 10 % wrong. */
+#define WD_CARD_LAST_MIP 4
 #define WD_CARD_SIDES 3
 #define WD_CARDS 4
 /* Drawn are the two upright ones that face the viewer most (the third is edge on, its share is 0
@@ -56,7 +59,15 @@ struct wd_model {
     WD_VEC3(ahead);         /* or early */
     float full_growth[WD_LEAF_GROWTHS];    /* of wd_leaf_growth, of the full mesh */
     float reduced_growth[WD_LEAF_GROWTHS]; /* and of the reduced one */
+    WD_VEC3(seen_m2); /* that the whole tree covers, seen from the sides of wd_seen_m2 */
 };
+
+/* Area that a tree covers seen from elevation asin(sine), of what it covers level, from half above and
+ * from above. Squares are mixed: an ellipsoid's go with the sine's. */
+WD_FUNC float wd_seen_m2(float level, float half_above, float above, float sine)
+{
+    return WD_SQRT(wd_side_mix(level * level, half_above * half_above, above * above, sine));
+}
 
 /* 0 up to begin, 1 from end on, linear between. */
 WD_FUNC float wd_ramp(float begin, float end, float x)

@@ -11,7 +11,7 @@
 enum {
     WD_CARD_WIDTH = WD_CARD_WIDTH_TEXELS,
     WD_CARD_HEIGHT = WD_CARD_HEIGHT_TEXELS,
-    WD_CARD_MIPS = 8,     /* down to 1 x 2 */
+    WD_CARD_MIPS = WD_CARD_LAST_MIP + 1,
     WD_CARD_SUPERSAMPLING = 4,
     WD_LOOK_SIZE = 256,   /* texels a side of bark and leaf textures */
 };

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "tree/clip_mesh.h"
+#include "tree/coverage.h"
 #include "tree/import.h"
 #include "tree/thinning.h"
 
@@ -14,7 +15,7 @@
  * vertices and indices, then the leaves and the forms of their sets, packed by meshoptimizer's codecs
  * (the sequence codec keeps the order of indices). */
 enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_LEAF_GROWTHS,
-       FIGURES = 7 + 7 + BOUNDS + GROWTHS,
+       FIGURES = 7 + 7 + BOUNDS + GROWTHS + WD_GAIN_SIDES,
        SETS = 2 * WD_LEAF_SETS, SET_WORDS = 9, SET_AT = FIGURES + MESHES * MESH_WORDS,
        LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
@@ -125,6 +126,8 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
     }
     for (size_t k = 0; k < GROWTHS; k++)
         figures[14 + BOUNDS + k] = &model->leaf_growth[k / WD_LEAF_GROWTHS][k % WD_LEAF_GROWTHS];
+    for (size_t k = 0; k < WD_GAIN_SIDES; k++)
+        figures[14 + BOUNDS + GROWTHS + k] = &model->seen_m2[k];
 }
 
 static void meshes_of(struct wd_tree_mesh *meshes[MESHES], struct wd_tree_model *model)
@@ -366,6 +369,7 @@ bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_ca
     if (!wd_variant_grow(model, scene, index, log))
         return false;
     wd_tree_thinning_fit(model);
+    wd_tree_mesh_measure_seen(model->seen_m2, &model->full);
     wd_tree_model_drop_leaves(model);
     if (species)
         store_model(cache, *key, model);

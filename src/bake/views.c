@@ -7,7 +7,7 @@
 #include "base/memory.h"
 
 /* Rows that may be asked for: 4,900 views at most. */
-enum { MAX_ROWS = 64, MAX_COLUMNS = 360, LEAST_TILE = 4 };
+enum { MAX_ROWS = 64, MAX_COLUMNS = 360, LEAST_TILE = 8 };
 
 static void fill_in(struct wd_view_set_params *params)
 {

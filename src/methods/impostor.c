@@ -143,6 +143,17 @@ static uint32_t nearest_tree(const struct wd_cells *cells, const struct wd_world
     return nearest;
 }
 
+/* The tree of a tight octant's own or its descendants'; UINT32_MAX: none reaches into it. */
+static uint32_t any_tree(const struct wd_octree *octree, uint32_t index)
+{
+    const struct wd_octant *octant = &octree->octants[index];
+    if (octant->begin != octant->end)
+        return octant->begin;
+    if (octant->tight_begin != octant->tight_end)
+        return octree->tight_trees[octant->tight_begin];
+    return octant->child_count ? any_tree(octree, octant->first_child) : UINT32_MAX;
+}
+
 static void fill_octants(struct wd_impostor *table, const struct wd_octree *octree,
                          const struct wd_octant_colors *colors)
 {
@@ -151,7 +162,7 @@ static void fill_octants(struct wd_impostor *table, const struct wd_octree *octr
         table[i] = (struct wd_impostor){
             .min_m = {octant->cube_min_m[0], octant->cube_min_m[1], octant->cube_min_m[2]},
             .size_m = octant->cube_size_m,
-            .first_tree = octant->begin,
+            .first_tree = any_tree(octree, i),
             .tree_count = octant->end - octant->begin,
             .look = colors->looks[i],
         };
@@ -348,11 +359,14 @@ static void visit(const struct visit *v, uint32_t index, uint32_t around)
     const struct wd_view *view = v->draw->view;
     struct wd_selection *selection = &v->impostors->selection;
     float min[3], max[3], squared = 0.0f;
-    if (octant->begin == octant->end)
-        return;
+    bool empty = octant->begin == octant->end;
+    if (empty && around != NO_CLUSTER)
+        return; /* what reaches into it is in that cluster's cells */
     for (int k = 0; k < 3; k++) {
-        min[k] = (float)((double)octant->min_m[k] - view->eye_m[k]);
-        max[k] = (float)((double)octant->max_m[k] - view->eye_m[k]);
+        float low = empty ? octant->cube_min_m[k] : octant->min_m[k];
+        float high = empty ? low + octant->cube_size_m : octant->max_m[k];
+        min[k] = (float)((double)low - view->eye_m[k]);
+        max[k] = (float)((double)high - view->eye_m[k]);
         float outside = fmaxf(fmaxf(min[k], -max[k]), 0.0f);
         squared += outside * outside;
     }

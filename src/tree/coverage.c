@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/dmath.h"
 #include "base/memory.h"
 #include "tree/silhouette.h"
 
@@ -150,4 +151,32 @@ float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tr
     free(fit.unscaled);
     wd_tree_mesh_update_bounds(reduced);
     return factor;
+}
+
+static float seen_from(const struct wd_tree_mesh *mesh, struct wd_vec3 toward)
+{
+    struct wd_silhouette view;
+    wd_silhouette_init(&view, mesh, toward);
+    float area_m2 = (float)covered_by(&view, mesh) / (view.scale * view.scale);
+    wd_silhouette_finish(&view);
+    return area_m2;
+}
+
+/* Mean over `turns` sides that are `step` of a turn apart. */
+static float seen_around(const struct wd_tree_mesh *mesh, int turns, double step, float sine)
+{
+    float sum = 0, cosine = sqrtf(1 - sine * sine);
+    for (int i = 0; i < turns; i++) {
+        double turn = 2 * WD_PI * step * i;
+        sum += seen_from(mesh, WD_V3(cosine * (float)wd_dsin(turn), -cosine * (float)wd_dcos(turn),
+                                     sine));
+    }
+    return sum / (float)turns;
+}
+
+void wd_tree_mesh_measure_seen(float seen_m2[WD_GAIN_SIDES], const struct wd_tree_mesh *mesh)
+{
+    seen_m2[0] = seen_around(mesh, 3, 1.0 / 6, 0);
+    seen_m2[1] = seen_around(mesh, 4, 1.0 / 4, 0.70710678f);
+    seen_m2[2] = seen_around(mesh, 1, 1, 1);
 }

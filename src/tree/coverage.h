@@ -4,6 +4,10 @@
 
 #include "tree/mesh.h"
 
+/* Fills the areas that the mesh covers (bounds set), seen level (the mean of the sides that cards are
+ * taken from), from half above and from above: wd_seen_m2. */
+void wd_tree_mesh_measure_seen(float seen_m2[WD_GAIN_SIDES], const struct wd_tree_mesh *mesh);
+
 /* Scales each leaf of `reduced` (triangles that share vertices are one) about its middle by one
  * factor, so that the mesh covers as much as `full` from the side and from half above. Keeping the area
  * of the leaves alone does not: fewer, larger ones overlap less. Bounds of `full` are set; those of

@@ -79,4 +79,5 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
     }
     memcpy(model->full_growth, grown->leaf_growth[0], sizeof model->full_growth);
     memcpy(model->reduced_growth, grown->leaf_growth[1], sizeof model->reduced_growth);
+    memcpy(model->seen_m2, grown->seen_m2, sizeof model->seen_m2);
 }
