@@ -3,6 +3,7 @@
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/hash.h"
+#include "shared/fall.h"
 
 layout(constant_id = 0) const uint SHADOW = 0u;
 layout(constant_id = 1) const uint DETAIL = 0u;
@@ -19,7 +20,6 @@ layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 #include "lib/tree_vertex.glsl"
 #define push mesh.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
 #include "lib/tree_mesh.glsl"
-#include "lib/fall.glsl"
 
 /* Between the shares that the tables have; the whole has 1. */
 float leaf_growth(wd_model model, float share)
@@ -81,7 +81,11 @@ void main()
     wd_tree tree = trees[instance.tree];
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];
-    if (model.fall_mps > 0.0)
-        leaf_falls(corner, foot, model, tree_pose_of(tree, model), wd_hash2(index, tree.random));
+    if (model.fall_mps > 0.0) {
+        wd_leaf_fall fall = wd_leaf_fall_of(foot, model, wd_tree_pose_of(tree, model), tree_wind(),
+                                            wd_hash2(index, tree.random), frame.time_s);
+        corner.position_m = fall.foot_m + wd_leaf_fall_turn(fall, corner.position_m - foot);
+        corner.normal = wd_leaf_fall_turn(fall, corner.normal);
+    }
     tree_mesh_vertex(instance, corner);
 }

@@ -141,7 +141,8 @@ static bool make_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu, const char
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
 }
 
-/* Of the full mesh: wood, leaves and flowers. */
+/* Of the full mesh: wood, leaves and flowers. Leaves in the air are no surface that discs could stand
+ * for: as if each were a triangle twice as wide, they are drawn one by one up to twice as far. */
 static float grain_of(const struct wd_forest_device *forest, uint32_t index,
                       const struct wd_splat_model *model)
 {
@@ -150,6 +151,10 @@ static float grain_of(const struct wd_forest_device *forest, uint32_t index,
     for (int kind = 0; kind < WD_LEAF_SETS; kind++)
         triangles += (size_t)range->sets[kind].leaf_count * range->sets[kind].index_count / 3;
     float area_m2 = model->leaf_area_m2 + model->wood_area_m2;
+    if (forest->host_models[index].fall_mps > 0.0f) {
+        area_m2 = 4.0f * model->leaf_area_m2;
+        triangles = range->sets[WD_SET_LEAVES].leaf_count;
+    }
     return sqrtf(area_m2 / (float)(triangles ? triangles : 1)) / forest->host_models[index].crown_m;
 }
 

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/log.h"
+#include "reference/fall.h"
 #include "shared/frame.h"
 #include "shared/hash.h"
 
@@ -22,7 +23,6 @@ static void tree_transform(const struct wd_trace_scene *scene, const struct wd_t
 {
     const struct wd_frame_uniforms *frame = scene->frame;
     struct wd_tree_pose pose = wd_tree_pose_of(*tree, *model);
-    const int32_t foot_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
     float lean[3] = {0, 0, 0}, height_m = LEAN_HEIGHT * WD_TREE_HEIGHT_M(*tree);
     if (frame->wind_speed_mps > 0 && height_m > 0) {
         const struct wd_wind wind = {frame->wind_speed_mps, frame->wind_gust,
@@ -40,8 +40,7 @@ static void tree_transform(const struct wd_trace_scene *scene, const struct wd_t
                                0,                       0,                      0};
     for (int k = 0; k < 12; k++)
         m[k] = columns[k];
-    for (int k = 0; k < 3; k++)
-        m[9 + k] = (float)(foot_mm[k] - frame->camera_mm[k]) * 0.001f - frame->camera_frac_m[k];
+    wd_trace_foot(frame, tree, m + 9);
 }
 
 /* Layers come and go with distance, tree by tree. */
@@ -67,7 +66,10 @@ static void place_tree(struct wd_trace_scene *scene, size_t index)
     if (!is_shown(scene, index, m + 9))
         return;
     RTCGeometry instance = rtcNewGeometry(scene->models->device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, model->scene);
+    RTCScene own = wd_trace_falls(model, m + 9) ? wd_trace_fall_scene(scene, tree) : NULL;
+    rtcSetGeometryInstancedScene(instance, own ? own : model->scene);
+    if (own)
+        rtcReleaseScene(own); /* the instance keeps it */
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
     rtcSetGeometryMask(instance, UINT32_MAX);
     rtcCommitGeometry(instance);

@@ -25,7 +25,8 @@ struct wd_trace_hit {
     struct wd_vec3 normal; /* of the ground's triangle */
 };
 
-/* Places every tree as it stands at frame->time_s: leaning in the wind, without flutter. Layers
+/* Places every tree as it stands at frame->time_s: leaning in the wind, without flutter; leaves that
+ * fall are where they have come to. Layers
  * that show only in part at the tree's distance show that share of their trees. All arguments must
  * outlive the result and must not move. */
 bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_models *models,

@@ -1,6 +1,7 @@
 #include "reference/surface.h"
 
 #include "base/color.h"
+#include "reference/fall.h"
 #include "shared/ground_cover.h"
 #include "shared/snow.h"
 #include "tree/vec.h"
@@ -116,8 +117,16 @@ static void tree_surface(struct wd_surface *surface, const struct wd_trace_scene
     struct wd_tree_pose pose = wd_tree_pose_of(*tree, model->model);
     bool leaf = (corners.vertex[0]->kind & WD_VERTEX_LEAF) != 0;
     struct wd_trace_texel texel = wd_trace_texel_at(model, hit->triangle, hit->u, hit->v);
-    surface->flat = pose_normal(&pose, flat_normal(&corners));
-    surface->outward = pose_normal(&pose, vertex_normal(&corners));
+    struct wd_vec3 flat = flat_normal(&corners), outward = vertex_normal(&corners);
+    float foot_m[3];
+    wd_trace_foot(scene->frame, tree, foot_m);
+    if (wd_trace_falls(model, foot_m)) {
+        struct wd_leaf_fall fall = wd_trace_fall_at(scene, tree, hit->triangle);
+        flat = wd_leaf_fall_turn(fall, flat);
+        outward = wd_leaf_fall_turn(fall, outward);
+    }
+    surface->flat = pose_normal(&pose, flat);
+    surface->outward = pose_normal(&pose, outward);
     if (leaf)
         leaf_surface(surface, model, hit, eye, &texel);
     struct wd_vec3 look = wd_v3_mul(texel_color(model, &texel), vertex_tint(&corners));

@@ -76,7 +76,7 @@ static struct wd_vec3 level(float azimuth_rad)
     return WD_V3(wd_dcos((double)azimuth_rad), wd_dsin((double)azimuth_rad), 0);
 }
 
-/* A leaf on its way down, as it hangs in the air before it moves (shaders/lib/fall.glsl). */
+/* A leaf on its way down, as it hangs in the air before it moves (shaders/shared/fall.h). */
 static void place_falling(struct wd_leaf *leaf, const struct wd_tree_form *form, float share,
                           struct wd_random *random)
 {
