@@ -1,11 +1,11 @@
 /* Pictures of random views, sizes, methods and times, scenes loaded anew and devices taken away, until
- * the time is over, under Vulkan's validation; then whether memory has grown.
- *   soak SECONDS [GPU]   (from the folder of the sources) */
+ * the time is over, under Vulkan's validation unless told not to; then whether memory has grown.
+ *   soak SECONDS [GPU [no-validation]]   (from the folder of the sources) */
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "weald/renderer.h"
 
@@ -15,6 +15,7 @@ enum { SCENE_COUNT = 2, METHOD_COUNT = 5, PICTURES = 12, RELOADS = 3 };
 
 struct soak {
     const char *gpu;
+    enum wd_validation validation;
     uint32_t random;
     struct wd_forest *forest;
     struct wd_renderer *renderer;
@@ -36,20 +37,44 @@ static double now_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static double resident_mb(void)
+/* Between rounds, when the program holds nothing and free blocks have gone back to the system. */
+struct memory {
+    double resident_mb;
+    double used_mb;  /* blocks in use: of libraries that keep, or lose, something */
+    double code_mb;  /* made at run time */
+    double files_mb; /* of programs and libraries, as far as they were read */
+};
+
+static struct memory memory_now(void)
 {
-    long pages = 0, resident = 0;
-    FILE *file = fopen("/proc/self/statm", "r");
-    if (!file || fscanf(file, "%ld %ld", &pages, &resident) != 2)
-        resident = 0;
+    struct memory memory = {0};
+    char line[512], permissions[8] = "";
+    bool is_file = false;
+    malloc_trim(0);
+    FILE *file = fopen("/proc/self/smaps", "r");
+    while (file && fgets(line, sizeof line, file)) {
+        unsigned long from, to, node;
+        double kb;
+        if (sscanf(line, "%lx-%lx %7s %*s %*s %lu", &from, &to, permissions, &node) == 4)
+            is_file = node != 0;
+        else if (sscanf(line, "Rss: %lf kB", &kb) == 1) {
+            memory.resident_mb += kb * 1.024e-3;
+            if (is_file)
+                memory.files_mb += kb * 1.024e-3;
+            else if (strchr(permissions, 'x'))
+                memory.code_mb += kb * 1.024e-3;
+        }
+    }
     if (file)
         fclose(file);
-    return (double)resident * (double)sysconf(_SC_PAGESIZE) / 1e6;
+    struct mallinfo2 info = mallinfo2();
+    memory.used_mb = (double)(info.uordblks + info.hblkhd) / 1e6;
+    return memory;
 }
 
 static bool open_device(struct soak *soak)
 {
-    const struct wd_renderer_params params = {.gpu = soak->gpu, .validation = WD_VALIDATION_ON};
+    const struct wd_renderer_params params = {.gpu = soak->gpu, .validation = soak->validation};
     soak->devices++;
     return wd_renderer_create(&soak->renderer, &params) == WD_OK;
 }
@@ -117,11 +142,13 @@ static bool run_round(struct soak *soak, double *device_mb)
 int main(int argc, char **argv)
 {
     double seconds = argc > 1 ? atof(argv[1]) : 0.0, begin_s = now_s(), printed_s = 0.0;
-    struct soak soak = {.gpu = argc > 2 ? argv[2] : "software", .random = 0x9e3779b9u};
+    struct soak soak = {.gpu = argc > 2 ? argv[2] : "software", .random = 0x9e3779b9u,
+                        .validation = argc > 3 && !strcmp(argv[3], "no-validation")
+                                          ? WD_VALIDATION_OFF : WD_VALIDATION_ON};
     double half_mb = 0.0, last_mb = 0.0, half_device_mb = 0.0, most_device_mb = 0.0;
     uint64_t rounds = 0;
     if (!(seconds > 0.0)) {
-        fprintf(stderr, "usage: soak SECONDS [GPU]\n");
+        fprintf(stderr, "usage: soak SECONDS [GPU [no-validation]]\n");
         return 2;
     }
     while (rounds < 4 || now_s() - begin_s < seconds) {
@@ -129,16 +156,18 @@ int main(int argc, char **argv)
         if (!run_round(&soak, &device_mb))
             return 1;
         rounds++;
-        last_mb = resident_mb();
+        struct memory memory = memory_now();
+        last_mb = memory.resident_mb;
         past_s = now_s() - begin_s;
         bool early = past_s < 0.5 * seconds || rounds <= 2;
         half_mb = early && last_mb > half_mb ? last_mb : half_mb;
         half_device_mb = early && device_mb > half_device_mb ? device_mb : half_device_mb;
         most_device_mb = device_mb > most_device_mb ? device_mb : most_device_mb;
         if (past_s - printed_s > seconds / 10) {
-            printf("%6.0f s: %llu rounds, %llu pictures, host %.0f MB, device %.0f MB\n", past_s,
-                   (unsigned long long)rounds, (unsigned long long)soak.pictures, last_mb,
-                   device_mb);
+            printf("%6.0f s: %llu rounds, %llu pictures, host %.1f MB (blocks in use %.2f, "
+                   "code %.2f, files %.1f), device %.0f MB\n", past_s, (unsigned long long)rounds,
+                   (unsigned long long)soak.pictures, last_mb, memory.used_mb, memory.code_mb,
+                   memory.files_mb, device_mb);
             fflush(stdout);
             printed_s = past_s;
         }
