@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define DEFAULT_FRAMES_PER_SECOND 24.0
@@ -71,18 +72,20 @@ static void note_time(struct cli_film *film, const struct cli_painter *painter,
     wd_budget_next(&film->budget, frame_ms);
 }
 
-static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *painter,
-                                  struct wd_camera *previous)
+static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *painter)
 {
     uint64_t frame = film->frames_done;
     struct wd_render_params params = film->plan->params;
+    struct wd_camera previous;
     struct wd_picture picture = {0};
     enum wd_result result = frame_camera(film, frame, &params.camera);
+    if (result == WD_OK && frame)
+        result = frame_camera(film, frame - 1, &previous);
     if (film->session->options->budget_ms > 0)
         params.max_error_px = film->budget.error_px;
     params.time_s += (double)frame / film->frames_per_second;
     params.previous_time_s = frame ? params.time_s - 1 / film->frames_per_second : params.time_s;
-    params.previous_camera = frame ? previous : NULL;
+    params.previous_camera = frame ? &previous : NULL;
     if (result == WD_OK)
         result = cli_painter_paint(painter, &params, &picture);
     if (result == WD_OK)
@@ -90,33 +93,73 @@ static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *pai
     if (result == WD_OK)
         result = wd_film_add(film->output, &picture);
     wd_picture_finish(&picture);
-    *previous = params.camera;
+    film->frames_done += result == WD_OK;
+    return result;
+}
+
+/* --- going on with a film ---------------------------------------------------------------- */
+
+/* All that frames follow from and that the renderer or the forest does not know of (FNV-1a). */
+static uint64_t film_key(const struct cli_film *film, uint64_t key)
+{
+    const struct cli_options *options = film->session->options;
+    const struct wd_render_params *params = &film->plan->params;
+    char *text;
+    if (asprintf(&text, "%s\n%s\n%s\n%d %llu %u %.17g %ux%u %u %d %u %d %u %.17g %.17g %.17g",
+                 film->path ? film->path : "", options->camera ? options->camera : "",
+                 params->method ? params->method : "", film->plan->kind,
+                 (unsigned long long)film->frame_count, options->frames, film->frames_per_second,
+                 params->width, params->height, params->samples, params->view, params->layers,
+                 options->reference, options->bounces, params->time_s, params->max_error_px,
+                 options->budget_ms) < 0)
+        abort();
+    for (const char *at = text; *at; at++)
+        key = (key ^ (uint8_t)*at) * 0x100000001b3u;
+    free(text);
+    return key;
+}
+
+/* Takes the frames that are there from the last time. */
+static enum wd_result take_kept(struct cli_film *film, const struct cli_painter *painter)
+{
+    uint64_t key = painter->renderer ? wd_renderer_key(painter->renderer)
+                                     : wd_forest_key(film->forest), before;
+    enum wd_result result = wd_film_keep(film->output, film_key(film, key), film->frame_count);
+    do {
+        before = film->frames_done;
+        if (result == WD_OK && cli_session_interrupted(film->session))
+            result = WD_ERROR_INTERRUPTED;
+        if (result == WD_OK)
+            result = wd_film_add_kept(film->output, &film->frames_done);
+    } while (result == WD_OK && film->frames_done > before);
+    if (film->frames_done)
+        cli_say(film->session, "%s: going on after %llu of %llu frames\n",
+                film->session->options->output, (unsigned long long)film->frames_done,
+                (unsigned long long)film->frame_count);
     return result;
 }
 
 enum wd_result cli_film_shoot(struct cli_film *film, struct cli_painter *painter)
 {
-    struct wd_camera previous = {0};
-    enum wd_result result = WD_OK;
+    enum wd_result result = take_kept(film, painter);
     while (result == WD_OK && film->frames_done < film->frame_count) {
         cli_session_film_progress(film->session, film->frames_done, film->frame_count);
         if (cli_session_interrupted(film->session))
             return WD_ERROR_INTERRUPTED;
-        result = shoot_frame(film, painter, &previous);
-        film->frames_done += result == WD_OK;
+        result = shoot_frame(film, painter);
     }
     return result;
 }
 
 static void say_kept(struct cli_film *film, enum wd_result result)
 {
-    char what[96];
+    char what[128];
     unsigned long long done = film->frames_done, count = film->frame_count;
     if (result == WD_OK)
         snprintf(what, sizeof what, "%llu frame%s, ", done, done == 1 ? "" : "s");
     else
-        snprintf(what, sizeof what, "stopped; the finished %llu of %llu frames are kept, ", done,
-                 count);
+        snprintf(what, sizeof what, "stopped; the finished %llu of %llu frames are kept, the same "
+                 "command goes on from here; ", done, count);
     cli_say_written(film->session, film->plan, what);
 }
 

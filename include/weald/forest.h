@@ -58,6 +58,11 @@ struct wd_forest_info {
 /* Fills `*info`; its strings live as long as the forest. Thread-safe. */
 void wd_forest_get_info(const struct wd_forest *forest, struct wd_forest_info *info);
 
+/* A number that changes with all that pictures of the forest follow from: weald's own code, the scene
+ * and species files, settings, ground, trees, sky and models; of forests of specimens (weald/tree.h) it
+ * knows their places alone. Takes a fraction of a second for a million trees. Thread-safe. */
+uint64_t wd_forest_key(const struct wd_forest *forest);
+
 struct wd_species_info {
     const char *name, *latin;
     uint64_t tree_count;

@@ -51,6 +51,7 @@ enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_fores
     };
     if ((params->seed && !parse_seed(params->seed, &world.seed, &forest->log)) ||
         !wd_scene_load_with(&forest->scene, params->scene_path, &scene, &forest->log) ||
+        !wd_forest_key_files(forest, params) ||
         !wd_species_import_models(forest->scene.species, forest->scene.species_file_count,
                                   &progress, &forest->log) ||
         !wd_world_init(&forest->world, &forest->scene, &world) ||

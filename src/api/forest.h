@@ -9,6 +9,12 @@ struct wd_forest {
     struct wd_scene scene;
     struct wd_world world;
     struct wd_log log;
+    uint64_t key; /* of scene and species files and settings, as they were when they were read */
 };
+
+/* A number for weald's own sources. */
+uint64_t wd_code_key(void);
+/* Sets forest->key from the files that its scene was just loaded from. */
+bool wd_forest_key_files(struct wd_forest *forest, const struct wd_forest_params *params);
 
 #endif

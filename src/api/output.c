@@ -1,4 +1,4 @@
-#include "weald/renderer.h"
+#include "api/output.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -8,17 +8,15 @@
 #include "base/memory.h"
 #include "output/cryptomatte.h"
 #include "output/exr.h"
-#include "output/film.h"
 #include "output/image.h"
 
-static bool has_ending(const char *path, const char *ending)
+bool wd_has_ending(const char *path, const char *ending)
 {
     size_t length = strlen(path), tail = strlen(ending);
     return length > tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
-/* The display layer as three bytes a pixel; free() it. */
-static uint8_t *display_rgb(const struct wd_picture *picture)
+uint8_t *wd_picture_rgb(const struct wd_picture *picture)
 {
     size_t pixels = (size_t)picture->width * picture->height;
     uint8_t *rgb = wd_alloc_array(pixels, 3);
@@ -27,8 +25,6 @@ static uint8_t *display_rgb(const struct wd_picture *picture)
     return rgb;
 }
 
-/* --- single pictures --------------------------------------------------------------------- */
-
 static enum wd_result write_png(const struct wd_picture *picture, const char *path,
                                 const struct wd_log *log)
 {
@@ -36,7 +32,7 @@ static enum wd_result write_png(const struct wd_picture *picture, const char *pa
         wd_error(log, "%s: a PNG file shows the display layer, which the picture lacks", path);
         return WD_ERROR_INPUT;
     }
-    uint8_t *rgb = display_rgb(picture);
+    uint8_t *rgb = wd_picture_rgb(picture);
     bool ok = wd_png_write(path, rgb, picture->width, picture->height, log);
     free(rgb);
     return ok ? WD_OK : WD_ERROR_OUTPUT;
@@ -131,88 +127,10 @@ static enum wd_result write_exr(const struct wd_picture *picture, const char *pa
 enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
                                 const struct wd_log *log)
 {
-    if (has_ending(path, ".png"))
+    if (wd_has_ending(path, ".png"))
         return write_png(picture, path, log);
-    if (has_ending(path, ".exr"))
+    if (wd_has_ending(path, ".exr"))
         return write_exr(picture, path, log);
     wd_error(log, "%s: pictures end in .png or .exr", path);
     return WD_ERROR_INPUT;
-}
-
-/* --- films ------------------------------------------------------------------------------- */
-
-struct wd_film {
-    struct wd_film_writer writer; /* unless `pattern` */
-    char *pattern;                /* of numbered .exr files: their name with %d */
-    uint64_t frames;
-    struct wd_log log;
-};
-
-enum wd_result wd_film_open(struct wd_film **result, const struct wd_film_params *params,
-                            const struct wd_log *log)
-{
-    const struct wd_film_writer_params writer = {.path = params->path,
-                                                 .width = params->width,
-                                                 .height = params->height,
-                                                 .frame_rate = params->frames_per_second};
-    *result = NULL;
-    if (!wd_film_path(params->path)) {
-        wd_error(log,
-                 "%s: films end in .mp4, .mov or .mkv, numbered pictures have %%d or %%05d in "
-                 "their name",
-                 params->path);
-        return WD_ERROR_INPUT;
-    }
-    struct wd_film *film = wd_alloc(sizeof *film);
-    film->log = log ? *log : (struct wd_log){0};
-    if (has_ending(params->path, ".exr")) {
-        if (!wd_film_sequence_check(params->path, log)) {
-            free(film);
-            return WD_ERROR_INPUT;
-        }
-        film->pattern = wd_strdup(params->path);
-    } else if (!wd_film_writer_open(&film->writer, &writer, log)) {
-        free(film);
-        return WD_ERROR_OUTPUT;
-    }
-    *result = film;
-    return WD_OK;
-}
-
-enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture)
-{
-    if (film->pattern) {
-        char *path = wd_film_frame_name(film->pattern, film->frames);
-        enum wd_result result = write_exr(picture, path, &film->log);
-        free(path);
-        film->frames += result == WD_OK;
-        return result;
-    }
-    if (!picture->display) {
-        wd_error(&film->log, "a film shows the display layer, which the picture lacks");
-        return WD_ERROR_INPUT;
-    }
-    uint8_t *rgb = display_rgb(picture);
-    bool ok = wd_film_writer_add(&film->writer, rgb, &film->log);
-    free(rgb);
-    film->frames += ok;
-    return ok ? WD_OK : WD_ERROR_OUTPUT;
-}
-
-enum wd_result wd_film_commit(struct wd_film **film)
-{
-    struct wd_film *f = *film;
-    bool ok = f->pattern || f->frames == 0 || wd_film_writer_commit(&f->writer, &f->log);
-    wd_film_discard(film);
-    return ok ? WD_OK : WD_ERROR_OUTPUT;
-}
-
-void wd_film_discard(struct wd_film **film)
-{
-    if (!film || !*film)
-        return;
-    wd_film_writer_discard(&(*film)->writer);
-    free((*film)->pattern);
-    free(*film);
-    *film = NULL;
 }

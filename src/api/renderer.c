@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
 #include "base/clock.h"
 #include "base/file.h"
@@ -298,6 +299,15 @@ void wd_renderer_get_stats(const struct wd_renderer *renderer, struct wd_frame_s
 const char *wd_renderer_device_name(const struct wd_renderer *renderer)
 {
     return renderer->gpu.properties.deviceName;
+}
+
+uint64_t wd_renderer_key(const struct wd_renderer *renderer)
+{
+    const VkPhysicalDeviceProperties *device = &renderer->gpu.properties;
+    uint64_t key = renderer->forest ? wd_forest_key(renderer->forest) : wd_code_key();
+    key = XXH64(device->deviceName, strlen(device->deviceName), key);
+    key = XXH64(device->pipelineCacheUUID, sizeof device->pipelineCacheUUID, key);
+    return XXH64(&device->driverVersion, sizeof device->driverVersion, key);
 }
 
 char *wd_device_list(void)

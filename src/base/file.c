@@ -1,6 +1,8 @@
 #include "base/file.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -150,4 +152,29 @@ void wd_output_discard(struct wd_output_file *file)
     free(file->path);
     free(file->temporary);
     *file = (struct wd_output_file){0};
+}
+
+/* The process that gave a name such as wd_temporary_name's to a temporary of `base`, or 0. */
+static pid_t writer_of(const char *name, const char *base)
+{
+    char *end;
+    if (name[0] != '.' || name[1] < '0' || name[1] > '9')
+        return 0;
+    long process = strtol(name + 1, &end, 10);
+    return *end == '-' && strcmp(end + 1, base) == 0 ? (pid_t)process : 0;
+}
+
+void wd_output_sweep(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? wd_format("%.*s", (int)(slash + 1 - path), path) : wd_strdup(".");
+    DIR *stream = opendir(folder);
+    for (struct dirent *entry; stream && (entry = readdir(stream));) {
+        pid_t process = writer_of(entry->d_name, slash ? slash + 1 : path);
+        if (process > 0 && kill(process, 0) != 0 && errno == ESRCH)
+            unlinkat(dirfd(stream), entry->d_name, 0);
+    }
+    if (stream)
+        closedir(stream);
+    free(folder);
 }

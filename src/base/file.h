@@ -37,6 +37,9 @@ bool wd_output_commit(struct wd_output_file *file, const struct wd_log *log);
 /* Drops the temporary file. Accepts a committed file and `{0}`. */
 void wd_output_discard(struct wd_output_file *file);
 
+/* Removes what processes that were killed have left of `path` under temporary names. */
+void wd_output_sweep(const char *path);
+
 /* A fresh temporary name beside `path` (same directory and extension) for writers that insist on
  * opening by name. free() it. */
 char *wd_temporary_name(const char *path);

@@ -41,12 +41,13 @@ check 'numbered pictures' complete_png "$out/f-00002.png"
 check 'numbered layers' test -s "$out/e-1.exr"
 rm -f "$out"/*
 
-# start NAME OPTION...: a long film in the background
+# start NAME FRAMES OPTION...: a film in the background
 start() {
     name=$1
-    shift
+    count=$2
+    shift 2
     # shellcheck disable=SC2086
-    "$weald" render "$tiny" -o "$out/$name" --frames 4000 $size "$@" >"$scratch/log" 2>&1 &
+    "$weald" render "$tiny" -o "$out/$name" --path fly --frames "$count" $size "$@" >"$scratch/log" 2>&1 &
     pid=$!
 }
 # await FILE-TEST...: until it holds, at most a minute
@@ -57,6 +58,9 @@ await() {
     done
     return 1
 }
+larger() { # larger FILE BYTES
+    [ "$(wc -c <"$1")" -gt "$2" ]
+}
 stop() { # stop SIGNAL STATUS
     kill "-$1" "$pid"
     status=0
@@ -64,7 +68,7 @@ stop() { # stop SIGNAL STATUS
     check "$1: exit status $2, was $status" test "$status" -eq "$2"
 }
 
-start 's-%05d.png' --path fly
+start 's-%05d.png' 4000
 check 'frames appear while filming' await test -e "$out/s-00003.png"
 stop INT 130
 check 'the message counts what is kept' grep -qE 'finished [0-9]+ of 4000' "$scratch/log"
@@ -73,25 +77,55 @@ for file in "$out"/s-*.png; do
     complete_png "$file" || bad=$((bad + 1))
 done
 check 'every picture left is whole' test "$bad" -eq 0
-check 'nothing else is left' sh -c "! ls -A '$out' | grep -vE '^s-[0-9]{5}\\.png$'"
+check 'nothing else is left' sh -c "! ls -A '$out' | grep -vE '^s-[0-9]{5}\\.png$|^s-%05d\\.png\\.partial$'"
+said=$(sed -n 's/.*finished \([0-9]*\) of.*/\1/p' "$scratch/log")
+sum=$(cksum <"$out/s-00001.png")
+printf '#' >>"$out/s-00002.png"
+start 's-%05d.png' 4000
+check 'the same command goes on where a picture is no more what it was' \
+    await grep -q 'going on after 2 of 4000' "$scratch/log"
+check 'beyond where it was' await test -e "$out/s-$(printf %05d "$said").png"
+stop INT 130
+check 'pictures are whole again' complete_png "$out/s-00002.png"
+check 'the others are left alone' test "$(cksum <"$out/s-00001.png")" = "$sum"
 rm -f "$out"/*
 
-start stopped.mp4 --path fly
+# shellcheck disable=SC2086
+expect 0 '24 frames' render "$tiny" -o "$out/whole.mp4" --path fly --frames 24 --fps 6 $size
+start killed.mp4 24 --fps 6
+check 'frames are kept' await larger "$out/killed.mp4.partial" 30000
+kill -KILL "$pid"
+wait "$pid" 2>/dev/null
+check 'a killed film is not there' test ! -e "$out/killed.mp4"
+check 'its frames are' test -s "$out/killed.mp4.partial"
+cp "$out/killed.mp4.partial" "$scratch/damaged"
+printf '#' | dd of="$scratch/damaged" bs=1 seek=20000 conv=notrunc 2>/dev/null
+# shellcheck disable=SC2086
+{
+    expect 1 'another scene' render "$tiny" -o "$out/killed.mp4" --path fly --frames 24 --fps 6 $size \
+        --samples 2
+    expect 1 'another scene' render "$tiny" -o "$out/killed.mp4" --path fly --frames 24 --fps 6 $size \
+        --set wind.speed_mps=9
+    expect 0 'going on after [1-9][0-9]* of 24' render "$tiny" -o "$out/killed.mp4" --path fly \
+        --frames 24 --fps 6 $size
+    check 'as if it had never been killed' cmp "$out/whole.mp4" "$out/killed.mp4"
+    cp "$scratch/damaged" "$out/killed.mp4.partial"
+    expect 0 'going on after [1-9] of 24' render "$tiny" -o "$out/killed.mp4" --path fly --frames 24 \
+        --fps 6 $size
+}
+check 'what is damaged is drawn anew' cmp "$out/whole.mp4" "$out/killed.mp4"
+check 'nothing else is left' test "$(ls -A "$out" | wc -l)" = 2
+rm -f "$out"/*
+
+start stopped.mp4 4000
 check 'progress in plain lines' await grep -q 'frames 0%' "$scratch/log"
-sleep 4
-stop INT 130
+check 'frames are kept' await larger "$out/stopped.mp4.partial" 20000
+stop TERM 143
 kept=$(frames "$out/stopped.mp4")
 check "a stopped film plays ($kept frames)" test "${kept:-0}" -gt 0
 said=$(sed -n 's/.*finished \([0-9]*\) of.*/\1/p' "$scratch/log")
 check "and has as many frames as said ($said)" test "${kept:-none}" = "$said"
-check 'nothing else is left' sh -c "! ls -A '$out' | grep -vx stopped.mp4"
-rm -f "$out"/*
-
-start ended.mp4 --path fly
-check 'a film begins' await grep -q 'frames 0%' "$scratch/log"
-sleep 4
-stop TERM 143
-check 'its encoder is gone and the file plays' test "$(frames "$out/ended.mp4")" -gt 0
+check 'nothing else is left' sh -c "! ls -A '$out' | grep -vE '^stopped.mp4(.partial)?$'"
 rm -f "$out"/*
 
 status=0
@@ -101,5 +135,5 @@ status=0
     exec "$weald" render "$tiny" -o "$out/full.mp4" --path fly --frames 60 $size
 ) >"$scratch/output" 2>&1 || status=$?
 check "full disk in a film: exit 1, was $status" test "$status" -eq 1
-check 'full disk in a film: nothing half written' sh -c "! ls -A '$out' | grep ."
+check 'full disk in a film: nothing half written' sh -c "! ls -A '$out' | grep -vx full.mp4.partial"
 finish

@@ -1,0 +1,187 @@
+#include "output/film.h"
+
+#include <stdlib.h>
+#include <xxhash.h>
+
+#include "api/output.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "output/film_store.h"
+
+struct wd_film {
+    struct wd_film_writer writer; /* of all but .exr */
+    char *path;
+    char *pattern;                /* of numbered pictures: their name with %d; NULL: a film file */
+    bool layers;                  /* they are .exr */
+    size_t frame_bytes;
+    uint64_t frames, frame_count;
+    struct wd_film_store store;   /* once wd_film_keep was called */
+    struct wd_log log;
+};
+
+static bool open_output(struct wd_film *film, const struct wd_film_params *params)
+{
+    const struct wd_film_writer_params writer = {.path = params->path,
+                                                 .width = params->width,
+                                                 .height = params->height,
+                                                 .frame_rate = params->frames_per_second};
+    return film->layers ? wd_film_sequence_check(params->path, &film->log)
+                        : wd_film_writer_open(&film->writer, &writer, &film->log);
+}
+
+enum wd_result wd_film_open(struct wd_film **result, const struct wd_film_params *params,
+                            const struct wd_log *log)
+{
+    *result = NULL;
+    if (!wd_film_path(params->path)) {
+        wd_error(log,
+                 "%s: films end in .mp4, .mov or .mkv, numbered pictures have %%d or %%05d in "
+                 "their name",
+                 params->path);
+        return WD_ERROR_INPUT;
+    }
+    struct wd_film *film = wd_alloc(sizeof *film);
+    film->log = log ? *log : (struct wd_log){0};
+    film->layers = wd_has_ending(params->path, ".exr");
+    if (!open_output(film, params)) {
+        enum wd_result failed = film->layers ? WD_ERROR_INPUT : WD_ERROR_OUTPUT;
+        free(film);
+        return failed;
+    }
+    film->path = wd_strdup(params->path);
+    if (film->layers || film->writer.pattern)
+        film->pattern = film->path;
+    film->frame_bytes = (size_t)params->width * params->height * 3;
+    *result = film;
+    return WD_OK;
+}
+
+/* --- frames kept for another time ------------------------------------------------------------ */
+
+/* What tells that a numbered picture is still the one that was written. */
+struct file_mark {
+    uint64_t size, hash;
+};
+static const size_t MAX_PICTURE_BYTES = (size_t)1 << 36;
+
+static void ignore_message(void *user, enum wd_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    (void)message;
+}
+
+static bool mark_of(struct file_mark *mark, const struct wd_film *film, uint64_t frame)
+{
+    char *path = wd_film_frame_name(film->pattern, frame), *data;
+    const struct wd_log quiet = {.sink = ignore_message};
+    size_t size;
+    bool ok = wd_file_exists(path) && wd_file_read(path, MAX_PICTURE_BYTES, &quiet, &data, &size);
+    if (ok) {
+        *mark = (struct file_mark){size, XXH64(data, size, 0)};
+        free(data);
+    }
+    free(path);
+    return ok;
+}
+
+enum wd_result wd_film_keep(struct wd_film *film, uint64_t key, uint64_t frame_count)
+{
+    char *path = wd_format("%s.partial", film->path);
+    bool ok = wd_film_store_open(&film->store, path, key, &film->log);
+    film->frame_count = frame_count;
+    free(path);
+    if (ok && !film->pattern) /* as long as the store is open nobody else writes the film */
+        wd_output_sweep(film->path);
+    return ok ? WD_OK : WD_ERROR_OUTPUT;
+}
+
+static enum wd_result add_kept_pixels(struct wd_film *film)
+{
+    uint8_t *rgb = wd_alloc(film->frame_bytes);
+    bool found = wd_film_store_read(&film->store, rgb, film->frame_bytes);
+    bool ok = !found || wd_film_writer_add(&film->writer, rgb, &film->log);
+    free(rgb);
+    film->frames += found && ok;
+    return ok ? WD_OK : WD_ERROR_OUTPUT;
+}
+
+static void count_kept_picture(struct wd_film *film)
+{
+    struct file_mark kept, there;
+    if (!wd_film_store_read(&film->store, &kept, sizeof kept))
+        return;
+    if (mark_of(&there, film, film->frames) && there.size == kept.size && there.hash == kept.hash)
+        film->writer.frames = ++film->frames;
+    else
+        wd_film_store_unread(&film->store);
+}
+
+enum wd_result wd_film_add_kept(struct wd_film *film, uint64_t *frames)
+{
+    enum wd_result result = WD_OK;
+    if (film->store.stream && film->frames < film->frame_count) {
+        if (film->pattern)
+            count_kept_picture(film);
+        else
+            result = add_kept_pixels(film);
+    }
+    *frames = film->frames;
+    return result;
+}
+
+/* --- frames ------------------------------------------------------------------------------ */
+
+static enum wd_result add_picture(struct wd_film *film, const struct wd_picture *picture)
+{
+    if (film->layers) {
+        char *path = wd_film_frame_name(film->pattern, film->frames);
+        enum wd_result result = wd_picture_write(picture, path, &film->log);
+        free(path);
+        return result;
+    }
+    if (!picture->display) {
+        wd_error(&film->log, "a film shows the display layer, which the picture lacks");
+        return WD_ERROR_INPUT;
+    }
+    uint8_t *rgb = wd_picture_rgb(picture);
+    bool ok = (film->pattern || !film->store.stream ||
+               wd_film_store_add(&film->store, rgb, film->frame_bytes, &film->log)) &&
+              wd_film_writer_add(&film->writer, rgb, &film->log);
+    free(rgb);
+    return ok ? WD_OK : WD_ERROR_OUTPUT;
+}
+
+enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture)
+{
+    struct file_mark mark;
+    enum wd_result result = add_picture(film, picture);
+    if (result == WD_OK && film->pattern && film->store.stream &&
+        !(mark_of(&mark, film, film->frames) &&
+          wd_film_store_add(&film->store, &mark, sizeof mark, &film->log)))
+        result = WD_ERROR_OUTPUT;
+    film->frames += result == WD_OK;
+    return result;
+}
+
+enum wd_result wd_film_commit(struct wd_film **film)
+{
+    struct wd_film *f = *film;
+    bool ok = f->layers || f->frames == 0 || wd_film_writer_commit(&f->writer, &f->log);
+    if (ok && f->frames == f->frame_count)
+        wd_film_store_remove(&f->store);
+    wd_film_discard(film);
+    return ok ? WD_OK : WD_ERROR_OUTPUT;
+}
+
+void wd_film_discard(struct wd_film **film)
+{
+    if (!film || !*film)
+        return;
+    wd_film_writer_discard(&(*film)->writer);
+    wd_film_store_close(&(*film)->store);
+    free((*film)->path);
+    free(*film);
+    *film = NULL;
+}

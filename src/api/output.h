@@ -1,0 +1,12 @@
+/* output.h: what writing pictures and films has in common. */
+#ifndef WD_API_OUTPUT_H
+#define WD_API_OUTPUT_H
+
+#include "weald/renderer.h"
+
+bool wd_has_ending(const char *path, const char *ending);
+
+/* The display layer as three bytes a pixel; free() it. */
+uint8_t *wd_picture_rgb(const struct wd_picture *picture);
+
+#endif
