@@ -23,6 +23,8 @@ enum {
 static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                        const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
+    if (form->species->form == WD_FORM_FALLING)
+        return; /* leaves in the air: what they have come from stands elsewhere */
     float least = form->species->leaf.shape == WD_LEAF_NEEDLES ? 0.0055f : 0;
     struct wd_wood_style style = {least * fminf(form->scale, 1), 1, 12};
     wd_wood_style_fit(&style, skeleton, form->species,
@@ -35,6 +37,8 @@ static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton 
 static void build_reduced_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                           const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
+    if (form->species->form == WD_FORM_FALLING)
+        return;
     struct wd_wood_style style = {0.002f, 4, 5};
     wd_wood_style_fit(&style, skeleton, form->species, REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
