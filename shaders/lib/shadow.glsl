@@ -1,6 +1,7 @@
 /* Shadows of trees (cascaded maps) and of the ground (a field of shadow heights).
  * Expects `frame`, `push` (wd_light_push), `shadow_map` (sampler2DArrayShadow) and
- * SUN_HEIGHT_AT(index). */
+ * SUN_HEIGHT_AT(index). Where SHADOW_DEPTH names the same maps without comparison, penumbras widen with
+ * the way from the caster. */
 
 /* The cascade for a distance along the view axis; WD_CASCADES beyond the last. Slices overlap by a
  * tenth, and noise picks one of both, so that no seam shows. */
@@ -22,24 +23,58 @@ vec2 sheet_slope(vec3 sheet, uint cascade)
            * (length(toward) / facing);
 }
 
+#ifdef SHADOW_DEPTH
+/* Casters are looked for as wide about a place as the penumbra of one so far off may be; maps whose
+ * texels are coarser than this make softer edges than the sun. */
+const float CASTER_FAR_M = 60.0;
+const float CASTER_TEXEL_M = 0.2;
+
+/* Mean way from a place in a map to what casts a shadow there (Fernando 2005, percentage-closer soft
+ * shadows), from four texels at each of four places; 0: nothing does. `range_m`: depth of
+ * the map; `widest`: of the search, in texture coordinates. */
+float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, float widest)
+{
+    float sum_m = 0.0, count = 0.0;
+    for (uint i = 0u; i < 4u; i++) {
+        vec2 off = spin * (widest * sqrt((float(i) + 0.5) / 4.0));
+        vec4 depth = textureGather(SHADOW_DEPTH, vec3(at.xy + off, float(cascade)));
+        vec4 way_m = (depth - at.z - dot(slope, off)) * range_m;
+        vec4 casts = step(vec4(0.0), way_m);
+        sum_m += dot(casts, way_m);
+        count += dot(casts, vec4(1.0));
+        spin = vec2(-spin.y, spin.x);
+    }
+    return sum_m / max(count, 1.0);
+}
+#endif
+
 /* Share of the sun that trees let through to `rel`. The disc of taps (Vogel 1979) is as wide as
- * the penumbra of a caster some 10 m off, at least a texel and a half. `sheet`: normal of the leaf that
- * the place is on, toward the sun, or none. */
+ * the penumbra of what casts the shadow, at least a texel and a half. `sheet`: normal of the flat thing
+ * that the place is on, toward the sun, or none. */
 float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
 {
     if (cascade >= WD_CASCADES || frame.shadow_taps == 0u)
         return 1.0;
-    float texel_m = frame.cascade_texel_m[cascade];
+    float w = (frame.shadow_from_rel[cascade] * vec4(rel, 1.0)).w;
+    float texel_m = frame.cascade_texel_m[cascade] * w;
     vec3 off = mix(normal, sheet, dot(sheet, sheet));
     vec3 from = rel + off * texel_m * 1.2 + frame.sun_direction * texel_m * 0.8;
-    vec3 at = (frame.shadow_from_rel[cascade] * vec4(from, 1.0)).xyz;
+    vec4 clip = frame.shadow_from_rel[cascade] * vec4(from, 1.0);
+    vec3 at = clip.xyz / clip.w;
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0))))
         return 1.0;
     float texel = 1.0 / float(textureSize(shadow_map, 0).x);
-    float radius = max(1.5, 0.05 / texel_m) * texel;
     float turn = noise * 6.2831853;
     vec2 spin = vec2(cos(turn), sin(turn));
     vec2 slope = sheet_slope(sheet, cascade);
+    float penumbra_m = 0.05; /* of a caster some 10 m off */
+#ifdef SHADOW_DEPTH
+    float sun_tan = sqrt(max(1.0 / (frame.sun_cos_radius * frame.sun_cos_radius) - 1.0, 0.0));
+    if (texel_m < CASTER_TEXEL_M)
+        penumbra_m = sun_tan * caster_m(at, cascade, frame.cascade_depth_m[cascade] * w, slope,
+                                        spin, sun_tan * CASTER_FAR_M / texel_m * texel);
+#endif
+    float radius = max(1.5, penumbra_m / texel_m) * texel;
     float lit = 0.0;
     for (uint i = 0u; i < frame.shadow_taps; i++) {
         float r = sqrt((float(i) + 0.5) / float(frame.shadow_taps)) * radius;

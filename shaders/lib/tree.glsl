@@ -74,6 +74,6 @@ vec3 level_color(uint level)
 
 vec4 shadow_clip(uint cascade, vec3 rel)
 {
-    vec3 at = (frame.shadow_from_rel[cascade] * vec4(rel, 1.0)).xyz;
-    return vec4(at.xy * 2.0 - 1.0, at.z, 1.0);
+    vec4 at = frame.shadow_from_rel[cascade] * vec4(rel, 1.0);
+    return vec4(at.xy * 2.0 - at.w, at.z, at.w);
 }

@@ -9,6 +9,8 @@ layout(local_size_x = WD_TILE, local_size_y = WD_TILE) in;
 
 layout(constant_id = 0) const uint PARTS = WD_PART_ALL;
 layout(constant_id = 1) const uint LIST = 0;
+layout(constant_id = 2) const uint MIXED = 0u; /* tiles hold pixels with and without water: one kind is
+                                                  shaded, that of PARTS; the other after or before */
 
 /* No uniform block: llvmpipe bakes values of those into shaders, and would make this long one anew for
  * each view of water. */
@@ -18,17 +20,19 @@ layout(set = 0, binding = 2) uniform sampler2D gbuffer_normal;
 layout(set = 0, binding = 3) uniform usampler2D gbuffer_surface;
 layout(set = 0, binding = 4) uniform sampler2D gbuffer_depth;
 layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_map;
-layout(scalar, set = 0, binding = 6) readonly buffer SunHeights { float sun_height_m[]; };
-layout(scalar, set = 0, binding = 7) readonly buffer Trees { wd_tree trees[]; };
-layout(scalar, set = 0, binding = 8) readonly buffer Models { wd_model models[]; };
-layout(set = 0, binding = 9, rgba32f) uniform image2D radiance_image;
-layout(scalar, set = 0, binding = 10) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
-layout(set = 0, binding = 11) uniform sampler2D overlay;
-layout(set = 0, binding = 12) uniform sampler2D canopy_light;
-layout(set = 0, binding = 13) uniform sampler2D sky_map;
-layout(scalar, set = 0, binding = 14) readonly buffer Waters { float river_m[]; };
+layout(set = 0, binding = 6) uniform sampler2DArray shadow_depth;
+layout(scalar, set = 0, binding = 7) readonly buffer SunHeights { float sun_height_m[]; };
+layout(scalar, set = 0, binding = 8) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 9) readonly buffer Models { wd_model models[]; };
+layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
+layout(scalar, set = 0, binding = 11) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
+layout(set = 0, binding = 12) uniform sampler2D overlay;
+layout(set = 0, binding = 13) uniform sampler2D canopy_light;
+layout(set = 0, binding = 14) uniform sampler2D sky_map;
+layout(scalar, set = 0, binding = 15) readonly buffer Waters { float river_m[]; };
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
+#define SHADOW_DEPTH shadow_depth
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
 #define CANOPY_LIGHT_AT(at) textureLod(canopy_light, at, 0.0)
 #define SKY_MAP sky_map
@@ -45,44 +49,29 @@ layout(scalar, push_constant) uniform Push { wd_light_push push; };
 #include "lib/water.glsl"
 #include "lib/shade.glsl"
 
-/* How far off the eye meets water before what is `distance_m` off; negative: it does not. */
-float water_ahead_m(vec3 direction, float distance_m)
+/* How far off the eye sees water at a pixel; negative: it sees none. */
+float pixel_water_m(ivec2 at)
 {
-    float at_m = water_distance(direction);
-    if (at_m >= distance_m || !water_reaches(direction * at_m))
-        at_m = -1.0;
-    if (push.has_rivers == 0u || distance_m >= WD_SKY_M)
-        return at_m;
-    vec3 end = direction * distance_m;
-    float zero_m = float(frame.camera_mm[2]) * 0.001 + frame.camera_frac_m.z;
-    float surface_m = river_level(end.xy + push.camera_m) - zero_m;
-    if (surface_m <= end.z || surface_m >= 0.0)
-        return at_m;
-    float share = wd_river_share(end.z, surface_m);
-    float nearer_m = river_level(end.xy * share + push.camera_m);
-    if (nearer_m > 0.5 * WD_NO_WATER_M)
-        share = wd_river_share(end.z, nearer_m - zero_m);
-    return at_m > 0.0 ? min(at_m, distance_m * share) : distance_m * share;
+    float depth = texelFetch(gbuffer_depth, at, 0).x;
+    vec3 ray = pixel_ray(at);
+    float way_m = pixel_is_sky(depth) ? WD_SKY_M : length(ray) * frame.near_m / depth;
+    return water_ahead_m(normalize(ray), way_m);
 }
 
 /* Ground or sky as the eye gets it, through water and air. */
-vec3 seen(uvec2 at, vec3 radiance, vec3 direction, float distance_m, float sun_share,
-          float ground_share)
+vec3 seen(uvec2 at, vec3 radiance, vec3 direction, float distance_m, float water_m,
+          float sun_share, float ground_share)
 {
     if ((PARTS & WD_PART_WATER) != 0u) {
-        float water_m = water_ahead_m(direction, distance_m);
-        if (water_m > 0.0) {
-            float depth_m = distance_m < WD_SKY_M ? distance_m - water_m : 1e4;
-            radiance = water_radiance(radiance, direction, water_m, depth_m, sun_share,
-                                      pixel_noise(at, frame.sample_index));
-            distance_m = water_m;
-        }
+        float depth_m = distance_m < WD_SKY_M ? distance_m - water_m : 1e4;
+        radiance = water_radiance(at, radiance, direction, water_m, depth_m, sun_share);
+        distance_m = water_m;
     }
     return distance_m < WD_SKY_M ? apply_fog(radiance, direction, distance_m, ground_share)
                                  : radiance;
 }
 
-vec3 pixel_radiance(ivec2 at)
+vec3 pixel_radiance(ivec2 at, float water_m)
 {
     float depth = texelFetch(gbuffer_depth, at, 0).x;
     vec3 direction = normalize(pixel_ray(at));
@@ -100,7 +89,7 @@ vec3 pixel_radiance(ivec2 at)
     }
     if ((PARTS & (WD_PART_GROUND | WD_PART_WATER)) == 0u)
         return radiance;
-    return seen(uvec2(at), radiance, direction, distance_m, sun_share, ground_share);
+    return seen(uvec2(at), radiance, direction, distance_m, water_m, sun_share, ground_share);
 }
 
 void main()
@@ -113,7 +102,10 @@ void main()
     ivec2 at = ivec2(corner + gl_LocalInvocationID.xy);
     if (at.x >= int(frame.width) || at.y >= int(frame.height))
         return;
-    vec4 radiance = vec4(pixel_radiance(at), 1.0);
+    float water_m = MIXED != 0u ? pixel_water_m(at) : -1.0;
+    if (MIXED != 0u && (water_m > 0.0) != ((PARTS & WD_PART_WATER) != 0u))
+        return;
+    vec4 radiance = vec4(pixel_radiance(at, water_m), 1.0);
     if (push.has_overlay != 0u) {
         vec4 over = texelFetch(overlay, at, 0);
         radiance.rgb = radiance.rgb * (1.0 - over.a) + over.rgb;

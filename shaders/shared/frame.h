@@ -36,10 +36,11 @@ struct wd_frame_uniforms {
     WD_MAT4(previous_clip_from_rel); /* takes rel of the current camera; no sub-pixel offset */
     WD_MAT4(steady_clip_from_rel);   /* clip_from_rel without the sub-pixel offset */
     WD_MAT4(shadow_from_rel[WD_CASCADES]); /* to texture coordinates (x, y in 0..1) and depth z
-                                              (reversed: 1 nearest the sun) */
+                                              (reversed: 1 nearest the sun); w is 1 but in a
+                                              perspective map */
     WD_VEC4(cascade_far_m);          /* distance from the camera at which each cascade ends */
-    WD_VEC4(cascade_texel_m);        /* size of a texel on the ground */
-    WD_VEC4(cascade_depth_m);        /* depth range that z 0..1 spans */
+    WD_VEC4(cascade_texel_m);        /* size of a texel on the ground, over w */
+    WD_VEC4(cascade_depth_m);        /* depth range that z 0..1 spans, over w */
     int32_t camera_mm[3];
     float time_s;
     WD_VEC3(camera_frac_m);          /* 0..0.001 */

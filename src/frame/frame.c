@@ -167,12 +167,21 @@ static bool is_kept(const struct wd_kept_cascade *kept, const struct wd_method *
            !memcmp(box->toward, old->toward, sizeof box->toward);
 }
 
+/* Continuum's compute takes its depth from parallel maps. */
+static enum wd_shadow_maps maps_of(const struct wd_frame_params *params)
+{
+    return params->method->cascades == WD_CASCADES_KEPT
+               ? WD_SHADOW_CASCADES
+               : (enum wd_shadow_maps)params->forest->scene->quality.shadow_maps;
+}
+
 /* The maps hold what stands on the ground; the ground's own shadows are in the light pass. */
 static void record_shadows(const struct recording *r)
 {
     struct wd_targets *targets = &r->frame->targets;
     wd_cmd_scope_begin(r->cmd, "shadow trees");
-    for (uint32_t i = 0; i < WD_CASCADES; i++) {
+    uint32_t maps = maps_of(&r->frame->params) == WD_SHADOW_PERSPECTIVE ? 1 : WD_CASCADES;
+    for (uint32_t i = 0; i < maps; i++) {
         const struct wd_rendering rendering = {
             .width = targets->shadow_size,
             .height = targets->shadow_size,
@@ -362,6 +371,7 @@ static void prepare_recording(struct recording *r, uint32_t index)
         .sample_count = gathers ? GATHERED_OFFSETS : params->samples,
         .adds = index > 0,
         .view_mode = params->view_mode,
+        .maps = maps_of(params),
         .calm_m = params->method->cascades == WD_CASCADES_KEPT ? calm_m(params->forest) : 0.0,
     };
     wd_uniforms_init(&r->values, &r->view, r->cascades, &uniforms);

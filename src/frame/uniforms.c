@@ -134,9 +134,12 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
         .nearest_m = wd_nearest_seen(forest, &steady),
         .size = params->shadow_size,
         .max_z_m = forest->world->terrain.max_m + forest->max_tree_height_m,
+        .min_z_m = forest->world->terrain.min_m,
         .max_height_m = forest->max_tree_height_m,
         .calm_m = params->calm_m,
     };
     memcpy(sun.sun_direction, uniforms->sun_direction, sizeof sun.sun_direction);
     wd_cascades_init(cascades, uniforms, &sun);
+    if (params->maps == WD_SHADOW_PERSPECTIVE)
+        wd_perspective_map_init(&cascades[0], uniforms, &sun);
 }

@@ -14,6 +14,7 @@ struct wd_uniforms_params {
     uint32_t sample_index, sample_count;
     uint32_t view_mode;
     double calm_m; /* of struct wd_cascades_params */
+    enum wd_shadow_maps maps;
 };
 
 /* Fills all of `*uniforms`, the camera's view and those of the sun's cascades. */

@@ -58,6 +58,7 @@ struct wd_cascades_params {
     float nearest_m;         /* distance of the nearest thing that the camera may see */
     uint32_t size;           /* texels a side */
     double max_z_m;          /* of everything that casts, local frame */
+    double min_z_m;          /* of the ground */
     double max_height_m;     /* of a tree */
     /* Cascades with texels at least so large are calm: they show trees as the mean wind bends them, hold
      * all of their box, and move in steps of a sixteenth of it: a camera that moves little changes
@@ -67,6 +68,11 @@ struct wd_cascades_params {
 /* Fills the shadow members of `*uniforms` and one view a cascade. */
 void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,
                       const struct wd_cascades_params *params);
+
+/* One map in place of the cascades (the OSG paper's kind), for comparison: the first view; look-ups take
+ * the first at any distance. Its clip coordinates have a w, which texels and depths in metres go by. */
+void wd_perspective_map_init(struct wd_view *map, struct wd_frame_uniforms *uniforms,
+                             const struct wd_cascades_params *params);
 
 /* Matrices are columns of rows, as GLSL's. */
 void wd_matrix_multiply(float result[4][4], float a[4][4], float b[4][4]);

@@ -184,24 +184,35 @@ static void meet_water(struct path *path, float at_m, float hit_m)
     struct wd_vec3 at = wd_v3_mad(path->ray.from, path->ray.direction, at_m);
     struct wd_vec3 direction = path->ray.direction;
     float pixel_rad = path->bounce == 0 ? path->tracer->pixel_rad : 0.02f;
-    float footprint_m = at_m * pixel_rad / fmaxf(-direction.z, 0.02f);
-    struct wd_waves waves = wd_waves_at(frame, at.x, at.y, footprint_m);
-    float choice[2], share;
+    struct wd_waves waves =
+        wd_waves_at(frame, at.x, at.y, wd_water_footprint_m(direction, at_m, pixel_rad));
+    float choice[2], point[2], share;
     wd_sampler_next(&path->sampler, choice);
+    wd_sampler_next(&path->sampler, point);
+    struct wd_vec3 facet = wd_water_facet(waves, direction, point[0], point[1]);
     struct wd_vec3 above = wd_v3_add(at, WD_V3(0, 0, 2e-3f));
     struct wd_trace_ray to_sun = {above, toward_sun(path, &share), INFINITY};
     float lit = frame->sun_irradiance[1] > 0 && sky_reaches(path, &to_sun) ? share : 0;
     add(path, wd_v3_scale(wd_water_glint(frame, waves, direction), lit));
-    if (choice[0] >= wd_water_fresnel(waves, direction)) {
+    if (choice[0] >= wd_water_fresnel(facet, direction)) {
         look_under(path, at, fminf(hit_m - at_m, 1e4f), lit);
         return;
     }
-    float facing = wd_v3_dot(direction, waves.normal);
-    struct wd_vec3 mirrored = wd_v3_mad(direction, waves.normal, -2 * facing);
-    mirrored.z = fmaxf(mirrored.z, 0.02f);
-    path->ray = (struct wd_trace_ray){above, wd_v3_unit(mirrored), INFINITY};
+    struct wd_vec3 mirrored = wd_water_mirrored(facet, direction);
+    path->ray = (struct wd_trace_ray){above, mirrored, INFINITY};
     path->per_sr = 0;
     path->mirrored = true;
+}
+
+/* Haze between the water and what the eye sees mirrored in it. */
+static void pass_haze(struct path *path, float length_m)
+{
+    const struct wd_frame_uniforms *frame = frame_of(path);
+    struct wd_vec3 direction = path->ray.direction;
+    struct wd_vec3 through = wd_fog_through(frame, direction, length_m);
+    struct wd_vec3 lost = wd_v3_sub(WD_V3(1, 1, 1), through);
+    add(path, wd_v3_mul(wd_horizon_toward(frame, direction, 1), lost));
+    path->throughput = wd_v3_mul(path->throughput, through);
 }
 
 /* --- the path -------------------------------------------------------------------------------- */
@@ -269,10 +280,13 @@ static bool advance(struct path *path)
         path->left_tree = UINT32_MAX;
         return true;
     }
-    if (hit.at_m < INFINITY)
-        return scatter(path, &hit);
-    escape(path);
-    return false;
+    if (hit.at_m >= INFINITY) {
+        escape(path);
+        return false;
+    }
+    if (path->bounce == 0 && path->mirrored)
+        pass_haze(path, hit.at_m);
+    return scatter(path, &hit);
 }
 
 /* Haze between the eye and what it sees is lit where the ground there lets the sun pass. */

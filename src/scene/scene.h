@@ -134,6 +134,9 @@ struct wd_scene_time {
 /* Whether the trees of grids are all placed and kept, or found anew by whoever looks at them. */
 enum wd_planting { WD_PLANTING_AUTO, WD_PLANTING_STORED, WD_PLANTING_ON_DEMAND };
 
+/* How the shadows of trees are kept: parallel-split, or one map warped toward the camera. */
+enum wd_shadow_maps { WD_SHADOW_CASCADES, WD_SHADOW_PERSPECTIVE };
+
 /* Where there is a map of the sky: whose sun shines. */
 enum wd_sky_sun { WD_SKY_SUN_FILE, WD_SKY_SUN_SCENE };
 
@@ -221,6 +224,7 @@ struct wd_scene {
         int64_t shadow_size;       /* texels a side of a cascade */
         double shadow_distance_m;
         int64_t shadow_taps;
+        int shadow_maps;           /* enum wd_shadow_maps */
         double exposure_ev;        /* added to automatic exposure */
         double terrain_error_px;
     } quality;

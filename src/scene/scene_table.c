@@ -7,6 +7,7 @@
 static const char *const terrain_kinds[] = {"flat", "diamond-square", "raster", NULL};
 static const char *const nodata_rules[] = {"fill", "cut", NULL};
 static const char *const plantings[] = {"auto", "stored", "on_demand", NULL};
+static const char *const shadow_maps[] = {"cascades", "perspective", NULL};
 static const char *const sky_suns[] = {"file", "scene", NULL};
 static const char *const raster_units[] = {"metres", NULL};
 
@@ -194,6 +195,10 @@ static const struct wd_key quality_keys[] = {
      "Shadows reach this far from the camera, in metres."},
     {"shadow_taps", WD_KEY_INTEGER, IN(quality, shadow_taps), 0, 64, "5",
      "Shadow look-ups a pixel; 0: no shadows of trees."},
+    {"shadow_maps", WD_KEY_ENUM, IN(quality, shadow_maps), .fallback = "\"cascades\"",
+     .choices = shadow_maps,
+     .doc = "\"cascades\": four maps, finer near the camera; \"perspective\": one, warped toward it, for "
+            "comparison (continuum draws cascades all the same)."},
     {"exposure_ev", WD_KEY_DOUBLE, IN(quality, exposure_ev), -20, 20, "0",
      "Stops added to the automatic exposure."},
     {"terrain_error_px", WD_KEY_DOUBLE, IN(quality, terrain_error_px), 0, 100, "1.5",

@@ -32,23 +32,26 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     struct wd_compute_params params = {
         .shader = SPIRV(light_view_comp),
-        .bindings = {10,
-                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER,
+        .bindings = {11,
+                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
     bool ok = wd_pipeline_init_compute(&pass->view, gpu, &params);
     params.shader = (struct wd_spirv)SPIRV(light_comp);
-    params.bindings.count = 15;
-    for (uint32_t binding = 11; binding < 14; binding++)
+    params.bindings.count = 16;
+    for (uint32_t binding = 12; binding < 15; binding++)
         params.bindings.types[binding] = IMAGE;
-    params.bindings.types[14] = BUFFER;
+    params.bindings.types[15] = BUFFER;
     for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
-        const uint32_t constants[] = {wd_tile_list_parts(list), list};
-        params.constants = (struct wd_spec_constants){2, constants};
+        uint32_t parts = wd_tile_list_parts(list), wet = parts & WD_PART_WATER;
+        const uint32_t constants[] = {parts & ~wet, list, wet != 0};
+        params.constants = (struct wd_spec_constants){3, constants};
         ok = wd_pipeline_init_compute(&pass->light[list], gpu, &params);
     }
-    return ok;
+    const uint32_t water[] = {WD_PART_ALL, WD_TILE_LISTS - 1, 1};
+    params.constants = (struct wd_spec_constants){3, water};
+    return ok && wd_pipeline_init_compute(&pass->water, gpu, &params);
 }
 
 static bool init_sorting(struct wd_light_pass *pass, struct wd_gpu *gpu)
@@ -88,7 +91,8 @@ bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu)
 
 void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
-    struct wd_pipeline *others[] = {&pass->tiles, &pass->args, &pass->view, &pass->velocity};
+    struct wd_pipeline *others[] = {&pass->tiles, &pass->args, &pass->view, &pass->velocity,
+                                    &pass->water};
     for (uint32_t list = 0; list < WD_TILE_LISTS; list++)
         wd_pipeline_finish(&pass->light[list], gpu);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
@@ -177,15 +181,24 @@ static void sort_tiles(struct wd_light_pass *pass, struct wd_cmd *cmd,
     wd_cmd_use_buffer(cmd, &pass->lists, WD_USE_INDIRECT);
 }
 
-static void shade_lists(struct wd_light_pass *pass, struct wd_cmd *cmd,
-                        const struct wd_binding *bindings, const struct wd_light_push *push)
+static void shade_list(struct wd_light_pass *pass, struct wd_cmd *cmd,
+                       const struct wd_pipeline *pipeline, uint32_t list,
+                       const struct wd_binding *bindings, const struct wd_light_push *push)
 {
-    for (uint32_t list = 0; list < WD_TILE_LISTS; list++) {
-        VkDeviceSize offset = offsetof(struct wd_tile_lists, groups[list]);
-        wd_cmd_bind(cmd, &pass->light[list], bindings);
-        wd_cmd_push(cmd, &pass->light[list], push, sizeof *push);
-        wd_cmd_dispatch_indirect(cmd, &pass->lists, offset);
-    }
+    wd_cmd_bind(cmd, pipeline, bindings);
+    wd_cmd_push(cmd, pipeline, push, sizeof *push);
+    wd_cmd_dispatch_indirect(cmd, &pass->lists, offsetof(struct wd_tile_lists, groups[list]));
+}
+
+/* Water comes last: it mirrors what the others have been lit to. */
+static void shade_lists(struct wd_light_pass *pass, struct wd_cmd *cmd,
+                        struct wd_image *radiance, const struct wd_binding *bindings,
+                        const struct wd_light_push *push)
+{
+    for (uint32_t list = 0; list < WD_TILE_LISTS; list++)
+        shade_list(pass, cmd, &pass->light[list], list, bindings, push);
+    wd_cmd_use_image(cmd, radiance, WD_USE_COMPUTE_WRITE);
+    shade_list(pass, cmd, &pass->water, WD_TILE_LISTS - 1, bindings, push);
 }
 
 void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
@@ -211,6 +224,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(&targets->surface, pass->nearest),
         WD_BIND_IMAGE(&targets->depth, pass->nearest),
         WD_BIND_IMAGE(&targets->shadow, pass->shadow),
+        WD_BIND_IMAGE(&targets->shadow, pass->nearest),
         WD_BIND_BUFFER(&pass->sun_field.heights),
         WD_BIND_BUFFER(&params->forest->trees),
         models_of(params->forest),
@@ -223,7 +237,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     };
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);
-        shade_lists(pass, cmd, bindings, &push);
+        shade_lists(pass, cmd, &targets->radiance, bindings, &push);
         return;
     }
     wd_cmd_bind(cmd, &pass->view, bindings);

@@ -10,7 +10,8 @@
 
 struct wd_light_pass {
     struct wd_pipeline tiles, args;            /* sort tiles by what they show */
-    struct wd_pipeline light[WD_TILE_LISTS];   /* shade one list each */
+    struct wd_pipeline light[WD_TILE_LISTS];   /* shade one list each: what shows no water */
+    struct wd_pipeline water;                  /* what does */
     struct wd_pipeline view, velocity;
     struct wd_buffer lists;                    /* struct wd_tile_lists and the lists */
     VkSampler nearest, shadow;
