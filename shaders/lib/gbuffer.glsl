@@ -1,6 +1,5 @@
 /* What the G-buffer says of a pixel. Expects `frame` and the four images. */
 #include "lib/pixel.glsl"
-#include "shared/snow.h"
 
 wd_pixel gbuffer_pixel(ivec2 at, float depth)
 {
@@ -16,7 +15,6 @@ wd_pixel gbuffer_pixel(ivec2 at, float depth)
     pixel_set_normal(pixel, normal.xyz * 2.0 - 1.0);
     pixel.material = uint(normal.w * 3.0 + 0.5);
     pixel.surface = texelFetch(gbuffer_surface, at, 0).x;
-    if (frame.snow > 0.0 && pixel.surface != 0u && frame.view_mode != WD_MODE_LOD)
-        pixel.albedo = wd_snow_on(pixel.albedo, pixel.normal, pixel.openness);
+    pixel_lay_snow(pixel);
     return pixel;
 }

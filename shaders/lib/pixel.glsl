@@ -1,5 +1,6 @@
 /* What is known of a surface at a pixel before it is lit. Expects `frame`. */
 #include "lib/view.glsl"
+#include "shared/snow.h"
 
 struct wd_pixel {
     vec3 ray;         /* rel of a point on the pixel's ray at 1 m along the view axis */
@@ -12,6 +13,7 @@ struct wd_pixel {
     vec3 facing;      /* mean of the normals of what the pixel shows: the shorter, the more they spread */
     uint material;
     uint surface;     /* tree + 1, or 0 */
+    float snow;       /* share of a tree's surface that lies under snow */
 };
 
 /* `mean` is of 8-bit numbers: what may have been of unit length is. */
@@ -20,4 +22,17 @@ void pixel_set_normal(inout wd_pixel pixel, vec3 mean)
     float length_of_mean = max(length(mean), 1e-4);
     pixel.normal = (mean + vec3(0.0, 0.0, 1e-6)) / length_of_mean;
     pixel.facing = pixel.normal * min(1.005 * length_of_mean, 1.0);
+}
+
+/* Snow on trees: it hides what it lies on, and its pads are smoother than leaves. */
+void pixel_lay_snow(inout wd_pixel pixel)
+{
+    pixel.snow = 0.0;
+    if (frame.snow == 0.0 || pixel.surface == 0u || frame.view_mode == WD_MODE_LOD)
+        return;
+    float footprint_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
+    pixel.snow = wd_snow_share_on(pixel.rel, pixel.normal, pixel.openness, footprint_m);
+    pixel.albedo = mix(pixel.albedo, WD_SNOW_ALBEDO, pixel.snow);
+    pixel.normal = normalize(mix(pixel.normal, vec3(0.0, 0.0, 1.0), 0.5 * pixel.snow));
+    pixel.facing = mix(pixel.facing, vec3(0.0, 0.0, length(pixel.facing)), 0.5 * pixel.snow);
 }

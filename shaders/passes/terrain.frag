@@ -8,7 +8,8 @@ layout(constant_id = 0) const uint HAS_HOLES = 1u;
 layout(constant_id = 1) const uint IS_NEAR = 1u;
 
 layout(set = 0, binding = 4) uniform sampler2D slopes;
-layout(set = 0, binding = 5) uniform sampler2D cover_map; /* x: of the place, y: about it */
+layout(set = 0, binding = 5) uniform sampler2D cover_map; /* x: of the place, y: about it, z: a
+                                                            quarter of the sward's layers */
 layout(scalar, set = 0, binding = 6) readonly buffer Holes { uint holes[]; };
 
 layout(scalar, set = 0, binding = 7) readonly buffer Waters { float water_m[]; };
@@ -59,6 +60,17 @@ float footprint_of(float distance_m, vec2 slope)
     return distance_m * view.pixel_rad / sqrt(max(facing, 0.02));
 }
 
+/* Share of the sky's light that a sward leaves to the ground that is seen between its blades; where it
+ * is too far off to be drawn, the ground stands for all of it. */
+float sward_open(float layers, float distance_m)
+{
+    float gone = view.sward_fade_m.y > 0.0
+                     ? clamp((distance_m - view.sward_fade_m.x)
+                                 / max(view.sward_fade_m.y - view.sward_fade_m.x, 1e-3), 0.0, 1.0)
+                     : 0.0;
+    return exp(-0.35 * layers * (1.0 - gone));
+}
+
 void main()
 {
     vec2 local_m = in_rel.xy + view.camera_m;
@@ -68,11 +80,12 @@ void main()
     float level = log2(distance_m * view.pixel_rad * 1.5);
     vec2 slope = textureLod(slopes, local_m * view.slopes_scale + view.slopes_offset,
                             level - log2(view.slopes_texel_m)).xy;
-    vec2 cover = textureLod(cover_map, local_m * view.cover_scale,
-                            level - log2(view.cover_texel_m)).xy;
+    vec3 cover = textureLod(cover_map, local_m * view.cover_scale,
+                            level - log2(view.cover_texel_m)).xyz;
     float river_m = water_m.length() > 1 ? river_level(local_m) : WD_NO_WATER_M;
     wd_ground_look look = wd_ground_cover(in_rel, slope.x, slope.y, cover.x, cover.y, river_m,
                                           footprint_of(distance_m, slope));
+    look.openness *= sward_open(4.0 * cover.z, distance_m);
     if (in_curtain > 0.0) {
         look.albedo = frame.soil * (0.75 + 0.25 * cos(in_rel.z * 1.3));
         look.normal = curtain_normal();

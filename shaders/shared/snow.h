@@ -2,17 +2,27 @@
 #ifndef WD_SHARED_SNOW_H
 #define WD_SHARED_SNOW_H
 
-#include "shared/frame.h"
+#include "shared/noise.h"
 
 /* Albedo of fresh snow, red to blue (Warren 1982). */
 #define WD_SNOW_ALBEDO WD_V3(0.83f, 0.86f, 0.90f)
 
-/* Snow lies on upper sides, and more of it where the crown is open to the sky. */
-WD_FUNC WD_VECTOR wd_snow_on(WD_FRAME_IN WD_VECTOR albedo, WD_VECTOR normal, float openness)
+/* Share of a place on a tree that lies under snow. It lies in pads as broad as a bough, where the crown
+ * is open to the sky, on all that does not look down: not leaf by leaf. Pads at different heights are
+ * not alike. `normal` is the upper side's where it is that which is seen. */
+WD_FUNC float wd_snow_share_on(WD_FRAME_IN WD_VECTOR rel, WD_VECTOR normal, float openness,
+                               float footprint_m)
 {
-    float lies = WD_FRAME(snow) * WD_SMOOTH(0.15f, 0.6f, normal.z)
-                 * (0.25f + 0.75f * WD_SMOOTH(0.1f, 0.6f, openness));
-    return wd_v3_mix(albedo, WD_SNOW_ALBEDO, lies);
+    float up_m = rel.z + WD_FLOAT(WD_FRAME(camera_mm[2])) * 0.001f;
+    float east_m = rel.x + 0.83f * up_m, north_m = rel.y + 0.57f * up_m;
+    float fine = wd_noise_share(footprint_m, 9);
+    float pad = wd_gradient_noise(wd_lattice_at(WD_FRAME_PASS east_m, north_m, 10), 41u).x;
+    pad += 0.6f * fine
+           * wd_gradient_noise(wd_lattice_at(WD_FRAME_PASS east_m, north_m, 9), 42u).x;
+    pad = 0.55f * pad * wd_noise_share(footprint_m, 10) + openness;
+    float edge = WD_MIX(0.28f, 0.10f, fine);
+    return WD_FRAME(snow) * WD_SMOOTH(0.45f - edge, 0.45f + edge, pad)
+           * WD_SMOOTH(-0.05f, 0.35f, normal.z);
 }
 
 #endif

@@ -42,6 +42,7 @@ struct wd_terrain_view {
     WD_VEC2(camera_m);          /* local; for image coordinates only */
     float slopes_texel_m, cover_texel_m;
     float pixel_rad;            /* angle that a pixel spans */
+    WD_VEC2(sward_fade_m);      /* distances over which the sward fades; 0, 0: it does not */
     WD_VEC2(morph[WD_TERRAIN_LEVELS]); /* distance at which morphing begins; 1 / its span */
 };
 

@@ -137,11 +137,11 @@ static void halve(float *values, uint32_t *width, uint32_t *height, uint32_t cha
     *height = h;
 }
 
-/* Uploads all mips of an image of two channels, halves or (0..1) bytes; spoils `values`. */
+/* Uploads all mips of an image of two halves or four (0..1) bytes; spoils `values`. */
 static bool upload_mips(struct wd_image *image, struct wd_gpu *gpu, float *values)
 {
-    const uint32_t channels = 2;
     bool halves = image->format == VK_FORMAT_R16G16_SFLOAT;
+    const uint32_t channels = halves ? 2 : 4;
     uint32_t width = image->width, height = image->height;
     size_t texel = wd_format_texel_bytes(image->format);
     uint8_t *bytes = wd_alloc_array((size_t)width * height, texel);
@@ -193,20 +193,22 @@ static bool upload_slopes(struct wd_ground *ground, struct wd_gpu *gpu)
     return ok;
 }
 
-/* Cover and the woods about a place. A world without cover (no trees) gets one texel of none. */
+/* Cover, the woods about a place, and a quarter of the layers of its sward. A world without cover (no trees) gets one texel of none. */
 static bool upload_cover(struct wd_ground *ground, struct wd_gpu *gpu, const struct wd_world *world)
 {
     bool has = world->cover && world->cover_width && world->cover_height;
     uint32_t width = has ? world->cover_width : 1, height = has ? world->cover_height : 1;
     ground->cover_cell_m = has ? world->cover_cell_m : wd_terrain_extent_x_m(ground->terrain);
-    float *cover = wd_alloc_array((size_t)width * height, 2 * sizeof *cover);
+    float *cover = wd_alloc_array((size_t)width * height, 4 * sizeof *cover);
     for (size_t i = 0; has && i < (size_t)width * height; i++) {
         double x_m = ((double)(i % width) + 0.5) * ground->cover_cell_m;
         double y_m = ((double)(i / width) + 0.5) * ground->cover_cell_m;
-        cover[2 * i] = (float)world->cover[i] / 255.0f;
-        cover[2 * i + 1] = wd_woods_at(world, x_m, y_m);
+        cover[4 * i] = (float)world->cover[i] / 255.0f;
+        cover[4 * i + 1] = wd_woods_at(world, x_m, y_m);
+        cover[4 * i + 2] = world->sward ? fminf(world->sward[i] / (4.0f * WD_SWARD_LAYER), 1) : 0;
     }
-    bool ok = make_image(&ground->cover, gpu, "canopy cover", VK_FORMAT_R8G8_UNORM, width, height) &&
+    bool ok = make_image(&ground->cover, gpu, "canopy cover", VK_FORMAT_R8G8B8A8_UNORM, width,
+                         height) &&
               upload_mips(&ground->cover, gpu, cover);
     free(cover);
     return ok;

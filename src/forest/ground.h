@@ -23,7 +23,9 @@ struct wd_ground {
     struct wd_buffer holes;           /* uint8_t[width * height] padded to 4; 4 bytes without holes */
     struct wd_buffer waters;          /* float[width * height]: terrain->water_m; 4 bytes without */
     struct wd_image slopes;           /* R16G16_SFLOAT, mips: rise over run eastward, northward */
-    struct wd_image cover;            /* RG8, mips: of the canopy; its mean about */
+    struct wd_image cover;            /* RGBA8, mips: of the canopy; its mean about; a quarter of the
+                                         layers of the sward */
+    float sward_fade_m[2];            /* distances over which the sward fades; 0, 0: it does not */
     VkSampler sampler;                /* trilinear, clamped, for both */
     uint32_t slopes_step;             /* samples from texel to texel of `slopes` */
     double cover_cell_m;

@@ -108,8 +108,23 @@ static struct wd_vec3 leaf_transmittance(const struct wd_surface *surface,
     return WD_V3(fminf(t.x, 1 - a.x), fminf(t.y, 1 - a.y), fminf(t.z, 1 - a.z));
 }
 
+/* It hides what it lies on, and its pads are smoother than leaves. */
+static void lay_snow(struct wd_surface *surface, const struct wd_frame_uniforms *frame,
+                     float openness, float footprint_m)
+{
+    float share = frame->snow > 0 ? wd_snow_share_on(frame, surface->place, surface->outward,
+                                                     openness, footprint_m)
+                                  : 0;
+    if (share <= 0)
+        return;
+    surface->albedo = wd_v3_mix(surface->albedo, WD_SNOW_ALBEDO, share);
+    surface->transmittance = wd_v3_scale(surface->transmittance, 1 - share);
+    surface->outward = wd_v3_unit(wd_v3_mix(surface->outward, WD_V3(0, 0, 1), 0.5f * share));
+    surface->glossy = surface->glossy && share < 0.5f;
+}
+
 static void tree_surface(struct wd_surface *surface, const struct wd_trace_scene *scene,
-                         const struct wd_trace_hit *hit, struct wd_vec3 eye)
+                         const struct wd_trace_hit *hit, struct wd_vec3 eye, float pixel_rad)
 {
     const struct wd_tree *tree = &scene->world->trees[hit->tree];
     const struct wd_trace_model *model = wd_trace_model_of(scene->models, tree);
@@ -133,11 +148,10 @@ static void tree_surface(struct wd_surface *surface, const struct wd_trace_scene
     if (leaf)
         look = wd_v3_mul(look, wd_tree_tint(*tree, model->model));
     surface->albedo = wd_v3_clamp(look, 0, 1);
-    if (wd_v3_dot(surface->outward, eye) > 0)
-        surface->albedo = wd_snow_on(scene->frame, surface->albedo, surface->outward,
-                                     vertex_openness(&corners));
     if (leaf)
         surface->transmittance = leaf_transmittance(surface, model, &texel);
+    if (wd_v3_dot(surface->outward, eye) > 0)
+        lay_snow(surface, scene->frame, vertex_openness(&corners), hit->at_m * pixel_rad);
     surface->coat_alpha = model->model.roughness * model->model.roughness;
 }
 
@@ -211,7 +225,7 @@ void wd_surface_at(struct wd_surface *surface, const struct wd_trace_scene *scen
     struct wd_vec3 eye = wd_v3_scale(ray->direction, -1);
     *surface = (struct wd_surface){.place = wd_v3_mad(ray->from, ray->direction, hit->at_m)};
     if (hit->tree < scene->world->tree_count)
-        tree_surface(surface, scene, hit, eye);
+        tree_surface(surface, scene, hit, eye, pixel_rad);
     else
         ground_surface(surface, scene, hit, ray->direction, pixel_rad);
     if (wd_v3_dot(surface->flat, eye) < 0)

@@ -8,7 +8,6 @@
 
 enum { SIDE = 4 }; /* sample points along a cell's side */
 static const double WOODS_M = 14.0;
-enum { LOWEST_CM = 150 }; /* lower ones are herbs and seedlings: no canopy over the ground */
 static const double most_cells = 4.0 * 1024.0 * 1024.0;
 
 /* Bit 4 * row + column of a cell is set where that sample point lies under a crown. */
@@ -41,6 +40,35 @@ static void mark_disc(struct samples *samples, const struct wd_tree *tree)
     }
 }
 
+static void add_sward(float *layers, const struct wd_world *world, const struct wd_tree *tree)
+{
+    double cell_m = world->cover_cell_m, radius_m = (tree->size >> 16) * 0.005;
+    long column = (long)(tree->x_mm * 0.001 / cell_m), row = (long)(tree->y_mm * 0.001 / cell_m);
+    if (column < 0 || row < 0 || column >= (long)world->cover_width ||
+        row >= (long)world->cover_height)
+        return;
+    layers[(size_t)row * world->cover_width + (size_t)column] +=
+        (float)(3.14159265 * radius_m * radius_m / (cell_m * cell_m));
+}
+
+/* Of the plants that are no canopy. */
+static void sward_init(struct wd_world *world)
+{
+    size_t count = (size_t)world->cover_width * world->cover_height, herbs = 0;
+    float *layers = wd_alloc_array(count, sizeof *layers);
+    for (size_t i = 0; i < world->tree_count; i++) {
+        if ((world->trees[i].size & 0xffffu) >= WD_CANOPY_CM)
+            continue;
+        add_sward(layers, world, &world->trees[i]);
+        herbs++;
+    }
+    if (herbs)
+        world->sward = wd_alloc(count);
+    for (size_t i = 0; herbs && i < count; i++)
+        world->sward[i] = (uint8_t)fminf(WD_SWARD_LAYER * layers[i] + 0.5f, 255.0f);
+    free(layers);
+}
+
 /* --- layers on demand ---------------------------------------------------------------------- */
 
 /* Crown area over ground area; Poisson's share of the ground is left open. */
@@ -54,7 +82,7 @@ static void add_expected(void *user, size_t row)
         double area = 0.0;
         for (uint32_t i = 0; i < world->demand.count; i++) {
             const struct wd_demand_layer *layer = &world->demand.layers[i];
-            if (layer->max_height_m * 100.0f < (float)LOWEST_CM)
+            if (layer->max_height_m * 100.0f < (float)WD_CANOPY_CM)
                 continue;
             double spacing_m = layer->placement.input.layer.cell_mm * 0.001;
             area += wd_demand_density(&layer->placement, min_m, max_m, 1) * layer->crown_area_m2 /
@@ -80,7 +108,7 @@ void wd_cover_init(struct wd_world *world, unsigned threads)
     size_t count = (size_t)samples.width * samples.height;
     samples.masks = wd_alloc_array(count, sizeof *samples.masks);
     for (size_t i = 0; i < world->tree_count; i++)
-        if ((world->trees[i].size & 0xffffu) >= LOWEST_CM)
+        if ((world->trees[i].size & 0xffffu) >= WD_CANOPY_CM)
             mark_disc(&samples, &world->trees[i]);
     world->cover = wd_alloc(count);
     for (size_t i = 0; i < count; i++)
@@ -89,6 +117,7 @@ void wd_cover_init(struct wd_world *world, unsigned threads)
     world->cover_width = samples.width;
     world->cover_height = samples.height;
     world->cover_cell_m = cell_m;
+    sward_init(world);
     if (world->demand.count)
         wd_jobs_run(threads, samples.height, add_expected, world);
 }

@@ -199,6 +199,7 @@ void wd_world_finish(struct wd_world *world)
     free(world->layer_of_tree);
     free(world->inventories);
     free(world->cover);
+    free(world->sward);
     wd_demand_finish(&world->demand);
     wd_sky_map_finish(&world->sky);
     *world = (struct wd_world){0};

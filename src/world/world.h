@@ -42,6 +42,9 @@ struct wd_world {
     /* Canopy cover of the ground, 0..255, on a grid of cover_cell_m over the terrain, for the
      * colour of the forest floor. */
     uint8_t *cover;
+    /* Crowns of what is lower, herbs and swards, over the ground that they stand on (WD_SWARD_LAYER is
+     * once). NULL: there are none, or on demand. */
+    uint8_t *sward;
     uint32_t cover_width, cover_height;
     double cover_cell_m;
     uint32_t seed;
