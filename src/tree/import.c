@@ -125,12 +125,12 @@ static uint32_t corner_tint(const struct wd_model_material *material, const uint
     uint32_t packed = 255u << 24;
     for (int k = 0; k < 3; k++) {
         float value = material->color[k] * (float)rgba[k] + 0.5f;
-        packed |= (uint32_t)fminf(value, 255) << (8 * k);
+        packed |= (uint32_t)fminf(fmaxf(value, 0), 255) << (8 * k);
     }
     return packed;
 }
 
-static struct wd_tree_vertex make_vertex(const struct wd_import_work *work,
+static struct wd_tree_vertex make_vertex(struct wd_import_work *work,
                                          const struct frame *frame,
                                          const struct wd_import_corner *corner)
 {
@@ -142,7 +142,12 @@ static struct wd_tree_vertex make_vertex(const struct wd_import_work *work,
     turn(frame->up, from->normal, n);
     for (int k = 0; k < 3; k++)
         vertex.position_m[k] = (p[k] - frame->foot[k]) * frame->scale;
-    struct wd_vec3 normal = wd_v3_unit_or(WD_V3(n[0], n[1], n[2]), WD_V3(0, 0, 1));
+    struct wd_vec3 normal = WD_V3(n[0], n[1], n[2]);
+    if (!isfinite(wd_v3_dot(normal, normal))) {
+        normal = WD_V3(0, 0, 1);
+        work->broken_normals++;
+    }
+    normal = wd_v3_unit_or(normal, WD_V3(0, 0, 1));
     vertex.normal = wd_pack_normal((float[3]){normal.x, normal.y, normal.z});
     float uv[2];
     wd_look_sheet_map(&work->import->looks[corner->leaf], material->picture, corner->uv, uv);
@@ -199,6 +204,9 @@ static void report(const struct wd_import_work *work)
         wd_info(work->log, "%s: left out: %u points, %u lines, %zu triangles without area",
                 work->species->model.file, work->file->stray_points, work->file->stray_lines,
                 work->degenerate);
+    if (work->broken_normals)
+        wd_warn(work->log, "%s: %zu corners have normals that are no finite numbers: taken to look up",
+                work->species->model.file, work->broken_normals);
 }
 
 /* glTF extensions for pictures of other kinds leave materials without any that can be found. */

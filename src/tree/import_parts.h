@@ -19,13 +19,14 @@ struct wd_import_work {
     struct wd_import_corner *corners;
     size_t corner_count, wood_corners;
     size_t degenerate;   /* triangles left out for want of area */
+    size_t broken_normals; /* corners whose normal is not finite */
     int up;              /* enum wd_model_axis */
     float metres_a_unit;
     const struct wd_log *log;
 };
 
 /* Fills `corners` with at most `most_triangles` triangles (more are simplified first) and lays out
- * the looks. False where a position or normal is not finite, or nothing is left. free(corners). */
+ * the looks. False where a position is not finite, or nothing is left. free(corners). */
 bool wd_import_collect(struct wd_import_work *work, size_t most_triangles);
 
 /* Makes an indexed mesh of `count` corners, equal ones shared; takes and frees both arrays. */

@@ -1,5 +1,6 @@
 #include "tree/model_material.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -244,9 +245,7 @@ bool wd_model_materials_init(struct wd_model_materials *materials, const struct 
         material->file = &file->materials[i];
         material->picture = material->used ? load_picture(&loader, material->file) : -1;
         for (int k = 0; k < 3; k++)
-            material->color[k] = material->file->color[k] < 0   ? 0
-                                 : material->file->color[k] > 1 ? 1
-                                                                : material->file->color[k];
+            material->color[k] = fminf(fmaxf(material->file->color[k], 0), 1); /* 0 of NaN */
         material->leaf = looks_like_leaf(materials, material);
     }
     bool ok = apply_list(materials, path, "leaves", species->model.leaves,

@@ -391,6 +391,21 @@ static void a_position_that_is_no_number_is_an_error(void **state)
     free(bytes);
 }
 
+/* Their squares are infinite. */
+static void normals_that_are_no_direction_are_told(void **state)
+{
+    (void)state;
+    write_text("normals.obj", "v 0 0 0\nv 1 0 0\nv 1 3 0\nv 0 3 0\nvn 3e38 3e38 3e38\n"
+                              "f 1//1 2//1 3//1\nf 1//1 3//1 4//1\n");
+    struct result *result = import("normals.obj");
+    assert_true(result->ok);
+    expect_message(result, "6 corners have normals that are no finite numbers");
+    float normal[3];
+    wd_unpack_normal(result->import.model.full.vertices[0].normal, normal);
+    assert_float_equal(normal[2], 1, 1e-3);
+    drop(result);
+}
+
 static void damaged_files_end_in_a_message_or_a_tree(void **state)
 {
     (void)state;
@@ -458,6 +473,7 @@ int main(void)
         cmocka_unit_test(many_triangles_are_reduced_by_count),
         cmocka_unit_test(exported_trees_come_back),
         cmocka_unit_test(a_position_that_is_no_number_is_an_error),
+        cmocka_unit_test(normals_that_are_no_direction_are_told),
         cmocka_unit_test(damaged_files_end_in_a_message_or_a_tree),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
