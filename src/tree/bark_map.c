@@ -28,12 +28,13 @@ static float wrap(float x, int period)
 /* Long ridges that part and join again, broken across here and there, each of corky layers. */
 static struct bark_point fissured(uint32_t key, float u, float v, float scale_cm)
 {
-    int across = repeats(WD_BARK_TILE_WIDTH_M, scale_cm), along = across / 6 < 2 ? 2 : across / 6;
-    float bend = 2.2f * (wd_tile_fractal(key, u, v, 5, 3) - 0.5f) +
-                 0.9f * (wd_tile_fractal(key ^ 0x77, u, v, 24, 12) - 0.5f);
+    int across = repeats(WD_BARK_TILE_WIDTH_M, scale_cm), along = across / 7 < 2 ? 2 : across / 7;
+    float bend = 1.5f * (wd_tile_fractal(key, u, v, 5, 2) - 0.5f) +
+                 0.5f * (wd_tile_fractal(key ^ 0x77, u, v, 30, 9) - 0.5f);
+    float row = 2.5f * wd_tile_noise(key ^ 0x51, u * (float)across, 0, across, 1);
     uint32_t plate = 0;
     float edge = wd_tile_cells(key ^ 0xf15, wrap(u * (float)across + bend, across),
-                               v * (float)along, across, along, &plate);
+                               wrap(v * (float)along + row, along), across, along, &plate);
     float rough = wd_tile_fractal(key ^ 0x9, u, v, 48, 16);
     float fine = wd_tile_fractal(key ^ 0x19, u, v, 160, 40);
     float ridge = wd_smoothf(0.0f, 0.5f, edge + 0.5f * (rough - 0.5f));
@@ -43,15 +44,15 @@ static struct bark_point fissured(uint32_t key, float u, float v, float scale_cm
                                depth_m * (ridge * (0.8f + 0.2f * rough) + 0.16f * fine), 0.9f};
 }
 
-/* Flakes that lift at their lower edge. */
+/* Flakes that lift at their lower edge, half as long again as wide. */
 static struct bark_point scaly(uint32_t key, float u, float v, float scale_cm)
 {
     int across = repeats(WD_BARK_TILE_WIDTH_M, scale_cm);
-    int along = across * 2 / 3 < 2 ? 2 : across * 2 / 3;
+    int along = across * 4 / 9 < 2 ? 2 : across * 4 / 9;
     float bend_u = 0.10f * (wd_tile_fractal(key, u, v, 8, 8) - 0.5f) +
-                   0.012f * (wd_tile_fractal(key ^ 0x33, u, v, 40, 40) - 0.5f);
+                   0.022f * (wd_tile_fractal(key ^ 0x33, u, v, 40, 40) - 0.5f);
     float bend_v = 0.10f * (wd_tile_fractal(key ^ 5, u, v, 8, 8) - 0.5f) +
-                   0.012f * (wd_tile_fractal(key ^ 0x35, u, v, 40, 40) - 0.5f);
+                   0.022f * (wd_tile_fractal(key ^ 0x35, u, v, 40, 40) - 0.5f);
     uint32_t plate = 0;
     float edge = wd_tile_cells(key ^ 0x5ca, wrap((u + bend_u) * (float)across, across),
                                wrap((v + bend_v) * (float)along, along), across, along, &plate);

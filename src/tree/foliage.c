@@ -8,7 +8,7 @@
 #include "tree/look.h"
 #include "tree/progressive.h"
 
-enum { MAX_LEAF_TRIANGLES = 600000 };
+enum { MAX_LEAF_TRIANGLES = 600000, BARE_TWIGS = 5000 };
 #define HEDGE_SHARE 0.3f /* of the leaf area index of a forest */
 #define HEDGE_SHELL_M 0.18f
 
@@ -321,7 +321,7 @@ static void scale_all(struct wd_leaf *leaves, size_t count, float factor)
 
 void wd_foliage_scale(struct wd_foliage *foliage, float factor)
 {
-    scale_all(foliage->leaves, foliage->count, factor);
+    scale_all(foliage->leaves, foliage->count + foliage->twig_count, factor);
     scale_all(foliage->flowers, foliage->flower_count, factor);
     foliage->area_m2 *= factor * factor;
     foliage->crown.origin_m = wd_v3_scale(foliage->crown.origin_m, factor);
@@ -364,6 +364,30 @@ static void place_leaves(struct wd_foliage *foliage, const struct wd_skeleton *s
     }
 }
 
+/* The thinnest twigs grow with the leaves that hide them; where these have fallen they are what is
+ * seen of a crown. */
+static size_t twig_count(const struct wd_tree_form *form)
+{
+    if (form->species->order_count == 0 || form->species->form == WD_FORM_SNAG)
+        return 0;
+    double spread = wd_dpow((double)form->spread, form->spread < 1 ? 0.9 : 1.1);
+    return (size_t)(BARE_TWIGS * (double)form->detail * fmin(spread, 1.5));
+}
+
+/* Places of a leafless month: for twigs, and for flowers that come before the leaves. */
+static void place_bare(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
+                       const struct wd_tree_form *form, const struct carriers *carriers)
+{
+    size_t twigs = twig_count(form), flowers = 4 * (size_t)form->species->flower.count;
+    place_leaves(foliage, skeleton, form, carriers, twigs > flowers ? twigs : flowers);
+    for (size_t i = 0; i < foliage->count; i++)
+        foliage->leaves[i].size_m *= 0.01f * form->species->leaf.length_cm;
+    order_leaves(foliage, form->key);
+    choose_flowers(foliage, form, foliage->leaves, foliage->count);
+    foliage->twig_count = twigs < foliage->count ? twigs : foliage->count;
+    foliage->count = 0;
+}
+
 void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
                      const struct wd_tree_form *form)
 {
@@ -381,17 +405,14 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
     }
     gather_carriers(&carriers, skeleton, form);
     weigh_carriers(&carriers, foliage, skeleton, form, area);
-    bool bare = wanted == 0 && form->species->flower.count > 0;
-    place_leaves(foliage, skeleton, form, &carriers,
-                 bare ? 4 * (size_t)form->species->flower.count : wanted);
+    if (wanted == 0) {
+        place_bare(foliage, skeleton, form, &carriers);
+        free(carriers.items);
+        return;
+    }
+    place_leaves(foliage, skeleton, form, &carriers, wanted);
     free(carriers.items);
-    if (bare)
-        for (size_t i = 0; i < foliage->count; i++)
-            foliage->leaves[i].size_m *= 0.01f * form->species->leaf.length_cm;
-    else
-        scale_leaves(foliage, form->species, area);
+    scale_leaves(foliage, form->species, area);
     order_leaves(foliage, form->key);
     choose_flowers(foliage, form, foliage->leaves, foliage->count);
-    if (bare)
-        foliage->count = 0;
 }

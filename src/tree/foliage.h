@@ -21,6 +21,7 @@ struct wd_leaf {
 struct wd_foliage {
     struct wd_leaf *leaves;
     size_t count;
+    size_t twig_count; /* without leaves: of `leaves`, where bare twigs stand in their stead */
     struct wd_leaf *flowers; /* places of flowers: leaves that they stand before, or would */
     size_t flower_count;
     struct wd_tree_density crown; /* leaf area, with its light swept */

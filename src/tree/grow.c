@@ -11,6 +11,7 @@
 #include "tree/leaf_spray.h"
 #include "tree/import.h"
 #include "tree/openness.h"
+#include "tree/twigs.h"
 #include "tree/wood.h"
 
 enum {
@@ -19,6 +20,10 @@ enum {
     REDUCED_WOOD_TRIANGLES = 1600,
     REDUCED_LEAVES = 2600, /* two triangles each */
 };
+
+/* Both cover as much: fewer shoots are as much wider. */
+static const struct wd_twig_style full_twigs = {SIZE_MAX, 3, 0.006f};
+static const struct wd_twig_style reduced_twigs = {1800, 1, 0.026f};
 
 static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                        const struct wd_foliage *foliage, const struct wd_tree_form *form)
@@ -30,6 +35,7 @@ static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton 
     wd_wood_style_fit(&style, skeleton, form->species,
                       (size_t)(FULL_WOOD_TRIANGLES * form->detail) + LEAST_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
+    wd_twigs_mesh(mesh, foliage, form, &full_twigs);
     mesh->wood_index_count = mesh->index_count;
 }
 
@@ -42,6 +48,7 @@ static void build_reduced_wood(struct wd_tree_mesh *mesh, const struct wd_skelet
     struct wd_wood_style style = {0.002f, 4, 5};
     wd_wood_style_fit(&style, skeleton, form->species, REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
+    wd_twigs_mesh(mesh, foliage, form, &reduced_twigs);
     mesh->wood_index_count = mesh->index_count;
 }
 

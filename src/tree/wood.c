@@ -10,7 +10,7 @@
 enum { MAX_RINGS = 48, MAX_SIDES = 64, LEAST_SIDES = 3, MOST_STEP = 32 };
 #define MOST_RADIUS_M 20.0f /* no branch is thicker */
 /* Turns of the bark's tile a metre: what repeats up the stem comes to stand beside itself. */
-#define BARK_DRIFT 0.23f
+#define BARK_DRIFT 0.09f
 
 struct ring {
     struct wd_vec3 center_m, direction;

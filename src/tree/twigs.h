@@ -1,0 +1,18 @@
+/* twigs.h: the thinnest twigs of a crown without leaves. */
+#ifndef WD_TREE_TWIGS_H
+#define WD_TREE_TWIGS_H
+
+#include "tree/foliage.h"
+
+/* The first `count` of foliage's places for twigs, each as one shoot, or as three that fork. */
+struct wd_twig_style {
+    size_t count;
+    int shoots;
+    float width_m; /* at the foot */
+};
+
+/* Appends them as wood, three triangles a shoot. */
+void wd_twigs_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
+                   const struct wd_tree_form *form, const struct wd_twig_style *style);
+
+#endif
