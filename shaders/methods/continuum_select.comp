@@ -159,16 +159,15 @@ vec2 gain_place(float count)
     return vec2(octave, clamp(at - 1.0, 0.0, 1.0));
 }
 
-/* Radii in metres of discs that face the viewer, `count` for leaves and for wood each. */
-vec2 disc_radii(uint model, vec2 count, float sine)
+/* Radii in metres of discs of leaves and of wood that face the viewer, `each` of a stratum. */
+vec2 disc_radii(uint model, float each, float sine)
 {
     vec2 area_m2 = vec2(splat_models[model].leaf_area_m2, splat_models[model].wood_area_m2);
-    vec2 equal = count * (area_m2.x + area_m2.y) / max(area_m2, 1e-6); /* points of all the tree */
-    vec2 leaf = gain_place(equal.x), wood = gain_place(equal.y);
-    uint i = uint(leaf.x), k = uint(wood.x);
-    vec2 gain = vec2(mix(GAIN(leaf, i), GAIN(leaf, i + 1u), leaf.y),
-                     mix(GAIN(wood, k), GAIN(wood, k + 1u), wood.y));
-    return sqrt(gain * area_m2 / (3.14159265 * count));
+    vec2 place = gain_place(each * float(WD_SPLAT_STRATA));
+    uint k = uint(place.x);
+    vec2 gain = vec2(mix(GAIN(leaf, k), GAIN(leaf, k + 1u), place.y),
+                     mix(GAIN(wood, k), GAIN(wood, k + 1u), place.y));
+    return sqrt(gain * area_m2 / (3.14159265 * each * vec2(WD_LEAF_STRATA, 1.0)));
 }
 
 /* Factors of what leaves show: those whose lower side is seen, and how open few discs look. */
@@ -236,7 +235,7 @@ void select_tree(uint index, float share, uint place)
     /* discs that grow cover more of each other */
     float grown = min(pow(share, -0.25), 1.2) / share;
     float size = sqrt(grown) * view.pixels;
-    vec2 radii = disc_radii(model_index, each * vec2(WD_LEAF_STRATA, 1.0), toward.z);
+    vec2 radii = disc_radii(model_index, each, toward.z);
     splats.radius = size * radii.x;
     splats.wood_radius = size * radii.y;
     uint triangles = wood ? wood_triangles(model_index, tall_px) : 0u;

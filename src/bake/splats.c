@@ -134,8 +134,10 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     struct wd_tree_point *wood = wd_alloc_array(WD_STRATUM_SPLATS, sizeof *wood);
     fill_strata(splats, points, leaves, wood);
     struct wd_disc_fit fits;
-    wd_disc_fit(&fits, &(struct wd_disc_class){wood, WD_STRATUM_SPLATS, points->wood_area_m2},
-                &(struct wd_disc_class){leaves, leaf_count, points->leaf_area_m2}, mesh);
+    const float stratum = 1.0f / WD_SPLAT_STRATA;
+    const struct wd_disc_class woody = {wood, WD_STRATUM_SPLATS, points->wood_area_m2, stratum};
+    const struct wd_disc_class leafy = {leaves, leaf_count, points->leaf_area_m2, 1 - stratum};
+    wd_disc_fit(&fits, &woody, &leafy, mesh);
     splats->model.wood = fits.wood;
     splats->model.leaf = fits.leaf;
     splats->model.light = fits.light;

@@ -21,17 +21,24 @@ struct canvas {
     struct wd_look_point *points;
 };
 
+/* Needles stand all around their shoot, whose sides show as many upper faces as lower ones: each face
+ * is their mean, or shoots drawn as one sheet would be darker from above than with all needles. */
+static float leaf_color(const struct wd_species *species, bool back, int channel)
+{
+    float upper = species->leaf.color[channel], lower = species->leaf.back_color[channel];
+    return species->leaf.shape == WD_LEAF_NEEDLES ? 0.5f * (upper + lower) : back ? lower : upper;
+}
+
 void wd_look_color(const struct wd_species *species, uint32_t layer, float color[3])
 {
     if (layer == WD_LOOK_BARK) {
         wd_bark_texture_color(species, color);
         return;
     }
-    const float *wanted = layer == WD_LOOK_FLOWER      ? species->flower.color
-                          : layer == WD_LOOK_LEAF_BACK ? species->leaf.back_color
-                                                       : species->leaf.color;
     for (int i = 0; i < 3; i++)
-        color[i] = layer == WD_LOOK_FLOWER ? wanted[i] : wanted[i] / WD_LEAF_TINT_MEAN;
+        color[i] = layer == WD_LOOK_FLOWER
+                       ? species->flower.color[i]
+                       : leaf_color(species, layer == WD_LOOK_LEAF_BACK, i) / WD_LEAF_TINT_MEAN;
 }
 
 /* The lower side: veins stand out, colour is paler and more even. */

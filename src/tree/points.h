@@ -34,6 +34,7 @@ struct wd_disc_class {
     const struct wd_tree_point *points;
     size_t count;
     float area_m2;
+    float share; /* of all discs of a tree those that are of this class */
 };
 
 /* What discs of a tree need to show what its mesh shows, seen from the sides of struct
@@ -45,7 +46,8 @@ struct wd_disc_fit {
 };
 
 /* Finds the gains with which discs of both classes together cover as many pixels as the mesh, and as
- * many of them with wood, on average over windows that begin anywhere. */
+ * many of them with wood, on average over windows that begin anywhere. Counts are those of both
+ * classes together. */
 void wd_disc_fit(struct wd_disc_fit *fits, const struct wd_disc_class *wood,
                  const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh);
 

@@ -170,8 +170,7 @@ static float facing_of(const struct wd_tree_point *point, struct wd_vec3 toward)
 static size_t disc_count(const struct plan *plan, int class, size_t count)
 {
     const struct wd_disc_class *discs = plan->classes[class];
-    float all = plan->classes[0]->area_m2 + plan->classes[1]->area_m2;
-    size_t wanted = (size_t)((float)count * discs->area_m2 / all + 0.5f);
+    size_t wanted = (size_t)((float)count * discs->share + 0.5f);
     wanted = wanted > 0 ? wanted : 1;
     return discs->area_m2 > 0 ? wanted < discs->count ? wanted : discs->count : 0;
 }

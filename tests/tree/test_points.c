@@ -27,8 +27,9 @@ static void fit_gains(struct sampled *sampled)
         for (size_t i = 0; i < points->count; i++)
             if (!(points->points[i].kind & WD_POINT_LEAF) == !kind)
                 kinds[kind][count++] = points->points[i];
+        float area_m2 = kind ? points->leaf_area_m2 : points->wood_area_m2;
         classes[kind] = (struct wd_disc_class){
-            kinds[kind], count, kind ? points->leaf_area_m2 : points->wood_area_m2};
+            kinds[kind], count, area_m2, area_m2 / (points->leaf_area_m2 + points->wood_area_m2)};
     }
     wd_disc_fit(&sampled->fits, &classes[0], &classes[1], &sampled->model.full);
     free(kinds[0]);
