@@ -19,12 +19,12 @@ static void write_bounds(const struct wd_key *key, const char *what, char *buffe
     if (!bounded(key))
         snprintf(buffer, size, "%s", what);
     else if (isinf(key->min))
-        snprintf(buffer, size, "%s of at most %.9g", what, key->max);
+        snprintf(buffer, size, "%s of at most %.10g", what, key->max);
     else if (isinf(key->max))
-        snprintf(buffer, size, "%s %s %.9g%s", what, low, key->min,
+        snprintf(buffer, size, "%s %s %.10g%s", what, low, key->min,
                  key->flags & WD_KEY_EXCLUSIVE_MIN ? "" : " up");
     else
-        snprintf(buffer, size, "%s %s %.9g%s to %.9g", what, low, key->min,
+        snprintf(buffer, size, "%s %s %.10g%s to %.10g", what, low, key->min,
                  key->flags & WD_KEY_EXCLUSIVE_MIN ? " up" : "", key->max);
 }
 
@@ -98,7 +98,7 @@ static const char *describe(const json_t *json, char *buffer, size_t size)
         snprintf(buffer, size, "\"%.60s\"", json_string_value(json));
         return buffer;
     case JSON_INTEGER:
-    case JSON_REAL: snprintf(buffer, size, "%.9g", json_number_value(json)); return buffer;
+    case JSON_REAL: snprintf(buffer, size, "%.12g", json_number_value(json)); return buffer;
     case JSON_TRUE: return "true";
     case JSON_FALSE: return "false";
     case JSON_NULL: break;
