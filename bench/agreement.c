@@ -127,7 +127,8 @@ bool bench_agreement_measure(struct bench_agreement *agreement, const char *scen
                              const char *camera_name, const char *gpu)
 {
     static const char *const settings[] = {"wind.speed_mps=0", "quality.mesh_distance_m=100000",
-                                           "quality.reduced_distance_m=200000", NULL};
+                                           "quality.reduced_distance_m=200000", "quality.leaf_px=0",
+                                           NULL};
     const struct wd_forest_params params = {.scene_path = scene_path, .settings = settings};
     struct wd_forest *forest = NULL;
     struct wd_camera camera;

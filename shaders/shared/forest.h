@@ -114,7 +114,7 @@ struct wd_tree_push {
     uint32_t card_vertices;  /* a tree: WD_CARD_VERTICES, or WD_UPRIGHT_VERTICES where all are seen
                                 so level that the third card shows nothing */
     float spray_reach;       /* of wd_spray_share; 0: no leaf is drawn as a twig */
-    float leaf_m;            /* length of the mesh's drawn leaves */
+    float leaf_m;            /* length of the mesh's leaves, on sprigs of each */
     uint32_t leaf_count;     /* of them, in progressive order; 0: all are drawn at any distance */
 };
 

@@ -16,7 +16,7 @@
  * (the sequence codec keeps the order of indices). */
 enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_LEAF_GROWTHS,
        FIGURES = 7 + 7 + BOUNDS + GROWTHS + WD_GAIN_SIDES,
-       SETS = 2 * WD_LEAF_SETS, SET_WORDS = 9, SET_AT = FIGURES + MESHES * MESH_WORDS,
+       SETS = 2 * WD_LEAF_SETS, SET_WORDS = 10, SET_AT = FIGURES + MESHES * MESH_WORDS,
        LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
 static const uint32_t MAX_VERTICES = 1u << 26;
@@ -237,6 +237,7 @@ static void pack_set(struct block *block, uint8_t *words, const struct wd_leaf_s
     put_word(words, 4, bits_of(set->own));
     put_word(words, 5, bits_of(set->arch_least));
     put_word(words, 6, bits_of(set->arch_range));
+    put_word(words, 9, bits_of(set->grain));
     put_word(words, 7, (uint32_t)pack_vertices(block, set->corners,
                                                (size_t)set->forms * set->corner_count,
                                                sizeof *set->corners));
@@ -254,6 +255,7 @@ static bool unpack_set(struct wd_leaf_set *set, const uint8_t *words, struct blo
         .own = float_of(get_word(words, 4)),
         .arch_least = float_of(get_word(words, 5)),
         .arch_range = float_of(get_word(words, 6)),
+        .grain = float_of(get_word(words, 9)),
     };
     if (set->forms > MAX_FORMS || set->corner_count > MAX_VERTICES || set->leaf_count > leaves ||
         (set->leaf_count && !set->forms))

@@ -154,11 +154,13 @@ static void describe_leaves(struct wd_mesh_range ranges[2], const struct wd_tree
     if (!model->leaf_count || model->spray.index_count == 0)
         return;
     full->leaf_count = model->leaf_count;
-    full->leaf_m = mean_leaf_m(model);
+    float leaf_m = mean_leaf_m(model);
+    full->leaf_m = leaf_m * model->sets[WD_LEVEL_MESH][WD_SET_LEAVES].grain;
     reduced->leaf_count = reduced->sets[WD_SET_LEAVES].leaf_count;
     if (reduced->leaf_count > 0)
         reduced->leaf_m =
-            full->leaf_m * sqrtf((float)full->leaf_count / (float)reduced->leaf_count);
+            leaf_m * model->sets[WD_LEVEL_REDUCED][WD_SET_LEAVES].grain *
+            sqrtf((float)full->leaf_count / (float)reduced->leaf_count);
 }
 
 static void place_model(struct building *building, uint32_t index)

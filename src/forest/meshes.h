@@ -33,7 +33,7 @@ struct wd_mesh_range {
     struct wd_leaf_draw sets[WD_LEAF_SETS];
     uint32_t leaf_count; /* drawn leaves that thin out with distance, or 0: those that stand for
                             more than one */
-    float leaf_m;        /* their mean length */
+    float leaf_m;        /* their mean length; of sprigs that of a leaf on them */
 };
 /* Elements; a multiple of every storage buffer alignment (256 bytes) that Vulkan allows. */
 #define WD_MESH_ALIGNMENT 64

@@ -9,6 +9,8 @@
 #include "tree/progressive.h"
 
 enum { MAX_LEAF_TRIANGLES = 600000, BARE_TWIGS = 5000 };
+#define SPRIG_SHARE 0.6f /* sprigs in place of leaves, each with more triangles */
+enum { SPRIG_TRIANGLES = 8, LEAST_SPRIG_TRIANGLES = 2 };
 #define HEDGE_SHARE 0.3f /* of the leaf area index of a forest */
 #define HEDGE_SHELL_M 0.18f
 
@@ -256,20 +258,27 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
     double most = (double)(area_m2 / wd_leaf_unit_area(species)) / (real_m * real_m);
     if (count > most || form->clip) /* a hedge is seen from near */
         count = most;
-    size_t bound = MAX_LEAF_TRIANGLES / wd_leaf_least_triangles(species);
+    size_t triangles = wd_leaf_least_triangles(species);
+    if (!needles && !wd_species_has_fronds(species) && most > (double)WD_SPRIG_FROM * count) {
+        count *= (double)SPRIG_SHARE;
+        triangles = SPRIG_TRIANGLES;
+    }
+    size_t bound = MAX_LEAF_TRIANGLES / triangles;
     return count < 40 ? 40 : count > (double)bound ? bound : (size_t)count;
 }
 
-/* Sprays that would hang into the ground lie on it. */
-static void lift_leaf(struct wd_leaf *leaf)
+/* Sprays that would hang into the ground lie on it; of sprigs, which reach beyond a length, the
+ * leaves hang a little below the axis. */
+static void lift_leaf(struct wd_leaf *leaf, float reach)
 {
     float edge = 0.5f * leaf->size_m * (1 - fabsf(leaf->normal.z)); /* it stands on its side */
-    leaf->position_m.z = wd_maxf(leaf->position_m.z, 0.01f + edge);
-    float room = 0.03f - leaf->position_m.z;
-    if (leaf->axis.z * leaf->size_m >= room)
+    float below = reach > 1 ? 0.25f * leaf->size_m : 0, length = reach * leaf->size_m;
+    leaf->position_m.z = wd_maxf(leaf->position_m.z, 0.01f + edge + below);
+    float room = 0.03f + below - leaf->position_m.z;
+    if (leaf->axis.z * length >= room)
         return;
     leaf->axis = wd_v3_unit(WD_V3(leaf->axis.x, leaf->axis.y,
-                                  wd_clampf(room / leaf->size_m, -0.9f, 0.5f)));
+                                  wd_clampf(room / length, -0.9f, 0.5f)));
     leaf->normal = wd_v3_square(leaf->normal, leaf->axis);
 }
 
@@ -280,10 +289,11 @@ static void scale_leaves(struct wd_foliage *foliage, const struct wd_species *sp
     for (size_t i = 0; i < foliage->count; i++)
         sum += unit * foliage->leaves[i].size_m * foliage->leaves[i].size_m;
     float grow = sum > 0 ? sqrtf(area_m2 / sum) : 0;
-    for (size_t i = 0; i < foliage->count; i++) {
+    for (size_t i = 0; i < foliage->count; i++)
         foliage->leaves[i].size_m *= grow;
-        lift_leaf(&foliage->leaves[i]);
-    }
+    float reach = wd_foliage_reach(foliage, species);
+    for (size_t i = 0; i < foliage->count; i++)
+        lift_leaf(&foliage->leaves[i], reach);
     foliage->area_m2 = area_m2;
 }
 
@@ -391,7 +401,9 @@ static void place_bare(struct wd_foliage *foliage, const struct wd_skeleton *ske
 void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
                      const struct wd_tree_form *form)
 {
-    *foliage = (struct wd_foliage){0};
+    float detail = fminf(form->detail, 1);
+    *foliage = (struct wd_foliage){
+        .sprig_triangles = (uint32_t)wd_mixf(LEAST_SPRIG_TRIANGLES, SPRIG_TRIANGLES, detail)};
     struct carriers carriers = {0};
     float area = leaf_area_m2(form);
     size_t wanted = leaf_count(form, area);

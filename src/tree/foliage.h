@@ -26,6 +26,7 @@ struct wd_foliage {
     size_t flower_count;
     struct wd_tree_density crown; /* leaf area, with its light swept */
     float area_m2;
+    uint32_t sprig_triangles; /* of a drawn leaf that stands for many, at most */
 };
 
 void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
@@ -38,6 +39,15 @@ void wd_foliage_scale(struct wd_foliage *foliage, float factor);
 /* Area of one leaf or shoot of unit length as drawn, one side. */
 float wd_leaf_unit_area(const struct wd_species *species);
 
+/* Drawn leaves that stand for at least so many are sprigs (leaf_sprig.h). */
+#define WD_SPRIG_FROM 2.25f
+
+/* Root of the mean of the drawn leaves' squared lengths. */
+float wd_foliage_mean_m(const struct wd_foliage *foliage);
+
+/* How far a drawn leaf reaches along its axis, in lengths. */
+float wd_foliage_reach(const struct wd_foliage *foliage, const struct wd_species *species);
+
 /* Triangles of a leaf or shoot where there are too many for outlines: 1 or more. */
 size_t wd_leaf_least_triangles(const struct wd_species *species);
 
@@ -49,8 +59,8 @@ void wd_foliage_pack(struct wd_tree_leaf *leaves, struct wd_leaf_box *box,
 void wd_foliage_sets(struct wd_leaf_set sets[WD_LEAF_SETS], const struct wd_foliage *foliage,
                      const struct wd_species *species);
 
-/* The first leaves as `count` plain kites that together have the area of all, and flowers of few
- * triangles; fronds keep their form. */
+/* The first `count` leaves as plain kites or sprigs of two triangles that together have the area of
+ * all, and flowers of few triangles; fronds keep their form. */
 void wd_foliage_sets_reduced(struct wd_leaf_set sets[WD_LEAF_SETS],
                              const struct wd_foliage *foliage, const struct wd_species *species,
                              size_t count);

@@ -18,7 +18,8 @@ enum {
     FULL_WOOD_TRIANGLES = 25000, /* at detail 1, with the least */
     LEAST_WOOD_TRIANGLES = 1000,
     REDUCED_WOOD_TRIANGLES = 1600,
-    REDUCED_LEAVES = 2600, /* two triangles each */
+    REDUCED_LEAVES = 4000, /* two triangles each */
+    REDUCED_SHOOTS = 2600,
 };
 
 /* Both cover as much: fewer shoots are as much wider. */
@@ -136,7 +137,7 @@ static float sets_top_m(const struct wd_tree_model *model)
 /* Fronds arch and plumes stand over them: their forms are asked. */
 static float foliage_top_m(const struct wd_foliage *foliage, const struct wd_species *species)
 {
-    float top = 0;
+    float top = 0, reach = wd_foliage_reach(foliage, species);
     if (wd_species_has_fronds(species)) {
         struct wd_tree_model model = {0};
         pack_leaves(&model, foliage, species);
@@ -147,7 +148,7 @@ static float foliage_top_m(const struct wd_foliage *foliage, const struct wd_spe
     }
     for (size_t i = 0; i < foliage->count; i++) {
         const struct wd_leaf *leaf = &foliage->leaves[i];
-        top = wd_maxf(top, leaf->position_m.z + wd_maxf(leaf->axis.z, 0) * leaf->size_m);
+        top = wd_maxf(top, leaf->position_m.z + wd_maxf(leaf->axis.z, 0) * reach * leaf->size_m);
     }
     return top;
 }
@@ -218,12 +219,9 @@ static float crown_radius_m(const struct wd_foliage *foliage, const struct wd_sk
 static void build_spray(struct wd_tree_model *model, const struct wd_foliage *foliage,
                         const struct wd_species *species)
 {
-    double area = 0;
-    for (size_t i = 0; i < foliage->count; i++)
-        area += (double)(foliage->leaves[i].size_m * foliage->leaves[i].size_m);
     if (foliage->count == 0)
         return;
-    wd_leaf_spray_mesh(&model->spray, species, (float)sqrt(area / (double)foliage->count));
+    wd_leaf_spray_mesh(&model->spray, species, wd_foliage_mean_m(foliage));
     if (model->spray.index_count > 0)
         model->spray_reach = species->leaf.shape == WD_LEAF_NEEDLES ? 0.5f : 1;
 }
@@ -294,7 +292,9 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     build_reduced_wood(&model->reduced, &skeleton, &foliage, &form);
     pack_leaves(model, &foliage, species);
     wd_foliage_sets(model->sets[0], &foliage, species);
-    wd_foliage_sets_reduced(model->sets[1], &foliage, species, REDUCED_LEAVES);
+    bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
+    wd_foliage_sets_reduced(model->sets[1], &foliage, species,
+                            needles ? REDUCED_SHOOTS : REDUCED_LEAVES);
     build_spray(model, &foliage, form.species);
     finish_model(model, &skeleton, &foliage, &form);
     model->age_years = resolved.age_years;

@@ -2,12 +2,13 @@
 
 #include "base/memory.h"
 #include "tree/foliage.h"
-#include "tree/leaf_template.h"
+#include "tree/leaf_sprig.h"
 #include "tree/look.h"
 
 /* Bytes that the leaves, or flowers, of a full mesh may take with their outlines; more leaves are
  * kites, and more flowers than fit are left out. */
 enum { OUTLINE_BYTES = 2200000 };
+enum { REDUCED_SPRIG_TRIANGLES = 2 };
 
 /* --- places ------------------------------------------------------------------------------ */
 
@@ -115,6 +116,30 @@ static struct wd_leaf_set flower_set(const struct wd_foliage *foliage,
     return set;
 }
 
+/* An enlarged leaf grows from its middle. */
+static void grow_from_middle(struct wd_leaf_template *leaf, float factor)
+{
+    for (size_t i = 0; i < leaf->corner_count; i++)
+        leaf->corners[i].p = wd_v3_mix(WD_V3(0, 0.5f, 0), leaf->corners[i].p, factor);
+}
+
+static struct wd_leaf_set sprig_set(const struct wd_species *species, struct wd_sprig sprig,
+                                    size_t count, float grow)
+{
+    struct wd_leaf_template templates[WD_LEAF_VARIANTS];
+    struct wd_leaf_set set;
+    for (uint32_t i = 0; i < WD_LEAF_VARIANTS; i++) {
+        wd_leaf_sprig_init(&templates[i], species, sprig, i);
+        grow_from_middle(&templates[i], grow);
+    }
+    wd_leaf_set_init(&set, templates, WD_LEAF_VARIANTS);
+    set.leaf_count = (uint32_t)count;
+    set.grain = 1 / sqrtf((float)sprig.leaves);
+    for (uint32_t i = 0; i < WD_LEAF_VARIANTS; i++)
+        wd_leaf_template_finish(&templates[i]);
+    return set;
+}
+
 static struct wd_leaf_set leaf_set(const struct wd_foliage *foliage,
                                    const struct wd_species *species, enum wd_leaf_form form)
 {
@@ -133,6 +158,14 @@ static struct wd_leaf_set leaf_set(const struct wd_foliage *foliage,
     for (uint32_t i = 0; i < forms; i++)
         wd_leaf_template_finish(&templates[i]);
     return set;
+}
+
+float wd_foliage_mean_m(const struct wd_foliage *foliage)
+{
+    double area = 0;
+    for (size_t i = 0; i < foliage->count; i++)
+        area += (double)(foliage->leaves[i].size_m * foliage->leaves[i].size_m);
+    return foliage->count ? (float)sqrt(area / (double)foliage->count) : 0;
 }
 
 /* Feathers keep their shape with a quarter of the leaflets, each four times as wide; a fern's pinnae
@@ -168,6 +201,47 @@ static bool outlines_fit(const struct wd_foliage *foliage, const struct wd_speci
     return fit;
 }
 
+/* What each of the first `count` leaves is drawn as, where it stands for several; compound leaves
+ * that are too many for their outlines are sprigs of leaflets at any size. No leaves: as it is. */
+static struct wd_sprig sprig_of(const struct wd_foliage *foliage, const struct wd_species *species,
+                                size_t count, size_t most_triangles, bool outlined)
+{
+    bool compound = species->leaf.compound != WD_COMPOUND_SIMPLE;
+    float mean_m = wd_foliage_mean_m(foliage), real_m = 0.01f * species->leaf.length_cm;
+    float real = mean_m * mean_m / (real_m * real_m) * (float)foliage->count / (float)(count + 1);
+    if (species->leaf.shape == WD_LEAF_NEEDLES || is_frond(species) ||
+        (real < WD_SPRIG_FROM && (outlined || !compound)))
+        return (struct wd_sprig){0};
+    size_t wanted = (size_t)(real * (compound ? (float)species->leaf.leaflets : 1) + 0.5f);
+    wanted = wanted < WD_SPRIG_LEAVES ? wanted : WD_SPRIG_LEAVES;
+    if (2 * wanted <= most_triangles)
+        return (struct wd_sprig){(uint32_t)wanted, 2};
+    return (struct wd_sprig){(uint32_t)(wanted < most_triangles ? wanted : most_triangles), 1};
+}
+
+static size_t outline_triangles(const struct wd_species *species)
+{
+    struct wd_leaf_template leaf;
+    wd_leaf_template_init(&leaf, species, WD_LEAF_AS_BLADE, 0);
+    size_t triangles = leaf.index_count / 3;
+    wd_leaf_template_finish(&leaf);
+    return triangles;
+}
+
+static struct wd_sprig full_sprig(const struct wd_foliage *foliage,
+                                  const struct wd_species *species, bool outlined)
+{
+    size_t triangles = outlined ? outline_triangles(species) : foliage->sprig_triangles;
+    return sprig_of(foliage, species, foliage->count, triangles, outlined);
+}
+
+float wd_foliage_reach(const struct wd_foliage *foliage, const struct wd_species *species)
+{
+    bool outlined = outlines_fit(foliage, species, OUTLINE_BYTES);
+    struct wd_sprig sprig = full_sprig(foliage, species, outlined);
+    return sprig.leaves > 1 ? wd_sprig_reach((int)sprig.leaves) + 1 / sqrtf((float)sprig.leaves) : 1;
+}
+
 void wd_foliage_sets(struct wd_leaf_set sets[WD_LEAF_SETS], const struct wd_foliage *foliage,
                      const struct wd_species *species)
 {
@@ -176,13 +250,26 @@ void wd_foliage_sets(struct wd_leaf_set sets[WD_LEAF_SETS], const struct wd_foli
         !outlines_fit(foliage, species, OUTLINE_BYTES))
         drawn = coarser_fronds(species);
     bool fit = outlines_fit(foliage, &drawn, OUTLINE_BYTES);
-    sets[WD_SET_LEAVES] = leaf_set(foliage, &drawn, fit ? WD_LEAF_AS_BLADE : WD_LEAF_AS_KITE);
+    struct wd_sprig sprig = full_sprig(foliage, species, fit);
+    sets[WD_SET_LEAVES] =
+        sprig.leaves > 1 ? sprig_set(species, sprig, foliage->count, 1)
+                         : leaf_set(foliage, &drawn, fit ? WD_LEAF_AS_BLADE : WD_LEAF_AS_KITE);
     sets[WD_SET_FLOWERS] = flower_set(foliage, species, WD_LEAF_AS_BLADE, OUTLINE_BYTES);
 }
 
-/* The first leaves as kites with the area of all. */
-static struct wd_leaf_set kite_set(const struct wd_foliage *foliage,
-                                   const struct wd_species *species, size_t count)
+/* Factor on the length of the first leaves, of this area at unit length, with which they have the
+ * area of all. */
+static float reduced_growth(const struct wd_foliage *foliage, size_t count, float area)
+{
+    float sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += area * foliage->leaves[i].size_m * foliage->leaves[i].size_m;
+    return sum > 0 ? sqrtf(foliage->area_m2 / sum) : 1;
+}
+
+/* The first leaves, kites or sprigs, with the area of all. */
+static struct wd_leaf_set few_set(const struct wd_foliage *foliage,
+                                  const struct wd_species *species, size_t count)
 {
     /* a kite faces one way, the needles of a brush all ways, and they hide one another */
     bool brushes = species->leaf.shape == WD_LEAF_NEEDLES &&
@@ -195,17 +282,17 @@ static struct wd_leaf_set kite_set(const struct wd_foliage *foliage,
     }
     struct wd_leaf_template kite;
     wd_leaf_template_init(&kite, &plain, WD_LEAF_AS_KITE, 0);
-    float area = wd_leaf_template_area(&kite), sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += area * foliage->leaves[i].size_m * foliage->leaves[i].size_m;
-    float grow = sum > 0 ? sqrtf((brushes ? 0.905f : 1) * foliage->area_m2 / sum) : 1;
-    /* an enlarged leaf grows from its middle */
-    for (size_t i = 0; i < kite.corner_count; i++)
-        kite.corners[i].p = wd_v3_mix(WD_V3(0, 0.5f, 0), kite.corners[i].p, grow);
+    float grow = reduced_growth(foliage, count, wd_leaf_template_area(&kite));
+    struct wd_sprig sprig = sprig_of(foliage, species, count, REDUCED_SPRIG_TRIANGLES, true);
+    grow_from_middle(&kite, (brushes ? sqrtf(0.905f) : 1) * grow);
     struct wd_leaf_set set;
-    wd_leaf_set_init(&set, &kite, 1);
-    set.leaf_count = (uint32_t)count;
-    set.own = brushes ? 0.1f : set.own;
+    if (sprig.leaves > 1) {
+        set = sprig_set(species, sprig, count, grow);
+    } else {
+        wd_leaf_set_init(&set, &kite, 1);
+        set.leaf_count = (uint32_t)count;
+        set.own = brushes ? 0.1f : set.own;
+    }
     wd_leaf_template_finish(&kite);
     return set;
 }
@@ -221,7 +308,7 @@ void wd_foliage_sets_reduced(struct wd_leaf_set sets[WD_LEAF_SETS],
         outlines_fit(foliage, &coarse, OUTLINE_BYTES / 4))
         sets[WD_SET_LEAVES] = leaf_set(foliage, &coarse, WD_LEAF_AS_BLADE);
     else
-        sets[WD_SET_LEAVES] = kite_set(foliage, species,
-                                       count < foliage->count ? count : foliage->count);
+        sets[WD_SET_LEAVES] = few_set(foliage, species,
+                                      count < foliage->count ? count : foliage->count);
     sets[WD_SET_FLOWERS] = flower_set(foliage, species, WD_LEAF_AS_KITE, OUTLINE_BYTES / 4);
 }

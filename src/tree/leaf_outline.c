@@ -58,6 +58,17 @@ float wd_leaf_outline_area(const struct wd_leaf_outline *shape)
     return 0.5f * fabsf(twice); /* two halves of unit half width, over the width of 2 */
 }
 
+float wd_leaf_outline_widest(const struct wd_leaf_outline *shape)
+{
+    float widest = 0, at = 0.5f;
+    for (int i = 0; i < shape->count; i++)
+        if (shape->points[i][0] > widest) {
+            widest = shape->points[i][0];
+            at = shape->points[i][1];
+        }
+    return at;
+}
+
 float wd_leaf_outline_inside(const struct wd_leaf_outline *shape, float width, float x, float y)
 {
     float half = 0.5f * width, nearest = 1e9f;

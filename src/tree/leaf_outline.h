@@ -36,6 +36,9 @@ struct wd_leaf_size wd_leaf_blade_size(const struct wd_species *species);
 /* Area of the flat blade over length times width. */
 float wd_leaf_outline_area(const struct wd_leaf_outline *shape);
 
+/* Where along it the blade is widest. */
+float wd_leaf_outline_widest(const struct wd_leaf_outline *shape);
+
 /* Distance of (x, y) from the outline, negative outside; `width` is the whole blade's over its
  * length, distances are in blade lengths. */
 float wd_leaf_outline_inside(const struct wd_leaf_outline *shape, float width, float x, float y);

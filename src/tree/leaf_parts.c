@@ -101,12 +101,7 @@ void wd_leaf_add_blade(struct wd_leaf_template *leaf, const struct wd_leaf_outli
 void wd_leaf_add_kite(struct wd_leaf_template *leaf, const struct wd_leaf_outline *outline,
                       const struct wd_blade_place *place)
 {
-    float widest = 0, at = 0.5f;
-    for (int i = 0; i < outline->count; i++)
-        if (outline->points[i][0] > widest) {
-            widest = outline->points[i][0];
-            at = outline->points[i][1];
-        }
+    float at = wd_leaf_outline_widest(outline);
     struct wd_blade_place kite = *place;
     kite.width *= 2 * wd_leaf_outline_area(outline);
     uint32_t foot = add_blade_corner(leaf, outline, &kite, 0, 0);

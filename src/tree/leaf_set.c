@@ -29,6 +29,7 @@ void wd_leaf_set_init(struct wd_leaf_set *set, const struct wd_leaf_template *te
         .forms = forms,
         .corner_count = (uint32_t)corners,
         .index_count = (uint32_t)templates->index_count,
+        .grain = 1,
         .own = 0.4f,
         .arch_least = 1,
     };

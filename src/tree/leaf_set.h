@@ -14,6 +14,7 @@ struct wd_leaf_set {
     uint32_t *indices;              /* three a triangle, the same for each form; from 0 on */
     uint32_t forms, corner_count, index_count;
     uint32_t leaf_count;
+    float grain;      /* length of its parts over a leaf's: 1, or less of sprigs */
     float own;        /* share of the sheet's own normal; the rest is the crown's */
     float arch_least; /* what stands above or below a leaf's plane is scaled by arch_least + */
     float arch_range; /* arch_range * WD_LEAF_ARCH */

@@ -1,9 +1,9 @@
 #include "tree/leaf_spray.h"
 
-#include "tree/leaf_parts.h"
+#include "tree/leaf_sprig.h"
 #include "tree/look.h"
 
-enum { MOST_LEAVES = 14, SIDE_TWIGS = 10 };
+enum { SIDE_TWIGS = 10 };
 
 struct spray {
     struct wd_leaf_template twig; /* all of it */
@@ -44,37 +44,16 @@ static void add_wood(struct spray *spray, struct wd_vec3 from, struct wd_vec3 to
 
 /* --- leaves ------------------------------------------------------------------------------ */
 
-/* The n-th leaf's way off the twig: in two ranks, or in crossed pairs. */
-static struct wd_vec3 leaf_side(const struct wd_species *species, int n)
-{
-    float turn = (float)(n & 1) * (float)WD_PI;
-    if (species->leaf.phyllotaxis == WD_PHYLLOTAXIS_OPPOSITE)
-        turn += (float)(n >> 1 & 1) * 0.5f * (float)WD_PI;
-    return wd_v3_turn(WD_V3(1, 0, 0), WD_V3(0, 0, 1), turn);
-}
-
 static void add_leaves(struct spray *spray, const struct wd_species *species,
                        const struct wd_leaf_template *leaf, int count)
 {
-    float length = 1 / sqrtf((float)count), reach = fmaxf(1 - 0.6f * length, 0.35f);
-    bool pairs = species->leaf.phyllotaxis != WD_PHYLLOTAXIS_ALTERNATE;
-    struct wd_random *random = &spray->random;
+    float reach = wd_sprig_reach(count);
     for (int i = 0; i < count; i++) {
-        bool last = i == count - 1;
-        float step = pairs ? (float)(i & ~1) + 0.5f : (float)i;
-        float at = last ? reach : reach * (0.15f + 0.8f * step / (float)count);
-        struct wd_vec3 side = last ? WD_V3(0, 0, 0) : leaf_side(species, i);
-        struct wd_vec3 along = wd_v3_mad(WD_V3(0, 0.75f, -0.1f), side, 0.8f);
-        along = wd_v3_unit(wd_v3_mad(along, wd_random_vec3(random), 0.22f));
-        struct wd_vec3 up = wd_v3_mad(WD_V3(0, 0.15f, 1), wd_random_vec3(random), 0.35f);
-        struct wd_blade_place place =
-            wd_blade_place(WD_V3(0, at, -0.1f * at * at), along, up,
-                           length * wd_random_range(random, 0.85f, 1.12f), 1);
+        struct wd_blade_place place = wd_sprig_place(species, &spray->random, i, count);
         add_copy(&spray->twig, leaf, &place);
     }
-    struct wd_vec3 middle = WD_V3(0, 0.5f * reach, -0.025f * reach * reach);
-    add_wood(spray, WD_V3(0, 0, 0), WD_V3(0, reach, -0.1f * reach * reach), 0.003f);
-    add_wood(spray, WD_V3(0, 0, 0), middle, 0.0035f);
+    add_wood(spray, wd_sprig_axis(0), wd_sprig_axis(reach), 0.003f);
+    add_wood(spray, wd_sprig_axis(0), wd_sprig_axis(0.5f * reach), 0.0035f);
 }
 
 /* --- needles ----------------------------------------------------------------------------- */
@@ -195,7 +174,7 @@ void wd_leaf_spray_mesh(struct wd_tree_mesh *mesh, const struct wd_species *spec
     float area = wd_leaf_template_area(&leaf), real_m = 0.01f * species->leaf.length_cm;
     int count = (int)(size_m * size_m / (real_m * real_m) + 0.5f);
     int most = WD_SPRAY_TRIANGLES / (int)(leaf.index_count / 3 + 1);
-    most = most < MOST_LEAVES ? most : MOST_LEAVES;
+    most = most < WD_SPRIG_LEAVES ? most : WD_SPRIG_LEAVES;
     if (species->leaf.shape == WD_LEAF_NEEDLES)
         add_needles(&spray, species, area);
     else if (count > 1 && most > 1)

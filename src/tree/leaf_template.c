@@ -56,7 +56,7 @@ static void add_outlined(struct wd_leaf_template *leaf, const struct wd_species 
     }
 }
 
-static void scale_to_area(struct wd_leaf_template *leaf, float area)
+void wd_leaf_template_scale(struct wd_leaf_template *leaf, float area)
 {
     float own = wd_leaf_template_area(leaf), factor = own > 0 ? sqrtf(area / own) : 1;
     for (size_t i = 0; i < leaf->corner_count; i++)
@@ -78,7 +78,7 @@ void wd_leaf_template_init(struct wd_leaf_template *leaf, const struct wd_specie
     leaf->corner_count = leaf->index_count = 0;
     struct wd_blade_place place = whole_leaf(species, 0);
     wd_leaf_add_kite(leaf, wd_leaf_outline_of(species), &place);
-    scale_to_area(leaf, area);
+    wd_leaf_template_scale(leaf, area);
 }
 
 /* Petals in rings, the inner ones smaller and steeper. */

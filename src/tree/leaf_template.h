@@ -38,5 +38,7 @@ void wd_flower_template_init(struct wd_leaf_template *flower, const struct wd_sp
 void wd_leaf_template_finish(struct wd_leaf_template *leaf);
 
 float wd_leaf_template_area(const struct wd_leaf_template *leaf);
+/* Scales it about its foot until it has this area. */
+void wd_leaf_template_scale(struct wd_leaf_template *leaf, float area);
 
 #endif

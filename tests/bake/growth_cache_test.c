@@ -74,6 +74,9 @@ static void assert_same_model(const struct wd_tree_model *a, const struct wd_tre
     assert_int_equal(a->flower_count, b->flower_count);
     assert_memory_equal(a->leaves, b->leaves, a->leaf_count * sizeof *a->leaves);
     assert_memory_equal(&a->leaf_box, &b->leaf_box, sizeof a->leaf_box);
+    for (int i = 0; i < 2 * WD_LEAF_SETS; i++)
+        assert_true(a->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS].grain ==
+                    b->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS].grain);
     assert_true(a->leaf_count > 0 && a->spray_reach == b->spray_reach);
     assert_true(a->height_m == b->height_m && a->crown_radius_m == b->crown_radius_m);
     assert_true(a->crown_base_m == b->crown_base_m && a->dbh_m == b->dbh_m);

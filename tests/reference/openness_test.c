@@ -124,7 +124,8 @@ static struct found measure(const char *name, float openness)
     trace_init(&traced, &model.full);
     struct place places[PLACES];
     uint32_t leaves = model.full.index_count - model.full.wood_index_count;
-    double leaf_m = sqrt((double)model.leaf_area_m2 / (double)model.leaf_count);
+    double leaf_m = (double)model.sets[0][WD_SET_LEAVES].grain *
+                    sqrt((double)model.leaf_area_m2 / (double)model.leaf_count);
     for (uint32_t i = 0; i < PLACES; i++) {
         uint32_t at = model.full.wood_index_count + (uint32_t)((uint64_t)leaves * i / PLACES);
         const struct wd_tree_vertex *vertex = &model.full.vertices[model.full.indices[at]];

@@ -118,6 +118,9 @@ static void check_model(const struct wd_species *species, const struct wd_tree_m
     check_mesh(&model->reduced, leafy);
     assert_float_equal(model->height_m / height_m, 1, 1e-4);
     assert_float_equal(model->full.max_m[2] / height_m, 1, 0.03);
+    if (fabsf(model->reduced.max_m[2] / height_m - 1) > 0.06f)
+        print_error("%s %g m: reduced %g m\n", species->name, (double)height_m,
+                    (double)model->reduced.max_m[2]);
     assert_float_equal(model->reduced.max_m[2] / height_m, 1, 0.06);
     if (!(model->full.min_m[2] <= -0.0005f && model->full.min_m[2] >= -0.4f))
         print_error("%s %g m: lowest %g m\n", species->name, (double)height_m,
@@ -230,8 +233,8 @@ static void budgets_of_mature_trees_hold(void **state)
         for (int open = 0; open <= 1; open++) {
             struct wd_species species = test_species(&arena, test_species_names[s]);
             struct wd_tree_model model = grow(&species, 11, 0, (float)open);
-            assert_in_range(model.full.index_count / 3, 40000, 100000);
-            assert_in_range(model.reduced.index_count / 3, 4000, 8000);
+            assert_in_range(model.full.index_count / 3, 40000, 200000);
+            assert_in_range(model.reduced.index_count / 3, 4000, 10000);
             double radius = (double)model.crown_radius_m;
             double index = (double)model.leaf_area_m2 / (3.14159265 * radius * radius);
             double wanted = (double)species.leaf.area_index;

@@ -2,6 +2,7 @@
 
 #include "tree/foliage.h"
 #include "tree/leaf_spray.h"
+#include "tree/leaf_sprig.h"
 #include "tree/leaf_template.h"
 #include "tree/mesh.h"
 
@@ -82,6 +83,77 @@ static void both_forms_have_one_area(void **state)
         assert_float_equal(wd_leaf_template_area(&kite) / wd_leaf_template_area(&blade), 1, 1e-3f);
         wd_leaf_template_finish(&blade);
         wd_leaf_template_finish(&kite);
+    }
+    wd_arena_finish(&arena);
+}
+
+static void check_sprig(const struct wd_species *species, struct wd_sprig kind)
+{
+    struct wd_leaf_template sprigs[WD_LEAF_VARIANTS];
+    for (uint32_t i = 0; i < WD_LEAF_VARIANTS; i++) {
+        struct wd_leaf_template *sprig = &sprigs[i];
+        wd_leaf_sprig_init(sprig, species, kind, i);
+        check_template(sprig);
+        assert_int_equal(sprig->index_count, 3 * kind.leaves * kind.triangles);
+        assert_int_equal(sprig->corner_count, sprigs[0].corner_count);
+        assert_memory_equal(sprig->indices, sprigs[0].indices,
+                            sprig->index_count * sizeof *sprig->indices);
+        assert_float_equal(wd_leaf_template_area(sprig) / wd_leaf_unit_area(species), 1, 1e-3f);
+        /* leaves' upper sides are those of their windings */
+        for (size_t k = 0; k < sprig->index_count; k += 3) {
+            const struct wd_leaf_corner *a = &sprig->corners[sprig->indices[k]];
+            struct wd_vec3 b = wd_v3_sub(sprig->corners[sprig->indices[k + 1]].p, a->p);
+            struct wd_vec3 c = wd_v3_sub(sprig->corners[sprig->indices[k + 2]].p, a->p);
+            assert_true(wd_v3_dot(wd_v3_cross(b, c), a->n) > 0);
+        }
+    }
+    assert_memory_not_equal(sprigs[0].corners, sprigs[1].corners,
+                            sprigs[0].corner_count * sizeof *sprigs[0].corners);
+    for (uint32_t i = 0; i < WD_LEAF_VARIANTS; i++)
+        wd_leaf_template_finish(&sprigs[i]);
+}
+
+/* Several leaves have the area of the one that they are drawn for, in any number and form. */
+static void sprigs_have_the_area_of_a_leaf(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    static const char *const names[] = {"oak", "beech", "birch", "maple", "willow", "angelique"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        struct wd_species species = test_species(&arena, names[i]);
+        for (uint32_t leaves = 2; leaves <= WD_SPRIG_LEAVES; leaves += 3) {
+            check_sprig(&species, (struct wd_sprig){leaves, 1});
+            check_sprig(&species, (struct wd_sprig){leaves, 2});
+        }
+    }
+    wd_arena_finish(&arena);
+}
+
+/* What a large tree shows as a leaf is no more than twice as long as one; a young one's leaves are
+ * as long as real ones, and drawn singly. */
+static void leaves_of_large_trees_stay_small(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    static const char *const names[] = {"oak", "beech", "birch", "maple"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        struct wd_species species = test_species(&arena, names[i]);
+        for (int young = 0; young < 2; young++) {
+            const struct wd_grow_params params = {.seed = 3, .height_m = young ? 2.0f : 20.0f,
+                                                  .openness = young ? 0 : 1};
+            struct wd_tree_model model;
+            assert_true(wd_tree_grow(&model, &species, &params, NULL));
+            const struct wd_leaf_set *set = &model.sets[0][WD_SET_LEAVES];
+            double sum = 0;
+            for (uint32_t k = 0; k < model.leaf_count; k++)
+                sum += (double)wd_leaf_size_m(model.leaves[k], model.leaf_box);
+            double shown_m = (double)set->grain * sum / model.leaf_count;
+            double real = shown_m / (0.01 * (double)species.leaf.length_cm);
+            if (!(real > 0.7 && real < (young ? 1.6 : 2.2)))
+                fail_msg("%s: %g of a leaf's length", names[i], real);
+            assert_int_equal(set->forms, young ? 1 : WD_LEAF_VARIANTS);
+            wd_tree_model_finish(&model);
+        }
     }
     wd_arena_finish(&arena);
 }
@@ -249,6 +321,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shape_is_sound),
         cmocka_unit_test(both_forms_have_one_area),
+        cmocka_unit_test(sprigs_have_the_area_of_a_leaf),
+        cmocka_unit_test(leaves_of_large_trees_stay_small),
         cmocka_unit_test(twigs_keep_the_area),
         cmocka_unit_test(a_leaf_of_its_real_size_needs_no_twig),
         cmocka_unit_test(packed_leaves_stand_where_they_grew),
