@@ -41,7 +41,7 @@ uint tree_at(uint place)
 
 float shown(wd_tree tree, float distance_m)
 {
-    vec2 near = near_m[WD_TREE_LAYER(tree)];
+    vec2 near = push.near_scale * near_m[WD_TREE_LAYER(tree)];
     float show = wd_layer_show(fades[WD_TREE_LAYER(tree)], distance_m)
                  * wd_ramp(near.x, near.y, distance_m);
     return push.whole_fades != 0u ? floor(show) : show;

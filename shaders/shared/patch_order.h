@@ -75,6 +75,7 @@ struct wd_patch_push {
     uint32_t table;          /* words before `first` */
     uint32_t whole_fades;    /* fades are whole numbers: trees pop (the sample's fault) */
     float pixels_per_radian;
+    float near_scale;        /* on the distances where billboards begin */
 };
 
 #endif

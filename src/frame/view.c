@@ -8,6 +8,9 @@
 
 #include "world/surroundings.h"
 
+/* Of a picture of 600 lines that is 60 degrees high. */
+static const float REFERENCE_PIXELS_PER_RADIAN = 519.615242f;
+
 enum wd_side wd_frustum_box(const struct wd_frustum *frustum, const float min[3], const float max[3])
 {
     enum wd_side side = WD_INSIDE;
@@ -68,12 +71,12 @@ void wd_view_init(struct wd_view *view, const struct wd_view_params *params)
     wd_camera_axes(&params->camera, right, forward, up);
     *view = (struct wd_view){.camera = params->camera,
                              .width = params->width,
-                             .height = params->height,
-                             .lod_scale = 1.0f};
+                             .height = params->height};
     memcpy(view->eye_m, params->camera.position_m, sizeof view->eye_m);
     double half_height = tan(params->camera.fov_rad * 0.5);
     double half_width = half_height * params->width / params->height;
     view->pixels_per_radian = (float)(params->height * 0.5 / half_height);
+    view->lod_scale = fmaxf(view->pixels_per_radian / REFERENCE_PIXELS_PER_RADIAN, 1.0f);
     /* clip = (x / half_width, -y / half_height, near, distance): y down, depth = near / distance */
     set_row(view->clip_from_rel, 0, right, 1.0 / half_width, 0.0);
     set_row(view->clip_from_rel, 1, up, -1.0 / half_height, 0.0);

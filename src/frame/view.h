@@ -29,7 +29,10 @@ struct wd_view {
     float pixels_per_radian;    /* of the picture: size on screen = size / distance * this */
     uint32_t width, height;
     uint32_t cascade;           /* for shadow views: 0..WD_CASCADES - 1 */
-    float lod_scale;            /* factor on the distances of the levels of detail */
+    float lod_scale;            /* factor on the distances of the levels of detail, which are meant for
+                                   pictures of 600 lines that are 60 degrees high: in larger ones and
+                                   through longer lenses levels change at the same size in pixels;
+                                   smaller ones, where it is 1, keep their trees */
     struct wd_cascade_box {     /* of shadow views: what the map holds */
         double right[3], up[3], toward[3]; /* its axes, local frame */
         double center[3];       /* along them, metres; the last: where depth begins */

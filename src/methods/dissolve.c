@@ -154,12 +154,12 @@ static void dissolve_drop_forest(void *state, struct wd_gpu *gpu)
 
 /* --- choosing ---------------------------------------------------------------------------- */
 
-/* Shares of geometry and billboard. The billboard comes in whole before the geometry goes;
- * `faithful`: both at once. */
-static void blend(const struct wd_dissolve_options *options, float scale, float distance_m,
-                  float *geometry, float *billboard)
+/* Shares of geometry and billboard at a distance of the reference picture. The billboard comes in
+ * whole before the geometry goes; `faithful`: both at once. */
+static void blend(const struct wd_dissolve_options *options, float distance_m, float *geometry,
+                  float *billboard)
 {
-    float from_m = (float)options->billboard_m * scale;
+    float from_m = (float)options->billboard_m;
     float t = wd_ramp(from_m, from_m + (float)options->overlap_m, distance_m);
     *billboard = options->faithful ? t : fminf(2.0f * t, 1.0f);
     *geometry = options->faithful ? 1.0f - t : fminf(2.0f - 2.0f * t, 1.0f);
@@ -188,9 +188,11 @@ static void add_tree(struct dissolve *dissolve, const struct wd_tree_draw *draw,
     float x = (float)(tree->x_mm * 0.001 - eye_m[0]), y = (float)(tree->y_mm * 0.001 - eye_m[1]);
     float z = (float)(tree->z_mm * 0.001 - eye_m[2]), level_m = sqrtf(x * x + y * y);
     float whole_m = sqrtf(x * x + y * y + z * z), geometry, billboard;
-    float distance_m = options->faithful ? whole_m : level_m;
     float fade = wd_layer_show(forest->host_fades[wd_forest_fade_of(forest, index)], whole_m);
-    blend(options, draw->view->lod_scale, distance_m, &geometry, &billboard);
+    float scale = options->faithful ? 1.0f : draw->view->lod_scale;
+    whole_m /= scale;
+    level_m /= scale;
+    blend(options, options->faithful ? whole_m : level_m, &geometry, &billboard);
     geometry *= fade;
     billboard *= fade;
     uint32_t model = wd_forest_model_of(forest, tree);

@@ -38,8 +38,9 @@ static struct wd_level_rule rule_of(const struct wd_tree_draw *draw)
     const struct wd_lod_options *options = &draw->forest->scene->methods.lod;
     struct wd_level_rule rule = wd_level_rule_of(draw->forest, draw->view, draw->pass);
     if (rule.finest == WD_LEVEL_MESH) {
-        rule.mesh_m = (float)options->full_m * draw->view->lod_scale;
-        rule.reduced_m = (float)options->reduced_m * draw->view->lod_scale;
+        float scale = options->faithful ? 1.0f : draw->view->lod_scale;
+        rule.mesh_m = (float)options->full_m * scale;
+        rule.reduced_m = (float)options->reduced_m * scale;
         rule.plain = true;
     }
     rule.blend = options->faithful ? 0.0f : (float)options->blend;

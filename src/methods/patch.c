@@ -290,6 +290,12 @@ static enum wd_side patch_side(const struct patch_state *patch, const struct wd_
     return wd_frustum_box(&view->frustum, min, max);
 }
 
+/* Factor on the distances where billboards begin. */
+static float near_scale(const struct wd_tree_draw *draw)
+{
+    return draw->forest->scene->methods.patch.faithful ? 1.0f : draw->view->lod_scale;
+}
+
 /* Meshes of the trees near the eye; billboards take over where they end. */
 static void add_meshes(struct patch_state *patch, const struct wd_tree_draw *draw, uint32_t index)
 {
@@ -299,7 +305,7 @@ static void add_meshes(struct patch_state *patch, const struct wd_tree_draw *dra
     rule.plain = true;
     for (uint32_t i = patch->patches.first[index]; i < patch->patches.first[index + 1]; i++) {
         uint32_t tree = patch->patches.trees[i];
-        float end_m = patch->host_near[wd_forest_fade_of(forest, tree)][1];
+        float end_m = near_scale(draw) * patch->host_near[wd_forest_fade_of(forest, tree)][1];
         rule.mesh_m = fminf(full_m, end_m);
         rule.reduced_m = end_m;
         wd_selection_add_tree(&patch->meshes, forest, draw->view, &rule, tree);
@@ -324,7 +330,7 @@ static void patch_select(void *state, const struct wd_tree_draw *draw)
     }
     const struct wd_patch_order order = order_of(patch, draw->view);
     const uint32_t capacity = (uint32_t)draw->forest->scene->methods.patch.resident_patches;
-    float meshes_m = farthest_mesh(patch, draw->forest);
+    float meshes_m = near_scale(draw) * farthest_mesh(patch, draw->forest);
     patch->frame++;
     patch->seen_count = 0;
     wd_selection_clear(&patch->meshes);
@@ -464,7 +470,8 @@ static void draw_billboards(struct patch_state *patch, const struct wd_tree_draw
         .light = light,
         .pipeline = light ? &patch->blend : &patch->layers,
         .push = {.whole_fades = options->faithful,
-                 .pixels_per_radian = draw->view->pixels_per_radian},
+                 .pixels_per_radian = draw->view->pixels_per_radian,
+                 .near_scale = near_scale(draw)},
         .by_columns = order_of(patch, draw->view).by_columns,
     };
     if (light)

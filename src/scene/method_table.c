@@ -55,13 +55,15 @@ static const struct wd_keys continuum_table = TABLE(continuum);
 
 static const struct wd_key lod_keys[] = {
     {"full_m", WD_KEY_DOUBLE, OPTION(lod, full_m), 0, 1e6, "30",
-     "Full meshes nearer than this, in metres.", .row = "O1"},
+     "Full meshes nearer than this, in metres, in a picture of 600 lines that is 60 degrees high, "
+     "as all of these distances.", .row = "O1"},
     {"reduced_m", WD_KEY_DOUBLE, OPTION(lod, reduced_m), 0, 1e6, "80",
      "Reduced meshes nearer than this, in metres; billboards beyond.", .row = "O1"},
     {"blend", WD_KEY_DOUBLE, OPTION(lod, blend), 0, 0.9, "0.15",
      "Share of a distance over which levels blend.", .row = "O1"},
     {"faithful", WD_KEY_BOOL, OPTION(lod, faithful), .fallback = "false",
-     .doc = "Levels change at once, as switch nodes of a scene graph do: they pop.", .row = "O1"},
+     .doc = "Levels change at once, as switch nodes of a scene graph do: they pop. Distances are the "
+            "same for every picture.", .row = "O1"},
     {0},
 };
 static const struct wd_keys lod_table = TABLE(lod);
@@ -76,21 +78,24 @@ static const struct wd_key patch_keys[] = {
      .choices = patch_orders, .row = "I2",
      .doc = "Back to front by arithmetic on cells, or by a sort of the trees themselves."},
     {"near_begin_m", WD_KEY_DOUBLE, OPTION(patch, near_begin_m), 0, 1e6, "30.48",
-     "Billboards begin to fade in at this distance, in metres (100 ft).", .row = "I7"},
+     "Billboards begin to fade in at this distance, in metres (100 ft), in a picture of 600 lines "
+     "that is 60 degrees high.", .row = "I7"},
     {"near_end_m", WD_KEY_DOUBLE, OPTION(patch, near_end_m), 0, 1e6, "60.96",
      "Billboards are whole from this distance on, where meshes begin to go, in metres (200 ft). "
      "A layer's mesh_distance_m goes before it.", .row = "I7"},
     {"resident_patches", WD_KEY_INTEGER, OPTION(patch, resident_patches), 1, 1e6, "256",
      "Patches that are kept populated; those in view always are.", .row = "I1"},
     {"faithful", WD_KEY_BOOL, OPTION(patch, faithful), .fallback = "false",
-     .doc = "Fades are whole numbers, as in the sample: billboards pop.", .row = "I7"},
+     .doc = "Fades are whole numbers, as in the sample: billboards pop. Distances are the same for every "
+            "picture.", .row = "I7"},
     {0},
 };
 static const struct wd_keys patch_table = TABLE(patch);
 
 static const struct wd_key dissolve_keys[] = {
     {"billboard_m", WD_KEY_DOUBLE, OPTION(dissolve, billboard_m), 0, 1e6, "60",
-     "Trees dissolve into billboards from this horizontal distance on, in metres.", .row = "W6"},
+     "Trees dissolve into billboards from this horizontal distance on, in metres, in a picture of "
+     "600 lines that is 60 degrees high, as all of these distances.", .row = "W6"},
     {"overlap_m", WD_KEY_DOUBLE, OPTION(dissolve, overlap_m), 0, 1e5, "10",
      "Over this span they do, in metres.", .row = "W6"},
     {"leaves_begin_m", WD_KEY_DOUBLE, OPTION(dissolve, leaves_begin_m), 0, 1e6, "10",
@@ -105,7 +110,7 @@ static const struct wd_key dissolve_keys[] = {
      "Branches are reduced, the thinnest dropped, beyond this distance, in metres.", .row = "W4"},
     {"faithful", WD_KEY_BOOL, OPTION(dissolve, faithful), .fallback = "false",
      .doc = "Bare crowns, every side of a tree the same picture, billboards from above, both levels "
-            "at once while dissolving.", .row = "W6"},
+            "at once while dissolving, distances the same for every picture.", .row = "W6"},
     {0},
 };
 static const struct wd_keys dissolve_table = TABLE(dissolve);
@@ -155,7 +160,8 @@ static const struct wd_key views_keys[] = {
     {"blend", WD_KEY_ENUM, OPTION(views, blend), .fallback = "\"three\"", .choices = view_blends,
      .row = "R4", .doc = "The nearest view alone, or three views around blended."},
     {"near_m", WD_KEY_DOUBLE, OPTION(views, near_m), 0, 1e6, "40",
-     "Meshes nearer than this, in metres.", .row = "R4"},
+     "Meshes nearer than this, in metres, in a picture of 600 lines that is 60 degrees high.",
+     .row = "R4"},
     {"faithful", WD_KEY_BOOL, OPTION(views, faithful), .fallback = "false",
      .doc = "As in the paper: no meshes, the nearest view: trees pop as the eye moves.",
      .row = "R4"},
@@ -175,7 +181,8 @@ static const struct wd_key zfield_keys[] = {
     {"refine", WD_KEY_INTEGER, OPTION(zfield, refine), 0, 8, "1",
      "Times that depth is looked up again where it was found.", .row = "R6"},
     {"near_m", WD_KEY_DOUBLE, OPTION(zfield, near_m), 0, 1e6, "40",
-     "Meshes nearer than this, in metres; the paper has none.", .row = "R6"},
+     "Meshes nearer than this, in metres, in a picture of 600 lines that is 60 degrees high; the "
+     "paper has none.", .row = "R6"},
     {"range_m", WD_KEY_DOUBLE, OPTION(zfield, range_m), 0, 1e6, "3000",
      "No tree is drawn by itself beyond this distance, in metres; 0: all are.", .row = "R6"},
     {"fade", WD_KEY_DOUBLE, OPTION(zfield, fade), 0, 1, "0.3",

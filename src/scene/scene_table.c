@@ -182,9 +182,11 @@ static const struct wd_key quality_keys[] = {
     {"height", WD_KEY_INTEGER, IN(quality, height), 1, 32768, "720", "Height in pixels."},
     {"samples", WD_KEY_INTEGER, IN(quality, samples), 1, 65536, "4", "Samples a pixel."},
     {"mesh_distance_m", WD_KEY_DOUBLE, IN(quality, mesh_distance_m), 0, 1e6, "40",
-     "Full meshes are drawn nearer than this, for a tree of 20 m, in metres."},
+     "Full meshes are drawn nearer than this, in metres, for a tree of 20 m in a picture of 600 "
+     "lines that is 60 degrees high, or smaller; in larger ones at the same size in pixels."},
     {"reduced_distance_m", WD_KEY_DOUBLE, IN(quality, reduced_distance_m), 0, 1e6, "140",
-     "Reduced meshes are drawn nearer than this, for a tree of 20 m, in metres."},
+     "Reduced meshes are drawn nearer than this, in metres; for what trees and pictures, see "
+     "mesh_distance_m."},
     {"blend", WD_KEY_DOUBLE, IN(quality, blend), 0, 0.9, "0.25",
      "Share of a distance over which levels blend."},
     {"leaf_px", WD_KEY_DOUBLE, IN(quality, leaf_px), 0, 100, "3",

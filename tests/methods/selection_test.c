@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "frame/view.h"
 #include "methods/selection.h"
 
 static const struct wd_level_rule RULE = {60.0f, 200.0f, 0.25f, WD_LEVEL_MESH};
@@ -65,6 +66,27 @@ static void far_cascades_take_coarser_levels(void **state)
     assert_true(wd_levels_at(&reduced, 20.0f, 1.0f).show[WD_LEVEL_REDUCED] == 1.0f);
 }
 
+static float scale_of(uint32_t lines, double fov_deg)
+{
+    const struct wd_view_params params = {
+        .camera = {.fov_rad = fov_deg * 0.017453292519943295}, .width = 800, .height = lines,
+        .near_m = 0.1f};
+    struct wd_view view;
+    wd_view_init(&view, &params);
+    return view.lod_scale;
+}
+
+/* Levels change at the same size in pixels in pictures as large as the one that distances are meant
+ * for, and larger ones; small ones lose nothing. */
+static void distances_follow_pixels(void **state)
+{
+    (void)state;
+    assert_float_equal(scale_of(600, 60), 1, 1e-5);
+    assert_float_equal(scale_of(1200, 60), 2, 1e-5);
+    assert_float_equal(scale_of(600, 30), tan(0.5235987755982988) / tan(0.2617993877991494), 1e-4);
+    assert_true(scale_of(150, 60) == 1 && scale_of(600, 90) == 1);
+}
+
 static void ranges_that_touch_become_one(void **state)
 {
     (void)state;
@@ -87,6 +109,7 @@ int main(void)
         cmocka_unit_test(levels_follow_each_other),
         cmocka_unit_test(beyond_the_card_distance_there_are_cards_only),
         cmocka_unit_test(far_cascades_take_coarser_levels),
+        cmocka_unit_test(distances_follow_pixels),
         cmocka_unit_test(ranges_that_touch_become_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
