@@ -49,7 +49,8 @@ static float leaf_length_m(const struct wd_tree_model *model)
 {
     uint32_t triangles = (model->full.index_count - model->full.wood_index_count) / 3;
     if (model->leaf_count)
-        return sqrtf(model->leaf_area_m2 / (float)model->leaf_count);
+        return model->sets[0][WD_SET_LEAVES].grain *
+               sqrtf(model->leaf_area_m2 / (float)model->leaf_count);
     return sqrtf(2 * model->leaf_area_m2 / (float)triangles);
 }
 
