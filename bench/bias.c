@@ -27,7 +27,7 @@ const struct bias_form bias_forms[BIAS_FORMS] = {
                 "methods.zfield.variants=0", NO_MESHES}, {false, true, true, true}},
     {"octants", {"method=impostor", "methods.impostor.area_px=250",
                  "methods.impostor.cluster_size=1", "methods.octree.leaf_trees=1", NO_MESHES}, {false, false, false, true}},
-    {"splats", {"method=continuum", NO_MESHES}, {false, true, true, true}},
+    {"splats", {"method=continuum", "methods.continuum.near_px=0", NO_MESHES}, {false, true, true, true}},
 };
 const int bias_height_px[BIAS_HEIGHTS] = {512, 128, 32, 8};
 static const int tree_counts[BIAS_HEIGHTS] = {1, 4, 24, 64}; /* in a picture */

@@ -91,7 +91,7 @@ WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
 
 /* Crowns nearer than a distance are drawn leaf by leaf, up to this many times it also: from there
  * leaves come in by noise while all splats stand, then the splats thin out. */
-#define WD_NEAR_REACH 1.5f
+#define WD_NEAR_REACH 1.25f
 
 /* From the eye to a crown, taken for an upright cylinder. `foot` of the tree, as seen from the eye;
  * `base`: height of its lowest living branch over its own. */

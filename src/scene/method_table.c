@@ -44,9 +44,9 @@ static const struct wd_key continuum_keys[] = {
      "Trees taller than this many pixels have their stem and boughs drawn as triangles.",
      .row = "continuum"},
     {"near_leaves_m", WD_KEY_DOUBLE, OPTION(continuum, near_leaves_m), 0, 1000, "1.5",
-     "Trees whose crowns are nearer than this, in metres, are drawn leaf by leaf; up to half as far "
-     "again in part. 0: none.", .row = "continuum"},
-    {"near_px", WD_KEY_DOUBLE, OPTION(continuum, near_px), 0, 1e6, "2",
+     "Trees whose crowns are nearer than this, in metres, are drawn leaf by leaf; up to a quarter as "
+     "far again in part. 0: none.", .row = "continuum"},
+    {"near_px", WD_KEY_DOUBLE, OPTION(continuum, near_px), 0, 1e6, "8",
      "So are trees whose mesh has triangles that would be so many pixels across if they were "
      "squares. 0: none.", .row = "continuum"},
     {0},
