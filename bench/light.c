@@ -87,6 +87,7 @@ static bool compare_view(const struct painters *painters, const char *light, con
     struct wd_render_params draw = {.width = WIDTH,
                                     .height = HEIGHT,
                                     .samples = DRAWN_SAMPLES,
+                                    .method = "octree",
                                     .layers = WD_LAYER_COLOR};
     struct wd_picture drawn = {0}, traced = {0};
     struct sums drawn_sums = {0}, traced_sums = {0};
@@ -161,7 +162,8 @@ static bool open_case(struct cost *cost, const char *gpu)
 static bool draw_case(struct cost *cost, enum wd_time_mode timing, struct wd_frame_stats *stats)
 {
     struct wd_render_params params = {
-        .time_s = 3, .width = 800, .height = 600, .samples = 1, .timing = timing};
+        .time_s = 3, .width = 800, .height = 600, .samples = 1, .method = "octree",
+        .timing = timing};
     struct wd_picture picture = {0};
     bool ok = wd_forest_get_camera(cost->forest, "overview", &params.camera) == WD_OK &&
               wd_renderer_render(cost->renderer, &params, &picture) == WD_OK;

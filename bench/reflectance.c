@@ -50,6 +50,7 @@ static bool measure_angle(const struct wd_forest *forest, struct wd_renderer *re
                                           .width = SIDE,
                                           .height = SIDE,
                                           .samples = DRAWN_SAMPLES,
+                                          .method = "octree",
                                           .layers = WD_LAYER_COLOR};
     const struct wd_reference_picture_params trace = {.camera = camera,
                                                       .width = SIDE,

@@ -10,7 +10,7 @@
 enum { GROUND_M = 4000 };
 
 static const char scene_text[] =
-    "{\"name\": \"specimens\", \"variants\": 1,"
+    "{\"name\": \"specimens\", \"variants\": 1, \"method\": \"octree\","
     " \"terrain\": {\"kind\": \"flat\", \"size_m\": [4000, 4000]},"
     " \"sun\": {\"azimuth_deg\": 228, \"elevation_deg\": 42}, \"wind\": {\"speed_mps\": 0},"
     " \"fog\": {\"visibility_m\": 60000},"

@@ -258,7 +258,7 @@ static const struct wd_key scene_keys[] = {
      .doc = "Points of view; without any, one is made that overlooks the scene."},
     {"paths", WD_KEY_LIST, SCENE(paths), .table = &wd_scene_path_keys,
      .count_offset = SCENE(path_count), .doc = "Camera paths for films."},
-    {"method", WD_KEY_STRING, SCENE(method), .fallback = "\"octree\"",
+    {"method", WD_KEY_STRING, SCENE(method), .fallback = "\"continuum\"",
      .choices = wd_scene_method_names,
      .doc = "How trees are drawn."},
     {"methods", WD_KEY_OBJECT, SCENE(methods), .table = &wd_scene_method_keys,

@@ -82,7 +82,7 @@ static void empty_scene_gets_every_default(void **state)
     assert_true(wd_keys_read(&wd_scene_keys, "e.json", "{}", 2, &arena, &log, &scene));
     assert_true(scene.quality.width == 1280 && scene.quality.height == 720);
     assert_true(scene.quality.samples == 4 && scene.sun.elevation_deg == 35);
-    assert_string_equal(scene.method, "octree");
+    assert_string_equal(scene.method, "continuum");
     assert_int_equal(scene.camera_count, 1);
     assert_true(scene.cameras[0].automatic);
     assert_true(logged(&all, "bare ground"));
