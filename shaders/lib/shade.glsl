@@ -37,8 +37,9 @@ wd_shelter tree_shelter(wd_pixel pixel, wd_crown crown)
     wd_shelter shelter = ground_shelter(pixel);
     float top = crown.center_rel.z + crown.radii_m.z, base = crown.center_rel.z - crown.radii_m.z;
     float above = 1.0 - smoothstep(base, top, pixel.rel.z);
-    float over = crown_is_sward(crown) * crown_per_m(crown) * sward_depth_m(crown, pixel.rel);
     float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
+    float close = max(crown_is_sward(crown), 0.6 * herb); /* taller ones stand less so */
+    float over = close * crown_per_m(crown) * sward_depth_m(crown, pixel.rel);
     vec4 own = vec4(max(pixel.openness, 1e-2));
     vec4 stand = min(exp2(mix(log2(own), log2(shelter.through), above)), own);
     shelter.through = mix(stand, shelter.through * own * exp(-0.7 * over), herb);
