@@ -32,7 +32,7 @@ side_look side_of(wd_octant_look look, uint axis, float toward)
     uint side = axis * 2u + (toward > 0.0 ? 0u : 1u);
     vec4 color = unpackUnorm4x8(look.color[side]), normal = unpackUnorm4x8(look.normal[side]);
     float leaf = unpackUnorm4x8(look.leaf[side / 4u])[side % 4u];
-    return side_look(vec4(linear_of(color.rgb), color.a), vec4(normal.xyz * 2.0 - 1.0, normal.a),
+    return side_look(vec4(linear_of(color.rgb), wd_octant_coverage(look.color[side])), vec4(normal.xyz * 2.0 - 1.0, normal.a),
                      leaf);
 }
 

@@ -10,12 +10,19 @@
 /* 56 bytes. An empty side is 0. */
 struct wd_octant_look {
     uint32_t color[WD_OCTANT_SIDES];  /* R in the low byte, G, B: sRGB albedo of what shows;
-                                         A: share of the side that it covers */
+                                         A: root of the share of the side that it covers, as
+                                         parts of a tree cover less than a byte could tell */
     uint32_t normal[WD_OCTANT_SIDES]; /* its mean normal * 0.5 + 0.5, world axes, shorter where they
                                          spread; A: sky openness */
     uint32_t leaf[2]; /* share of it that is leaf: bits 8 s .. of side s, four sides a word */
 };
 WD_STATIC_ASSERT_SIZE(wd_octant_look, 56);
+
+WD_FUNC float wd_octant_coverage(uint32_t color)
+{
+    float root = WD_FLOAT(color >> 24) * (1.0f / 255.0f);
+    return root * root;
+}
 
 /* Opacity of wood in pictures of octants; that of leaves is 1, of nothing 0. */
 #define WD_OCTANT_SHOWN 0.2

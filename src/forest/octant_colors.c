@@ -74,7 +74,7 @@ static struct wd_octant_mean side_of_children(const struct wd_octant_look *const
         if (average == WD_OCTANT_PLAIN)
             seen = 0.125f;
         else if ((part & 1u << axis) != near_bit && front)
-            seen *= 1.0f - (float)(front->color[side] >> 24) / 255.0f;
+            seen *= 1.0f - wd_octant_coverage(front->color[side]);
         add_below(&sum, &mean, seen);
     }
     return sum;
@@ -327,7 +327,7 @@ bool wd_octant_clusters_bake(struct wd_octant_clusters *clusters, struct wd_gpu 
     struct filling filling = {
         .clusters = clusters,
         .grid = wd_alloc_array((size_t)c * c * c, sizeof *filling.grid),
-        .least_alpha = (uint32_t)(fminf(least, 1.0f) * 255.0f + 0.5f),
+        .least_alpha = (uint32_t)(sqrtf(fminf(least, 1.0f)) * 255.0f + 0.5f),
     };
     struct wd_octant_pictures pictures = {
         .cells = c, .pixels = pixels, .take = take_slice, .user = &filling};

@@ -25,7 +25,7 @@ struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint3
 {
     uint32_t color = look->color[side], normal = look->normal[side];
     uint32_t leaf = look->leaf[side / 4] >> (8 * (side % 4)) & 0xffu;
-    struct wd_octant_mean mean = {.coverage = (float)(color >> 24) / 255.0f};
+    struct wd_octant_mean mean = {.coverage = wd_octant_coverage(color)};
     for (int k = 0; k < 3; k++) {
         mean.color[k] = mean.coverage * linear[color >> (8 * k) & 0xffu];
         mean.normal[k] = mean.coverage * ((float)(normal >> (8 * k) & 0xffu) / 127.5f - 1.0f);
@@ -41,14 +41,15 @@ void wd_octant_mean_pack(const struct wd_octant_mean *mean, struct wd_octant_loo
     uint32_t *color = &look->color[side], *normal = &look->normal[side], at = 8 * (side % 4);
     *color = *normal = 0;
     look->leaf[side / 4] &= ~(0xffu << at);
-    if (mean->coverage < 0.5f / 255.0f)
+    uint32_t root = wd_unorm_encode(sqrtf(mean->coverage));
+    if (root == 0)
         return;
     float scale = 1.0f / mean->coverage;
     for (int k = 0; k < 3; k++) {
         *color |= (uint32_t)wd_srgb_encode(mean->color[k] * scale) << (8 * k);
         *normal |= (uint32_t)wd_unorm_encode(mean->normal[k] * scale * 0.5f + 0.5f) << (8 * k);
     }
-    *color |= (uint32_t)wd_unorm_encode(mean->coverage) << 24;
+    *color |= root << 24;
     *normal |= (uint32_t)wd_unorm_encode(mean->openness * scale) << 24;
     look->leaf[side / 4] |= (uint32_t)wd_unorm_encode(mean->leaf * scale) << at;
 }

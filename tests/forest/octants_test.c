@@ -34,7 +34,7 @@ static int remove_cache(void **state)
 
 static double alpha(uint32_t color)
 {
-    return (color >> 24) / 255.0;
+    return (double)wd_octant_coverage(color);
 }
 
 /* Square metres that a card of the first model shows, of a tree in the model's own size. */
