@@ -8,12 +8,14 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <math.h>
+#include <meshoptimizer.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* One mesh of the scene where a node puts it. */
@@ -59,11 +61,21 @@ static bool is_fbx(const char *path)
     return dot && strcasecmp(dot, ".fbx") == 0;
 }
 
+/* Smooth normals with creases take time with the square of loose triangles (of ten millions, half an
+ * hour), joining vertices some 600 bytes for each: large files get both from finish_large. */
+static bool is_large(const char *path)
+{
+    const off_t enough = (off_t)64 << 20;
+    struct stat status;
+    return stat(path, &status) == 0 && status.st_size > enough;
+}
+
 static void open_scene(struct parse *parse, const char *path)
 {
-    unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
-                     aiProcess_JoinIdenticalVertices | aiProcess_FlipUVs |
+    unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_FlipUVs |
                      aiProcess_ValidateDataStructure;
+    if (!is_large(path))
+        steps |= aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices;
     if (is_fbx(path))
         steps |= aiProcess_GlobalScale;
     struct aiPropertyStore *store = aiCreatePropertyStore();
@@ -139,8 +151,8 @@ static void put_vertex(struct wd_file_vertex *to, const struct placed *from, uns
 {
     const struct aiMesh *mesh = from->mesh;
     apply(&from->transform, &mesh->mVertices[i], 1, to->position);
-    struct aiVector3D up = {0, 1, 0};
-    apply(&from->transform, mesh->mNormals ? &mesh->mNormals[i] : &up, 0, to->normal);
+    if (mesh->mNormals)
+        apply(&from->transform, &mesh->mNormals[i], 0, to->normal);
     if (mesh->mTextureCoords[0]) {
         to->uv[0] = mesh->mTextureCoords[0][i].x;
         to->uv[1] = mesh->mTextureCoords[0][i].y;
@@ -152,6 +164,25 @@ static void put_vertex(struct wd_file_vertex *to, const struct placed *from, uns
         to->rgba[0] = unorm8(c->r);
         to->rgba[1] = unorm8(c->g);
         to->rgba[2] = unorm8(c->b);
+    }
+}
+
+/* Of a mesh without: the sum of the triangles around each vertex, by area. */
+static void put_normals(struct wd_file_vertex *vertices, const uint32_t *indices, uint32_t first,
+                        uint32_t end)
+{
+    for (uint32_t i = first; i + 2 < end; i += 3) {
+        const float *a = vertices[indices[i]].position, *b = vertices[indices[i + 1]].position;
+        const float *c = vertices[indices[i + 2]].position;
+        float x[3], y[3];
+        for (int k = 0; k < 3; k++) {
+            x[k] = b[k] - a[k];
+            y[k] = c[k] - a[k];
+        }
+        for (uint32_t corner = i; corner < i + 3; corner++)
+            for (int k = 0; k < 3; k++)
+                vertices[indices[corner]].normal[k] +=
+                    x[(k + 1) % 3] * y[(k + 2) % 3] - x[(k + 2) % 3] * y[(k + 1) % 3];
     }
 }
 
@@ -185,6 +216,26 @@ static void put_geometry(struct parse *parse)
         meshes[i].index_count = index - meshes[i].first_index;
         vertex += mesh->mNumVertices;
     }
+}
+
+/* Equal vertices become one, and meshes without normals get them. */
+static void finish_large(struct parse *parse)
+{
+    struct wd_file_vertex *vertices = (void *)(parse->base + parse->offsets[0]);
+    uint32_t *indices = (void *)(parse->base + parse->offsets[1]);
+    const struct wd_file_mesh *meshes = (void *)(parse->base + parse->offsets[2]);
+    size_t count = parse->header.index_count;
+    uint32_t *own = malloc((count + 1) * sizeof *own);
+    if (!own)
+        give_up(parse, "has more triangles than fit into memory");
+    memcpy(own, indices, count * sizeof *own);
+    meshopt_generateShadowIndexBuffer(indices, own, count, vertices, parse->header.vertex_count,
+                                      sizeof *vertices, sizeof *vertices);
+    free(own);
+    for (size_t i = 0; i < parse->placed_count; i++)
+        if (!parse->placed[i].mesh->mNormals)
+            put_normals(vertices, indices, meshes[i].first_index,
+                        meshes[i].first_index + meshes[i].index_count);
 }
 
 /* --- materials --------------------------------------------------------------------------- */
@@ -281,6 +332,8 @@ void wd_model_parse(const char *path, int file)
     if (parse.base == MAP_FAILED)
         give_up(&parse, "does not fit into memory");
     put_geometry(&parse);
+    if (is_large(path))
+        finish_large(&parse);
     put_materials(&parse);
     parse.header.ready = 1;
     memcpy(parse.base, &parse.header, sizeof parse.header);
