@@ -61,8 +61,8 @@ static bool is_fbx(const char *path)
     return dot && strcasecmp(dot, ".fbx") == 0;
 }
 
-/* Smooth normals with creases take time with the square of loose triangles (of ten millions, half an
- * hour), joining vertices some 600 bytes for each: large files get both from finish_large. */
+/* Smooth normals with creases take time with the square of loose triangles (of ten millions, half
+ * an hour), joining vertices some 600 bytes for each: large files get both from finish_large. */
 static bool is_large(const char *path)
 {
     const off_t enough = (off_t)64 << 20;

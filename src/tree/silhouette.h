@@ -23,8 +23,9 @@ void wd_silhouette_clear(struct wd_silhouette *silhouette);
 /* Covers what the triangles of indices [first, end) cover: pixels whose middle lies in one. */
 void wd_silhouette_cover(struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
                          uint32_t first, uint32_t end);
-/* The mesh's vertices as the picture has them, third the distance toward its side, and of each pixel
- * the distance of what is nearest to it, or minus infinity; `front` has room for three more. */
+/* The mesh's vertices as the picture has them, third the distance toward its side, and of each
+ * pixel the distance of what is nearest to it, or minus infinity; `front` has room for three
+ * more. */
 void wd_silhouette_front(const struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
                          float (*at)[4], float *front);
 
