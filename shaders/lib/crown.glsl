@@ -5,14 +5,17 @@
 struct wd_crown {
     vec3 center_rel;
     vec3 radii_m;
+    float foot_z; /* rel */
 };
 
 wd_crown crown_of(wd_tree tree, wd_model model)
 {
     float height_m = WD_TREE_HEIGHT_M(tree), radius_m = WD_TREE_CROWN_M(tree) * 0.5;
     float base_m = model.crown_base_m * height_m / model.height_m;
+    vec3 foot_rel = tree_foot_rel(tree);
     wd_crown crown;
-    crown.center_rel = tree_foot_rel(tree) + vec3(0.0, 0.0, 0.5 * (height_m + base_m));
+    crown.foot_z = foot_rel.z;
+    crown.center_rel = foot_rel + vec3(0.0, 0.0, 0.5 * (height_m + base_m));
     crown.radii_m = max(vec3(radius_m, radius_m, 0.5 * (height_m - base_m)), vec3(0.1));
     return crown;
 }

@@ -7,10 +7,11 @@ const float PER_PI = 0.318309886;
 
 /* --- light from everywhere ------------------------------------------------------------------ */
 
-/* Share of the sky's light from each quarter that reaches level ground here, past crowns and hills
- * (forest/canopy_light.h). Where the shader does not say, all of it does. */
+/* Of the canopy here (forest/canopy_light.h), in layer 0 the roots of the shares of the sky's light from
+ * each quarter that reach level ground, past crowns and hills; in layer 1 those of its base and top.
+ * Where the shader does not say, all light does. */
 #ifndef CANOPY_LIGHT_AT
-#define CANOPY_LIGHT_AT(at) vec4(1.0)
+#define CANOPY_LIGHT_AT(at, layer) vec4(1.0)
 #endif
 
 /* What comes down to a place among leaves. */
@@ -21,7 +22,7 @@ struct wd_shelter {
 
 wd_shelter ground_shelter(wd_pixel pixel)
 {
-    vec4 field = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale);
+    vec4 field = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 0.0);
     wd_shelter shelter;
     shelter.through = max(field * field, vec4(1e-3));
     shelter.floor_mean = dot(shelter.through, vec4(0.25));
@@ -29,19 +30,29 @@ wd_shelter ground_shelter(wd_pixel pixel)
     return shelter;
 }
 
-/* On a tree: from what the ground gets, at the foot of crowns, to what the tree's own leaves let
- * through, at its top, for trees stand among their like; by how much of the leaves is above. A tree by
- * itself has its own leaves only. Herbs get what the ground gets, less what their own leaves take. */
-wd_shelter tree_shelter(wd_pixel pixel, wd_crown crown)
+/* Share of the canopy's leaves that lie over a height: what lies above a plane through an ellipsoid. */
+float canopy_above(vec2 layer_m, float height_m)
 {
-    wd_shelter shelter = ground_shelter(pixel);
-    float top = crown.center_rel.z + crown.radii_m.z, base = crown.center_rel.z - crown.radii_m.z;
-    float above = 1.0 - smoothstep(base, top, pixel.rel.z);
+    float above = 1.0 - smoothstep(layer_m.x, max(layer_m.y, layer_m.x + 0.5), height_m);
+    return above * above;
+}
+
+/* On a tree: from what the ground gets, below all leaves, to what the tree's own leaves let through where
+ * none of its neighbours rise higher; by how much of the canopy is above. What of it is above the
+ * whole tree comes before its own leaves. Herbs get what the ground gets, less what their own take. */
+wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter shelter)
+{
+    vec4 field = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 1.0);
+    vec2 layer_m = WD_CANOPY_MOST_M * field.xy * field.xy;
+    float top_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
+    float above = canopy_above(layer_m, rel.z - crown.foot_z);
+    float higher = canopy_above(layer_m, top_m);
     float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
     float close = max(crown_is_sward(crown), 0.6 * herb); /* taller ones stand less so */
     float over = close * crown_per_m(crown) * sward_depth_m(crown, pixel.rel);
-    vec4 own = vec4(max(pixel.openness, 1e-2));
-    vec4 stand = min(exp2(mix(log2(own), log2(shelter.through), above)), own);
+    float own = max(pixel.openness, 1e-2);
+    vec4 ground = log2(shelter.through), tree = log2(own) + higher * ground;
+    vec4 stand = exp2(min(mix(tree, ground, above), tree));
     shelter.through = mix(stand, shelter.through * own * exp(-0.7 * over), herb);
     return shelter;
 }
@@ -118,13 +129,17 @@ vec2 leaf_cloud(float cosine)
 
 /* Leaves that the eye sees from the sun's side are those that the sun reaches: the nearer both
  * directions, the fewer shaded leaves are seen (Kuusk 1985). From above, most of the others lie in the
- * shade of neighbours; a forest's edge, seen level, has few. Factors on the light that an even cloud
- * of leaves would return, set by the path tracer's curve over a closed canopy (docs/lighting.md). */
-float sunlit_seen(vec3 eye)
+ * shade of neighbours; a forest's edge, seen level, has few. The deeper crowns are for their width, the
+ * more they shade one another and the more of a slanting view that takes (Li and Strahler 1992). Factors
+ * on the light that an even cloud of leaves would return, set by the path tracer's curves over closed
+ * stands of beech and spruce (docs/lighting.md). */
+float sunlit_seen(vec3 eye, wd_crown crown)
 {
     float apart = angle_of(dot(eye, frame.sun_direction));
-    float wide = mix(0.95, 0.35, smoothstep(0.0, 0.72, eye.z));
-    return wide + mix(1.5, 2.8, smoothstep(0.0, 1.0, eye.z)) * exp(-1.9 * apart);
+    float slender = smoothstep(1.5, 3.2, crown.radii_m.z / crown.radii_m.x);
+    float wide = mix(0.95, mix(0.37, 0.24, slender), smoothstep(0.0, 0.72, eye.z));
+    float hot = mix(mix(0.4, 2.2, slender), 2.8, smoothstep(0.0, 1.0, eye.z));
+    return wide + hot * exp(-1.9 * apart);
 }
 
 /* Where normals spread about their mean, how far one lies along some direction varies by this, squared.
@@ -247,7 +262,7 @@ void shade_by_crown(inout wd_place place, wd_crown crown, float openness, float 
                     uint cascade)
 {
     float path_m = crown_path_m(crown, place.rel);
-    float through = crown_through(crown, path_m) * min(openness * 1.2, 1.0);
+    float through = crown_through(crown, path_m) * min(openness * 1.6, 1.0);
     place.own = mix(through, 1.0, mapped);
     place.ahead_m = mapped > 0.0 ? 0.0 : path_m + frame.cascade_texel_m[min(cascade, 3u)];
 }
@@ -286,7 +301,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, uint cascade
     float cosine = dot(eye, frame.sun_direction);
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
     place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.facing, eye, plain), near);
-    place.sides *= mix(sunlit_seen(eye), 1.0, mapped);
+    place.sides *= mix(sunlit_seen(eye, crown), 1.0, mapped);
     place.transmittance = model.transmittance;
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, crown_is_sward(crown)); /* blades bend over */
     place.sward = crown_is_sward(crown);
@@ -312,11 +327,11 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                                 + WD_TREE_VARIANT(tree) % push.variants];
         wd_crown crown = crown_of(tree, model);
-        shelter = tree_shelter(pixel, crown);
         if (pixel.material >= WD_MATERIAL_LEAF)
             place = leaf_place(pixel, crown, model, cascade);
         else
             place = wood_place(pixel, crown, cascade);
+        shelter = tree_shelter(pixel, place.rel, crown, shelter);
     } else {
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);

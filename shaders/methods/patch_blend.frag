@@ -13,12 +13,12 @@ layout(set = 0, binding = 5) uniform sampler2DArray card_normal;
 layout(set = 0, binding = 7) uniform sampler2DArray card_leaf;
 layout(set = 0, binding = 8) uniform sampler2DArrayShadow shadow_map;
 layout(scalar, set = 0, binding = 9) readonly buffer SunHeights { float sun_height_m[]; };
-layout(set = 0, binding = 11) uniform sampler2D canopy_light;
+layout(set = 0, binding = 11) uniform sampler2DArray canopy_light;
 layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 
 #define PARTS (WD_PART_GROUND | WD_PART_TREES)
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
-#define CANOPY_LIGHT_AT(at) textureLod(canopy_light, at, 0.0)
+#define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)
 
 #include "lib/tree.glsl"
 #define push patch_push.light /* the libraries' name for it; lib/tree.glsl has others of its own */

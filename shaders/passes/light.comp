@@ -27,14 +27,14 @@ layout(scalar, set = 0, binding = 9) readonly buffer Models { wd_model models[];
 layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
 layout(scalar, set = 0, binding = 11) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
 layout(set = 0, binding = 12) uniform sampler2D overlay;
-layout(set = 0, binding = 13) uniform sampler2D canopy_light;
+layout(set = 0, binding = 13) uniform sampler2DArray canopy_light;
 layout(set = 0, binding = 14) uniform sampler2D sky_map;
 layout(scalar, set = 0, binding = 15) readonly buffer Waters { float river_m[]; };
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #define SHADOW_DEPTH shadow_depth
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
-#define CANOPY_LIGHT_AT(at) textureLod(canopy_light, at, 0.0)
+#define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)
 #define SKY_MAP sky_map
 
 #define WATER_AT(index) river_m[index]

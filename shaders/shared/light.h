@@ -18,6 +18,9 @@ struct wd_light_push {
     uint32_t has_overlay; /* a method has blended trees over the G-buffer */
 };
 
+/* Greatest height of a canopy that the image of its light can tell. */
+#define WD_CANOPY_MOST_M 128.0f
+
 /* What a tile of pixels shows; each list of tiles is shaded by a pipeline with these parts. */
 #define WD_TILE 8
 #define WD_PART_SKY 1u

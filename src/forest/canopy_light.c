@@ -5,6 +5,7 @@
 
 #include "base/jobs.h"
 #include "base/memory.h"
+#include "shared/light.h"
 
 static const float PI = 3.14159265f;
 
@@ -168,10 +169,25 @@ struct work {
 };
 
 /* Of a cell's trees, by its share of the ground: the area of crowns' outlines from above; what crowns
- * and stems hide from above and from the side; base and top, weighted by the first. */
+ * and stems hide from above and from the side; base and top, weighted by the first. Of trees that are
+ * no herbs: what they hide from above; by that, first and second moments of its heights. */
 struct sums {
     float outline, above, side, stem, base_m, top_m;
+    float woody, woody_m, woody_m2;
 };
+
+static const float HERB_M = 1.5f;
+
+/* An ellipsoid's variance of height is a twentieth of its squared depth. */
+static void add_heights(struct sums *sums, float above, float base_m, float top_m)
+{
+    float middle_m = 0.5f * (base_m + top_m), deep_m = top_m - base_m;
+    if (top_m < HERB_M)
+        return;
+    sums->woody += above;
+    sums->woody_m += above * middle_m;
+    sums->woody_m2 += above * (middle_m * middle_m + deep_m * deep_m / 20);
+}
 
 static void add_tree(struct sums *sums, const struct wd_canopy_field *field,
                      const struct wd_canopy_field_params *params, const struct wd_tree *tree)
@@ -200,6 +216,7 @@ static void add_tree(struct sums *sums, const struct wd_canopy_field *field,
         to->stem += part * params->shades[index].stem * radius_m * per_m2;
         to->base_m += part * outline * base_m;
         to->top_m += part * outline * height_m;
+        add_heights(to, part * above, base_m, height_m);
     }
 }
 
@@ -227,12 +244,26 @@ static struct sums sums_on_demand(const struct work *work, float cover)
     float height_m = layer->mean_height_m, radius_m = sqrtf((float)layer->crown_area_m2 / PI);
     float base_m = height_m * params->models[0].crown_base_m / params->models[0].height_m;
     float outline = -logf(1 - cover), per_m2 = outline / fmaxf((float)layer->crown_area_m2, 0.1f);
-    return (struct sums){.outline = outline,
-                         .above = outline * shade->above,
-                         .side = 0.5f * PI * radius_m * (height_m - base_m) * per_m2 * shade->side,
-                         .stem = radius_m * per_m2 * shade->stem,
-                         .base_m = outline * base_m,
-                         .top_m = outline * height_m};
+    struct sums sums = {.outline = outline,
+                        .above = outline * shade->above,
+                        .side = 0.5f * PI * radius_m * (height_m - base_m) * per_m2 * shade->side,
+                        .stem = radius_m * per_m2 * shade->stem,
+                        .base_m = outline * base_m,
+                        .top_m = outline * height_m};
+    add_heights(&sums, sums.above, base_m, height_m);
+    return sums;
+}
+
+/* The ellipsoid whose leaves have the mean height and variance of all trees' of the cell. */
+static void settle_layer(struct wd_canopy_field *field, size_t cell, const struct sums *sums)
+{
+    if (sums->woody <= 0)
+        return;
+    float middle_m = sums->woody_m / sums->woody;
+    float variance_m2 = fmaxf(sums->woody_m2 / sums->woody - middle_m * middle_m, 0);
+    float half_m = sqrtf(5 * variance_m2);
+    field->layer_m[cell][0] = fmaxf(middle_m - half_m, 0);
+    field->layer_m[cell][1] = middle_m + half_m;
 }
 
 /* Crowns that hide a share a of the ground leave e^-a of it free where they stand at random. Most
@@ -248,6 +279,7 @@ static void settle_stand(struct work *work, size_t cell, struct sums sums)
     float cover = fminf(cover_at(work->world, x_m, y_m, field->cell_m), 0.98f);
     if (sums.outline <= 0 && work->world->demand.count)
         sums = sums_on_demand(work, cover);
+    settle_layer(work->field, cell, &sums);
     if (sums.outline <= 0)
         return;
     float deep_m = fmaxf((sums.top_m - sums.base_m) / sums.outline, 1);
@@ -260,6 +292,31 @@ static void settle_stand(struct work *work, size_t cell, struct sums sums)
     work->highest_m = fmaxf(work->highest_m, stand->top_m);
 }
 
+/* Cells without trees take the layer of those beside them, into which crowns reach out. */
+static void spread_layer(struct wd_canopy_field *field)
+{
+    uint32_t width = field->width, height = field->height;
+    float(*spread)[2] = wd_alloc_array((size_t)width * height, sizeof *spread);
+    for (size_t cell = 0; cell < (size_t)width * height; cell++) {
+        long i0 = (long)(cell % width), j0 = (long)(cell / width);
+        float sum[2] = {0}, count = 0;
+        for (long j = j0 - 1; j <= j0 + 1; j++)
+            for (long i = i0 - 1; i <= i0 + 1; i++) {
+                if (i < 0 || j < 0 || i >= (long)width || j >= (long)height)
+                    continue;
+                const float *beside = field->layer_m[(size_t)j * width + (size_t)i];
+                sum[0] += beside[0];
+                sum[1] += beside[1];
+                count += beside[1] > 0;
+            }
+        bool empty = field->layer_m[cell][1] <= 0 && count > 0;
+        for (int k = 0; k < 2; k++)
+            spread[cell][k] = empty ? sum[k] / count : field->layer_m[cell][k];
+    }
+    free(field->layer_m);
+    field->layer_m = spread;
+}
+
 static void settle_stands(struct work *work)
 {
     size_t count = (size_t)work->field->width * work->field->height;
@@ -270,6 +327,7 @@ static void settle_stands(struct work *work)
     for (size_t cell = 0; cell < count; cell++)
         settle_stand(work, cell, sums[cell]);
     free(sums);
+    spread_layer(work->field);
 }
 
 /* --- rays ---------------------------------------------------------------------------------- */
@@ -357,6 +415,7 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
     field->height = field->height ? field->height : 1;
     size_t count = (size_t)field->width * field->height;
     field->quarters = wd_alloc_array(count, sizeof *field->quarters);
+    field->layer_m = wd_alloc_array(count, sizeof *field->layer_m);
     struct work work = {.field = field, .world = world, .params = params};
     work.stands = wd_alloc_array(count, sizeof *work.stands);
     settle_stands(&work);
@@ -367,10 +426,16 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
 void wd_canopy_field_finish(struct wd_canopy_field *field)
 {
     free(field->quarters);
+    free(field->layer_m);
     *field = (struct wd_canopy_field){0};
 }
 
 /* --- upload -------------------------------------------------------------------------------- */
+
+static uint8_t root_byte(float share)
+{
+    return (uint8_t)(sqrtf(fminf(share, 1)) * 255 + 0.5f);
+}
 
 bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
                             const struct wd_canopy_field *field)
@@ -379,15 +444,20 @@ bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
                                            .format = VK_FORMAT_R8G8B8A8_UNORM,
                                            .width = field->width,
                                            .height = field->height,
+                                           .layers = 2,
                                            .mips = 1,
                                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
     size_t count = (size_t)field->width * field->height;
-    uint8_t(*texels)[4] = wd_alloc_array(count, sizeof *texels);
-    for (size_t i = 0; i < count; i++)
+    uint8_t(*texels)[4] = wd_alloc_array(2 * count, sizeof *texels);
+    for (size_t i = 0; i < count; i++) {
         for (int k = 0; k < 4; k++)
-            texels[i][k] = (uint8_t)(sqrtf(field->quarters[i][k]) * 255 + 0.5f);
+            texels[i][k] = root_byte(field->quarters[i][k]);
+        for (int k = 0; k < 2; k++)
+            texels[count + i][k] = root_byte(field->layer_m[i][k] / WD_CANOPY_MOST_M);
+    }
     bool ok = wd_image_init(image, gpu, &params) &&
-              wd_image_upload(gpu, image, 0, 0, texels, count * sizeof *texels);
+              wd_image_upload(gpu, image, 0, 0, texels, count * sizeof *texels) &&
+              wd_image_upload(gpu, image, 1, 0, texels + count, count * sizeof *texels);
     free(texels);
     return ok;
 }

@@ -18,9 +18,11 @@ struct wd_crown_shade {
 struct wd_crown_shade wd_crown_shade_of(const struct wd_tree_model *model);
 
 /* The field on the CPU: for each cell, of the light that an even sky sends to level ground from the
- * east, north, west and south, the share that arrives. */
+ * east, north, west and south, the share that arrives; and between which heights over the ground the
+ * leaves are that stop the rest. */
 struct wd_canopy_field {
     float (*quarters)[4]; /* width * height, rows from the south */
+    float (*layer_m)[2];  /* parallel: base and top; both 0 where no trees are */
     uint32_t width, height;
     double cell_m;
 };
@@ -38,7 +40,8 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
                           const struct wd_canopy_field_params *params);
 void wd_canopy_field_finish(struct wd_canopy_field *field);
 
-/* R8G8B8A8_UNORM, square roots of the shares; x runs east, y north over the field's cells. */
+/* Two layers of R8G8B8A8_UNORM; x runs east, y north over the field's cells. The first holds square
+ * roots of the shares; the second, in red and green, those of base and top over WD_CANOPY_MOST_M. */
 bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
                             const struct wd_canopy_field *field);
 

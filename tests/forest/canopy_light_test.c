@@ -46,6 +46,12 @@ static const float *at(const struct wd_canopy_field *field, double x_m, double y
     return field->quarters[row * field->width + column];
 }
 
+static const float *layer_at(const struct wd_canopy_field *field, double x_m, double y_m)
+{
+    size_t column = (size_t)(x_m / field->cell_m), row = (size_t)(y_m / field->cell_m);
+    return field->layer_m[row * field->width + column];
+}
+
 static void open_ground_gets_all(void **state)
 {
     (void)state;
@@ -72,6 +78,32 @@ static void stands_are_dark_and_edges_are_not(void **state)
     assert_true(edge[2] > 1.5f * edge[0]);                      /* west over east */
     assert_true(before[2] > 0.95f && before[0] < 0.8f);
     assert_true(open[0] > 0.9f && open[2] > 0.99f);
+    wd_canopy_field_finish(&field);
+    free(world.cover);
+}
+
+/* Trees of one height are a layer from their crowns' base to their tops, herbs below them or not; crowns
+ * reach into the next cell; lower trees under higher ones make it deeper. */
+static void layers_are_as_high_as_their_trees(void **state)
+{
+    (void)state;
+    struct wd_world world = stand_from(SIDE_M / 2);
+    size_t stand = world.tree_count;
+    for (size_t i = 0; i < stand; i++, world.tree_count++) {
+        trees[world.tree_count] = trees[i];
+        trees[world.tree_count].size = 100u | 100u << 16;
+    }
+    struct wd_canopy_field field = field_of(&world, 1);
+    const float *within = layer_at(&field, 200, 120), *open = layer_at(&field, 12, 120);
+    assert_float_equal(within[0], 8, 0.01f);
+    assert_float_equal(within[1], 20, 0.01f);
+    assert_float_equal(layer_at(&field, 106, 120)[1], 20, 0.01f);
+    assert_float_equal(open[1], 0, 0);
+    wd_canopy_field_finish(&field);
+    for (size_t i = stand; i < world.tree_count; i++)
+        trees[i].size = 500u | 400u << 16;
+    field = field_of(&world, 1);
+    assert_true(layer_at(&field, 200, 120)[0] < 4 && layer_at(&field, 200, 120)[1] > 18);
     wd_canopy_field_finish(&field);
     free(world.cover);
 }
@@ -136,6 +168,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(open_ground_gets_all),
         cmocka_unit_test(stands_are_dark_and_edges_are_not),
+        cmocka_unit_test(layers_are_as_high_as_their_trees),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(hills_hide_their_side),
         cmocka_unit_test(crowns_hide_their_leaves),
