@@ -262,7 +262,7 @@ void shade_by_crown(inout wd_place place, wd_crown crown, float openness, float 
                     uint cascade)
 {
     float path_m = crown_path_m(crown, place.rel);
-    float through = crown_through(crown, path_m) * min(openness * 1.6, 1.0);
+    float through = crown_through(crown, path_m) * min(openness * 1.2, 1.0);
     place.own = mix(through, 1.0, mapped);
     place.ahead_m = mapped > 0.0 ? 0.0 : path_m + frame.cascade_texel_m[min(cascade, 3u)];
 }
