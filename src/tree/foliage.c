@@ -10,7 +10,7 @@
 
 enum { MAX_LEAF_TRIANGLES = 600000, BARE_TWIGS = 5000 };
 #define SPRIG_SHARE 0.6f /* sprigs in place of leaves, each with more triangles */
-enum { SPRIG_TRIANGLES = 8, LEAST_SPRIG_TRIANGLES = 2 };
+enum { SPRIG_TRIANGLES = 8, LEAST_SPRIG_TRIANGLES = 2, ALL_SPRIG_TRIANGLES = 80000 };
 #define HEDGE_SHARE 0.3f /* of the leaf area index of a forest */
 #define HEDGE_SHELL_M 0.18f
 
@@ -403,7 +403,8 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
 {
     float detail = fminf(form->detail, 1);
     *foliage = (struct wd_foliage){
-        .sprig_triangles = (uint32_t)wd_mixf(LEAST_SPRIG_TRIANGLES, SPRIG_TRIANGLES, detail)};
+        .sprig_triangles = (uint32_t)wd_mixf(LEAST_SPRIG_TRIANGLES, SPRIG_TRIANGLES, detail),
+        .all_sprig_triangles = (uint32_t)(ALL_SPRIG_TRIANGLES * detail * detail)};
     struct carriers carriers = {0};
     float area = leaf_area_m2(form);
     size_t wanted = leaf_count(form, area);

@@ -26,7 +26,8 @@ struct wd_foliage {
     size_t flower_count;
     struct wd_tree_density crown; /* leaf area, with its light swept */
     float area_m2;
-    uint32_t sprig_triangles; /* of a drawn leaf that stands for many, at most */
+    uint32_t sprig_triangles; /* of a drawn leaf that stands for many, at most, */
+    uint32_t all_sprig_triangles; /* or more where these are not used up */
 };
 
 void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,

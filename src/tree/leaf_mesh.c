@@ -232,6 +232,8 @@ static struct wd_sprig full_sprig(const struct wd_foliage *foliage,
                                   const struct wd_species *species, bool outlined)
 {
     size_t triangles = outlined ? outline_triangles(species) : foliage->sprig_triangles;
+    size_t budget = foliage->all_sprig_triangles / (foliage->count + 1); /* small trees */
+    triangles = triangles < budget ? budget : triangles;
     return sprig_of(foliage, species, foliage->count, triangles, outlined);
 }
 
