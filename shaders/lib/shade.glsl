@@ -137,8 +137,8 @@ float sunlit_seen(vec3 eye, wd_crown crown)
 {
     float apart = angle_of(dot(eye, frame.sun_direction));
     float slender = smoothstep(1.5, 3.2, crown.radii_m.z / crown.radii_m.x);
-    float wide = mix(0.95, mix(0.37, 0.24, slender), smoothstep(0.0, 0.72, eye.z));
-    float hot = mix(mix(0.4, 2.2, slender), 2.8, smoothstep(0.0, 1.0, eye.z));
+    float wide = mix(0.95, mix(0.36, 0.24, slender), smoothstep(0.0, 0.64, eye.z));
+    float hot = mix(mix(0.4, 2.2, slender), 2.8, smoothstep(0.2, 1.05, eye.z));
     return wide + hot * exp(-1.9 * apart);
 }
 
