@@ -25,6 +25,7 @@ layout(scalar, set = 0, binding = 10) writeonly buffer WoodItems { wd_splat_item
 layout(scalar, set = 0, binding = 11) readonly buffer Pyramid { float pyramid[]; };
 layout(set = 0, binding = 12) uniform sampler2D slopes;
 layout(scalar, set = 0, binding = 13) buffer PutOff { uint put_off[]; };
+layout(scalar, set = 0, binding = 14) readonly buffer Fades { wd_layer_fade fades[]; };
 
 #include "lib/frustum.glsl"
 #include "lib/pyramid.glsl"
@@ -204,6 +205,9 @@ void select_tree(uint index, float share, uint place)
     float stretch = inversesqrt(share);
     vec3 foot = tree_foot_rel(tree);
     if (tree_is_outside(tree, foot, stretch))
+        return;
+    /* Layers come and go with distance, tree by tree, as the path tracer has it. */
+    if (wd_hash_unit(tree.random) >= wd_layer_show(fades[WD_TREE_LAYER(tree)], length(foot)))
         return;
     uint model_index = WD_TREE_SPECIES(tree) * view.variants
                        + WD_TREE_VARIANT(tree) % view.variants;

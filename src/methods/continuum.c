@@ -254,7 +254,8 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw, 
                                           WD_BIND_BUFFER(&c->pyramid),
                                           WD_BIND_IMAGE(&draw->forest->ground.slopes,
                                                         draw->forest->ground.sampler),
-                                          WD_BIND_BUFFER(&c->put_off)};
+                                          WD_BIND_BUFFER(&c->put_off),
+                                          WD_BIND_BUFFER(&draw->forest->fades)};
     wd_cmd_bind(cmd, pipeline, bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
     record_args(c, cmd, FIRST_ROUND);

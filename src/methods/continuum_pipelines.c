@@ -123,9 +123,9 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         const uint32_t constants[] = {gpu->software ? 8 : 64, i == WD_PASS_SHADOW, i == 2};
         const struct wd_compute_params choose = {
             .shader = SPIRV(select_comp),
-            .bindings = {14, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
+            .bindings = {15, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
                               BUFFER, BUFFER, BUFFER, BUFFER,
-                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
+                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER, BUFFER}},
             .constants = {3, constants}};
         if (!wd_pipeline_init_compute(pipelines[i], gpu, &choose))
             return false;
