@@ -356,6 +356,49 @@ static void methods_agree(void **state)
     }
 }
 
+/* How many spruces show that stand farther off than that. */
+static size_t spruces_beyond(struct suite *suite, struct wd_render_params *params, double least_m)
+{
+    struct wd_picture p = render(suite, params);
+    size_t count = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        struct wd_tree_info tree;
+        if (p.tree_id[i] == 0 || !wd_forest_get_tree(suite->forest, p.tree_id[i], &tree))
+            continue;
+        double squared = 0;
+        for (int k = 0; k < 3; k++)
+            squared += pow(tree.position_m[k] - params->camera.position_m[k], 2);
+        count += tree.species == 1 && sqrt(squared) > least_m;
+    }
+    wd_picture_finish(&p);
+    return count;
+}
+
+/* A layer goes by its own distances, whichever method draws it. */
+static void layers_fade_with_distance(void **state)
+{
+    struct suite *suite = *state;
+    const char *const methods[] = {"octree", "continuum"};
+    assert_true(suite_write_variant(suite, "fades.json", "\"name\": \"spruces\",",
+                                    "\"name\": \"spruces\", \"fade_far_m\": [120, 140],"));
+    struct wd_forest *fading = suite_forest(suite, suite_path(suite, "fades.json"));
+    assert_non_null(fading);
+    for (int m = 0; m < 2; m++) {
+        struct wd_render_params params = suite_params(suite->forest, "over");
+        params.layers = WD_LAYER_TREE_ID;
+        params.method = methods[m];
+        size_t whole = spruces_beyond(suite, &params, 141);
+        assert_int_equal(wd_renderer_set_forest(suite->renderer, fading), WD_OK);
+        size_t far = spruces_beyond(suite, &params, 141), all = spruces_beyond(suite, &params, 0);
+        assert_int_equal(wd_renderer_set_forest(suite->renderer, suite->forest), WD_OK);
+        print_message("%s: %zu pixels of spruces beyond 141 m, %zu where they fade, %zu nearer\n",
+                      methods[m], whole, far, all);
+        assert_true(whole > 500 && all > 100);
+        assert_int_equal(far, 0);
+    }
+    wd_forest_destroy(&fading);
+}
+
 static void wd_method_names_are_known(void **state)
 {
     (void)state;
@@ -601,6 +644,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(depths_lead_to_the_trees, &suite),
         cmocka_unit_test_prestate(the_same_picture_twice, &suite),
         cmocka_unit_test_prestate(methods_agree, &suite),
+        cmocka_unit_test_prestate(layers_fade_with_distance, &suite),
         cmocka_unit_test_prestate(wd_method_names_are_known, &suite),
         cmocka_unit_test_prestate(nothing_moves_in_a_still_world, &suite),
         cmocka_unit_test_prestate(surfaces_move_against_the_camera, &suite),
