@@ -13,18 +13,17 @@ layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[];
 layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_tree_vertex vertices[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_leafy_instance instances[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer Places { wd_leaf_place places[]; };
-layout(scalar, push_constant) uniform Push { wd_leafy_push leafy; };
+layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
-#define push leafy.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
 #include "lib/tree_mesh.glsl"
 
 void main()
 {
     wd_leafy_instance instance = instances[gl_InstanceIndex];
     wd_tree_vertex v = vertices[gl_VertexIndex];
-    wd_leaf_place place = places[leafy.first_place + gl_VertexIndex];
+    wd_leaf_place place = places[gl_VertexIndex];
     if (place.rank >= instance.kept) {
         gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
         return;

@@ -19,16 +19,6 @@ struct wd_leafy_instance {
     float scale; /* of each leaf about its centre */
 };
 
-/* Push constants: those of tree pipelines, then where the model's leaf places begin. */
-struct wd_leafy_push {
-#ifdef __STDC_VERSION__
-    struct wd_tree_push tree;
-#else
-    wd_tree_push tree;
-#endif
-    uint32_t first_place;
-};
-
 /* Push constants of one-view billboards. */
 struct wd_one_view_push {
     uint32_t variants;

@@ -79,7 +79,7 @@ static bool init_leaves(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32
         .vertex = SPIRV(dissolve_leaf_vert),
         .fragment = SPIRV(tree_mesh_frag),
         .bindings = {LEAF_BINDINGS, {buffer, buffer, buffer, buffer, buffer, image, image, buffer}},
-        .push_size = sizeof(struct wd_leafy_push),
+        .push_size = sizeof(struct wd_tree_push),
         .constants = {2, constants},
     };
     set_gbuffer(&params);
@@ -263,10 +263,16 @@ static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_dra
         return;
     bool whole = step == LEAF_STEPS;
     const struct wd_pipeline *pipeline = &dissolve->leaves[whole];
+    VkDeviceSize first_vertex = leaves->first_vertex, vertex_count = leaves->vertex_count;
     const struct wd_binding vertices = {
         .buffer = &dissolve->order.vertices,
-        .offset = (VkDeviceSize)leaves->first_vertex * sizeof(struct wd_tree_vertex),
-        .size = (VkDeviceSize)leaves->vertex_count * sizeof(struct wd_tree_vertex),
+        .offset = first_vertex * sizeof(struct wd_tree_vertex),
+        .size = vertex_count * sizeof(struct wd_tree_vertex),
+    };
+    const struct wd_binding places = {
+        .buffer = &dissolve->order.places,
+        .offset = first_vertex * sizeof(struct wd_leaf_place),
+        .size = vertex_count * sizeof(struct wd_leaf_place),
     };
     const struct wd_binding bindings[LEAF_BINDINGS] = {
         draw->uniforms,
@@ -276,15 +282,12 @@ static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_dra
         instances,
         WD_BIND_IMAGE(&forest->looks, forest->look_sampler),
         WD_BIND_IMAGE(&forest->look_details, forest->look_sampler),
-        WD_BIND_BUFFER(&dissolve->order.places),
+        places,
     };
-    const struct wd_leafy_push push = {
-        .tree = {.variants = forest->variants,
-                 .level = whole ? WD_LEVEL_MESH : WD_LEVEL_REDUCED,
-                 .show = 1.0f,
-                 .pixels_per_radian = draw->view->pixels_per_radian},
-        .first_place = leaves->first_vertex,
-    };
+    const struct wd_tree_push push = {.variants = forest->variants,
+                                      .level = whole ? WD_LEVEL_MESH : WD_LEVEL_REDUCED,
+                                      .show = 1.0f,
+                                      .pixels_per_radian = draw->view->pixels_per_radian};
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
     wd_cmd_bind_indices(draw->cmd, &dissolve->order.indices);

@@ -122,11 +122,6 @@ static bool upload(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *nam
                    VkBufferUsageFlags usage, const void *data, size_t size)
 {
     const struct wd_buffer_params params = {name, size, usage, WD_MEMORY_DEVICE};
-    uint32_t limit = gpu->properties.limits.maxStorageBufferRange;
-    if (size > limit && usage == VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)
-        return wd_error(gpu->log, "%s: %zu MB are more than the %u MB that %s can bind at once: "
-                                  "use fewer variants",
-                        name, size >> 20, limit >> 20, gpu->properties.deviceName);
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
 }
 

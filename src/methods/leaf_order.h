@@ -12,7 +12,7 @@ struct wd_leaf_range {
 };
 
 struct wd_leaf_order {
-    struct wd_buffer vertices; /* struct wd_tree_vertex[] of all full meshes */
+    struct wd_buffer vertices; /* struct wd_tree_vertex[] of all full meshes; bound model by model */
     struct wd_buffer indices; /* uint32_t[]: leaves of all full meshes, leaf by leaf */
     struct wd_buffer places;  /* struct wd_leaf_place[], parallel to the vertices */
     struct wd_leaf_range *ranges; /* by model */
