@@ -25,11 +25,11 @@ static void add_tree(const struct search *search, uint32_t index)
     const struct wd_near_rule *rule = &search->rule;
     float near_m = wd_near_reach_m(*tree, rule->grains[model], rule->leaves_m, rule->reach);
     float show = near_m > 0.0f ? wd_near_mesh(distance_m, near_m) : 0.0f;
+    if (show <= 0.0f)
+        return;
     const struct wd_layer_fade fade = forest->host_fades[wd_forest_fade_of(forest, index)];
     float foot_m = sqrtf(foot.x * foot.x + foot.y * foot.y + foot.z * foot.z);
-    if (wd_hash_unit(tree->random) >= wd_layer_show(fade, foot_m))
-        return;
-    if (show > 0.0f && wd_tree_in_view(view, tree))
+    if (wd_hash_unit(tree->random) < wd_layer_show(fade, foot_m) && wd_tree_in_view(view, tree))
         wd_selection_add_mesh(search->found, &(struct wd_mesh_choice){model, WD_LEVEL_MESH, 0},
                               index, show);
 }
