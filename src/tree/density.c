@@ -155,75 +155,102 @@ static inline float exp_minus(float x)
     return sum * scale;
 }
 
-/* What half a cell lets through along a way of `length_m`. */
-static void fill_transmission(const struct wd_tree_density *density, float length_m,
-                              float *restrict half)
+/* Directions of one steepness: up; 45 degrees; 19 degrees over the horizon. All go up one layer. */
+struct cone {
+    float length, weight; /* way through a cell in its sides; share of the light, each */
+    int count, toward[4][2];
+};
+
+enum { CONES = 3, WAYS = 4, BORDER = 2 };
+
+static const struct cone cones[CONES] = {
+    {1, 0.28f, 1, {{0, 0}}},
+    {1.4142136f, 0.11f, 4, {{1, 0}, {-1, 0}, {0, 1}, {0, -1}}},
+    {3, 0.07f, 4, {{2, 2}, {-2, 2}, {2, -2}, {-2, -2}}},
+};
+
+/* What leaves the cells of two layers, in turn this one and the one above, a picture for each
+ * direction with a border of full light around it. */
+struct layers {
+    float *pictures; /* [layer & 1][cone][way][row][cell] */
+    float *half;     /* what half a cell lets through, of one row */
+    size_t stride, size;
+};
+
+static void layers_init(struct layers *layers, const struct wd_tree_density *density)
 {
-    const float *restrict area = density->area;
-    size_t count = cell_count(density);
-    for (size_t i = 0; i < count; i++)
-        half[i] = exp_minus(0.5f * EXTINCTION * length_m * area[i]);
+    size_t stride = (size_t)density->size[0] + 2 * BORDER;
+    size_t size = stride * ((size_t)density->size[1] + 2 * BORDER), all = 2 * CONES * WAYS * size;
+    *layers = (struct layers){.pictures = wd_alloc_array(all, sizeof *layers->pictures),
+                              .half = wd_alloc_array(stride, sizeof *layers->half),
+                              .stride = stride,
+                              .size = size};
+    for (size_t i = 0; i < all; i++)
+        layers->pictures[i] = 1;
+}
+
+/* The cell x = 0 of a row. */
+static float *layer_row(const struct layers *layers, int z, int cone, int way, int y)
+{
+    size_t picture = (size_t)(((z & 1) * CONES + cone) * WAYS + way);
+    return layers->pictures + picture * layers->size + (size_t)(y + BORDER) * layers->stride +
+           BORDER;
+}
+
+/* Along a way of `length_m`, of a row that has leaves in [first, end). */
+static void fill_half(float *restrict half, const float *restrict area, int size, int first,
+                      int end, float length_m)
+{
+    for (int x = 0; x < size; x++)
+        half[x] = 1;
+    for (int x = first; x < end; x++)
+        half[x] = exp_minus(0.5f * EXTINCTION * length_m * area[x]);
 }
 
 /* Light that reaches a cell along one direction is what leaves the cell before it, times what that
  * cell lets through; half of the cell's own leaves shade its middle. */
-static void sweep_row(float *sky, float *restrict light, const float *restrict half,
-                      const float *restrict from, int size, int step, float weight)
+static void light_row(float *restrict sky, float *restrict here, const float *restrict above,
+                      const float *restrict half, int size, float weight)
 {
-    int first = step < 0 ? -step : 0, end = step > 0 ? size - step : size;
-    if (!from || first > end)
-        first = end = 0;
-    for (int x = first; x < end; x++)
-        light[x] = from[x + step] * half[x];
-    for (int x = 0; x < first; x++)
-        light[x] = half[x];
-    for (int x = end; x < size; x++)
-        light[x] = half[x];
     for (int x = 0; x < size; x++) {
-        sky[x] += weight * light[x];
-        light[x] *= half[x];
+        float light = above[x] * half[x];
+        sky[x] += weight * light;
+        here[x] = light * half[x];
     }
 }
 
-/* Rows take their light from a layer above, which is done before them. */
-static void sweep(struct wd_tree_density *density, float *light, const float *half,
-                  const int toward[3], float weight)
+static void light_rows(const struct layers *layers, const struct wd_tree_density *density, int y,
+                       int z)
 {
-    const int *size = density->size;
-    for (int z = size[2] - 1; z >= 0; z--)
-        for (int y = 0; y < size[1]; y++) {
-            int ny = y + toward[1], nz = z + toward[2];
-            bool inside = ny >= 0 && ny < size[1] && nz < size[2];
-            size_t row = cell_index(density, 0, y, z);
-            const float *from = inside ? &light[cell_index(density, 0, ny, nz)] : NULL;
-            sweep_row(&density->sky[row], &light[row], &half[row], from, size[0], toward[0],
-                      weight);
+    size_t row = cell_index(density, 0, y, z);
+    const float *area = density->area + row;
+    int size = density->size[0], first = 0, end = size;
+    while (first < end && area[first] <= 0)
+        first++;
+    while (end > first && area[end - 1] <= 0)
+        end--;
+    for (int c = 0; c < CONES; c++) {
+        if (c == 0 || first < end)
+            fill_half(layers->half, area, size, first, end, cones[c].length * density->cell_m);
+        for (int way = 0; way < cones[c].count; way++) {
+            const int *toward = cones[c].toward[way];
+            light_row(density->sky + row, layer_row(layers, z, c, way, y),
+                      layer_row(layers, z + 1, c, way, y + toward[1]) + toward[0], layers->half,
+                      size, cones[c].weight);
         }
+    }
 }
-
-/* Directions of one steepness: up; 45 degrees; 19 degrees over the horizon. */
-struct cone {
-    float length, weight; /* way through a cell in its sides; share of the light, each */
-    int count, toward[4][3];
-};
 
 void wd_tree_density_light(struct wd_tree_density *density)
 {
-    static const struct cone cones[3] = {
-        {1, 0.28f, 1, {{0, 0, 1}}},
-        {1.4142136f, 0.11f, 4, {{1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}}},
-        {3, 0.07f, 4, {{2, 2, 1}, {-2, 2, 1}, {2, -2, 1}, {-2, -2, 1}}},
-    };
-    float *light = wd_alloc_array(cell_count(density), sizeof *light);
-    float *half = wd_alloc_array(cell_count(density), sizeof *half);
+    struct layers layers;
+    layers_init(&layers, density);
     memset(density->sky, 0, cell_count(density) * sizeof *density->sky);
-    for (int c = 0; c < 3; c++) {
-        fill_transmission(density, cones[c].length * density->cell_m, half);
-        for (int way = 0; way < cones[c].count; way++)
-            sweep(density, light, half, cones[c].toward[way], cones[c].weight);
-    }
-    free(light);
-    free(half);
+    for (int z = density->size[2] - 1; z >= 0; z--)
+        for (int y = 0; y < density->size[1]; y++)
+            light_rows(&layers, density, y, z);
+    free(layers.pictures);
+    free(layers.half);
 }
 
 struct wd_vec3 wd_tree_density_outward(const struct wd_tree_density *density, struct wd_vec3 p)
