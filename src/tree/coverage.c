@@ -1,7 +1,6 @@
 #include "tree/coverage.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/dmath.h"
 #include "base/memory.h"
@@ -17,8 +16,7 @@ struct fit {
     struct wd_tree_mesh *mesh;
     struct wd_vec3 *middles; /* [vertex] of its leaf */
     struct wd_vec3 *unscaled; /* [vertex] */
-    struct wd_silhouette views[VIEWS];
-    uint8_t *wood[VIEWS]; /* what the reduced wood covers, whatever the size of leaves */
+    struct wd_silhouette wood[VIEWS]; /* what it covers, whatever the size of leaves */
 };
 
 static struct wd_vec3 position(const struct wd_tree_mesh *mesh, uint32_t vertex)
@@ -76,32 +74,13 @@ static void scale_leaves(struct fit *fit, float factor)
     }
 }
 
-static size_t covered_by(struct wd_silhouette *view, const struct wd_tree_mesh *mesh)
+static float covered(const struct fit *fit)
 {
-    wd_silhouette_clear(view);
-    wd_silhouette_cover(view, mesh, 0, mesh->index_count);
-    return wd_silhouette_count(view);
-}
-
-static void cover_wood(struct fit *fit)
-{
-    size_t size = (size_t)WD_SILHOUETTE * WD_SILHOUETTE;
+    size_t sum = 0;
     for (int i = 0; i < VIEWS; i++) {
-        wd_silhouette_clear(&fit->views[i]);
-        wd_silhouette_cover(&fit->views[i], fit->mesh, 0, fit->mesh->wood_index_count);
-        fit->wood[i] = wd_alloc(size);
-        memcpy(fit->wood[i], fit->views[i].covered, size);
-    }
-}
-
-static float covered(struct fit *fit)
-{
-    size_t sum = 0, size = (size_t)WD_SILHOUETTE * WD_SILHOUETTE;
-    for (int i = 0; i < VIEWS; i++) {
-        memcpy(fit->views[i].covered, fit->wood[i], size);
-        wd_silhouette_cover(&fit->views[i], fit->mesh, fit->mesh->wood_index_count,
-                            fit->mesh->index_count);
-        sum += wd_silhouette_count(&fit->views[i]);
+        struct wd_silhouette view = fit->wood[i];
+        wd_silhouette_cover(&view, fit->mesh, fit->mesh->wood_index_count, fit->mesh->index_count);
+        sum += wd_silhouette_count(&view);
     }
     return (float)sum;
 }
@@ -137,16 +116,15 @@ float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tr
     };
     size_t wanted = 0;
     for (int i = 0; i < VIEWS; i++) {
-        wd_silhouette_init(&fit.views[i], full, towards[i]);
-        wanted += covered_by(&fit.views[i], full);
+        struct wd_silhouette whole;
+        wd_silhouette_init(&whole, full, towards[i]);
+        fit.wood[i] = whole;
+        wd_silhouette_cover(&whole, full, 0, full->index_count);
+        wanted += wd_silhouette_count(&whole);
+        wd_silhouette_cover(&fit.wood[i], reduced, 0, reduced->wood_index_count);
     }
     find_middles(&fit);
-    cover_wood(&fit);
     float factor = find_factor(&fit, (float)wanted);
-    for (int i = 0; i < VIEWS; i++) {
-        wd_silhouette_finish(&fit.views[i]);
-        free(fit.wood[i]);
-    }
     free(fit.middles);
     free(fit.unscaled);
     wd_tree_mesh_update_bounds(reduced);
@@ -157,9 +135,8 @@ static float seen_from(const struct wd_tree_mesh *mesh, struct wd_vec3 toward)
 {
     struct wd_silhouette view;
     wd_silhouette_init(&view, mesh, toward);
-    float area_m2 = (float)covered_by(&view, mesh) / (view.scale * view.scale);
-    wd_silhouette_finish(&view);
-    return area_m2;
+    wd_silhouette_cover(&view, mesh, 0, mesh->index_count);
+    return (float)wd_silhouette_count(&view) / (view.scale * view.scale);
 }
 
 /* Mean over `turns` sides that are `step` of a turn apart. */

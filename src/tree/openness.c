@@ -13,12 +13,6 @@
 
 enum { WAYS = 4, PLACES = 1536, BANDS = 6, STEPS = 256, PIXELS = WD_SILHOUETTE * WD_SILHOUETTE };
 
-/* The tree from one side of the sky. */
-struct view {
-    float (*at)[4]; /* [vertex] pixel, distance toward the sky in metres */
-    float *front;   /* [pixel] distance of what is nearest to the sky */
-};
-
 struct tally {
     uint32_t lit[STEPS], asked[STEPS]; /* by the grid's openness */
 };
@@ -29,18 +23,19 @@ struct band {
 };
 
 /* Asks corners of leaves; what is nearer than `near_m` is the leaf itself. */
-static void ask(struct tally *tally, const struct view *view, const struct wd_tree_mesh *mesh,
-                float near_m)
+static void ask(struct tally *tally, const struct wd_silhouette *view, const float *front,
+                const struct wd_tree_mesh *mesh, float near_m)
 {
     uint64_t leaves = mesh->index_count - mesh->wood_index_count;
     for (uint64_t i = 0; i < PLACES; i++) {
         uint32_t vertex = mesh->indices[mesh->wood_index_count + leaves * i / PLACES];
-        const float *at = view->at[vertex];
+        float at[3];
+        wd_silhouette_place(view, mesh->vertices[vertex].position_m, at);
         int x = (int)wd_clampf(at[0], 0, WD_SILHOUETTE - 1);
         int y = (int)wd_clampf(at[1], 0, WD_SILHOUETTE - 1);
         uint32_t step = mesh->vertices[vertex].tint >> 24;
         tally->asked[step]++;
-        tally->lit[step] += view->front[y * WD_SILHOUETTE + x] <= at[2] + near_m;
+        tally->lit[step] += front[y * WD_SILHOUETTE + x] <= at[2] + near_m;
     }
 }
 
@@ -65,19 +60,14 @@ static struct wd_vec3 way_toward(int way)
 static void ask_sky(struct tally *tally, const struct wd_tree_model *model)
 {
     const struct wd_tree_mesh *mesh = &model->full;
-    struct view view = {
-        .at = wd_alloc_array(mesh->vertex_count, sizeof *view.at),
-        .front = wd_alloc_array(PIXELS + 3, sizeof *view.front),
-    };
+    float *front = wd_alloc_array(PIXELS + 3, sizeof *front);
     for (int way = 0; way < WAYS; way++) {
-        struct wd_silhouette frame;
-        wd_silhouette_init(&frame, mesh, way_toward(way));
-        wd_silhouette_front(&frame, mesh, view.at, view.front);
-        wd_silhouette_finish(&frame);
-        ask(tally, &view, mesh, leaf_length_m(model));
+        struct wd_silhouette view;
+        wd_silhouette_init(&view, mesh, way_toward(way));
+        wd_silhouette_front(&view, mesh, front);
+        ask(tally, &view, front, mesh, leaf_length_m(model));
     }
-    free(view.at);
-    free(view.front);
+    free(front);
 }
 
 static bool rises(const struct band *low, const struct band *high)

@@ -283,7 +283,6 @@ static void plan_init(struct plan *plan, const struct wd_tree_mesh *mesh, float 
 static void plan_finish(struct plan *plan)
 {
     for (int i = 0; i < plan->view_count; i++) {
-        wd_silhouette_finish(&plan->views[i].frame);
         free(plan->views[i].nearest);
         free(plan->views[i].kind);
         free(plan->views[i].openness);

@@ -1,9 +1,6 @@
 #include "tree/silhouette.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-#include "base/memory.h"
 
 void wd_silhouette_init(struct wd_silhouette *silhouette, const struct wd_tree_mesh *frame,
                         struct wd_vec3 toward)
@@ -17,16 +14,9 @@ void wd_silhouette_init(struct wd_silhouette *silhouette, const struct wd_tree_m
     struct wd_vec3 right = wd_v3_side(toward);
     *silhouette = (struct wd_silhouette){.right = right, .up = wd_v3_cross(right, toward),
                                          .toward = toward,
-                                         .scale = 0.5f * (WD_SILHOUETTE - 2) / half,
-                                         .covered = wd_alloc(WD_SILHOUETTE * WD_SILHOUETTE + 3)};
+                                         .scale = 0.5f * (WD_SILHOUETTE - 2) / half};
     silhouette->low[0] = wd_v3_dot(middle, right) - half - 1 / silhouette->scale;
     silhouette->low[1] = wd_v3_dot(middle, silhouette->up) - half - 1 / silhouette->scale;
-}
-
-void wd_silhouette_finish(struct wd_silhouette *silhouette)
-{
-    free(silhouette->covered);
-    *silhouette = (struct wd_silhouette){0};
 }
 
 void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p[3], float at[2])
@@ -36,8 +26,63 @@ void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p
     at[1] = (wd_v3_dot(v, silhouette->up) - silhouette->low[1]) * silhouette->scale;
 }
 
+/* Pixels and distance of a point p are dot(p, axis) - low of these. */
+struct axes {
+    struct wd_vec3 axis[3];
+    float low[3];
+};
+
+static struct axes axes_of(const struct wd_silhouette *silhouette)
+{
+    return (struct axes){
+        {wd_v3_scale(silhouette->right, silhouette->scale),
+         wd_v3_scale(silhouette->up, silhouette->scale), silhouette->toward},
+        {silhouette->low[0] * silhouette->scale, silhouette->low[1] * silhouette->scale, 0},
+    };
+}
+
+void wd_silhouette_place(const struct wd_silhouette *silhouette, const float p[3], float at[3])
+{
+    struct axes axes = axes_of(silhouette);
+    for (int i = 0; i < 3; i++)
+        at[i] = wd_v3_dot(wd_v3_of(p), axes.axis[i]) - axes.low[i];
+}
+
 typedef float four_floats __attribute__((vector_size(16)));
 typedef int32_t four_ints __attribute__((vector_size(16)));
+
+/* --- triangles, a batch at a time, each number of all of them together -------------------- */
+
+enum { BATCH = 64 };
+
+struct batch {
+    float at[3][3][BATCH]; /* [corner][axis]: of the tree, then of the picture */
+    float turn[BATCH];     /* 1, or -1 of triangles that are seen from behind; 0 of none */
+    float right[BATCH], down[BATCH], most[BATCH]; /* distance a pixel; the farthest corner's */
+    int32_t x0[BATCH], x1[BATCH], y0[BATCH], y1[BATCH]; /* pixels whose middles it reaches over */
+};
+
+static void gather(struct batch *batch, const struct wd_tree_mesh *mesh, const uint32_t *indices,
+                   uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        for (int corner = 0; corner < 3; corner++) {
+            const float *p = mesh->vertices[indices[3 * i + (uint32_t)corner]].position_m;
+            for (int axis = 0; axis < 3; axis++)
+                batch->at[corner][axis][i] = p[axis];
+        }
+}
+
+static void place_corners(float at[3][BATCH], const struct axes *axes)
+{
+    struct wd_vec3 a = axes->axis[0], b = axes->axis[1], c = axes->axis[2];
+    for (int i = 0; i < BATCH; i++) {
+        struct wd_vec3 p = WD_V3(at[0][i], at[1][i], at[2][i]);
+        at[0][i] = wd_v3_dot(p, a) - axes->low[0];
+        at[1][i] = wd_v3_dot(p, b) - axes->low[1];
+        at[2][i] = wd_v3_dot(p, c) - axes->low[2];
+    }
+}
 
 static four_floats choose(four_ints where, four_floats a, four_floats b)
 {
@@ -54,68 +99,8 @@ static four_floats most(four_floats a, four_floats b)
     return choose(a > b, a, b);
 }
 
-/* Points p with cross(way, p - from) * turn >= 0 lie inside. */
-struct edge {
-    float from[2], way[2], turn;
-};
-
-static struct edge edge_of(const float from[2], const float to[2], float turn)
-{
-    return (struct edge){{from[0], from[1]}, {to[0] - from[0], to[1] - from[1]}, turn};
-}
-
-static four_ints is_inside(const struct edge *edge, four_floats x, float y)
-{
-    float across = edge->way[0] * (y - edge->from[1]);
-    return (across - edge->way[1] * (x - edge->from[0])) * edge->turn >= 0;
-}
-
-/* Four pixels at a time, those inside of a row. */
-static four_ints inside_row(const struct edge edges[3], four_ints at, float y, int x1)
-{
-    four_floats middles = __builtin_convertvector(at, four_floats) + 0.5f;
-    return is_inside(&edges[0], middles, y) & is_inside(&edges[1], middles, y) &
-           is_inside(&edges[2], middles, y) & (at < x1);
-}
-
-/* What lies beyond x1 is left as it is. */
-static void cover_row(uint8_t *row, const struct edge edges[3], float y, int x0, int x1)
-{
-    for (int x = x0; x < x1; x += 4) {
-        four_ints at = {x, x + 1, x + 2, x + 3}, inside = inside_row(edges, at, y, x1);
-        uint64_t pairs[2];
-        uint32_t covered;
-        memcpy(pairs, &inside, sizeof pairs);
-        memcpy(&covered, row + x, sizeof covered);
-        covered |= (uint32_t)((pairs[0] & 1) | (pairs[0] >> 24 & 0x100) | (pairs[1] & 1) << 16 |
-                              (pairs[1] >> 8 & 0x1000000));
-        memcpy(row + x, &covered, sizeof covered);
-    }
-}
-
-/* Distance over the picture: at pixel 0, more a pixel right, and at most: what slivers have beyond
- * that is error. */
-static void bring_row(float *row, const struct edge edges[3], float y, int x0, int x1,
-                      const float distance[3])
-{
-    for (int x = x0; x < x1; x += 4) {
-        four_ints at = {x, x + 1, x + 2, x + 3}, inside = inside_row(edges, at, y, x1);
-        four_floats own = distance[0] + distance[1] * __builtin_convertvector(at, four_floats);
-        four_floats front;
-        memcpy(&front, row + x, sizeof front);
-        front = choose(inside & (own > front) & (own <= distance[2]), own, front);
-        memcpy(row + x, &front, sizeof front);
-    }
-}
-
-/* A triangle that reaches over the middles of pixels [x0, x1) x [y0, y1). */
-struct box {
-    const float *corners[3];
-    int x0, x1, y0, y1;
-};
-
 /* First pixels whose middle is at x or beyond, within the picture; 0 for NaN. */
-static inline four_ints pixels(four_floats x)
+static four_ints pixels(four_floats x)
 {
     const four_floats none = {0}, all = none + WD_SILHOUETTE;
     four_floats from = least(choose(x > none, x, none), all) - 0.5f;
@@ -123,108 +108,159 @@ static inline four_ints pixels(four_floats x)
     return pixel - (__builtin_convertvector(pixel, four_floats) < from);
 }
 
-static inline struct box box_of(const float a[4], const float b[4], const float c[4])
+static void find_range(int32_t *first, int32_t *end, const float *a, const float *b,
+                       const float *c)
 {
-    four_floats corners[3];
-    memcpy(&corners[0], a, sizeof *corners);
-    memcpy(&corners[1], b, sizeof *corners);
-    memcpy(&corners[2], c, sizeof *corners);
-    four_ints low = pixels(least(least(corners[0], corners[1]), corners[2]));
-    four_ints high = pixels(most(most(corners[0], corners[1]), corners[2]));
-    return (struct box){{a, b, c}, low[0], high[0], low[1], high[1]};
-}
-
-/* Covers the box's triangle, or brings `front` before it. */
-static void draw_box(uint8_t *covered, float *front, const struct box *box)
-{
-    const float *a = box->corners[0], *b = box->corners[1], *c = box->corners[2];
-    float bx = b[0] - a[0], by = b[1] - a[1], cx = c[0] - a[0], cy = c[1] - a[1];
-    float area = bx * cy - cx * by;
-    if (!(fabsf(area) > 1e-9f))
-        return;
-    float turn = area > 0 ? 1 : -1, over = 1 / area;
-    const struct edge edges[3] = {edge_of(a, b, turn), edge_of(b, c, turn), edge_of(c, a, turn)};
-    float bz = b[2] - a[2], cz = c[2] - a[2];
-    float farthest = wd_maxf(wd_maxf(a[2], b[2]), c[2]);
-    float right = (bz * cy - cz * by) * over, down = (cz * bx - bz * cx) * over;
-    for (int y = box->y0; y < box->y1; y++) {
-        float middle = (float)y + 0.5f;
-        const float distance[3] = {a[2] + down * (middle - a[1]) + right * (0.5f - a[0]), right,
-                                   farthest};
-        if (covered)
-            cover_row(covered + y * WD_SILHOUETTE, edges, middle, box->x0, box->x1);
-        else
-            bring_row(front + y * WD_SILHOUETTE, edges, middle, box->x0, box->x1, distance);
+    for (int i = 0; i < BATCH; i += 4) {
+        four_floats at[3];
+        memcpy(&at[0], a + i, sizeof *at);
+        memcpy(&at[1], b + i, sizeof *at);
+        memcpy(&at[2], c + i, sizeof *at);
+        four_ints low = pixels(least(least(at[0], at[1]), at[2]));
+        four_ints high = pixels(most(most(at[0], at[1]), at[2]));
+        memcpy(first + i, &low, sizeof low);
+        memcpy(end + i, &high, sizeof high);
     }
 }
 
-/* Most triangles are small, and many lie between the middles of pixels: these are sorted out a
- * batch at a time, without a branch to be guessed. */
-static void draw_triangles(uint8_t *covered, float *front, float (*at)[4], const uint32_t *indices,
-                           uint32_t count)
+static void find_slopes(struct batch *batch)
 {
-    enum { BATCH = 256 };
-    struct box boxes[BATCH];
-    for (uint32_t i = 0; i + 2 < count;) {
-        int kept = 0;
-        for (int n = 0; n < BATCH && i + 2 < count; n++, i += 3) {
-            boxes[kept] = box_of(at[indices[i]], at[indices[i + 1]], at[indices[i + 2]]);
-            kept += (boxes[kept].x0 < boxes[kept].x1) & (boxes[kept].y0 < boxes[kept].y1);
+    float(*a)[BATCH] = batch->at[0], (*b)[BATCH] = batch->at[1], (*c)[BATCH] = batch->at[2];
+    for (int i = 0; i < BATCH; i++) {
+        float bx = b[0][i] - a[0][i], by = b[1][i] - a[1][i], bz = b[2][i] - a[2][i];
+        float cx = c[0][i] - a[0][i], cy = c[1][i] - a[1][i], cz = c[2][i] - a[2][i];
+        float area = bx * cy - cx * by, over = 1 / area;
+        batch->turn[i] = area > 1e-9f ? 1.0f : area < -1e-9f ? -1.0f : 0.0f;
+        batch->right[i] = (bz * cy - cz * by) * over;
+        batch->down[i] = (cz * bx - bz * cx) * over;
+        batch->most[i] = wd_maxf(wd_maxf(a[2][i], b[2][i]), c[2][i]);
+    }
+}
+
+/* --- pixels, four at a time ---------------------------------------------------------------- */
+
+/* Points p with cross(way, p - from) >= 0 lie inside: way[0] (y - from[1]) >= beyond, which is
+ * way[1] (x - from[0]) of four pixels. */
+struct edge {
+    float from[2], way[2];
+    four_floats beyond;
+};
+
+static void set_edges(struct edge edges[3], const struct batch *batch, int i)
+{
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 2; axis++) {
+            float from = batch->at[k][axis][i], to = batch->at[(k + 1) % 3][axis][i];
+            edges[k].from[axis] = from;
+            edges[k].way[axis] = (to - from) * batch->turn[i];
         }
-        for (int n = 0; n < kept; n++)
-            draw_box(covered, front, &boxes[n]);
+}
+
+static inline four_ints is_inside(const struct edge *edge, float y)
+{
+    const four_floats none = {0};
+    return none + edge->way[0] * (y - edge->from[1]) >= edge->beyond;
+}
+
+static inline void cover_four(uint8_t *row, int x, four_ints inside)
+{
+    const four_ints bits = {1, 2, 4, 8};
+    uint64_t pairs[2];
+    uint32_t covered;
+    inside &= bits;
+    memcpy(pairs, &inside, sizeof pairs);
+    pairs[0] |= pairs[1];
+    memcpy(&covered, row + x / 8, sizeof covered);
+    covered |= (uint32_t)(pairs[0] | pairs[0] >> 32) << x % 8;
+    memcpy(row + x / 8, &covered, sizeof covered);
+}
+
+/* What slivers have beyond their farthest corner is error. */
+static inline void bring_four(float *row, four_ints inside, four_floats own, float most)
+{
+    four_floats front;
+    memcpy(&front, row, sizeof front);
+    front = choose(inside & (own > front) & (own <= most), own, front);
+    memcpy(row, &front, sizeof front);
+}
+
+/* Covers a triangle in `covered`, or brings `front` before it. What lies beyond x1 is left as it
+ * is. */
+static inline void draw_triangle(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *front,
+                                 const struct batch *batch, int i)
+{
+    float ax = batch->at[0][0][i], ay = batch->at[0][1][i], az = batch->at[0][2][i];
+    struct edge edges[3];
+    set_edges(edges, batch, i);
+    for (int x = batch->x0[i]; x < batch->x1[i]; x += 4) {
+        const four_ints at = {x, x + 1, x + 2, x + 3}, seen = at < batch->x1[i];
+        four_floats places = __builtin_convertvector(at, four_floats);
+        four_floats nearer = batch->right[i] * places;
+        for (int k = 0; k < 3; k++)
+            edges[k].beyond = edges[k].way[1] * (places + 0.5f - edges[k].from[0]);
+        for (int y = batch->y0[i]; y < batch->y1[i]; y++) {
+            float middle = (float)y + 0.5f;
+            four_ints inside = seen & is_inside(&edges[0], middle) & is_inside(&edges[1], middle) &
+                               is_inside(&edges[2], middle);
+            if (covered) {
+                cover_four(covered[y], x, inside);
+                continue;
+            }
+            float first = az + batch->down[i] * (middle - ay) + batch->right[i] * (0.5f - ax);
+            bring_four(front + y * WD_SILHOUETTE + x, inside, first + nearer, batch->most[i]);
+        }
     }
 }
 
-/* Places of the vertices from `low` on. */
-static void place_vertices(float (*at)[4], const struct wd_silhouette *silhouette,
-                           const struct wd_tree_mesh *mesh, uint32_t low, uint32_t count)
+/* Most triangles are small, and many lie between the middles of pixels: these are sorted out
+ * without a branch to be guessed. */
+static void draw(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *front, const struct axes *axes,
+                 const struct wd_tree_mesh *mesh, uint32_t first, uint32_t end)
 {
-    struct wd_vec3 right = wd_v3_scale(silhouette->right, silhouette->scale);
-    struct wd_vec3 up = wd_v3_scale(silhouette->up, silhouette->scale);
-    float x0 = silhouette->low[0] * silhouette->scale, y0 = silhouette->low[1] * silhouette->scale;
-    for (uint32_t i = 0; i < count; i++) {
-        struct wd_vec3 p = wd_v3_of(mesh->vertices[low + i].position_m);
-        at[i][0] = wd_v3_dot(p, right) - x0;
-        at[i][1] = wd_v3_dot(p, up) - y0;
-        at[i][2] = wd_v3_dot(p, silhouette->toward);
+    struct batch batch = {0};
+    for (uint32_t i = first; i + 2 < end; i += 3 * BATCH) {
+        uint32_t count = (end - i) / 3 < BATCH ? (end - i) / 3 : BATCH;
+        int kept[BATCH + 1], keep = 0;
+        gather(&batch, mesh, mesh->indices + i, count);
+        for (int corner = 0; corner < 3; corner++)
+            place_corners(batch.at[corner], axes);
+        find_range(batch.x0, batch.x1, batch.at[0][0], batch.at[1][0], batch.at[2][0]);
+        find_range(batch.y0, batch.y1, batch.at[0][1], batch.at[1][1], batch.at[2][1]);
+        find_slopes(&batch);
+        for (int k = 0; k < (int)count; k++) {
+            kept[keep] = k;
+            keep += (batch.x0[k] < batch.x1[k]) & (batch.y0[k] < batch.y1[k]) &
+                    (batch.turn[k] != 0);
+        }
+        for (int k = 0; k < keep; k++)
+            draw_triangle(covered, front, &batch, kept[k]);
     }
 }
 
 void wd_silhouette_cover(struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
                          uint32_t first, uint32_t end)
 {
-    uint32_t high = 0, low = UINT32_MAX;
-    for (uint32_t i = first; i < end; i++) {
-        low = mesh->indices[i] < low ? mesh->indices[i] : low;
-        high = mesh->indices[i] > high ? mesh->indices[i] : high;
-    }
-    if (low > high)
-        return;
-    float(*at)[4] = wd_alloc_array((size_t)high + 1, sizeof *at);
-    place_vertices(at + low, silhouette, mesh, low, high + 1 - low);
-    draw_triangles(silhouette->covered, NULL, at, mesh->indices + first, end - first);
-    free(at);
+    struct axes axes = axes_of(silhouette);
+    draw(silhouette->covered, NULL, &axes, mesh, first, end);
 }
 
 void wd_silhouette_front(const struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
-                         float (*at)[4], float *front)
+                         float *front)
 {
-    place_vertices(at, silhouette, mesh, 0, mesh->vertex_count);
+    struct axes axes = axes_of(silhouette);
     for (size_t i = 0; i < WD_SILHOUETTE * WD_SILHOUETTE; i++)
         front[i] = -INFINITY;
-    draw_triangles(NULL, front, at, mesh->indices, mesh->index_count);
-}
-
-void wd_silhouette_clear(struct wd_silhouette *silhouette)
-{
-    memset(silhouette->covered, 0, WD_SILHOUETTE * WD_SILHOUETTE);
+    draw(NULL, front, &axes, mesh, 0, mesh->index_count);
 }
 
 size_t wd_silhouette_count(const struct wd_silhouette *silhouette)
 {
     size_t count = 0;
-    for (size_t i = 0; i < WD_SILHOUETTE * WD_SILHOUETTE; i++)
-        count += silhouette->covered[i];
+    for (int y = 0; y < WD_SILHOUETTE; y++)
+        for (int x = 0; x < WD_SILHOUETTE / 8; x += 4) {
+            uint32_t bits;
+            memcpy(&bits, &silhouette->covered[y][x], sizeof bits);
+            count += (size_t)__builtin_popcount(bits);
+        }
     return count;
 }

@@ -5,32 +5,35 @@
 #include "tree/mesh.h"
 #include "tree/vec.h"
 
-#define WD_SILHOUETTE 160 /* pixels a side */
+enum {
+    WD_SILHOUETTE = 160,                         /* pixels a side */
+    WD_SILHOUETTE_ROW = WD_SILHOUETTE / 8 + 4,   /* bytes, the last four for what is not seen */
+};
 
-/* Orthographic; pixel (x, y) is covered[y * WD_SILHOUETTE + x], its middle at x + 0.5, y + 0.5. */
+/* Orthographic; the middle of pixel (x, y) is at x + 0.5, y + 0.5. */
 struct wd_silhouette {
     struct wd_vec3 right, up, toward;
     float low[2], scale; /* metres at pixel 0; pixels a metre */
-    uint8_t *covered;    /* 0 or 1; three more behind the last */
+    uint8_t covered[WD_SILHOUETTE][WD_SILHOUETTE_ROW]; /* a bit a pixel */
 };
 
 /* An empty picture that frames `frame` (its bounds are set), at the same scale from all sides. */
 void wd_silhouette_init(struct wd_silhouette *silhouette, const struct wd_tree_mesh *frame,
                         struct wd_vec3 toward);
-void wd_silhouette_finish(struct wd_silhouette *silhouette);
-void wd_silhouette_clear(struct wd_silhouette *silhouette);
 
 /* Covers what the triangles of indices [first, end) cover: pixels whose middle lies in one. */
 void wd_silhouette_cover(struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
                          uint32_t first, uint32_t end);
-/* The mesh's vertices as the picture has them, third the distance toward its side, and of each
- * pixel the distance of what is nearest to it, or minus infinity; `front` has room for three
- * more. */
+
+/* Of each pixel the distance toward the picture's side of what is nearest to it, or minus
+ * infinity; `front` has room for three more. */
 void wd_silhouette_front(const struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
-                         float (*at)[4], float *front);
+                         float *front);
 
 size_t wd_silhouette_count(const struct wd_silhouette *silhouette);
 
+/* Third is the distance toward the picture's side, in metres. */
+void wd_silhouette_place(const struct wd_silhouette *silhouette, const float p[3], float at[3]);
 void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p[3], float at[2]);
 
 /* First pixel whose middle is at x or beyond, within the picture; 0 for NaN. */

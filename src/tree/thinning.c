@@ -17,8 +17,7 @@ struct thinning {
     const struct wd_tree_mesh *mesh;
     struct wd_tree_mesh part; /* its first leaves, grown */
     uint32_t first_vertex;    /* of leaves */
-    struct wd_silhouette views[VIEWS];
-    uint8_t *others[VIEWS]; /* what wood and flowers cover */
+    struct wd_silhouette others[VIEWS]; /* what wood and flowers cover */
 };
 
 static void grow_leaf(struct thinning *t, uint32_t index, float factor)
@@ -47,9 +46,9 @@ static float covered(struct thinning *t, uint32_t count, float factor)
         grow_leaf(t, i, factor);
     t->part.vertex_count = t->first_vertex + count * t->set->corner_count;
     for (int i = 0; i < VIEWS; i++) {
-        memcpy(t->views[i].covered, t->others[i], (size_t)WD_SILHOUETTE * WD_SILHOUETTE);
-        wd_silhouette_cover(&t->views[i], &t->part, begin, begin + count * t->set->index_count);
-        sum += wd_silhouette_count(&t->views[i]);
+        struct wd_silhouette view = t->others[i];
+        wd_silhouette_cover(&view, &t->part, begin, begin + count * t->set->index_count);
+        sum += wd_silhouette_count(&view);
     }
     return (float)sum;
 }
@@ -59,7 +58,6 @@ static void thinning_init(struct thinning *t, const struct wd_tree_model *model,
     static const struct wd_vec3 towards[VIEWS] = {{0.918f, 0.39f, 0.07f}, {-0.5f, 0.585f, 0.64f},
                                                    {-0.39f, 0.918f, 0.07f}, {0.585f, -0.5f, 0.64f}};
     const struct wd_leaf_set *flowers = &model->sets[level][WD_SET_FLOWERS];
-    const size_t size = (size_t)WD_SILHOUETTE * WD_SILHOUETTE;
     *t = (struct thinning){
         .model = model,
         .set = &model->sets[level][WD_SET_LEAVES],
@@ -74,21 +72,10 @@ static void thinning_init(struct thinning *t, const struct wd_tree_model *model,
     uint32_t leaves_end =
         t->mesh->wood_index_count + t->set->leaf_count * t->set->index_count;
     for (int i = 0; i < VIEWS; i++) {
-        wd_silhouette_init(&t->views[i], t->mesh, towards[i]);
-        wd_silhouette_cover(&t->views[i], t->mesh, 0, t->mesh->wood_index_count);
-        wd_silhouette_cover(&t->views[i], t->mesh, leaves_end, t->mesh->index_count);
-        t->others[i] = wd_alloc(size);
-        memcpy(t->others[i], t->views[i].covered, size);
+        wd_silhouette_init(&t->others[i], t->mesh, towards[i]);
+        wd_silhouette_cover(&t->others[i], t->mesh, 0, t->mesh->wood_index_count);
+        wd_silhouette_cover(&t->others[i], t->mesh, leaves_end, t->mesh->index_count);
     }
-}
-
-static void thinning_finish(struct thinning *t)
-{
-    for (int i = 0; i < VIEWS; i++) {
-        wd_silhouette_finish(&t->views[i]);
-        free(t->others[i]);
-    }
-    free(t->part.vertices);
 }
 
 static float fit_step(struct thinning *t, uint32_t count, float area, float growth, float wanted)
@@ -114,7 +101,7 @@ static void fit_level(struct wd_tree_model *model, int level, float growth[WD_LE
             last = fit_step(&t, count, area, last, wanted);
         growth[k] = last;
     }
-    thinning_finish(&t);
+    free(t.part.vertices);
 }
 
 void wd_tree_thinning_fit(struct wd_tree_model *model)
