@@ -88,13 +88,32 @@ static void add_sets(struct wd_tree_model *model, int level)
 }
 
 /* Wood's vertices come first. */
+static uint32_t wood_vertices(const struct wd_tree_model *model, int level)
+{
+    uint32_t count = level ? model->reduced.vertex_count : model->full.vertex_count;
+    for (int kind = 0; kind < WD_LEAF_SETS; kind++)
+        count -= model->sets[level][kind].leaf_count * model->sets[level][kind].corner_count;
+    return count;
+}
+
+/* Leaves that are there already, after their forms' corners have moved. */
+static void move_sets(struct wd_tree_model *model, int level)
+{
+    struct wd_tree_mesh *mesh = mesh_of(model, level);
+    struct wd_tree_vertex *vertices = mesh->vertices + wood_vertices(model, level);
+    for (int kind = 0; kind < WD_LEAF_SETS; kind++) {
+        const struct wd_leaf_set *set = &model->sets[level][kind];
+        if (set->leaf_count)
+            wd_leaf_set_move(set, set_leaves(model, kind), &model->leaf_box, vertices);
+        vertices += set->leaf_count * set->corner_count;
+    }
+    wd_tree_mesh_update_bounds(mesh);
+}
+
 static void drop_sets(struct wd_tree_model *model, int level)
 {
     struct wd_tree_mesh *mesh = mesh_of(model, level);
-    for (int kind = 0; kind < WD_LEAF_SETS; kind++) {
-        const struct wd_leaf_set *set = &model->sets[level][kind];
-        mesh->vertex_count -= set->leaf_count * set->corner_count;
-    }
+    mesh->vertex_count = wood_vertices(model, level);
     mesh->index_count = mesh->wood_index_count;
     mesh->vertex_capacity = mesh->vertex_count + 1;
     mesh->index_capacity = mesh->index_count + 1;
@@ -230,10 +249,9 @@ static void build_spray(struct wd_tree_model *model, const struct wd_foliage *fo
 static void fit_reduced(struct wd_tree_model *model)
 {
     float factor = wd_tree_mesh_fit_coverage(&model->reduced, &model->full);
-    drop_sets(model, 1);
     for (int kind = 0; kind < WD_LEAF_SETS; kind++)
         wd_leaf_set_scale_parts(&model->sets[1][kind], factor);
-    add_sets(model, 1);
+    move_sets(model, 1);
 }
 
 /* The mesh is brought to exactly the asked height: leaves end a little beside their axes. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "tree/four.h"
 
 /* --- forms ------------------------------------------------------------------------------- */
 
@@ -98,29 +99,40 @@ void wd_leaf_set_scale_parts(struct wd_leaf_set *set, float factor)
 
 /* --- triangles --------------------------------------------------------------------------- */
 
-/* A form's corner, unpacked. */
-struct corner {
-    struct wd_vec3 p, n;
-    uint32_t uv, kind;
+/* Corners of a form, unpacked, or of a leaf in the tree: four. */
+struct corners {
+    struct wd_four_vec3 p, n;
 };
 
-static struct corner *unpack_corners(const struct wd_leaf_set *set)
+static uint32_t four_count(const struct wd_leaf_set *set)
 {
-    uint32_t count = set->forms * set->corner_count;
-    struct corner *corners = wd_alloc_array(count + 1, sizeof *corners);
-    for (uint32_t i = 0; i < count; i++) {
-        float normal[3];
-        wd_unpack_normal(set->corners[i].normal, normal);
-        corners[i] = (struct corner){wd_v3_of(set->corners[i].place), wd_v3_of(normal),
-                                     set->corners[i].uv, set->corners[i].kind};
-    }
-    return corners;
+    return (set->corner_count + 3) / 4;
 }
 
-static struct wd_vec3 to_tree(const struct wd_leaf_axes *axes, struct wd_vec3 v)
+/* [form][four_count] */
+static struct corners *unpack_corners(const struct wd_leaf_set *set)
 {
-    struct wd_vec3 p = wd_v3_scale(axes->across, v.x);
-    return wd_v3_mad(wd_v3_mad(p, axes->along, v.y), axes->above, v.z);
+    struct corners *all = wd_alloc_array(set->forms * four_count(set), sizeof *all);
+    for (uint32_t i = 0; i < set->forms * set->corner_count; i++) {
+        uint32_t form = i / set->corner_count, corner = i % set->corner_count, at = corner % 4;
+        struct corners *four = &all[form * four_count(set) + corner / 4];
+        const float *p = set->corners[i].place;
+        float n[3];
+        wd_unpack_normal(set->corners[i].normal, n);
+        four->p.x[at] = p[0], four->p.y[at] = p[1], four->p.z[at] = p[2];
+        four->n.x[at] = n[0], four->n.y[at] = n[1], four->n.z[at] = n[2];
+    }
+    return all;
+}
+
+static struct wd_four_vec3 to_tree(const struct wd_leaf_axes *axes, const struct wd_four_vec3 *v)
+{
+    const struct wd_vec3 across = axes->across, along = axes->along, above = axes->above;
+    return (struct wd_four_vec3){
+        across.x * v->x + along.x * v->y + above.x * v->z,
+        across.y * v->x + along.y * v->y + above.y * v->z,
+        across.z * v->x + along.z * v->y + above.z * v->z,
+    };
 }
 
 static float arch_of(const struct wd_leaf_set *set, const struct wd_tree_leaf *leaf)
@@ -128,44 +140,132 @@ static float arch_of(const struct wd_leaf_set *set, const struct wd_tree_leaf *l
     return set->arch_least + set->arch_range * WD_LEAF_ARCH(*leaf);
 }
 
-static void add_leaf(struct wd_tree_mesh *mesh, const struct wd_leaf_set *set,
-                     const struct corner *corners, const struct wd_tree_leaf *leaf,
-                     const struct wd_leaf_box *box)
+static wd_four_ints pack_snorm16(wd_four value)
 {
-    const struct wd_leaf_axes axes = wd_leaf_axes_of(leaf->turn);
-    struct wd_vec3 foot = wd_leaf_foot(*leaf, *box), shading = wd_leaf_shading(leaf->shading);
-    float size_m = wd_leaf_size_m(*leaf, *box), arch = arch_of(set, leaf);
-    uint32_t flexibility = WD_LEAF_FLEXIBILITY(*leaf), first = mesh->vertex_count;
-    for (uint32_t i = 0; i < set->corner_count; i++) {
-        const struct corner *corner = &corners[i];
-        struct wd_vec3 p = WD_V3(corner->p.x, corner->p.y, arch * corner->p.z);
-        p = wd_v3_mad(foot, to_tree(&axes, p), size_m);
-        struct wd_vec3 n = to_tree(&axes, corner->n);
-        float side = wd_v3_dot(n, shading) < 0 ? -set->own : set->own;
-        n = wd_v3_mad(wd_v3_scale(shading, 1 - set->own), n, side); /* packed at any length */
-        uint32_t bend = flexibility + (corner->kind & 0xffu);
-        const float normal[3] = {n.x, n.y, n.z};
-        const struct wd_tree_vertex vertex = {
-            .position_m = {p.x, p.y, p.z},
-            .normal = wd_pack_normal(normal),
-            .uv = corner->uv,
+    const wd_four one = wd_four_of(1);
+    value = wd_four_min(wd_four_max(value, -one), one);
+    return (wd_four_truncate(value * 32767 + 32768.5f) - 32768) & 0xffff;
+}
+
+/* wd_pack_normal of four. */
+static void pack_normals(uint32_t packed[4], const struct wd_four_vec3 *n)
+{
+    const wd_four none = {0}, one = wd_four_of(1);
+    wd_four sum = wd_four_abs(n->x) + wd_four_abs(n->y) + wd_four_abs(n->z);
+    wd_four over = wd_four_choose(sum > none, one / sum, none), x = n->x * over, y = n->y * over;
+    wd_four sign_x = wd_four_choose(x < none, -one, one), sign_y = wd_four_choose(y < none, -one, one);
+    wd_four_ints lower = n->z < none;
+    wd_four folded = (one - wd_four_abs(y)) * sign_x;
+    y = wd_four_choose(lower, (one - wd_four_abs(x)) * sign_y, y);
+    x = wd_four_choose(lower, folded, x);
+    wd_four_ints both = pack_snorm16(x) | pack_snorm16(y) << 16;
+    memcpy(packed, &both, sizeof both);
+}
+
+/* How a leaf stands. */
+struct stand {
+    struct wd_leaf_axes axes;
+    struct wd_vec3 foot, shading;
+    float size_m, arch;
+};
+
+static struct stand stand_of(const struct wd_leaf_set *set, const struct wd_tree_leaf *leaf,
+                             const struct wd_leaf_box *box)
+{
+    return (struct stand){wd_leaf_axes_of(leaf->turn), wd_leaf_foot(*leaf, *box),
+                          wd_leaf_shading(leaf->shading), wd_leaf_size_m(*leaf, *box),
+                          arch_of(set, leaf)};
+}
+
+static struct wd_four_vec3 places(const struct wd_four_vec3 *form, const struct stand *stand)
+{
+    const struct wd_four_vec3 arched = {form->x, form->y, stand->arch * form->z};
+    const struct wd_four_vec3 p = to_tree(&stand->axes, &arched);
+    return (struct wd_four_vec3){stand->foot.x + p.x * stand->size_m,
+                                 stand->foot.y + p.y * stand->size_m,
+                                 stand->foot.z + p.z * stand->size_m};
+}
+
+/* Of the sheet and of the crown together; `own` as in struct wd_leaf_set. Of any length. */
+static struct wd_four_vec3 normals(const struct wd_four_vec3 *form, const struct stand *stand,
+                                   float own)
+{
+    const struct wd_four_vec3 n = to_tree(&stand->axes, form);
+    const struct wd_vec3 crown = wd_v3_scale(stand->shading, 1 - own);
+    const wd_four none = {0};
+    wd_four side = wd_four_choose(wd_four_dot(&n, stand->shading) < none, wd_four_of(-own),
+                                  wd_four_of(own));
+    return (struct wd_four_vec3){crown.x + n.x * side, crown.y + n.y * side, crown.z + n.z * side};
+}
+
+static void add_corners(struct wd_tree_vertex *vertices, const struct corners *corners,
+                        const struct wd_leaf_vertex *form, const struct wd_tree_leaf *leaf,
+                        uint32_t count)
+{
+    uint32_t flexibility = WD_LEAF_FLEXIBILITY(*leaf), packed[4];
+    pack_normals(packed, &corners->n);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t bend = flexibility + (form[i].kind & 0xffu);
+        vertices[i] = (struct wd_tree_vertex){
+            .position_m = {corners->p.x[i], corners->p.y[i], corners->p.z[i]},
+            .normal = packed[i],
+            .uv = form[i].uv,
             .tint = leaf->tint,
-            .kind = (corner->kind & ~0xffu) | (bend < 255 ? bend : 255),
+            .kind = (form[i].kind & ~0xffu) | (bend < 255 ? bend : 255),
         };
-        wd_tree_mesh_add_vertex(mesh, &vertex);
     }
-    for (uint32_t i = 0; i < set->index_count; i += 3)
-        wd_tree_mesh_add_triangle(mesh, first + set->indices[i], first + set->indices[i + 1],
-                                  first + set->indices[i + 2]);
+}
+
+static void add_triangles(struct wd_tree_mesh *mesh, const struct wd_leaf_set *set)
+{
+    uint32_t *indices = mesh->indices + mesh->index_count;
+    for (uint32_t i = 0; i < set->index_count; i++)
+        indices[i] = mesh->vertex_count + set->indices[i];
+    mesh->index_count += set->index_count;
+}
+
+static uint32_t least(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
 }
 
 void wd_leaf_set_mesh(const struct wd_leaf_set *set, const struct wd_tree_leaf *leaves,
                       const struct wd_leaf_box *box, struct wd_tree_mesh *mesh)
 {
-    struct corner *corners = unpack_corners(set);
+    uint32_t fours = four_count(set), count = set->corner_count;
+    struct corners *corners = unpack_corners(set);
+    wd_tree_mesh_reserve(mesh, set->leaf_count * count, set->leaf_count * set->index_count);
     for (uint32_t i = 0; i < set->leaf_count; i++) {
         uint32_t form = WD_LEAF_FORM(leaves[i]) % set->forms;
-        add_leaf(mesh, set, corners + form * set->corner_count, &leaves[i], box);
+        const struct stand stand = stand_of(set, &leaves[i], box);
+        add_triangles(mesh, set);
+        for (uint32_t at = 0; at < count; at += 4) {
+            const struct corners *from = &corners[form * fours + at / 4];
+            const struct corners made = {places(&from->p, &stand),
+                                         normals(&from->n, &stand, set->own)};
+            add_corners(mesh->vertices + mesh->vertex_count + at, &made,
+                        set->corners + form * count + at, &leaves[i], least(count - at, 4));
+        }
+        mesh->vertex_count += count;
+    }
+    free(corners);
+}
+
+void wd_leaf_set_move(const struct wd_leaf_set *set, const struct wd_tree_leaf *leaves,
+                      const struct wd_leaf_box *box, struct wd_tree_vertex *vertices)
+{
+    uint32_t fours = four_count(set), count = set->corner_count;
+    struct corners *corners = unpack_corners(set);
+    for (uint32_t i = 0; i < set->leaf_count; i++, vertices += count) {
+        uint32_t form = WD_LEAF_FORM(leaves[i]) % set->forms;
+        const struct stand stand = stand_of(set, &leaves[i], box);
+        for (uint32_t at = 0; at < count; at += 4) {
+            struct wd_four_vec3 p = places(&corners[form * fours + at / 4].p, &stand);
+            for (uint32_t k = 0; k < least(count - at, 4); k++) {
+                float *position_m = vertices[at + k].position_m;
+                position_m[0] = p.x[k], position_m[1] = p.y[k], position_m[2] = p.z[k];
+            }
+        }
     }
     free(corners);
 }

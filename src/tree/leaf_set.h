@@ -35,6 +35,10 @@ float wd_leaf_set_top_m(const struct wd_leaf_set *set, const struct wd_tree_leaf
 /* Appends the leaves as triangles. */
 void wd_leaf_set_mesh(const struct wd_leaf_set *set, const struct wd_tree_leaf *leaves,
                       const struct wd_leaf_box *box, struct wd_tree_mesh *mesh);
+/* Gives the vertices that wd_leaf_set_mesh appended their places anew: the forms' corners may have
+ * moved since, the leaves and all else not. */
+void wd_leaf_set_move(const struct wd_leaf_set *set, const struct wd_tree_leaf *leaves,
+                      const struct wd_leaf_box *box, struct wd_tree_vertex *vertices);
 
 /* A leaf before it is packed. */
 struct wd_leaf_stand {

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "tree/four.h"
+
 void wd_silhouette_init(struct wd_silhouette *silhouette, const struct wd_tree_mesh *frame,
                         struct wd_vec3 toward)
 {
@@ -48,9 +50,6 @@ void wd_silhouette_place(const struct wd_silhouette *silhouette, const float p[3
         at[i] = wd_v3_dot(wd_v3_of(p), axes.axis[i]) - axes.low[i];
 }
 
-typedef float four_floats __attribute__((vector_size(16)));
-typedef int32_t four_ints __attribute__((vector_size(16)));
-
 /* --- triangles, a batch at a time, each number of all of them together -------------------- */
 
 enum { BATCH = 64 };
@@ -84,40 +83,23 @@ static void place_corners(float at[3][BATCH], const struct axes *axes)
     }
 }
 
-static four_floats choose(four_ints where, four_floats a, four_floats b)
-{
-    return (four_floats)((where & (four_ints)a) | (~where & (four_ints)b));
-}
-
-static four_floats least(four_floats a, four_floats b)
-{
-    return choose(a < b, a, b);
-}
-
-static four_floats most(four_floats a, four_floats b)
-{
-    return choose(a > b, a, b);
-}
-
 /* First pixels whose middle is at x or beyond, within the picture; 0 for NaN. */
-static four_ints pixels(four_floats x)
+static wd_four_ints pixels(wd_four x)
 {
-    const four_floats none = {0}, all = none + WD_SILHOUETTE;
-    four_floats from = least(choose(x > none, x, none), all) - 0.5f;
-    four_ints pixel = __builtin_convertvector(from, four_ints);
-    return pixel - (__builtin_convertvector(pixel, four_floats) < from);
+    const wd_four none = {0};
+    x = wd_four_choose(x > none, x, none);
+    wd_four from = wd_four_min(x, wd_four_of(WD_SILHOUETTE)) - 0.5f;
+    wd_four_ints pixel = wd_four_truncate(from);
+    return pixel - (wd_four_convert(pixel) < from);
 }
 
 static void find_range(int32_t *first, int32_t *end, const float *a, const float *b,
                        const float *c)
 {
     for (int i = 0; i < BATCH; i += 4) {
-        four_floats at[3];
-        memcpy(&at[0], a + i, sizeof *at);
-        memcpy(&at[1], b + i, sizeof *at);
-        memcpy(&at[2], c + i, sizeof *at);
-        four_ints low = pixels(least(least(at[0], at[1]), at[2]));
-        four_ints high = pixels(most(most(at[0], at[1]), at[2]));
+        wd_four p = wd_four_load(a + i), q = wd_four_load(b + i), r = wd_four_load(c + i);
+        wd_four_ints low = pixels(wd_four_min(wd_four_min(p, q), r));
+        wd_four_ints high = pixels(wd_four_max(wd_four_max(p, q), r));
         memcpy(first + i, &low, sizeof low);
         memcpy(end + i, &high, sizeof high);
     }
@@ -143,7 +125,7 @@ static void find_slopes(struct batch *batch)
  * way[1] (x - from[0]) of four pixels. */
 struct edge {
     float from[2], way[2];
-    four_floats beyond;
+    wd_four beyond;
 };
 
 static void set_edges(struct edge edges[3], const struct batch *batch, int i)
@@ -156,15 +138,14 @@ static void set_edges(struct edge edges[3], const struct batch *batch, int i)
         }
 }
 
-static inline four_ints is_inside(const struct edge *edge, float y)
+static inline wd_four_ints is_inside(const struct edge *edge, float y)
 {
-    const four_floats none = {0};
-    return none + edge->way[0] * (y - edge->from[1]) >= edge->beyond;
+    return wd_four_of(edge->way[0] * (y - edge->from[1])) >= edge->beyond;
 }
 
-static inline void cover_four(uint8_t *row, int x, four_ints inside)
+static inline void cover_four(uint8_t *row, int x, wd_four_ints inside)
 {
-    const four_ints bits = {1, 2, 4, 8};
+    const wd_four_ints bits = {1, 2, 4, 8};
     uint64_t pairs[2];
     uint32_t covered;
     inside &= bits;
@@ -176,11 +157,10 @@ static inline void cover_four(uint8_t *row, int x, four_ints inside)
 }
 
 /* What slivers have beyond their farthest corner is error. */
-static inline void bring_four(float *row, four_ints inside, four_floats own, float most)
+static inline void bring_four(float *row, wd_four_ints inside, wd_four own, float most)
 {
-    four_floats front;
-    memcpy(&front, row, sizeof front);
-    front = choose(inside & (own > front) & (own <= most), own, front);
+    wd_four front = wd_four_load(row);
+    front = wd_four_choose(inside & (own > front) & (own <= most), own, front);
     memcpy(row, &front, sizeof front);
 }
 
@@ -193,14 +173,14 @@ static inline void draw_triangle(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *f
     struct edge edges[3];
     set_edges(edges, batch, i);
     for (int x = batch->x0[i]; x < batch->x1[i]; x += 4) {
-        const four_ints at = {x, x + 1, x + 2, x + 3}, seen = at < batch->x1[i];
-        four_floats places = __builtin_convertvector(at, four_floats);
-        four_floats nearer = batch->right[i] * places;
+        const wd_four_ints at = {x, x + 1, x + 2, x + 3}, seen = at < batch->x1[i];
+        wd_four places = wd_four_convert(at);
+        wd_four nearer = batch->right[i] * places;
         for (int k = 0; k < 3; k++)
             edges[k].beyond = edges[k].way[1] * (places + 0.5f - edges[k].from[0]);
         for (int y = batch->y0[i]; y < batch->y1[i]; y++) {
             float middle = (float)y + 0.5f;
-            four_ints inside = seen & is_inside(&edges[0], middle) & is_inside(&edges[1], middle) &
+            wd_four_ints inside = seen & is_inside(&edges[0], middle) & is_inside(&edges[1], middle) &
                                is_inside(&edges[2], middle);
             if (covered) {
                 cover_four(covered[y], x, inside);

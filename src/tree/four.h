@@ -1,0 +1,67 @@
+/* four.h: four numbers at a time. Each operation is that of single floats, so results are the same
+ * with or without such instructions. */
+#ifndef WD_TREE_FOUR_H
+#define WD_TREE_FOUR_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "tree/vec.h"
+
+typedef float wd_four __attribute__((vector_size(16)));
+typedef int32_t wd_four_ints __attribute__((vector_size(16)));
+
+static inline wd_four wd_four_of(float a)
+{
+    return (wd_four){a, a, a, a};
+}
+
+static inline wd_four wd_four_load(const float *from)
+{
+    wd_four a;
+    memcpy(&a, from, sizeof a);
+    return a;
+}
+
+static inline wd_four wd_four_choose(wd_four_ints where, wd_four a, wd_four b)
+{
+    return (wd_four)((where & (wd_four_ints)a) | (~where & (wd_four_ints)b));
+}
+
+static inline wd_four wd_four_min(wd_four a, wd_four b)
+{
+    return wd_four_choose(a < b, a, b);
+}
+
+static inline wd_four wd_four_max(wd_four a, wd_four b)
+{
+    return wd_four_choose(a > b, a, b);
+}
+
+static inline wd_four wd_four_abs(wd_four a)
+{
+    return (wd_four)((wd_four_ints)a & 0x7fffffff);
+}
+
+/* Toward zero. */
+static inline wd_four_ints wd_four_truncate(wd_four a)
+{
+    return __builtin_convertvector(a, wd_four_ints);
+}
+
+static inline wd_four wd_four_convert(wd_four_ints a)
+{
+    return __builtin_convertvector(a, wd_four);
+}
+
+/* Four vectors. */
+struct wd_four_vec3 {
+    wd_four x, y, z;
+};
+
+static inline wd_four wd_four_dot(const struct wd_four_vec3 *a, struct wd_vec3 b)
+{
+    return a->x * b.x + a->y * b.y + a->z * b.z;
+}
+
+#endif
