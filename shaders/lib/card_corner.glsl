@@ -200,16 +200,6 @@ vec4 card_clip(card_tree t, card_frame card, vec2 side)
     return SHADOW != 0u ? shadow_clip(push.cascade, rel) : frame.clip_from_rel * vec4(rel, 1.0);
 }
 
-/* Where a tree's noise lies: fixed to the pixel of its foot, and another for each tree. */
-uint card_noise_shift(card_tree t)
-{
-    vec4 clip = frame.steady_clip_from_rel * vec4(t.foot, 1.0); /* samples share their noise */
-    vec2 size = vec2(frame.width, frame.height);
-    vec2 foot = clamp((clip.xy / max(clip.w, 0.01) * 0.5 + 0.5) * size, -1e6, 1e6);
-    uvec2 shift = uvec2(t.tree.random & 255u, t.tree.random >> 8) - uvec2(ivec2(floor(foot)));
-    return (shift.x & 255u) << 24 | (shift.y & 255u) << 16;
-}
-
 /* `show` is that of the level of detail. */
 wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show)
 {
@@ -224,7 +214,7 @@ wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show
     result.layer = t.model.card_layer + card.layer;
     result.lod = t.lod;
     result.random = SHADOW != 0u ? t.tree.random ^ (card.layer * 0x9e3779b9u)
-                                 : card_noise_shift(t) | uint(card.begin * 255.0 + 0.5) << 8;
+                                 : card_noise_shift(t.tree, t.foot) | uint(card.begin * 255.0 + 0.5) << 8;
     result.surface = index + 1u;
     return card_pack(result);
 }

@@ -77,3 +77,14 @@ vec4 shadow_clip(uint cascade, vec3 rel)
     vec4 at = frame.shadow_from_rel[cascade] * vec4(rel, 1.0);
     return vec4(at.xy * 2.0 - at.w, at.z, at.w);
 }
+
+/* Where the noise lies that a tree's cards ask (card_shows): fixed to the pixel of its foot, and
+ * another for each tree. */
+uint card_noise_shift(wd_tree tree, vec3 foot)
+{
+    vec4 clip = frame.steady_clip_from_rel * vec4(foot, 1.0); /* samples share their noise */
+    vec2 size = vec2(frame.width, frame.height);
+    vec2 at = clamp((clip.xy / max(clip.w, 0.01) * 0.5 + 0.5) * size, -1e6, 1e6);
+    uvec2 shift = uvec2(tree.random & 255u, tree.random >> 8) - uvec2(ivec2(floor(at)));
+    return (shift.x & 255u) << 24 | (shift.y & 255u) << 16;
+}

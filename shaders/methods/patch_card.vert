@@ -70,6 +70,6 @@ void main()
         billboard_flat(board, model, pose, tree, show, tall_px, index + 1u);
     out_uv = board.uv;
     out_card = uvec4(packed.turn, packed.tint_show, packed.normal, packed.ratio_flags);
-    out_more = uvec3(packed.layer_lod, packed.random, packed.surface);
+    out_more = uvec3(packed.layer_lod, card_noise_shift(tree, foot), packed.surface);
     gl_Position = frame.clip_from_rel * vec4(foot + offset, 1.0);
 }
