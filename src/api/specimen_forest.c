@@ -14,8 +14,8 @@ static const char scene_text[] =
     " \"terrain\": {\"kind\": \"flat\", \"size_m\": [4000, 4000]},"
     " \"sun\": {\"azimuth_deg\": 228, \"elevation_deg\": 42}, \"wind\": {\"speed_mps\": 0},"
     " \"fog\": {\"visibility_m\": 60000},"
-    " \"ground\": {\"grass\": [0.16, 0.155, 0.14], \"soil\": [0.16, 0.155, 0.14],"
-    " \"litter\": [0.15, 0.145, 0.13], \"rock\": [0.16, 0.155, 0.14]},"
+    " \"ground\": {\"grass\": [0.105, 0.12, 0.075], \"soil\": [0.125, 0.13, 0.09],"
+    " \"litter\": [0.11, 0.118, 0.08], \"rock\": [0.15, 0.15, 0.14]},"
     " \"quality\": {\"samples\": 16, \"shadow_size\": 2048, \"shadow_taps\": 9,"
     " \"exposure_ev\": 0.6}}";
 

@@ -11,7 +11,7 @@
 enum { MAX_LEAF_TRIANGLES = 600000, BARE_TWIGS = 5000 };
 #define SPRIG_SHARE 0.6f /* sprigs in place of leaves, each with more triangles */
 enum { SPRIG_TRIANGLES = 8, LEAST_SPRIG_TRIANGLES = 2, ALL_SPRIG_TRIANGLES = 80000 };
-#define HEDGE_SHARE 0.3f /* of the leaf area index of a forest */
+#define HEDGE_SHARE 0.4f /* of the leaf area index of a forest */
 #define HEDGE_SHELL_M 0.18f
 
 /* A piece of a twig that bears leaves. */
@@ -80,6 +80,13 @@ static void fill_crown(struct wd_foliage *foliage, const struct wd_skeleton *ske
     }
 }
 
+/* 0 where the crown is wide .. 1 at the end of a pointed one. */
+static float spire(const struct wd_tree_form *form, float z)
+{
+    float wide = wd_tree_envelope_m(form, WD_V3(0, 0, z)) / form->crown_radius_m;
+    return 1 - wd_smoothf(0.1f, 0.6f, wide);
+}
+
 /* A twig bears leaves by its length and by the light that reaches it. */
 static void weigh_carriers(struct carriers *carriers, struct wd_foliage *foliage,
                            const struct wd_skeleton *skeleton, const struct wd_tree_form *form,
@@ -98,8 +105,11 @@ static void weigh_carriers(struct carriers *carriers, struct wd_foliage *foliage
                                            &d, &node);
         float sky = wd_tree_density_sky(&foliage->crown, p);
         carrier->weight = carrier->length_m * (0.35f + sky);
-        if (form->clip && wd_clip_near_shell(form->clip, p, HEDGE_SHELL_M))
-            carrier->weight *= 4; /* what is cut buds behind the cut */
+        if (form->species->form == WD_FORM_CONIFER) /* few and short twigs hide a spire's stem */
+            carrier->weight *= 1 + 0.35f * spire(form, p.z);
+        if (form->clip) /* lit from its sides, and what is cut buds behind the cut */
+            carrier->weight = carrier->length_m *
+                              (wd_clip_near_shell(form->clip, p, HEDGE_SHELL_M) ? 4 : 1);
         carriers->weight += carrier->weight;
     }
     wd_tree_density_clear(&foliage->crown);
@@ -204,8 +214,8 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
     float gap = form->species->orders[form->species->order_count - 1].spacing_m;
     float loose = needles ? 0.02f : form->species->leaf.count == 0 ? 0 : 0.3f * gap;
     if (needles) /* a spire ends in short shoots */
-        leaf->size_m *= wd_clampf(2.2f * wd_tree_envelope_m(form, WD_V3(0, 0, p.z)) /
-                                      form->crown_radius_m, 0.62f, 1);
+        leaf->size_m *= wd_clampf(0.32f + 2.2f * wd_tree_envelope_m(form, WD_V3(0, 0, p.z)) /
+                                              form->crown_radius_m, 0.42f, 1);
     leaf->position_m = wd_v3_mad(p, wd_random_vec3(&joint), loose * form->scale);
     leaf->flexibility = skeleton->nodes[node].flexibility;
     int parent = branch->parent >= 0 ? branch->parent : 0;
@@ -256,7 +266,9 @@ static size_t leaf_count(const struct wd_tree_form *form, float area_m2)
     count *= fmin(spread, needles ? 1 : low ? 4 : 1.2);
     double real_m = 0.01 * (double)(needles ? species->leaf.shoot_cm : species->leaf.length_cm);
     double most = (double)(area_m2 / wd_leaf_unit_area(species)) / (real_m * real_m);
-    if (count > most || form->clip) /* a hedge is seen from near */
+    if (form->clip) /* a hedge is seen from near, and cut shoots bear smaller leaves */
+        count = 1.25 * most;
+    else if (count > most)
         count = most;
     size_t triangles = wd_leaf_least_triangles(species);
     if (!needles && !wd_species_has_fronds(species) && most > (double)WD_SPRIG_FROM * count) {
@@ -355,6 +367,12 @@ static void choose_flowers(struct wd_foliage *foliage, const struct wd_tree_form
                 foliage->flowers[foliage->flower_count++] = places[i];
 }
 
+/* They have fallen where leaves stand, in no particular month too. */
+static bool flowers_before_leaves(const struct wd_species *species)
+{
+    return !species->leaf.evergreen && species->flower.months[1] < species->leaf.months[0];
+}
+
 /* Leaves by the weight of what carries them. */
 static void place_leaves(struct wd_foliage *foliage, const struct wd_skeleton *skeleton,
                          const struct wd_tree_form *form, const struct carriers *carriers,
@@ -427,5 +445,6 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
     free(carriers.items);
     scale_leaves(foliage, form->species, area);
     order_leaves(foliage, form->key);
-    choose_flowers(foliage, form, foliage->leaves, foliage->count);
+    if (!flowers_before_leaves(form->species))
+        choose_flowers(foliage, form, foliage->leaves, foliage->count);
 }

@@ -3,31 +3,41 @@
 /* More leaflets than this are drawn as kites, fewer with their outline. */
 enum { OUTLINED_LEAFLETS = 16, AXIS_PIECES = 6, BLADE_PIECES = 4, PINNULES = 9 };
 
-/* The leaf's axis: an arc in the plane of y and z that bends down by `arch` radians in all. */
-static struct wd_vec3 axis_direction(float arch, float t)
+/* The leaf's axis: an arc in the plane of y and z that bends down by `arch` radians in all, and
+ * aside by `sway` of its length toward the tip. */
+struct axis {
+    float arch, sway;
+};
+
+static struct wd_vec3 axis_direction(const struct axis *axis, float t)
 {
-    double turn = -(double)arch * (double)t;
-    return WD_V3(0, wd_dcos(turn), wd_dsin(turn));
+    double turn = -(double)axis->arch * (double)t;
+    return wd_v3_unit(WD_V3(2 * axis->sway * t, wd_dcos(turn), wd_dsin(turn)));
 }
 
-static struct wd_vec3 axis_point(float arch, float t)
+static struct wd_vec3 axis_point(const struct axis *axis, float t)
 {
     struct wd_vec3 p = WD_V3(0, 0, 0);
     const int steps = 12;
     for (int i = 0; i < steps; i++)
-        p = wd_v3_mad(p, axis_direction(arch, t * ((float)i + 0.5f) / (float)steps),
+        p = wd_v3_mad(p, axis_direction(axis, t * ((float)i + 0.5f) / (float)steps),
                       t / (float)steps);
     return p;
 }
 
+/* Square to it, upward. */
+static struct wd_vec3 axis_above(struct wd_vec3 direction)
+{
+    return wd_v3_square(WD_V3(0, -direction.z, direction.y), direction);
+}
+
 /* A strip along the axis; half as wide at its end. */
-static void add_axis(struct wd_leaf_template *leaf, float arch, float width)
+static void add_axis(struct wd_leaf_template *leaf, const struct axis *axis, float width)
 {
     uint32_t before[2] = {0};
     for (int i = 0; i <= AXIS_PIECES; i++) {
         float t = (float)i / AXIS_PIECES, half = 0.5f * width * (1 - 0.75f * t);
-        struct wd_vec3 p = axis_point(arch, t), d = axis_direction(arch, t);
-        struct wd_vec3 n = WD_V3(0, -d.z, d.y);
+        struct wd_vec3 p = axis_point(axis, t), n = axis_above(axis_direction(axis, t));
         uint32_t right = wd_leaf_add_corner(leaf, wd_v3_add(p, WD_V3(half, 0, 0)), n, 0.501f, 0,
                                             0.6f * t);
         uint32_t left = wd_leaf_add_corner(leaf, wd_v3_add(p, WD_V3(-half, 0, 0)), n, 0.499f, 0,
@@ -56,7 +66,7 @@ static void add_pinna(struct wd_leaf_template *leaf, const struct wd_blade_place
     for (int i = 0; i < 2 * PINNULES; i++) {
         float t = ((float)(i / 2) + 0.3f) / PINNULES, side = i & 1 ? -1.0f : 1.0f;
         float reach = place->width * (0.68f - 0.38f * t);
-        float foot = place->length / PINNULES * 1.1f;
+        float foot = place->length / PINNULES * 1.5f; /* grown together */
         struct wd_vec3 p = wd_v3_mad(place->foot, place->along, t * place->length);
         p = wd_v3_mad(p, place->above, -0.08f * t * t * place->length);
         struct wd_vec3 out = wd_v3_mad(wd_v3_scale(place->across, side), place->along, 0.35f);
@@ -64,39 +74,91 @@ static void add_pinna(struct wd_leaf_template *leaf, const struct wd_blade_place
     }
 }
 
+/* A palm's leaflet: a strap, folded along its midrib and so narrower than it is wide, that hangs
+ * the more the farther out. Its blade stands across the frond, more or less: light falls between. */
+static void add_strap(struct wd_leaf_template *leaf, const struct wd_blade_place *place,
+                      struct wd_random *random)
+{
+    static const float at[] = {0, 0.3f, 0.68f}, wide[] = {0.3f, 0.8f, 0.62f};
+    float droop = wd_random_range(random, 0.12f, 0.5f);
+    float roll = wd_random_range(random, 0.15f, 0.85f);
+    struct wd_vec3 across = wd_v3_turn(place->across, place->above,
+                                       place->along.x > 0 ? roll : -roll);
+    uint32_t before[2] = {0};
+    for (int i = 0; i <= 3; i++) {
+        float y = i < 3 ? at[i] : 1, half = i < 3 ? 0.5f * place->width * wide[i] : 0;
+        float reach = y * (1 - 0.2f * droop * y), sag = droop * y * y;
+        struct wd_vec3 p = wd_v3_mad(place->foot, place->along, place->length * reach);
+        p = wd_v3_mad(p, place->above, -place->length * sag);
+        struct wd_vec3 d = wd_v3_mad(place->along, place->above, -2 * droop * y);
+        struct wd_vec3 n = wd_v3_unit(wd_v3_cross(across, d));
+        float stiff = wd_mixf(place->stiff, 1, y);
+        uint32_t right = wd_leaf_add_corner(leaf, wd_v3_mad(p, across, half), n,
+                                            i < 3 ? 1 : 0.5f, y, stiff);
+        uint32_t left = right;
+        if (i < 3)
+            left = wd_leaf_add_corner(leaf, wd_v3_mad(p, across, -half), n, 0, y, stiff);
+        if (i > 0)
+            wd_leaf_add_triangle(leaf, before[0], right, before[1]);
+        if (i > 0 && i < 3)
+            wd_leaf_add_triangle(leaf, right, left, before[1]);
+        before[0] = right;
+        before[1] = left;
+    }
+}
+
 static void add_leaflet(struct wd_leaf_template *leaf, const struct wd_species *species,
-                        const struct wd_blade_place *place)
+                        const struct wd_blade_place *place, struct wd_random *random)
 {
     const struct wd_leaf_outline *outline = wd_leaf_outline_of(species);
     if (species->leaf.compound == WD_COMPOUND_BIPINNATE)
         add_pinna(leaf, place);
+    else if (species->leaf.shape == WD_LEAF_BLADE)
+        add_strap(leaf, place, random);
     else if (species->leaf.leaflets > OUTLINED_LEAFLETS)
         wd_leaf_add_kite(leaf, outline, place);
     else
         wd_leaf_add_blade(leaf, outline, place);
 }
 
-void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species *species)
+/* No two fronds bend alike. */
+static struct axis frond_axis(const struct wd_species *species, struct wd_random *random)
 {
-    float whole = species->leaf.length_cm, arch = species->leaf.arch;
+    if (species->leaf.leaflets <= OUTLINED_LEAFLETS)
+        return (struct axis){species->leaf.arch, 0};
+    float arch = species->leaf.arch * wd_random_range(random, 0.6f, 1.3f);
+    return (struct axis){arch, 0.14f * wd_random_signed(random)};
+}
+
+void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species *species,
+                         uint32_t variant)
+{
+    struct wd_random random = wd_random_of(variant, 0xf40d);
+    const struct axis axis = frond_axis(species, &random);
+    float whole = species->leaf.length_cm;
     float from = species->leaf.stalk_cm / whole;
     float length = species->leaf.leaflet_length_cm / whole;
     float width = species->leaf.leaflet_width_cm / whole;
     int count = (int)species->leaf.leaflets;
-    add_axis(leaf, arch, count > OUTLINED_LEAFLETS ? 0.012f : 0.02f);
+    bool frond = count > OUTLINED_LEAFLETS;
+    add_axis(leaf, &axis, frond ? 0.012f : 0.02f);
     for (int i = 0; i < count; i++) {
         bool last = i == count - 1 && count % 2;
         float t = ((float)(i / 2) + 0.5f + 0.25f * (float)(i & 1)) / (0.5f * (float)count + 0.25f);
         float at = wd_mixf(from, 0.985f, last ? 1 : t), side = i & 1 ? -1.0f : 1.0f;
         float size = leaflet_share(species, last ? 0.8f : t);
-        struct wd_vec3 d = axis_direction(arch, at), up = WD_V3(0, -d.z, d.y);
+        struct wd_vec3 d = axis_direction(&axis, at), up = axis_above(d);
         struct wd_vec3 out = wd_v3_mad(wd_v3_scale(d, 0.55f + 0.7f * t), WD_V3(side, 0, 0), 1);
-        out = wd_v3_mad(out, WD_V3(0, 0, -1), count > OUTLINED_LEAFLETS ? 0.35f : 0.15f);
-        struct wd_blade_place place = wd_blade_place(axis_point(arch, at),
+        out = wd_v3_mad(out, WD_V3(0, 0, -1), frond ? 0.35f : 0.15f);
+        if (frond) {
+            out = wd_v3_mad(out, wd_random_vec3(&random), 0.14f);
+            size *= wd_random_range(&random, 0.85f, 1.06f);
+        }
+        struct wd_blade_place place = wd_blade_place(axis_point(&axis, at),
                                                      last ? d : wd_v3_unit(out), up,
                                                      size * length, width * (0.5f + 0.5f * size));
         place.stiff = 0.6f * at;
-        add_leaflet(leaf, species, &place);
+        add_leaflet(leaf, species, &place, &random);
     }
 }
 
@@ -126,10 +188,11 @@ void wd_leaf_add_arching_blade(struct wd_leaf_template *leaf, const struct wd_sp
     float arch = species->leaf.arch, width = species->leaf.width_cm / species->leaf.length_cm;
     uint32_t before[2] = {0};
     for (int i = 0; i < BLADE_PIECES; i++) {
-        float t = (float)i / BLADE_PIECES, half = 0.5f * width * (1 - 0.75f * t * t);
-        /* most of the bend is in the outer half */
-        struct wd_vec3 p = axis_point(arch * t, t), d = axis_direction(arch * t, 1);
-        struct wd_vec3 n = WD_V3(0, -d.z, d.y);
+        /* most of the bend is in the outer half, and so are the pieces */
+        float left_over = 1 - (float)i / BLADE_PIECES, t = 1 - left_over * sqrtf(left_over);
+        float half = 0.5f * width * (1 - 0.75f * t * t);
+        struct axis axis = {arch * t, 0};
+        struct wd_vec3 p = axis_point(&axis, t), n = axis_above(axis_direction(&axis, 1));
         uint32_t right = wd_leaf_add_corner(leaf, wd_v3_add(p, WD_V3(half, 0, 0)), n, 1, t, t);
         uint32_t left = wd_leaf_add_corner(leaf, wd_v3_add(p, WD_V3(-half, 0, 0)), n, 0, t, t);
         if (i > 0) {
@@ -139,7 +202,8 @@ void wd_leaf_add_arching_blade(struct wd_leaf_template *leaf, const struct wd_sp
         before[0] = right;
         before[1] = left;
     }
-    struct wd_vec3 d = axis_direction(arch, 1);
-    uint32_t tip = wd_leaf_add_corner(leaf, axis_point(arch, 1), WD_V3(0, -d.z, d.y), 0.5f, 1, 1);
+    const struct axis end = {arch, 0};
+    uint32_t tip = wd_leaf_add_corner(leaf, axis_point(&end, 1),
+                                      axis_above(axis_direction(&end, 1)), 0.5f, 1, 1);
     wd_leaf_add_triangle(leaf, before[0], tip, before[1]);
 }

@@ -140,13 +140,21 @@ static struct wd_leaf_set sprig_set(const struct wd_species *species, struct wd_
     return set;
 }
 
+static bool is_frond(const struct wd_species *species)
+{
+    return species->leaf.compound == WD_COMPOUND_BIPINNATE ||
+           (species->leaf.compound == WD_COMPOUND_PINNATE && species->leaf.leaflets > 16) ||
+           (species->leaf.compound == WD_COMPOUND_SIMPLE && species->leaf.shape == WD_LEAF_BLADE);
+}
+
 static struct wd_leaf_set leaf_set(const struct wd_foliage *foliage,
                                    const struct wd_species *species, enum wd_leaf_form form)
 {
     struct wd_leaf_template templates[WD_LEAF_VARIANTS];
     struct wd_leaf_set set;
     bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
-    uint32_t forms = needles ? WD_LEAF_VARIANTS : 1; /* sheets are alike */
+    /* sheets are alike */
+    uint32_t forms = needles || is_frond(species) ? WD_LEAF_VARIANTS : 1;
     for (uint32_t i = 0; i < forms; i++)
         wd_leaf_template_init(&templates[i], species, form, i);
     wd_leaf_set_init(&set, templates, forms);
@@ -154,6 +162,9 @@ static struct wd_leaf_set leaf_set(const struct wd_foliage *foliage,
     if (!needles && species->leaf.arch <= 0) {
         set.arch_least = 0.5f;
         set.arch_range = 1.2f;
+    } else if (species->leaf.shape == WD_LEAF_BLADE) {
+        set.arch_least = 0.45f;
+        set.arch_range = 0.9f;
     }
     for (uint32_t i = 0; i < forms; i++)
         wd_leaf_template_finish(&templates[i]);
@@ -182,13 +193,6 @@ static struct wd_species coarser_fronds(const struct wd_species *species)
     coarse.leaf.leaflet_width_cm *= (float)species->leaf.leaflets / (float)leaflets;
     coarse.leaf.leaflets = leaflets;
     return coarse;
-}
-
-static bool is_frond(const struct wd_species *species)
-{
-    return species->leaf.compound == WD_COMPOUND_BIPINNATE ||
-           (species->leaf.compound == WD_COMPOUND_PINNATE && species->leaf.leaflets > 16) ||
-           (species->leaf.compound == WD_COMPOUND_SIMPLE && species->leaf.shape == WD_LEAF_BLADE);
 }
 
 static bool outlines_fit(const struct wd_foliage *foliage, const struct wd_species *species,
@@ -269,6 +273,30 @@ static float reduced_growth(const struct wd_foliage *foliage, size_t count, floa
     return sum > 0 ? sqrtf(foliage->area_m2 / sum) : 1;
 }
 
+/* A shoot of needles as two slender triangles that part at their foot, with the kite's area. */
+static struct wd_leaf_set fork_set(const struct wd_leaf_template *kite, size_t count, float spread)
+{
+    struct wd_leaf_template forks[WD_LEAF_VARIANTS] = {0};
+    struct wd_leaf_set set;
+    for (uint32_t i = 0; i < WD_LEAF_VARIANTS; i++) {
+        struct wd_random random = wd_random_of(i, 0xf02c);
+        for (int k = 0; k < 2; k++) {
+            float from = 0.3f * (float)k, up = spread * wd_random_signed(&random);
+            struct wd_vec3 aside = WD_V3(k ? -spread : spread, 1, up);
+            struct wd_vec3 d = wd_v3_unit(wd_v3_mad(aside, wd_random_vec3(&random), 0.25f));
+            struct wd_vec3 across = wd_v3_mad(WD_V3(1, 0, 0), wd_random_vec3(&random), 0.5f);
+            across = wd_v3_square(across, d);
+            wd_leaf_add_needle(&forks[i], WD_V3(0, from, 0), d, across, 1 - 0.75f * from, 0.3f);
+        }
+        wd_leaf_template_scale(&forks[i], wd_leaf_template_area(kite));
+    }
+    wd_leaf_set_init(&set, forks, WD_LEAF_VARIANTS);
+    set.leaf_count = (uint32_t)count;
+    for (uint32_t i = 0; i < WD_LEAF_VARIANTS; i++)
+        wd_leaf_template_finish(&forks[i]);
+    return set;
+}
+
 /* The first leaves, kites or sprigs, with the area of all. */
 static struct wd_leaf_set few_set(const struct wd_foliage *foliage,
                                   const struct wd_species *species, size_t count)
@@ -290,10 +318,12 @@ static struct wd_leaf_set few_set(const struct wd_foliage *foliage,
     struct wd_leaf_set set;
     if (sprig.leaves > 1) {
         set = sprig_set(species, sprig, count, grow);
+    } else if (species->leaf.shape == WD_LEAF_NEEDLES) {
+        set = fork_set(&kite, count, brushes ? 0.7f : 0.35f);
+        set.own = brushes ? 0.1f : set.own;
     } else {
         wd_leaf_set_init(&set, &kite, 1);
         set.leaf_count = (uint32_t)count;
-        set.own = brushes ? 0.1f : set.own;
     }
     wd_leaf_template_finish(&kite);
     return set;

@@ -38,12 +38,13 @@ static void add_simple(struct wd_leaf_template *leaf, const struct wd_species *s
     wd_leaf_add_blade(leaf, wd_leaf_outline_of(species), &place);
 }
 
-static void add_outlined(struct wd_leaf_template *leaf, const struct wd_species *species)
+static void add_outlined(struct wd_leaf_template *leaf, const struct wd_species *species,
+                         uint32_t variant)
 {
     switch (species->leaf.compound) {
     case WD_COMPOUND_PINNATE:
     case WD_COMPOUND_BIPINNATE:
-        wd_leaf_add_pinnate(leaf, species);
+        wd_leaf_add_pinnate(leaf, species, variant);
         break;
     case WD_COMPOUND_PALMATE:
         wd_leaf_add_palmate(leaf, species);
@@ -71,7 +72,7 @@ void wd_leaf_template_init(struct wd_leaf_template *leaf, const struct wd_specie
         wd_leaf_add_needles(leaf, species, variant);
         return;
     }
-    add_outlined(leaf, species);
+    add_outlined(leaf, species, variant);
     if (form == WD_LEAF_AS_BLADE)
         return;
     float area = wd_leaf_template_area(leaf);
@@ -118,16 +119,51 @@ static void add_catkin(struct wd_leaf_template *flower, int scales)
     }
 }
 
-/* Florets in a spiral around an upright axis, a cone in all; of grass on a stalk. */
-static void add_panicle(struct wd_leaf_template *flower, float stalk, int florets)
+/* A straw: a strip of two triangles. */
+static void add_straw(struct wd_leaf_template *flower, float length, float width)
+{
+    struct wd_vec3 n = WD_V3(0, 1, 0);
+    uint32_t corners[4];
+    for (int i = 0; i < 4; i++) {
+        float x = (i & 1 ? -0.5f : 0.5f) * width * (i < 2 ? 1 : 0.6f);
+        corners[i] = wd_leaf_add_corner(flower, WD_V3(x, 0, i < 2 ? 0 : length), n, 0.5f, 0.06f,
+                                        i < 2 ? 0 : 0.5f);
+    }
+    wd_leaf_add_triangle(flower, corners[0], corners[2], corners[1]);
+    wd_leaf_add_triangle(flower, corners[1], corners[2], corners[3]);
+}
+
+/* The ear of a grass: florets in dense clusters left and right of a straw, the lowest on short
+ * branches of their own, the upper ones grown together. */
+static void add_ear(struct wd_leaf_template *flower, float stalk, int florets)
+{
+    enum { CLUSTERS = 6 };
+    float larger = sqrtf(26 / (float)florets);
+    add_straw(flower, stalk + 0.6f, 0.024f);
+    for (int i = 0; i < florets; i++) {
+        int cluster = i % CLUSTERS;
+        float t = (float)cluster / CLUSTERS, angle = (float)i * 2.3999632f;
+        struct wd_vec3 aside = wd_v3_turn(WD_V3(1, 0, 0), WD_V3(0, 1, 0),
+                                          (float)WD_PI * ((float)cluster + 0.2f * (float)(i % 5)));
+        struct wd_vec3 out = wd_v3_turn(WD_V3(1, 0, 0), WD_V3(0, 1, 0), angle);
+        float along = (float)(i / CLUSTERS) * (float)CLUSTERS / (float)florets;
+        struct wd_vec3 p = wd_v3_mad(WD_V3(0, 0, stalk + 0.9f * t + 0.14f * along), aside,
+                                     0.17f * (1 - t) * (1 - t));
+        p = wd_v3_mad(p, out, 0.025f);
+        struct wd_vec3 d = wd_v3_unit(wd_v3_mad(WD_V3(0, 0, 1), out, 0.4f));
+        wd_leaf_add_needle(flower, p, d, wd_v3_unit(wd_v3_cross(d, out)),
+                           larger * (0.2f - 0.06f * t), larger * (0.08f - 0.02f * t));
+    }
+}
+
+/* Florets in a spiral around an upright axis, a cone in all. */
+static void add_panicle(struct wd_leaf_template *flower, int florets)
 {
     float larger = sqrtf(26 / (float)florets);
-    if (stalk > 0)
-        wd_leaf_add_stalk(flower, WD_V3(0, 0, 0), WD_V3(0, 0, stalk + 0.6f), WD_V3(1, 0, 0), 0.03f);
     for (int i = 0; i < florets; i++) {
         float t = (float)i / (float)florets, angle = (float)i * 2.3999632f, radius = 0.3f * (1 - 0.8f * t);
         struct wd_vec3 out = wd_v3_turn(WD_V3(1, 0, 0), WD_V3(0, 1, 0), angle);
-        struct wd_vec3 p = wd_v3_add(wd_v3_scale(out, 0.4f * radius), WD_V3(0, 0, stalk + 0.1f + 0.85f * t));
+        struct wd_vec3 p = wd_v3_add(wd_v3_scale(out, 0.4f * radius), WD_V3(0, 0, 0.1f + 0.85f * t));
         struct wd_vec3 d = wd_v3_unit(wd_v3_add(out, WD_V3(0, 0, 0.5f)));
         wd_leaf_add_needle(flower, p, d, wd_v3_cross(d, out), larger * (0.7f * radius + 0.06f),
                            larger * (0.35f * radius + 0.05f));
@@ -144,9 +180,11 @@ void wd_flower_template_init(struct wd_leaf_template *flower, const struct wd_sp
         add_petals(flower, (int)species->flower.petals, form);
     else if (species->flower.hang > 0.5f)
         add_catkin(flower, form == WD_LEAF_AS_KITE ? 6 : 26);
+    else if (grass)
+        add_ear(flower, 0.5f * species->leaf.length_cm / species->flower.size_cm,
+                form == WD_LEAF_AS_KITE ? 6 : 26);
     else
-        add_panicle(flower, grass ? 0.5f * species->leaf.length_cm / species->flower.size_cm : 0,
-                    form == WD_LEAF_AS_KITE ? 6 : 26);
+        add_panicle(flower, form == WD_LEAF_AS_KITE ? 6 : 26);
     for (size_t i = 0; i < flower->corner_count; i++)
         flower->corners[i].kind |= WD_VERTEX_FLOWER;
 }

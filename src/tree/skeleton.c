@@ -163,6 +163,13 @@ static int steps_of(const struct wd_branch_order *spec, int order, float length_
     return bends <= steps ? steps : bends < 7 ? bends : 7;
 }
 
+/* Most limbs of dead trees are stubs, a few are nearly whole. */
+static float stub_share(struct wd_random *random)
+{
+    float share = wd_random_unit(random);
+    return wd_mixf(0.07f, 1, share * share * share);
+}
+
 static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order,
                        const struct joint *joint)
 {
@@ -198,7 +205,7 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     if (stem.length_m < 0.3f * joint->length_m)
         stem.length_m = 0.3f * joint->length_m;
     if (form->species->form == WD_FORM_SNAG) /* broken off anywhere */
-        stem.length_m *= wd_random_range(&random, 0.12f, 0.9f);
+        stem.length_m *= stub_share(&random);
     stem.steps = steps_of(spec, order, stem.length_m);
     grow_stem(skeleton, form, &stem);
     if (order < 2)

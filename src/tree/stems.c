@@ -6,6 +6,8 @@ enum { TRUNK_STEPS = 30, STEM_STEPS = 14, PALM_STEPS = 36 };
 float wd_tree_trunk_end(const struct wd_tree_form *form)
 {
     float leader = form->species->apical_dominance;
+    if (form->clip) /* what is cut fills up to the cut */
+        return 1;
     return leader > 0.85f ? 1 : 0.22f + 0.8f * leader;
 }
 
