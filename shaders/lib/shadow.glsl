@@ -28,15 +28,17 @@ vec2 sheet_slope(vec3 sheet, uint cascade)
  * texels are coarser than this make softer edges than the sun. */
 const float CASTER_FAR_M = 60.0;
 const float CASTER_TEXEL_M = 0.2;
+const uint CASTER_PLACES = 4u;
 
 /* Mean way from a place in a map to what casts a shadow there (Fernando 2005, percentage-closer soft
- * shadows), from four texels at each of four places; 0: nothing does. `range_m`: depth of
+ * shadows), from four texels at each of `places`; 0: nothing does. `range_m`: depth of
  * the map; `widest`: of the search, in texture coordinates. */
-float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, float widest)
+float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, float widest,
+               uint places)
 {
     float sum_m = 0.0, count = 0.0;
-    for (uint i = 0u; i < 4u; i++) {
-        vec2 off = spin * (widest * sqrt((float(i) + 0.5) / 4.0));
+    for (uint i = 0u; i < places; i++) {
+        vec2 off = spin * (widest * sqrt((float(i) + 0.5) / float(CASTER_PLACES)));
         vec4 depth = textureGather(SHADOW_DEPTH, vec3(at.xy + off, float(cascade)));
         vec4 way_m = (depth - at.z - dot(slope, off)) * range_m;
         vec4 casts = step(vec4(0.0), way_m);
@@ -70,9 +72,10 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
     float penumbra_m = 0.05; /* of a caster some 10 m off */
 #ifdef SHADOW_DEPTH
     float sun_tan = sqrt(max(1.0 / (frame.sun_cos_radius * frame.sun_cos_radius) - 1.0, 0.0));
-    if (texel_m < CASTER_TEXEL_M)
-        penumbra_m = sun_tan * caster_m(at, cascade, frame.cascade_depth_m[cascade] * w, slope,
-                                        spin, sun_tan * CASTER_FAR_M / texel_m * texel);
+    bool fine = texel_m < CASTER_TEXEL_M; /* by no branch: software devices leave loops alone early */
+    float way_m = caster_m(at, cascade, frame.cascade_depth_m[cascade] * w, slope, spin,
+                           sun_tan * CASTER_FAR_M / texel_m * texel, fine ? CASTER_PLACES : 0u);
+    penumbra_m = fine ? sun_tan * way_m : penumbra_m;
 #endif
     float radius = max(1.5, penumbra_m / texel_m) * texel;
     float lit = 0.0;

@@ -1,4 +1,4 @@
-/* A vertex of a tree's mesh where it stands. Expects `frame` (of a storage buffer: see light.comp),
+/* A vertex of a tree's mesh where it stands. Expects `frame` (of a storage buffer: see light_water.comp),
  * `push` (wd_tree_push), `trees`, `models`, SHADOW and the libraries tree and tree_vertex. */
 
 /* Of a mesh, in the model's frame. */

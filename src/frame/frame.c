@@ -218,6 +218,13 @@ static void record_terrain(const struct recording *r, enum wd_load load)
     frame->stats.triangles += frame->terrain.triangles;
 }
 
+static void clear_gbuffer(const struct recording *r)
+{
+    const struct wd_rendering targets = wd_targets_gbuffer(&r->frame->targets, WD_LOAD_CLEAR);
+    wd_cmd_begin_rendering(r->cmd, &targets);
+    wd_cmd_end_rendering(r->cmd);
+}
+
 static void record_gbuffer(const struct recording *r)
 {
     struct wd_frame *frame = r->frame;
@@ -226,8 +233,9 @@ static void record_gbuffer(const struct recording *r)
     if (!last)
         record_terrain(r, WD_LOAD_CLEAR);
     wd_cmd_scope_begin(r->cmd, "trees");
-    const struct wd_rendering targets =
-        wd_targets_gbuffer(&frame->targets, last ? WD_LOAD_CLEAR : WD_LOAD_KEEP);
+    if (last)
+        clear_gbuffer(r); /* methods may draw on its depth before the rest */
+    const struct wd_rendering targets = wd_targets_gbuffer(&frame->targets, WD_LOAD_KEEP);
     record_trees(r, &r->view, WD_PASS_CAMERA, &targets);
     wd_cmd_scope_end(r->cmd);
     if (last)

@@ -278,7 +278,7 @@ static bool fit_visible(struct wd_card_soup *soup, const struct wd_tree_draw *dr
     return wd_image_init(&soup->visible, draw->cmd->gpu, &params);
 }
 
-/* Depth goes to the G-buffer's own, before which the terrain stands. */
+/* Depth goes to the G-buffer's own. */
 static void record_visible(struct wd_card_soup *soup, const struct wd_tree_draw *draw)
 {
     const struct wd_rendering rendering = {

@@ -7,6 +7,9 @@
 static const uint32_t light_comp[] =
 #include "light.comp.inc"
     ;
+static const uint32_t light_water_comp[] =
+#include "light_water.comp.inc"
+    ;
 static const uint32_t light_args_comp[] =
 #include "light_args.comp.inc"
     ;
@@ -38,7 +41,6 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
         .push_size = sizeof(struct wd_light_push),
     };
     bool ok = wd_pipeline_init_compute(&pass->view, gpu, &params);
-    params.shader = (struct wd_spirv)SPIRV(light_comp);
     params.bindings.count = 16;
     for (uint32_t binding = 12; binding < 15; binding++)
         params.bindings.types[binding] = IMAGE;
@@ -47,8 +49,13 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
         uint32_t parts = wd_tile_list_parts(list), wet = parts & WD_PART_WATER;
         const uint32_t constants[] = {parts & ~wet, list, wet != 0};
         params.constants = (struct wd_spec_constants){3, constants};
+        params.shader = wet ? (struct wd_spirv)SPIRV(light_water_comp)
+                            : (struct wd_spirv)SPIRV(light_comp);
+        params.bindings.types[0] = wet ? BUFFER : UNIFORM;
         ok = wd_pipeline_init_compute(&pass->light[list], gpu, &params);
     }
+    params.shader = (struct wd_spirv)SPIRV(light_water_comp);
+    params.bindings.types[0] = BUFFER;
     const uint32_t water[] = {WD_PART_ALL, WD_TILE_LISTS - 1, 1};
     params.constants = (struct wd_spec_constants){3, water};
     return ok && wd_pipeline_init_compute(&pass->water, gpu, &params);

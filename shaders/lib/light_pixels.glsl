@@ -1,0 +1,114 @@
+/* Radiance of the pixels of some tiles. One pipeline for each combination of parts that tiles have
+ * (light_tiles.comp), so that a tile of sky does not pay for trees. Expects FRAME_BLOCK: the kind of block
+ * that the frame is read from. */
+#include "shared/frame.h"
+#include "shared/forest.h"
+#include "shared/light.h"
+
+layout(local_size_x = WD_TILE, local_size_y = WD_TILE) in;
+
+layout(constant_id = 0) const uint PARTS = WD_PART_ALL;
+layout(constant_id = 1) const uint LIST = 0;
+layout(constant_id = 2) const uint MIXED = 0u; /* tiles hold pixels with and without water: one kind is
+                                                  shaded, that of PARTS; the other after or before */
+
+layout(scalar, set = 0, binding = 0) FRAME_BLOCK Frame { wd_frame_uniforms frame; };
+layout(set = 0, binding = 1) uniform sampler2D gbuffer_albedo;
+layout(set = 0, binding = 2) uniform sampler2D gbuffer_normal;
+layout(set = 0, binding = 3) uniform usampler2D gbuffer_surface;
+layout(set = 0, binding = 4) uniform sampler2D gbuffer_depth;
+layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_map;
+layout(set = 0, binding = 6) uniform sampler2DArray shadow_depth;
+layout(scalar, set = 0, binding = 7) readonly buffer SunHeights { float sun_height_m[]; };
+layout(scalar, set = 0, binding = 8) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 9) readonly buffer Models { wd_model models[]; };
+layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
+layout(scalar, set = 0, binding = 11) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
+layout(set = 0, binding = 12) uniform sampler2D overlay;
+layout(set = 0, binding = 13) uniform sampler2DArray canopy_light;
+layout(set = 0, binding = 14) uniform sampler2D sky_map;
+layout(scalar, set = 0, binding = 15) readonly buffer Waters { float river_m[]; };
+layout(scalar, push_constant) uniform Push { wd_light_push push; };
+
+#define SHADOW_DEPTH shadow_depth
+#define SUN_HEIGHT_AT(index) sun_height_m[index]
+#define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)
+#define SKY_MAP sky_map
+
+#define WATER_AT(index) river_m[index]
+
+#include "lib/noise.glsl"
+#include "lib/sky.glsl"
+#include "lib/shadow.glsl"
+#include "lib/gbuffer.glsl"
+#include "lib/tree.glsl"
+#include "lib/crown.glsl"
+#include "lib/river.glsl"
+#include "lib/water.glsl"
+#include "lib/shade.glsl"
+
+/* How far off the eye sees water at a pixel; negative: it sees none. */
+float pixel_water_m(ivec2 at)
+{
+    float depth = texelFetch(gbuffer_depth, at, 0).x;
+    vec3 ray = pixel_ray(at);
+    float way_m = pixel_is_sky(depth) ? WD_SKY_M : length(ray) * frame.near_m / depth;
+    return water_ahead_m(normalize(ray), way_m);
+}
+
+/* Ground or sky as the eye gets it, through water and air. */
+vec3 seen(uvec2 at, vec3 radiance, vec3 direction, float distance_m, float water_m,
+          float sun_share, float ground_share)
+{
+    if ((PARTS & WD_PART_WATER) != 0u) {
+        float depth_m = distance_m < WD_SKY_M ? distance_m - water_m : 1e4;
+        radiance = water_radiance(at, radiance, direction, water_m, depth_m, sun_share);
+        distance_m = water_m;
+    }
+    return distance_m < WD_SKY_M ? apply_fog(radiance, direction, distance_m, ground_share)
+                                 : radiance;
+}
+
+vec3 pixel_radiance(ivec2 at, float water_m)
+{
+    float depth = texelFetch(gbuffer_depth, at, 0).x;
+    vec3 direction = normalize(pixel_ray(at));
+    vec3 radiance = vec3(0.0);
+    float distance_m = WD_SKY_M, sun_share = 1.0, ground_share = 1.0;
+    if ((PARTS & WD_PART_GROUND) != 0u) {
+        wd_pixel pixel = gbuffer_pixel(at, max(depth, 1e-9));
+        radiance = shade(pixel, uvec2(at), sun_share, ground_share);
+        distance_m = length(pixel.rel);
+    }
+    if ((PARTS & WD_PART_SKY) != 0u && pixel_is_sky(depth)) {
+        radiance = sky_radiance(direction) + sun_disc(direction);
+        distance_m = WD_SKY_M;
+        sun_share = ground_share = 1.0;
+    }
+    if ((PARTS & (WD_PART_GROUND | WD_PART_WATER)) == 0u)
+        return radiance;
+    return seen(uvec2(at), radiance, direction, distance_m, water_m, sun_share, ground_share);
+}
+
+void main()
+{
+    uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (index >= lists.count[LIST])
+        return;
+    uint tile = tiles[LIST * push.tile_columns * push.tile_rows + index];
+    uvec2 corner = uvec2(tile % push.tile_columns, tile / push.tile_columns) * WD_TILE;
+    ivec2 at = ivec2(corner + gl_LocalInvocationID.xy);
+    if (at.x >= int(frame.width) || at.y >= int(frame.height))
+        return;
+    float water_m = MIXED != 0u ? pixel_water_m(at) : -1.0;
+    if (MIXED != 0u && (water_m > 0.0) != ((PARTS & WD_PART_WATER) != 0u))
+        return;
+    vec4 radiance = vec4(pixel_radiance(at, water_m), 1.0);
+    if (push.has_overlay != 0u) {
+        vec4 over = texelFetch(overlay, at, 0);
+        radiance.rgb = radiance.rgb * (1.0 - over.a) + over.rgb;
+    }
+    if (frame.adds != 0u)
+        radiance += imageLoad(radiance_image, at);
+    imageStore(radiance_image, at, radiance);
+}
