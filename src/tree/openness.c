@@ -11,7 +11,7 @@
 #include "base/memory.h"
 #include "tree/silhouette.h"
 
-enum { WAYS = 4, PLACES = 1536, BANDS = 6, STEPS = 256, PIXELS = WD_SILHOUETTE * WD_SILHOUETTE };
+enum { WAYS = 4, PLACES = 1536, BANDS = 6, STEPS = 256 };
 
 struct tally {
     uint32_t lit[STEPS], asked[STEPS]; /* by the grid's openness */
@@ -60,7 +60,7 @@ static struct wd_vec3 way_toward(int way)
 static void ask_sky(struct tally *tally, const struct wd_tree_model *model)
 {
     const struct wd_tree_mesh *mesh = &model->full;
-    float *front = wd_alloc_array(PIXELS + 3, sizeof *front);
+    float *front = wd_alloc_array(WD_SILHOUETTE_FRONT, sizeof *front);
     for (int way = 0; way < WAYS; way++) {
         struct wd_silhouette view;
         wd_silhouette_init(&view, mesh, way_toward(way));

@@ -59,14 +59,17 @@ struct batch {
     float turn[BATCH];     /* 1, or -1 of triangles that are seen from behind; 0 of none */
     float right[BATCH], down[BATCH], most[BATCH]; /* distance a pixel; the farthest corner's */
     int32_t x0[BATCH], x1[BATCH], y0[BATCH], y1[BATCH]; /* pixels whose middles it reaches over */
+    /* of triangles that reach over two by two or fewer: what they cover, their distance there */
+    int32_t covered[BATCH]; /* a bit a pixel */
+    float distance[4][BATCH];
 };
 
 static void gather(struct batch *batch, const struct wd_tree_mesh *mesh, const uint32_t *indices,
-                   uint32_t count)
+                   int count)
 {
-    for (uint32_t i = 0; i < count; i++)
+    for (int i = 0; i < count; i++)
         for (int corner = 0; corner < 3; corner++) {
-            const float *p = mesh->vertices[indices[3 * i + (uint32_t)corner]].position_m;
+            const float *p = mesh->vertices[indices[3 * i + corner]].position_m;
             for (int axis = 0; axis < 3; axis++)
                 batch->at[corner][axis][i] = p[axis];
         }
@@ -84,7 +87,7 @@ static void place_corners(float at[3][BATCH], const struct axes *axes)
 }
 
 /* First pixels whose middle is at x or beyond, within the picture; 0 for NaN. */
-static wd_four_ints pixels(wd_four x)
+static inline wd_four_ints pixels(wd_four x)
 {
     const wd_four none = {0};
     x = wd_four_choose(x > none, x, none);
@@ -119,7 +122,86 @@ static void find_slopes(struct batch *batch)
     }
 }
 
-/* --- pixels, four at a time ---------------------------------------------------------------- */
+/* --- small triangles, four at a time --------------------------------------------------------- */
+
+/* Points p with cross(way, p - from) >= 0 lie inside. */
+struct four_edge {
+    wd_four from[2], way[2];
+};
+
+static inline wd_four_ints load_ints(const int32_t *from)
+{
+    wd_four_ints a;
+    memcpy(&a, from, sizeof a);
+    return a;
+}
+
+static inline wd_four_ints is_inside_four(const struct four_edge edges[3], wd_four x, wd_four y)
+{
+    const struct four_edge *a = &edges[0], *b = &edges[1], *c = &edges[2];
+    return (a->way[0] * (y - a->from[1]) >= a->way[1] * (x - a->from[0])) &
+           (b->way[0] * (y - b->from[1]) >= b->way[1] * (x - b->from[0])) &
+           (c->way[0] * (y - c->from[1]) >= c->way[1] * (x - c->from[0]));
+}
+
+/* Which of the two by two pixels four triangles cover; none of those that reach farther. What
+ * slivers have beyond their farthest corner is error. */
+static inline void cover_small(struct batch *batch, int i, bool depth)
+{
+    const wd_four none = {0};
+    wd_four turn = wd_four_load(batch->turn + i), right = wd_four_load(batch->right + i);
+    wd_four_ints x0 = load_ints(batch->x0 + i), y0 = load_ints(batch->y0 + i);
+    wd_four_ints wide = load_ints(batch->x1 + i) - x0, tall = load_ints(batch->y1 + i) - y0;
+    wd_four_ints small = (turn != none) & (wide <= 2) & (tall <= 2), covered = {0};
+    struct four_edge edges[3];
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 2; axis++) {
+            wd_four to = wd_four_load(batch->at[(k + 1) % 3][axis] + i);
+            edges[k].from[axis] = wd_four_load(batch->at[k][axis] + i);
+            edges[k].way[axis] = (to - edges[k].from[axis]) * turn;
+        }
+    for (int pixel = 0; pixel < 4; pixel++) {
+        const int dx = pixel & 1, dy = pixel >> 1;
+        wd_four x = wd_four_convert(x0 + dx), middle = wd_four_convert(y0 + dy) + 0.5f;
+        wd_four_ints inside = small & (wide > dx) & (tall > dy) &
+                              is_inside_four(edges, x + 0.5f, middle);
+        covered |= inside & 1 << pixel;
+        if (!depth)
+            continue;
+        wd_four own = wd_four_load(batch->at[0][2] + i) +
+                      wd_four_load(batch->down + i) * (middle - edges[0].from[1]) +
+                      right * (0.5f - edges[0].from[0]) + right * x;
+        own = wd_four_choose(inside & (own <= wd_four_load(batch->most + i)), own,
+                             wd_four_of(-INFINITY));
+        memcpy(batch->distance[pixel] + i, &own, sizeof own);
+    }
+    memcpy(batch->covered + i, &covered, sizeof covered);
+}
+
+static inline void or_bits(uint8_t *row, int x, uint32_t bits)
+{
+    uint32_t covered;
+    memcpy(&covered, row + x / 8, sizeof covered);
+    covered |= bits << x % 8;
+    memcpy(row + x / 8, &covered, sizeof covered);
+}
+
+static inline void draw_small(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *front,
+                              const struct batch *batch, int i)
+{
+    int x = batch->x0[i], y = batch->y0[i];
+    if (covered) {
+        or_bits(covered[y], x, (uint32_t)batch->covered[i] & 3);
+        or_bits(covered[y + 1], x, (uint32_t)batch->covered[i] >> 2);
+        return;
+    }
+    for (int pixel = 0; pixel < 4; pixel++) {
+        float *at = front + (y + (pixel >> 1)) * WD_SILHOUETTE + x + (pixel & 1);
+        *at = wd_maxf(batch->distance[pixel][i], *at);
+    }
+}
+
+/* --- others, four pixels at a time ----------------------------------------------------------- */
 
 /* Points p with cross(way, p - from) >= 0 lie inside: way[0] (y - from[1]) >= beyond, which is
  * way[1] (x - from[0]) of four pixels. */
@@ -147,16 +229,12 @@ static inline void cover_four(uint8_t *row, int x, wd_four_ints inside)
 {
     const wd_four_ints bits = {1, 2, 4, 8};
     uint64_t pairs[2];
-    uint32_t covered;
     inside &= bits;
     memcpy(pairs, &inside, sizeof pairs);
     pairs[0] |= pairs[1];
-    memcpy(&covered, row + x / 8, sizeof covered);
-    covered |= (uint32_t)(pairs[0] | pairs[0] >> 32) << x % 8;
-    memcpy(row + x / 8, &covered, sizeof covered);
+    or_bits(row, x, (uint32_t)(pairs[0] | pairs[0] >> 32));
 }
 
-/* What slivers have beyond their farthest corner is error. */
 static inline void bring_four(float *row, wd_four_ints inside, wd_four own, float most)
 {
     wd_four front = wd_four_load(row);
@@ -192,28 +270,39 @@ static inline void draw_triangle(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *f
     }
 }
 
+static void prepare(struct batch *batch, const struct axes *axes, bool depth)
+{
+    for (int corner = 0; corner < 3; corner++)
+        place_corners(batch->at[corner], axes);
+    find_range(batch->x0, batch->x1, batch->at[0][0], batch->at[1][0], batch->at[2][0]);
+    find_range(batch->y0, batch->y1, batch->at[0][1], batch->at[1][1], batch->at[2][1]);
+    find_slopes(batch);
+    for (int i = 0; i < BATCH; i += 4)
+        cover_small(batch, i, depth);
+}
+
 /* Most triangles are small, and many lie between the middles of pixels: these are sorted out
  * without a branch to be guessed. */
-static void draw(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *front, const struct axes *axes,
-                 const struct wd_tree_mesh *mesh, uint32_t first, uint32_t end)
+static inline void draw(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *front,
+                        const struct axes *axes, const struct wd_tree_mesh *mesh, uint32_t first,
+                        uint32_t end)
 {
     struct batch batch = {0};
     for (uint32_t i = first; i + 2 < end; i += 3 * BATCH) {
-        uint32_t count = (end - i) / 3 < BATCH ? (end - i) / 3 : BATCH;
-        int kept[BATCH + 1], keep = 0;
+        int count = (end - i) / 3 < BATCH ? (int)((end - i) / 3) : BATCH;
+        int small[BATCH + 1], large[BATCH + 1], smalls = 0, larges = 0;
         gather(&batch, mesh, mesh->indices + i, count);
-        for (int corner = 0; corner < 3; corner++)
-            place_corners(batch.at[corner], axes);
-        find_range(batch.x0, batch.x1, batch.at[0][0], batch.at[1][0], batch.at[2][0]);
-        find_range(batch.y0, batch.y1, batch.at[0][1], batch.at[1][1], batch.at[2][1]);
-        find_slopes(&batch);
-        for (int k = 0; k < (int)count; k++) {
-            kept[keep] = k;
-            keep += (batch.x0[k] < batch.x1[k]) & (batch.y0[k] < batch.y1[k]) &
-                    (batch.turn[k] != 0);
+        prepare(&batch, axes, !covered);
+        for (int k = 0; k < count; k++) {
+            int wide = batch.x1[k] - batch.x0[k], tall = batch.y1[k] - batch.y0[k];
+            small[smalls] = large[larges] = k;
+            smalls += batch.covered[k] != 0;
+            larges += ((wide > 2) | (tall > 2)) & (wide > 0) & (tall > 0) & (batch.turn[k] != 0);
         }
-        for (int k = 0; k < keep; k++)
-            draw_triangle(covered, front, &batch, kept[k]);
+        for (int k = 0; k < smalls; k++)
+            draw_small(covered, front, &batch, small[k]);
+        for (int k = 0; k < larges; k++)
+            draw_triangle(covered, front, &batch, large[k]);
     }
 }
 
@@ -228,7 +317,7 @@ void wd_silhouette_front(const struct wd_silhouette *silhouette, const struct wd
                          float *front)
 {
     struct axes axes = axes_of(silhouette);
-    for (size_t i = 0; i < WD_SILHOUETTE * WD_SILHOUETTE; i++)
+    for (size_t i = 0; i < WD_SILHOUETTE_FRONT; i++)
         front[i] = -INFINITY;
     draw(NULL, front, &axes, mesh, 0, mesh->index_count);
 }

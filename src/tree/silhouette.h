@@ -6,15 +6,16 @@
 #include "tree/vec.h"
 
 enum {
-    WD_SILHOUETTE = 160,                         /* pixels a side */
-    WD_SILHOUETTE_ROW = WD_SILHOUETTE / 8 + 4,   /* bytes, the last four for what is not seen */
+    WD_SILHOUETTE = 160,                       /* pixels a side */
+    WD_SILHOUETTE_ROW = WD_SILHOUETTE / 8 + 4, /* bytes, the last four for what is not seen */
+    WD_SILHOUETTE_FRONT = WD_SILHOUETTE * (WD_SILHOUETTE + 1) + 3, /* the last row likewise */
 };
 
 /* Orthographic; the middle of pixel (x, y) is at x + 0.5, y + 0.5. */
 struct wd_silhouette {
     struct wd_vec3 right, up, toward;
     float low[2], scale; /* metres at pixel 0; pixels a metre */
-    uint8_t covered[WD_SILHOUETTE][WD_SILHOUETTE_ROW]; /* a bit a pixel */
+    uint8_t covered[WD_SILHOUETTE + 1][WD_SILHOUETTE_ROW]; /* a bit a pixel */
 };
 
 /* An empty picture that frames `frame` (its bounds are set), at the same scale from all sides. */
@@ -25,8 +26,8 @@ void wd_silhouette_init(struct wd_silhouette *silhouette, const struct wd_tree_m
 void wd_silhouette_cover(struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
                          uint32_t first, uint32_t end);
 
-/* Of each pixel the distance toward the picture's side of what is nearest to it, or minus
- * infinity; `front` has room for three more. */
+/* front[y * WD_SILHOUETTE + x], WD_SILHOUETTE_FRONT of them: the distance toward the picture's
+ * side of what is nearest to it, or minus infinity. */
 void wd_silhouette_front(const struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
                          float *front);
 
