@@ -65,7 +65,7 @@ void main()
         if (seen.triangle == 0u)
             continue;
         sum.front += uintBitsToFloat(seen.front);
-        sum.back += uintBitsToFloat(~seen.back);
+        sum.back += seen.back != 0u ? uintBitsToFloat(~seen.back) : 0.0;
         sum.sheets += float(seen.sheets);
         sum.count += 1.0;
         add_surface(sum, shot, seen.triangle - 1u, vec2(place) + 0.5);

@@ -29,12 +29,14 @@ struct wd_bake_push {
     uint32_t cut_out;          /* 1: texels of the look below WD_LOOK_CUT are holes */
 };
 
-/* What one sample remembers while triangles are drawn. */
+/* What one sample remembers while triangles are drawn. The first two are one number of 64 bits to
+ * bake_raster_once.comp. */
 struct wd_bake_sample {
-    uint32_t front;    /* bits of the greatest depth; 0 nothing */
-    uint32_t back;     /* ~bits of the least depth */
     uint32_t triangle; /* 1 + index of the one in front */
-    uint32_t sheets;   /* leaves on the ray */
+    uint32_t front;    /* bits of the greatest depth; 0 nothing */
+    uint32_t back;     /* ~bits of the least depth, or 0 where depths are not wanted, */
+    uint32_t sheets;   /* leaves on the ray, likewise */
 };
+WD_STATIC_ASSERT_SIZE(wd_bake_sample, 16);
 
 #endif

@@ -11,6 +11,9 @@
 static const uint32_t bake_raster_comp[] =
 #include "bake_raster.comp.inc"
     ;
+static const uint32_t bake_raster_once_comp[] =
+#include "bake_raster_once.comp.inc"
+    ;
 static const uint32_t bake_resolve_comp[] =
 #include "bake_resolve.comp.inc"
     ;
@@ -23,18 +26,21 @@ enum {
     BATCH_SHOTS = 16,            /* keeps a thread's loops short; see bake_raster.comp */
 };
 
-static bool init_raster(struct wd_baker *baker, uint32_t identity, uint32_t large)
+static bool init_raster(struct wd_baker *baker, uint32_t depths, uint32_t identity, uint32_t large)
 {
-    const uint32_t constants[] = {identity, large};
+    const uint32_t constants[] = {identity, large, depths};
+    const struct wd_spirv twice = {bake_raster_comp, sizeof bake_raster_comp, "bake_raster.comp"};
+    const struct wd_spirv once = {bake_raster_once_comp, sizeof bake_raster_once_comp,
+                                  "bake_raster_once.comp"};
     const struct wd_compute_params params = {
-        .shader = {bake_raster_comp, sizeof bake_raster_comp, "bake_raster.comp"},
+        .shader = baker->passes == 1 ? once : twice,
         .bindings = {6,
                      {STORAGE, STORAGE, STORAGE, STORAGE, STORAGE,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .push_size = sizeof(struct wd_bake_push),
-        .constants = {2, constants},
+        .constants = {3, constants},
     };
-    return wd_pipeline_init_compute(&baker->raster[identity][large], baker->gpu, &params);
+    return wd_pipeline_init_compute(&baker->raster[depths][identity][large], baker->gpu, &params);
 }
 
 static bool init_pipelines(struct wd_baker *baker)
@@ -46,9 +52,11 @@ static bool init_pipelines(struct wd_baker *baker)
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .push_size = sizeof(struct wd_bake_push),
     };
-    for (uint32_t i = 0; i < 4; i++)
-        if (!init_raster(baker, i / 2, i % 2))
-            return false;
+    baker->passes = baker->gpu->features & WD_GPU_FEATURE_INT64_ATOMICS ? 1 : 2;
+    for (uint32_t depths = 0; depths < 2; depths++)
+        for (uint32_t i = 0; i < 2 * baker->passes; i++)
+            if (!init_raster(baker, depths, i / 2, i % 2))
+                return false;
     return wd_pipeline_init_compute(&baker->resolve, baker->gpu, &resolve);
 }
 
@@ -72,8 +80,8 @@ void wd_baker_finish(struct wd_baker *baker)
     if (!baker->gpu)
         return;
     wd_frames_finish(&baker->frames);
-    for (int i = 0; i < 4; i++)
-        wd_pipeline_finish(&baker->raster[i / 2][i % 2], baker->gpu);
+    for (int i = 0; i < 8; i++)
+        wd_pipeline_finish(&baker->raster[i / 4][i / 2 % 2][i % 2], baker->gpu);
     wd_pipeline_finish(&baker->resolve, baker->gpu);
     vkDestroySampler(baker->gpu->device, baker->sampler, NULL);
     wd_buffer_finish(&baker->samples, baker->gpu);
@@ -138,20 +146,22 @@ static uint64_t groups(uint64_t threads)
 }
 
 /* Small triangles, then those that the first pass has put on the list. */
-static void record_raster(struct wd_cmd *cmd, const struct batch *batch, int identity)
+static void record_raster(struct wd_cmd *cmd, const struct batch *batch, uint32_t identity)
 {
     struct wd_baker *baker = batch->baker;
+    const struct wd_pipeline *raster =
+        baker->raster[batch->job->depths == WD_BAKE_DEPTHS][identity];
     struct wd_binding bindings[6];
     memcpy(bindings, batch->bindings, sizeof bindings);
     bindings[4] = WD_BIND_BUFFER(&baker->list);
     wd_cmd_use_buffer(cmd, &baker->samples, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &baker->list, WD_USE_COMPUTE_WRITE);
-    bind_pass(cmd, batch, &baker->raster[identity][0], bindings);
+    bind_pass(cmd, batch, &raster[0], bindings);
     if (batch->push.triangle_count)
         wd_cmd_dispatch_1d(cmd, groups(batch->push.triangle_count));
     wd_cmd_use_buffer(cmd, &baker->samples, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &baker->list, WD_USE_INDIRECT);
-    bind_pass(cmd, batch, &baker->raster[identity][1], bindings);
+    bind_pass(cmd, batch, &raster[1], bindings);
     wd_cmd_dispatch_indirect(cmd, &baker->list, 0);
 }
 
@@ -163,8 +173,8 @@ static void record_batch(struct wd_cmd *cmd, const struct batch *batch)
     wd_cmd_use_image(cmd, batch->job->mesh.looks, WD_USE_COMPUTE_READ);
     wd_cmd_fill_buffer(cmd, &baker->samples, 0);
     wd_cmd_fill_buffer(cmd, &baker->list, 1);
-    record_raster(cmd, batch, 0);
-    record_raster(cmd, batch, 1);
+    for (uint32_t identity = 0; identity < baker->passes; identity++)
+        record_raster(cmd, batch, identity);
     wd_cmd_use_buffer(cmd, &baker->samples, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &baker->texels, WD_USE_COMPUTE_WRITE);
     bind_pass(cmd, batch, &baker->resolve, batch->bindings);

@@ -11,6 +11,10 @@
 /* Which of a mesh shows (W6: branches and leaves apart). */
 enum wd_bake_parts { WD_BAKE_ALL, WD_BAKE_WOOD, WD_BAKE_LEAVES };
 
+/* Whether the depth plane's front, back and leaves on the ray are wanted; its share of leaves always
+ * comes. */
+enum wd_bake_depths { WD_BAKE_DEPTHS, WD_BAKE_NO_DEPTHS };
+
 /* A mesh on the device, and the look textures that its leaves and bark show. */
 struct wd_bake_mesh {
     struct wd_buffer *vertices; /* struct wd_tree_vertex[] */
@@ -27,7 +31,9 @@ struct wd_bake_mesh {
 struct wd_baker {
     struct wd_gpu *gpu;
     struct wd_frames frames;
-    struct wd_pipeline raster[2][2]; /* [identity][large] */
+    struct wd_pipeline raster[2][2][2]; /* [depths][identity][large]; no identity where 64-bit atomics
+                                            find it in the first pass */
+    uint32_t passes;
     struct wd_pipeline resolve;
     VkSampler sampler;
     struct wd_buffer samples, texels; /* of one batch; grow on demand */
@@ -40,6 +46,7 @@ void wd_baker_finish(struct wd_baker *baker); /* accepts {0} */
 struct wd_bake_job {
     struct wd_bake_mesh mesh;
     enum wd_bake_parts parts;
+    enum wd_bake_depths depths;
     const struct wd_bake_shot *shots; /* all of one size */
     uint32_t shot_count;
     uint32_t width, height; /* texels */

@@ -140,9 +140,12 @@ bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct 
     struct wd_bake_shot shots[WD_CARDS];
     for (uint32_t card = 0; card < WD_CARDS; card++)
         shots[card] = card_shot(extent, card);
+    enum wd_card_texels depths = form->planes[WD_PLANE_DEPTH];
     const struct wd_bake_job job = {
         .mesh = *mesh,
         .parts = form->parts,
+        .depths = depths == WD_CARD_TEXELS || depths == WD_CARD_BLOCKS ? WD_BAKE_DEPTHS
+                                                                       : WD_BAKE_NO_DEPTHS,
         .shots = shots,
         .shot_count = WD_CARDS,
         .width = WD_CARD_WIDTH,

@@ -230,6 +230,50 @@ static void baking_twice_gives_the_same(void **state)
     finish(&f);
 }
 
+/* With 64-bit atomics the nearest surface and whose it is are found at once, else one by one. */
+static void one_pass_and_two_give_the_same(void **state)
+{
+    struct gpu_test *test = *state;
+    struct fixture once, twice;
+    const struct wd_view_model model = {1.5f, 0.0f, 2.0f, 0};
+    make(&once, state, add_cube, add_ball);
+    assert_int_equal(once.baker.passes, 1);
+    test->gpu.features &= ~(uint32_t)WD_GPU_FEATURE_INT64_ATOMICS;
+    make(&twice, state, add_cube, add_ball);
+    assert_int_equal(twice.baker.passes, 2);
+    struct wd_view_set a = bake(&once, model, WD_BAKE_ALL), b = bake(&twice, model, WD_BAKE_ALL);
+    for (int plane = 0; plane < WD_PLANES; plane++)
+        assert_memory_equal(a.planes[plane], b.planes[plane], wd_view_plane_bytes(&a.atlas));
+    wd_view_set_finish(&a);
+    wd_view_set_finish(&b);
+    finish(&once);
+    finish(&twice);
+}
+
+/* Cards that keep no depth are drawn without it. */
+static void cards_without_depth_show_the_same(void **state)
+{
+    struct fixture f;
+    make(&f, state, add_cube, add_ball);
+    const struct wd_card_extent extent = {2.0f, 2.0f, 0.0f, 2.0f};
+    const struct wd_card_form with = {WD_BAKE_ALL, {WD_CARD_TEXELS, WD_CARD_TEXELS, WD_CARD_TEXELS}};
+    const struct wd_card_form without = {WD_BAKE_ALL, {WD_CARD_TEXELS, WD_CARD_TEXELS, WD_CARD_ALPHA}};
+    struct wd_cards a, b;
+    assert_true(wd_cards_bake(&a, &f.baker, &f.device.mesh, &extent, &with));
+    assert_true(wd_cards_bake(&b, &f.baker, &f.device.mesh, &extent, &without));
+    for (int plane = 0; plane < WD_PLANE_DEPTH; plane++)
+        assert_memory_equal(a.planes[plane], b.planes[plane], wd_card_plane_bytes(&with, plane));
+    for (uint32_t card = 0; card < WD_CARDS; card++) {
+        const uint8_t *depth = a.planes[WD_PLANE_DEPTH] + wd_card_offset(&with, WD_PLANE_DEPTH, card, WD_CARD_NORMAL_MIP);
+        const uint8_t *leaf = b.planes[WD_PLANE_DEPTH] + wd_card_offset(&without, WD_PLANE_DEPTH, card, WD_CARD_NORMAL_MIP);
+        for (size_t i = 0; i < (size_t)(WD_CARD_WIDTH / 2) * (WD_CARD_HEIGHT / 2); i++)
+            assert_int_equal(leaf[i], depth[4 * i + 3]);
+    }
+    wd_cards_finish(&a);
+    wd_cards_finish(&b);
+    finish(&f);
+}
+
 static void cards_show_the_cube_from_three_sides_and_above(void **state)
 {
     struct fixture f;
@@ -296,6 +340,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_ball_is_round_from_everywhere, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(parts_come_apart, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(baking_twice_gives_the_same, gpu_setup, gpu_teardown),
+        cmocka_unit_test_setup_teardown(one_pass_and_two_give_the_same, gpu_setup, gpu_teardown),
+        cmocka_unit_test_setup_teardown(cards_without_depth_show_the_same, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(cards_show_the_cube_from_three_sides_and_above, gpu_setup,
                                         gpu_teardown),
         cmocka_unit_test_setup_teardown(bad_parameters_are_named, gpu_setup, gpu_teardown),
