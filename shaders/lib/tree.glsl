@@ -46,13 +46,19 @@ wd_wind tree_wind()
     return wd_wind(frame.wind_speed_mps, frame.wind_gust, frame.wind_toward.x, frame.wind_toward.y);
 }
 
+/* In any wind, by no branch: llvmpipe reads storage buffers lane by lane in one. */
+vec3 tree_bend(wd_wind wind, wd_tree tree, float flexibility, float height_m, float time_s)
+{
+    wd_wind_tree swaying = wd_wind_tree_of(tree, flexibility);
+    wd_wind_shift shift = wd_wind_offset(wind, swaying, height_m, time_s);
+    return vec3(shift.x_m, shift.y_m, shift.z_m);
+}
+
 vec3 tree_sway_in(wd_wind wind, wd_tree tree, float flexibility, float height_m, float time_s)
 {
     if (frame.wind_speed_mps <= 0.0)
         return vec3(0.0);
-    wd_wind_tree swaying = wd_wind_tree_of(tree, flexibility);
-    wd_wind_shift shift = wd_wind_offset(wind, swaying, height_m, time_s);
-    return vec3(shift.x_m, shift.y_m, shift.z_m);
+    return tree_bend(wind, tree, flexibility, height_m, time_s);
 }
 
 vec3 tree_sway(wd_tree tree, float flexibility, float height_m, float time_s)

@@ -1,5 +1,6 @@
 /* A vertex of a tree's mesh where it stands. Expects `frame` (of a storage buffer: see light_water.comp),
- * `push` (wd_tree_push), `trees`, `models`, SHADOW and the libraries tree and tree_vertex. */
+ * `push` (wd_tree_push), SHADOW and the libraries tree and tree_vertex. No branch: in one llvmpipe
+ * reads the frame lane by lane. */
 
 /* Of a mesh, in the model's frame. */
 struct mesh_corner {
@@ -25,28 +26,23 @@ float moss_share(vec3 normal, float height_m)
     return shade * (exp(-height_m * 0.9) + 0.12 * smoothstep(0.3, 0.9, normal.z));
 }
 
-void tree_mesh_vertex(wd_instance instance, mesh_corner v)
+void tree_mesh_vertex(wd_instance instance, wd_tree tree, wd_model model, mesh_corner v)
 {
-    wd_tree tree = trees[instance.tree];
-    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
-                            + WD_TREE_VARIANT(tree) % push.variants];
     tree_pose pose = tree_pose_of(tree, model);
     vec3 offset = tree_offset(pose, v.position_m);
     vec3 normal = tree_normal(pose, v.normal);
     bool leaf = (v.kind & WD_VERTEX_LEAF) != 0u;
 
-    offset += tree_sway(tree, model.flexibility, offset.z, frame.time_s);
-    if (leaf && frame.wind_speed_mps > 0.0) {
-        float phase = fract(dot(floor(v.position_m * 4.0), vec3(0.137, 0.311, 0.173)));
-        offset += normal * wd_wind_flutter(tree_wind(), float(v.kind & 0xffu) * (1.0 / 255.0),
-                                           phase, frame.time_s);
-    }
+    offset += tree_bend(tree_wind(), tree, model.flexibility, offset.z, frame.time_s);
+    float phase = fract(dot(floor(v.position_m * 4.0), vec3(0.137, 0.311, 0.173)));
+    float flutter_m = wd_wind_flutter(tree_wind(), float(v.kind & 0xffu) * (1.0 / 255.0), phase,
+                                      frame.time_s);
+    offset += normal * (leaf ? flutter_m : 0.0);
     vec3 rel = tree_foot_rel(tree) + offset;
     out_normal = normal;
     out_uv = vec3(v.uv, float(model.look_layer + wd_vertex_layer(v.kind)));
     out_tint = v.tint;
-    if (leaf)
-        out_tint.rgb *= tree_tint(tree, model);
+    out_tint.rgb *= leaf ? tree_tint(tree, model) : vec3(1.0);
     out_flat = uvec3(instance.tree + 1u, (leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
                          | (pose.mirror.x < 0.0 ? 4u : 0u),
                      wd_hash2(v.name, tree.random));

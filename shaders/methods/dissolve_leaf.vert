@@ -35,5 +35,8 @@ void main()
     corner.tint = unpackUnorm4x8(v.tint);
     corner.kind = v.kind;
     corner.name = uint(gl_VertexIndex);
-    tree_mesh_vertex(wd_instance(instance.tree, instance.show), corner);
+    wd_tree tree = trees[instance.tree];
+    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                            + WD_TREE_VARIANT(tree) % push.variants];
+    tree_mesh_vertex(wd_instance(instance.tree, instance.show), tree, model, corner);
 }

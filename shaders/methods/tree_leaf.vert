@@ -1,5 +1,6 @@
 #version 460
-/* Leaves or flowers of a tree: each a form of its species in its own place. */
+/* Leaves or flowers of a tree: each a form of its species in its own place. No branch hangs on the leaf:
+ * see lib/tree_mesh.glsl. */
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/hash.h"
@@ -7,6 +8,7 @@
 
 layout(constant_id = 0) const uint SHADOW = 0u;
 layout(constant_id = 1) const uint DETAIL = 0u;
+layout(constant_id = 2) const uint FALLS = 0u; /* 1: leaves are on their way down */
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
@@ -22,53 +24,50 @@ layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 #include "lib/tree_mesh.glsl"
 
 /* Between the shares that the tables have; the whole has 1. */
-float leaf_growth(wd_model model, float share)
+float leaf_growth(uint model, float share)
 {
     uint k = wd_leaf_halvings(share), j = max(k, 1u) - 1u;
     float part = clamp(log2(1.0 / share) - float(k), 0.0, 1.0);
     bool full = push.level == WD_LEVEL_MESH;
-    float fewer = full ? model.full_growth[k] : model.reduced_growth[k];
-    float more = full ? model.full_growth[j] : model.reduced_growth[j];
+    float fewer = full ? models[model].full_growth[k] : models[model].reduced_growth[k];
+    float more = full ? models[model].full_growth[j] : models[model].reduced_growth[j];
     return mix(k == 0u ? 1.0 : more, fewer, part);
 }
 
 /* Factor on a leaf's size, 0 where it is not drawn: it may be drawn as a twig, or thinned out. */
-float settle_leaf(uint index, vec3 foot_m, wd_tree tree)
+float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
 {
-    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
-                            + WD_TREE_VARIANT(tree) % push.variants];
-    tree_pose pose = tree_pose_of(tree, model);
+    tree_pose pose = tree_pose_of(tree, models[model]);
     float far_m = length(tree_foot_rel(tree) + tree_offset(pose, foot_m));
-    if (DETAIL != 0u && push.spray_reach > 0.0
-        && wd_hash_unit(wd_hash2(index, tree.random)) < wd_spray_share(far_m, push.spray_reach))
-        return 0.0;
+    float sprays = wd_spray_share(far_m, max(push.spray_reach, 1e-6));
+    bool twig = DETAIL != 0u && wd_hash_unit(wd_hash2(index, tree.random)) < sprays;
     float share = wd_leaf_share(push.leaf_m * pose.across * push.pixels_per_radian / far_m);
-    if (float(index) >= share * float(push.leaf_count))
-        return 0.0;
-    return inversesqrt(share) * leaf_growth(model, share);
+    bool thin = float(index) >= share * float(push.leaf_count);
+    float grown = inversesqrt(share) * leaf_growth(model, share);
+    grown = thin ? 0.0 : grown;
+    grown = twig ? 0.0 : grown;
+    return push.leaf_count != 0u ? grown : 1.0;
 }
 
 void main()
 {
     wd_instance instance = instances[gl_InstanceIndex];
+    wd_tree tree = trees[instance.tree];
+    uint model_index =
+        WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
+    wd_model model = models[model_index];
     uint index = uint(gl_VertexIndex) >> mesh.corner_bits;
     uint at = uint(gl_VertexIndex) & ((1u << mesh.corner_bits) - 1u);
     wd_tree_leaf leaf = leaves[mesh.first_leaf + index];
     uint form = mesh.forms > 1u ? WD_LEAF_FORM(leaf) : 0u;
     wd_leaf_vertex v = corners[mesh.first_corner + form * mesh.corner_count + at];
     vec3 foot = wd_leaf_foot(leaf, mesh.box);
-    float grown = 1.0;
-    if (push.leaf_count != 0u)
-        grown = settle_leaf(index, foot, trees[instance.tree]);
-    if (grown == 0.0) {
-        gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
-        return;
-    }
+    float grown = settle_leaf(index, foot, tree, model_index);
     wd_leaf_axes axes = wd_leaf_axes_of(leaf.turn);
     mat3 turn = mat3(axes.across, axes.along, axes.above);
     vec3 place = v.place;
     place.z *= mesh.arch_least + mesh.arch_range * WD_LEAF_ARCH(leaf);
-    place.y += 0.5 / grown - 0.5; /* it grows about its middle */
+    place.y += 0.5 / max(grown, 1e-3) - 0.5; /* it grows about its middle */
     mesh_corner corner;
     corner.position_m = foot + turn * place * (grown * wd_leaf_size_m(leaf, mesh.box));
     vec3 shading = wd_leaf_shading(leaf.shading);
@@ -78,14 +77,12 @@ void main()
     corner.tint = unpackUnorm4x8(leaf.tint);
     corner.kind = (v.kind & ~0xffu) | min(WD_LEAF_FLEXIBILITY(leaf) + (v.kind & 0xffu), 255u);
     corner.name = mesh.first_name + index * mesh.corner_count + at;
-    wd_tree tree = trees[instance.tree];
-    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
-                            + WD_TREE_VARIANT(tree) % push.variants];
-    if (model.fall_mps > 0.0) {
+    if (FALLS != 0u) {
         wd_leaf_fall fall = wd_leaf_fall_of(foot, model, wd_tree_pose_of(tree, model), tree_wind(),
                                             wd_hash2(index, tree.random), frame.time_s);
         corner.position_m = fall.foot_m + wd_leaf_fall_turn(fall, corner.position_m - foot);
         corner.normal = wd_leaf_fall_turn(fall, corner.normal);
     }
-    tree_mesh_vertex(instance, corner);
+    tree_mesh_vertex(instance, tree, model, corner);
+    gl_Position = grown == 0.0 ? vec4(0.0, 0.0, 0.0, 1.0) : gl_Position;
 }

@@ -20,6 +20,10 @@ layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 
 void main()
 {
+    wd_instance instance = instances[gl_InstanceIndex];
+    wd_tree tree = trees[instance.tree];
+    wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
+                            + WD_TREE_VARIANT(tree) % push.variants];
     wd_packed_vertex v = vertices[gl_VertexIndex];
     mesh_corner corner;
     corner.position_m = wd_box_place(mesh.box.feet, v.xy, v.z_kind);
@@ -28,5 +32,5 @@ void main()
     corner.tint = unpackUnorm4x8(v.tint);
     corner.kind = v.z_kind >> 16;
     corner.name = uint(gl_VertexIndex);
-    tree_mesh_vertex(instances[gl_InstanceIndex], corner);
+    tree_mesh_vertex(instance, tree, model, corner);
 }

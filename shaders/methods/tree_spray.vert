@@ -44,12 +44,10 @@ void main()
     vec3 at = tree_offset(pose, wd_leaf_foot(leaf, spray.leaves)
                                     + turn * place * wd_leaf_size_m(leaf, spray.leaves));
     vec3 normal = tree_normal(pose, mix(shading, own, 0.5));
-    at += tree_sway(tree, model.flexibility, at.z, frame.time_s);
-    if (frame.wind_speed_mps > 0.0) {
-        float phase = fract(wd_hash_unit(wd_hash1(instance.leaf)) + 0.31 * dot(place, vec3(1.0)));
-        float bend = min(float(WD_LEAF_FLEXIBILITY(leaf) + (kind & 0xffu)) * (1.0 / 255.0), 1.0);
-        at += normal * wd_wind_flutter(tree_wind(), bend, phase, frame.time_s);
-    }
+    at += tree_bend(tree_wind(), tree, model.flexibility, at.z, frame.time_s);
+    float phase = fract(wd_hash_unit(wd_hash1(instance.leaf)) + 0.31 * dot(place, vec3(1.0)));
+    float bend = min(float(WD_LEAF_FLEXIBILITY(leaf) + (kind & 0xffu)) * (1.0 / 255.0), 1.0);
+    at += normal * wd_wind_flutter(tree_wind(), bend, phase, frame.time_s);
     vec4 tint = unpackUnorm4x8(v.tint), leaf_tint = unpackUnorm4x8(leaf.tint);
     out_normal = normal;
     out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + wd_vertex_layer(kind)));

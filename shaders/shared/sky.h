@@ -53,7 +53,7 @@ WD_FUNC float wd_air_mass(float rise)
  * degree down to nautical twilight. */
 WD_FUNC float wd_twilight(float sun_rise)
 {
-    return sun_rise >= 0.0f ? 1.0f : WD_EXP(sun_rise * 52.0f);
+    return WD_EXP(52.0f * WD_MIN(sun_rise, 0.0f)); /* by no branch: llvmpipe makes a shader for each */
 }
 
 WD_FUNC float wd_air_phase(float cosine)

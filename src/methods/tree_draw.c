@@ -51,9 +51,9 @@ static void set_targets(struct wd_graphics_params *params, enum wd_tree_pass pas
 
 /* Of wood, or of leaves. */
 static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tree_pass pass,
-                      struct wd_spirv vertex, uint32_t detail)
+                      struct wd_spirv vertex, uint32_t detail, uint32_t falls)
 {
-    const uint32_t constants[] = {pass == WD_PASS_SHADOW, detail};
+    const uint32_t constants[] = {pass == WD_PASS_SHADOW, detail, falls};
     struct wd_graphics_params params = {
         .vertex = vertex,
         .bindings = {8,
@@ -63,7 +63,7 @@ static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
-        .constants = {2, constants},
+        .constants = {3, constants},
     };
     const struct wd_spirv fragments[] = {SPIRV(tree_mesh_frag), SPIRV(tree_mesh_shadow_frag)};
     params.fragment = fragments[pass];
@@ -93,38 +93,44 @@ static bool init_card(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
     return wd_pipeline_init_graphics(pipeline, gpu, &params);
 }
 
+static bool init_leaves(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu, uint32_t falls)
+{
+    const struct wd_spirv leaf = SPIRV(tree_leaf_vert);
+    for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
+        if (!init_mesh(&pipelines->leaf[pass][falls], gpu, pass, leaf, 0, falls))
+            return false;
+    }
+    return init_mesh(&pipelines->leaf_detail[falls], gpu, WD_PASS_CAMERA, leaf, 1, falls);
+}
+
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
-    const struct wd_spirv wood = SPIRV(tree_mesh_vert), leaf = SPIRV(tree_leaf_vert);
+    const struct wd_spirv wood = SPIRV(tree_mesh_vert);
     *pipelines = (struct wd_tree_pipelines){0};
-    if (!init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, wood, 1) ||
-        !init_mesh(&pipelines->leaf_detail, gpu, WD_PASS_CAMERA, leaf, 1) ||
-        !wd_spray_pipeline_init(&pipelines->spray, gpu)) {
+    bool ok = init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, wood, 1, 0) &&
+              init_leaves(pipelines, gpu, 0) && init_leaves(pipelines, gpu, 1) &&
+              wd_spray_pipeline_init(&pipelines->spray, gpu);
+    for (int pass = WD_PASS_CAMERA; ok && pass <= WD_PASS_SHADOW; pass++) {
+        ok = init_mesh(&pipelines->mesh[pass], gpu, pass, wood, 0, 0) &&
+             init_card(&pipelines->card_range[pass], gpu, pass, 0) &&
+             init_card(&pipelines->card_listed[pass], gpu, pass, 1);
+    }
+    if (!ok)
         wd_tree_pipelines_finish(pipelines, gpu);
-        return false;
-    }
-    for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
-        if (!init_mesh(&pipelines->mesh[pass], gpu, pass, wood, 0) ||
-            !init_mesh(&pipelines->leaf[pass], gpu, pass, leaf, 0) ||
-            !init_card(&pipelines->card_range[pass], gpu, pass, 0) ||
-            !init_card(&pipelines->card_listed[pass], gpu, pass, 1)) {
-            wd_tree_pipelines_finish(pipelines, gpu);
-            return false;
-        }
-    }
-    return true;
+    return ok;
 }
 
 void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
     wd_pipeline_finish(&pipelines->mesh_detail, gpu);
-    wd_pipeline_finish(&pipelines->leaf_detail, gpu);
     wd_pipeline_finish(&pipelines->spray, gpu);
-    for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
-        wd_pipeline_finish(&pipelines->mesh[pass], gpu);
-        wd_pipeline_finish(&pipelines->leaf[pass], gpu);
-        wd_pipeline_finish(&pipelines->card_range[pass], gpu);
-        wd_pipeline_finish(&pipelines->card_listed[pass], gpu);
+    for (int i = 0; i < 2; i++) {
+        wd_pipeline_finish(&pipelines->leaf_detail[i], gpu);
+        wd_pipeline_finish(&pipelines->mesh[i], gpu);
+        wd_pipeline_finish(&pipelines->leaf[WD_PASS_CAMERA][i], gpu);
+        wd_pipeline_finish(&pipelines->leaf[WD_PASS_SHADOW][i], gpu);
+        wd_pipeline_finish(&pipelines->card_range[i], gpu);
+        wd_pipeline_finish(&pipelines->card_listed[i], gpu);
     }
 }
 
@@ -210,13 +216,23 @@ static void bind_meshes(const struct meshes *meshes, const struct wd_pipeline *p
     wd_cmd_bind_indices_of(draw->cmd, &forest->meshes.indices, index_type);
 }
 
-/* Of the camera's full meshes, or of all others. */
-static const struct wd_pipeline *choose(const struct meshes *meshes,
-                                        const struct wd_pipeline pipelines[2],
-                                        const struct wd_pipeline *detail)
+static bool is_detailed(const struct meshes *meshes)
 {
-    bool detailed = meshes->draw->pass == WD_PASS_CAMERA && meshes->batch->level == WD_LEVEL_MESH;
-    return detailed ? detail : &pipelines[meshes->draw->pass];
+    return meshes->draw->pass == WD_PASS_CAMERA && meshes->batch->level == WD_LEVEL_MESH;
+}
+
+static const struct wd_pipeline *mesh_pipeline(const struct meshes *meshes)
+{
+    const struct wd_tree_pipelines *pipelines = meshes->draw->pipelines;
+    return is_detailed(meshes) ? &pipelines->mesh_detail : &pipelines->mesh[meshes->draw->pass];
+}
+
+static const struct wd_pipeline *leaf_pipeline(const struct meshes *meshes)
+{
+    const struct wd_tree_draw *draw = meshes->draw;
+    bool falls = draw->forest->host_models[meshes->batch->model].fall_mps > 0.0f;
+    return is_detailed(meshes) ? &draw->pipelines->leaf_detail[falls]
+                               : &draw->pipelines->leaf[draw->pass][falls];
 }
 
 /* Triangles: of grown trees their wood, of imported ones all, or with `wood` their wood alone. */
@@ -229,8 +245,8 @@ static void draw_triangles(const struct meshes *meshes, bool wood)
     push.box.feet = range->box;
     if (!count)
         return;
-    bind_meshes(meshes, choose(meshes, draw->pipelines->mesh, &draw->pipelines->mesh_detail),
-                bind_vertices(draw->forest, range), &push, range->index_type);
+    bind_meshes(meshes, mesh_pipeline(meshes), bind_vertices(draw->forest, range), &push,
+                range->index_type);
     draw_indexed(draw, count, meshes->batch->count, range->first_index, 0, meshes->batch->first);
 }
 
@@ -274,8 +290,8 @@ static void draw_set(const struct meshes *meshes, int kind, uint32_t count)
     const struct wd_mesh_push push = leaf_push(meshes, set, kind == WD_SET_LEAVES);
     if (!count)
         return;
-    bind_meshes(meshes, choose(meshes, draw->pipelines->leaf, &draw->pipelines->leaf_detail),
-                WD_BIND_BUFFER(&draw->forest->meshes.corners), &push, VK_INDEX_TYPE_UINT16);
+    bind_meshes(meshes, leaf_pipeline(meshes), WD_BIND_BUFFER(&draw->forest->meshes.corners),
+                &push, VK_INDEX_TYPE_UINT16);
     for (uint32_t at = 0; at < count; at += most) {
         uint32_t leaves = count - at < most ? count - at : most;
         draw_indexed(draw, leaves * set->index_count, meshes->batch->count, set->first_index,
