@@ -68,8 +68,20 @@ static void find_parts(uint32_t *parts, const struct wd_leaf_set *set)
         parts[i] = root_of(parts, i);
 }
 
+/* Midribs and stalks: leaflets hang on them. */
+static void find_stalks(bool *stalks, const struct wd_leaf_set *set, const uint32_t *parts)
+{
+    for (uint32_t i = 0; i < set->corner_count; i++)
+        stalks[i] = true;
+    for (uint32_t i = 0; i < set->corner_count; i++) {
+        float uv[2];
+        wd_unpack_uv(set->corners[i].uv, uv);
+        stalks[parts[i]] = stalks[parts[i]] && fabsf(uv[0] - 0.5f) < 0.01f;
+    }
+}
+
 static void scale_form(struct wd_leaf_vertex *corners, uint32_t count, const uint32_t *parts,
-                       float factor)
+                       const bool *stalks, float factor)
 {
     struct wd_vec3 *sums = wd_alloc_array(count + 1, sizeof *sums);
     uint32_t *members = wd_alloc_array(count + 1, sizeof *members);
@@ -78,6 +90,8 @@ static void scale_form(struct wd_leaf_vertex *corners, uint32_t count, const uin
         members[parts[i]]++;
     }
     for (uint32_t i = 0; i < count; i++) {
+        if (stalks[parts[i]])
+            continue;
         struct wd_vec3 middle = wd_v3_scale(sums[parts[i]], 1 / (float)members[parts[i]]);
         struct wd_vec3 p = wd_v3_mix(middle, wd_v3_of(corners[i].place), factor);
         corners[i].place[0] = p.x;
@@ -91,9 +105,13 @@ static void scale_form(struct wd_leaf_vertex *corners, uint32_t count, const uin
 void wd_leaf_set_scale_parts(struct wd_leaf_set *set, float factor)
 {
     uint32_t *parts = wd_alloc_array(set->corner_count + 1, sizeof *parts);
+    bool *stalks = wd_alloc_array(set->corner_count + 1, sizeof *stalks);
     find_parts(parts, set);
+    find_stalks(stalks, set, parts);
     for (uint32_t form = 0; form < set->forms; form++)
-        scale_form(set->corners + form * set->corner_count, set->corner_count, parts, factor);
+        scale_form(set->corners + form * set->corner_count, set->corner_count, parts, stalks,
+                   factor);
+    free(stalks);
     free(parts);
 }
 

@@ -25,7 +25,8 @@ void wd_leaf_set_init(struct wd_leaf_set *set, const struct wd_leaf_template *te
                       uint32_t forms);
 void wd_leaf_set_finish(struct wd_leaf_set *set); /* accepts {0} */
 
-/* Scales what hangs together by triangles about its middle, in each form. */
+/* Scales what hangs together by triangles about its middle, in each form; midribs of compound
+ * leaves stay as they are. */
 void wd_leaf_set_scale_parts(struct wd_leaf_set *set, float factor);
 
 /* Height of the highest corner, or 0. */
