@@ -1,12 +1,13 @@
 #include "tree/coverage.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/dmath.h"
 #include "base/memory.h"
 #include "tree/silhouette.h"
 
-enum { VIEWS = 2, STEPS = 3 };
+enum { VIEWS = 2, STEPS = 3, MOST_TURNS = 4 };
 /* Beyond these, leaves would no longer look like leaves. */
 static const float LEAST = 0.25f, MOST = 4;
 /* How much of a leaf's growth is seen in a crown, mostly: the rest hides behind other leaves. */
@@ -77,11 +78,12 @@ static void scale_leaves(struct fit *fit, float factor)
 static float covered(const struct fit *fit)
 {
     size_t sum = 0;
-    for (int i = 0; i < VIEWS; i++) {
-        struct wd_silhouette view = fit->wood[i];
-        wd_silhouette_cover(&view, fit->mesh, fit->mesh->wood_index_count, fit->mesh->index_count);
-        sum += wd_silhouette_count(&view);
-    }
+    struct wd_silhouette views[VIEWS];
+    memcpy(views, fit->wood, sizeof views);
+    wd_silhouette_cover(views, VIEWS, fit->mesh, fit->mesh->wood_index_count,
+                        fit->mesh->index_count);
+    for (int i = 0; i < VIEWS; i++)
+        sum += wd_silhouette_count(&views[i]);
     return (float)sum;
 }
 
@@ -115,14 +117,14 @@ float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tr
         .unscaled = wd_alloc_array(reduced->vertex_count, sizeof *fit.unscaled),
     };
     size_t wanted = 0;
-    for (int i = 0; i < VIEWS; i++) {
-        struct wd_silhouette whole;
-        wd_silhouette_init(&whole, full, towards[i]);
-        fit.wood[i] = whole;
-        wd_silhouette_cover(&whole, full, 0, full->index_count);
-        wanted += wd_silhouette_count(&whole);
-        wd_silhouette_cover(&fit.wood[i], reduced, 0, reduced->wood_index_count);
-    }
+    struct wd_silhouette whole[VIEWS];
+    for (int i = 0; i < VIEWS; i++)
+        wd_silhouette_init(&whole[i], full, towards[i]);
+    memcpy(fit.wood, whole, sizeof whole);
+    wd_silhouette_cover(fit.wood, VIEWS, reduced, 0, reduced->wood_index_count);
+    wd_silhouette_cover(whole, VIEWS, full, 0, full->index_count);
+    for (int i = 0; i < VIEWS; i++)
+        wanted += wd_silhouette_count(&whole[i]);
     find_middles(&fit);
     float factor = find_factor(&fit, (float)wanted);
     free(fit.middles);
@@ -131,29 +133,26 @@ float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tr
     return factor;
 }
 
-static float seen_from(const struct wd_tree_mesh *mesh, struct wd_vec3 toward)
-{
-    struct wd_silhouette view;
-    wd_silhouette_init(&view, mesh, toward);
-    wd_silhouette_cover(&view, mesh, 0, mesh->index_count);
-    return (float)wd_silhouette_count(&view) / (view.scale * view.scale);
-}
-
 /* Mean over `turns` sides that are `step` of a turn apart. */
 static float seen_around(const struct wd_tree_mesh *mesh, int turns, double step, float sine)
 {
+    struct wd_silhouette views[MOST_TURNS];
     float sum = 0, cosine = sqrtf(1 - sine * sine);
     for (int i = 0; i < turns; i++) {
         double turn = 2 * WD_PI * step * i;
-        sum += seen_from(mesh, WD_V3(cosine * (float)wd_dsin(turn), -cosine * (float)wd_dcos(turn),
-                                     sine));
+        wd_silhouette_init(&views[i], mesh,
+                           WD_V3(cosine * (float)wd_dsin(turn), -cosine * (float)wd_dcos(turn),
+                                 sine));
     }
+    wd_silhouette_cover(views, turns, mesh, 0, mesh->index_count);
+    for (int i = 0; i < turns; i++)
+        sum += (float)wd_silhouette_count(&views[i]) / (views[i].scale * views[i].scale);
     return sum / (float)turns;
 }
 
 void wd_tree_mesh_measure_seen(float seen_m2[WD_GAIN_SIDES], const struct wd_tree_mesh *mesh)
 {
     seen_m2[0] = seen_around(mesh, 3, 1.0 / 6, 0);
-    seen_m2[1] = seen_around(mesh, 4, 1.0 / 4, 0.70710678f);
+    seen_m2[1] = seen_around(mesh, MOST_TURNS, 1.0 / 4, 0.70710678f);
     seen_m2[2] = seen_around(mesh, 1, 1, 1);
 }

@@ -60,14 +60,14 @@ static struct wd_vec3 way_toward(int way)
 static void ask_sky(struct tally *tally, const struct wd_tree_model *model)
 {
     const struct wd_tree_mesh *mesh = &model->full;
-    float *front = wd_alloc_array(WD_SILHOUETTE_FRONT, sizeof *front);
-    for (int way = 0; way < WAYS; way++) {
-        struct wd_silhouette view;
-        wd_silhouette_init(&view, mesh, way_toward(way));
-        wd_silhouette_front(&view, mesh, front);
-        ask(tally, &view, front, mesh, leaf_length_m(model));
-    }
-    free(front);
+    struct wd_silhouette views[WAYS];
+    float *fronts = wd_alloc_array((size_t)WAYS * WD_SILHOUETTE_FRONT, sizeof *fronts);
+    for (int way = 0; way < WAYS; way++)
+        wd_silhouette_init(&views[way], mesh, way_toward(way));
+    wd_silhouette_front(views, WAYS, mesh, fronts);
+    for (int way = 0; way < WAYS; way++)
+        ask(tally, &views[way], fronts + way * WD_SILHOUETTE_FRONT, mesh, leaf_length_m(model));
+    free(fronts);
 }
 
 static bool rises(const struct band *low, const struct band *high)

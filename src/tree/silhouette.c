@@ -55,7 +55,8 @@ void wd_silhouette_place(const struct wd_silhouette *silhouette, const float p[3
 enum { BATCH = 64 };
 
 struct batch {
-    float at[3][3][BATCH]; /* [corner][axis]: of the tree, then of the picture */
+    float places_m[3][3][BATCH]; /* [corner][axis] in the tree, */
+    float at[3][3][BATCH];       /* and in the picture */
     float turn[BATCH];     /* 1, or -1 of triangles that are seen from behind; 0 of none */
     float right[BATCH], down[BATCH], most[BATCH]; /* distance a pixel; the farthest corner's */
     int32_t x0[BATCH], x1[BATCH], y0[BATCH], y1[BATCH]; /* pixels whose middles it reaches over */
@@ -71,18 +72,18 @@ static void gather(struct batch *batch, const struct wd_tree_mesh *mesh, const u
         for (int corner = 0; corner < 3; corner++) {
             const float *p = mesh->vertices[indices[3 * i + corner]].position_m;
             for (int axis = 0; axis < 3; axis++)
-                batch->at[corner][axis][i] = p[axis];
+                batch->places_m[corner][axis][i] = p[axis];
         }
 }
 
-static void place_corners(float at[3][BATCH], const struct axes *axes)
+static void place_corners(float at[3][BATCH], const float places_m[3][BATCH],
+                          const struct axes *axes)
 {
-    struct wd_vec3 a = axes->axis[0], b = axes->axis[1], c = axes->axis[2];
-    for (int i = 0; i < BATCH; i++) {
-        struct wd_vec3 p = WD_V3(at[0][i], at[1][i], at[2][i]);
-        at[0][i] = wd_v3_dot(p, a) - axes->low[0];
-        at[1][i] = wd_v3_dot(p, b) - axes->low[1];
-        at[2][i] = wd_v3_dot(p, c) - axes->low[2];
+    for (int axis = 0; axis < 3; axis++) {
+        struct wd_vec3 a = axes->axis[axis];
+        for (int i = 0; i < BATCH; i++)
+            at[axis][i] = wd_v3_dot(WD_V3(places_m[0][i], places_m[1][i], places_m[2][i]), a) -
+                          axes->low[axis];
     }
 }
 
@@ -273,7 +274,7 @@ static inline void draw_triangle(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *f
 static void prepare(struct batch *batch, const struct axes *axes, bool depth)
 {
     for (int corner = 0; corner < 3; corner++)
-        place_corners(batch->at[corner], axes);
+        place_corners(batch->at[corner], (const float(*)[BATCH])batch->places_m[corner], axes);
     find_range(batch->x0, batch->x1, batch->at[0][0], batch->at[1][0], batch->at[2][0]);
     find_range(batch->y0, batch->y1, batch->at[0][1], batch->at[1][1], batch->at[2][1]);
     find_slopes(batch);
@@ -283,43 +284,58 @@ static void prepare(struct batch *batch, const struct axes *axes, bool depth)
 
 /* Most triangles are small, and many lie between the middles of pixels: these are sorted out
  * without a branch to be guessed. */
-static inline void draw(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *front,
-                        const struct axes *axes, const struct wd_tree_mesh *mesh, uint32_t first,
-                        uint32_t end)
+static inline void draw_batch(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *front,
+                              const struct batch *batch, int count)
+{
+    int small[BATCH + 1], large[BATCH + 1], smalls = 0, larges = 0;
+    for (int i = 0; i < count; i++) {
+        int wide = batch->x1[i] - batch->x0[i], tall = batch->y1[i] - batch->y0[i];
+        small[smalls] = large[larges] = i;
+        smalls += batch->covered[i] != 0;
+        larges += ((wide > 2) | (tall > 2)) & (wide > 0) & (tall > 0) & (batch->turn[i] != 0);
+    }
+    for (int i = 0; i < smalls; i++)
+        draw_small(covered, front, batch, small[i]);
+    for (int i = 0; i < larges; i++)
+        draw_triangle(covered, front, batch, large[i]);
+}
+
+static int next_batch(struct batch *batch, const struct wd_tree_mesh *mesh, uint32_t first,
+                      uint32_t end)
+{
+    int count = (end - first) / 3 < BATCH ? (int)((end - first) / 3) : BATCH;
+    gather(batch, mesh, mesh->indices + first, count);
+    return count;
+}
+
+void wd_silhouette_cover(struct wd_silhouette *views, int view_count,
+                         const struct wd_tree_mesh *mesh, uint32_t first, uint32_t end)
 {
     struct batch batch = {0};
     for (uint32_t i = first; i + 2 < end; i += 3 * BATCH) {
-        int count = (end - i) / 3 < BATCH ? (int)((end - i) / 3) : BATCH;
-        int small[BATCH + 1], large[BATCH + 1], smalls = 0, larges = 0;
-        gather(&batch, mesh, mesh->indices + i, count);
-        prepare(&batch, axes, !covered);
-        for (int k = 0; k < count; k++) {
-            int wide = batch.x1[k] - batch.x0[k], tall = batch.y1[k] - batch.y0[k];
-            small[smalls] = large[larges] = k;
-            smalls += batch.covered[k] != 0;
-            larges += ((wide > 2) | (tall > 2)) & (wide > 0) & (tall > 0) & (batch.turn[k] != 0);
+        int count = next_batch(&batch, mesh, i, end);
+        for (int view = 0; view < view_count; view++) {
+            const struct axes axes = axes_of(&views[view]);
+            prepare(&batch, &axes, false);
+            draw_batch(views[view].covered, NULL, &batch, count);
         }
-        for (int k = 0; k < smalls; k++)
-            draw_small(covered, front, &batch, small[k]);
-        for (int k = 0; k < larges; k++)
-            draw_triangle(covered, front, &batch, large[k]);
     }
 }
 
-void wd_silhouette_cover(struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
-                         uint32_t first, uint32_t end)
+void wd_silhouette_front(const struct wd_silhouette *views, int view_count,
+                         const struct wd_tree_mesh *mesh, float *fronts)
 {
-    struct axes axes = axes_of(silhouette);
-    draw(silhouette->covered, NULL, &axes, mesh, first, end);
-}
-
-void wd_silhouette_front(const struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
-                         float *front)
-{
-    struct axes axes = axes_of(silhouette);
-    for (size_t i = 0; i < WD_SILHOUETTE_FRONT; i++)
-        front[i] = -INFINITY;
-    draw(NULL, front, &axes, mesh, 0, mesh->index_count);
+    struct batch batch = {0};
+    for (int i = 0; i < view_count * WD_SILHOUETTE_FRONT; i++)
+        fronts[i] = -INFINITY;
+    for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3 * BATCH) {
+        int count = next_batch(&batch, mesh, i, mesh->index_count);
+        for (int view = 0; view < view_count; view++) {
+            const struct axes axes = axes_of(&views[view]);
+            prepare(&batch, &axes, true);
+            draw_batch(NULL, fronts + view * WD_SILHOUETTE_FRONT, &batch, count);
+        }
+    }
 }
 
 size_t wd_silhouette_count(const struct wd_silhouette *silhouette)

@@ -22,14 +22,15 @@ struct wd_silhouette {
 void wd_silhouette_init(struct wd_silhouette *silhouette, const struct wd_tree_mesh *frame,
                         struct wd_vec3 toward);
 
-/* Covers what the triangles of indices [first, end) cover: pixels whose middle lies in one. */
-void wd_silhouette_cover(struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
-                         uint32_t first, uint32_t end);
+/* Covers, in each of the views, what the triangles of indices [first, end) cover: pixels whose middle
+ * lies in one. */
+void wd_silhouette_cover(struct wd_silhouette *views, int view_count,
+                         const struct wd_tree_mesh *mesh, uint32_t first, uint32_t end);
 
-/* front[y * WD_SILHOUETTE + x], WD_SILHOUETTE_FRONT of them: the distance toward the picture's
+/* fronts[view][y * WD_SILHOUETTE + x], WD_SILHOUETTE_FRONT a view: the distance toward the picture's
  * side of what is nearest to it, or minus infinity. */
-void wd_silhouette_front(const struct wd_silhouette *silhouette, const struct wd_tree_mesh *mesh,
-                         float *front);
+void wd_silhouette_front(const struct wd_silhouette *views, int view_count,
+                         const struct wd_tree_mesh *mesh, float *fronts);
 
 size_t wd_silhouette_count(const struct wd_silhouette *silhouette);
 

@@ -45,11 +45,11 @@ static float covered(struct thinning *t, uint32_t count, float factor)
     for (uint32_t i = 0; i < count; i++)
         grow_leaf(t, i, factor);
     t->part.vertex_count = t->first_vertex + count * t->set->corner_count;
-    for (int i = 0; i < VIEWS; i++) {
-        struct wd_silhouette view = t->others[i];
-        wd_silhouette_cover(&view, &t->part, begin, begin + count * t->set->index_count);
-        sum += wd_silhouette_count(&view);
-    }
+    struct wd_silhouette views[VIEWS];
+    memcpy(views, t->others, sizeof views);
+    wd_silhouette_cover(views, VIEWS, &t->part, begin, begin + count * t->set->index_count);
+    for (int i = 0; i < VIEWS; i++)
+        sum += wd_silhouette_count(&views[i]);
     return (float)sum;
 }
 
@@ -71,11 +71,10 @@ static void thinning_init(struct thinning *t, const struct wd_tree_model *model,
            t->mesh->vertex_count * sizeof *t->part.vertices);
     uint32_t leaves_end =
         t->mesh->wood_index_count + t->set->leaf_count * t->set->index_count;
-    for (int i = 0; i < VIEWS; i++) {
+    for (int i = 0; i < VIEWS; i++)
         wd_silhouette_init(&t->others[i], t->mesh, towards[i]);
-        wd_silhouette_cover(&t->others[i], t->mesh, 0, t->mesh->wood_index_count);
-        wd_silhouette_cover(&t->others[i], t->mesh, leaves_end, t->mesh->index_count);
-    }
+    wd_silhouette_cover(t->others, VIEWS, t->mesh, 0, t->mesh->wood_index_count);
+    wd_silhouette_cover(t->others, VIEWS, t->mesh, leaves_end, t->mesh->index_count);
 }
 
 static float fit_step(struct thinning *t, uint32_t count, float area, float growth, float wanted)
