@@ -13,9 +13,15 @@ static const float LEAST = 0.25f, MOST = 4;
 /* How much of a leaf's growth is seen in a crown, mostly: the rest hides behind other leaves. */
 #define FIRST_SLOPE 0.62f
 
+struct middle {
+    struct wd_vec3 place;
+    uint32_t members;
+};
+
 struct fit {
     struct wd_tree_mesh *mesh;
-    struct wd_vec3 *middles; /* [vertex] of its leaf */
+    uint32_t *parts;         /* [vertex] a vertex of its leaf, the same for all of them */
+    struct middle *middles;  /* [of those] */
     struct wd_vec3 *unscaled; /* [vertex] */
     struct wd_silhouette wood[VIEWS]; /* what it covers, whatever the size of leaves */
 };
@@ -36,29 +42,23 @@ static uint32_t root_of(uint32_t *parents, uint32_t i)
 static void find_middles(struct fit *fit)
 {
     const struct wd_tree_mesh *mesh = fit->mesh;
-    uint32_t count = mesh->vertex_count;
-    uint32_t *parents = wd_alloc_array(count + 1, sizeof *parents);
-    uint32_t *members = wd_alloc_array(count + 1, sizeof *members);
-    struct wd_vec3 *sums = wd_alloc_array(count + 1, sizeof *sums);
-    for (uint32_t i = 0; i < count; i++)
-        parents[i] = i;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        fit->parts[i] = i;
     for (uint32_t i = mesh->wood_index_count; i + 2 < mesh->index_count; i += 3)
         for (uint32_t k = 1; k < 3; k++)
-            parents[root_of(parents, mesh->indices[i + k])] =
-                root_of(parents, mesh->indices[i]);
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t root = root_of(parents, i);
+            fit->parts[root_of(fit->parts, mesh->indices[i + k])] =
+                root_of(fit->parts, mesh->indices[i]);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+        uint32_t root = fit->parts[i] = root_of(fit->parts, i);
+        struct middle *middle = &fit->middles[root];
         fit->unscaled[i] = position(mesh, i);
-        sums[root] = wd_v3_add(sums[root], fit->unscaled[i]);
-        members[root]++;
+        middle->place = wd_v3_add(middle->place, fit->unscaled[i]);
+        middle->members++;
     }
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t root = root_of(parents, i);
-        fit->middles[i] = wd_v3_scale(sums[root], 1 / (float)members[root]);
-    }
-    free(parents);
-    free(members);
-    free(sums);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        if (fit->parts[i] == i)
+            fit->middles[i].place =
+                wd_v3_scale(fit->middles[i].place, 1 / (float)fit->middles[i].members);
 }
 
 /* Wood is made of vertices of its own, which are left as they are. */
@@ -68,7 +68,7 @@ static void scale_leaves(struct fit *fit, float factor)
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         if (!(mesh->vertices[i].kind & WD_VERTEX_LEAF))
             continue;
-        struct wd_vec3 p = wd_v3_mix(fit->middles[i], fit->unscaled[i], factor);
+        struct wd_vec3 p = wd_v3_mix(fit->middles[fit->parts[i]].place, fit->unscaled[i], factor);
         mesh->vertices[i].position_m[0] = p.x;
         mesh->vertices[i].position_m[1] = p.y;
         mesh->vertices[i].position_m[2] = p.z;
@@ -113,6 +113,7 @@ float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tr
         return 1;
     struct fit fit = {
         .mesh = reduced,
+        .parts = wd_alloc_array(reduced->vertex_count, sizeof *fit.parts),
         .middles = wd_alloc_array(reduced->vertex_count, sizeof *fit.middles),
         .unscaled = wd_alloc_array(reduced->vertex_count, sizeof *fit.unscaled),
     };
@@ -127,6 +128,7 @@ float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tr
         wanted += wd_silhouette_count(&whole[i]);
     find_middles(&fit);
     float factor = find_factor(&fit, (float)wanted);
+    free(fit.parts);
     free(fit.middles);
     free(fit.unscaled);
     wd_tree_mesh_update_bounds(reduced);

@@ -115,22 +115,17 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     branch->node_count = skeleton->node_count - branch->first_node;
 }
 
-static struct wd_vec3 branch_direction(struct wd_vec3 axis, float around_rad, float angle_rad)
-{
-    struct wd_vec3 side = wd_v3_side(axis), over = wd_v3_cross(side, axis);
-    return wd_v3_turn(axis, wd_v3_turn(side, over, around_rad), angle_rad);
-}
-
 /* How good a place for a new branch is: free of others, in the crown, toward light. */
 static float place_score(const struct wd_skeleton *skeleton, const struct wd_tree_form *form,
-                         struct wd_vec3 start, struct wd_vec3 d, float length_m)
+                         struct wd_vec3 start, struct wd_vec3 d, float length_m,
+                         struct wd_vec3 crown)
 {
     struct wd_vec3 middle = wd_v3_mad(start, d, 0.55f * length_m);
     struct wd_vec3 end = wd_v3_mad(start, d, length_m);
     float crowd = wd_tree_density_at(&skeleton->crowd, middle) +
                   wd_tree_density_at(&skeleton->crowd, end);
     float over = wd_tree_envelope_share(form, end) - 1;
-    float outward = wd_v3_dot(d, wd_tree_crown_direction(form, start));
+    float outward = wd_v3_dot(d, crown);
     return 0.35f * outward + 0.2f * d.z - 0.5f * crowd - (over > 0 ? 2 * over : 0);
 }
 
@@ -170,10 +165,33 @@ static float stub_share(struct wd_random *random)
     return wd_mixf(0.07f, 1, share * share * share);
 }
 
+/* Away from `axis` by an angle: of a few ways around it the one with the best place. */
+static struct wd_vec3 best_direction(const struct wd_skeleton *skeleton,
+                                     const struct wd_tree_form *form, const struct joint *joint,
+                                     struct wd_random *random, struct wd_vec3 start,
+                                     struct wd_vec3 axis, float angle_rad)
+{
+    enum { TRIES = 5 };
+    struct wd_vec3 side = wd_v3_side(axis), over = wd_v3_cross(side, axis), best = axis;
+    struct wd_vec3 crown = wd_tree_crown_direction(form, start);
+    float most = -1e30f;
+    float along = (float)wd_dcos((double)angle_rad), out = (float)wd_dsin((double)angle_rad);
+    for (int i = 0; i < TRIES; i++) {
+        float around = joint->around_rad + joint->jitter_rad * wd_random_signed(random);
+        struct wd_vec3 d = wd_v3_add(wd_v3_scale(axis, along),
+                                     wd_v3_scale(wd_v3_turn(side, over, around), out));
+        float score = place_score(skeleton, form, start, d, joint->length_m, crown);
+        if (score > most) {
+            most = score;
+            best = d;
+        }
+    }
+    return best;
+}
+
 static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order,
                        const struct joint *joint)
 {
-    enum { TRIES = 5 };
     const struct wd_branch_order *spec = &form->species->orders[order];
     struct wd_random random = wd_random_of(joint->key, 0x101);
     struct wd_stem stem = {.order = order, .parent = joint->parent, .key = joint->key,
@@ -187,16 +205,7 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     if (form->clip && order == 0) /* cut limbs are level down to the ground */
         angle = wd_mixf(100, 20, joint->height);
     angle *= (float)(WD_PI / 180) * wd_random_range(&random, 0.88f, 1.12f);
-    float best = -1e30f;
-    for (int i = 0; i < TRIES; i++) {
-        float around = joint->around_rad + joint->jitter_rad * wd_random_signed(&random);
-        struct wd_vec3 d = branch_direction(axis, around, angle);
-        float score = place_score(skeleton, form, stem.start, d, joint->length_m);
-        if (score > best) {
-            best = score;
-            stem.direction = d;
-        }
-    }
+    stem.direction = best_direction(skeleton, form, joint, &random, stem.start, axis, angle);
     struct wd_vec3 ahead = bend_up(stem.direction, 0.3f * spec->upturn * joint->length_m);
     stem.length_m = joint->length_m;
     if (!hangs(spec))
