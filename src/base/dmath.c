@@ -33,26 +33,31 @@ static double cos_poly(double x)
     return 1.0 + series(share, x * x);
 }
 
-static double sin_quadrant(double x, int shift)
+void wd_dsincos(double x, double *sine, double *cosine)
 {
     double quarters = x * (2.0 / WD_PI);
     long long turns = (long long)(quarters + (quarters < 0 ? -0.5 : 0.5));
     /* pi/2 in two parts keeps the reduction exact for the arguments used here */
     double rest = (x - (double)turns * 1.57079632673412561417e+00) -
                   (double)turns * 6.07710050650619224932e-11;
-    int quadrant = (int)(turns + shift) & 3;
-    double value = quadrant & 1 ? cos_poly(rest) : sin_poly(rest);
-    return quadrant & 2 ? -value : value;
+    double s = sin_poly(rest), c = cos_poly(rest);
+    double across = turns & 1 ? c : s, along = turns & 1 ? s : c;
+    *sine = turns & 2 ? -across : across;
+    *cosine = (turns + 1) & 2 ? -along : along;
 }
 
 double wd_dsin(double x)
 {
-    return sin_quadrant(x, 0);
+    double sine, cosine;
+    wd_dsincos(x, &sine, &cosine);
+    return sine;
 }
 
 double wd_dcos(double x)
 {
-    return sin_quadrant(x, 1);
+    double sine, cosine;
+    wd_dsincos(x, &sine, &cosine);
+    return cosine;
 }
 
 /* 2^power for a result that is a normal number. */

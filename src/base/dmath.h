@@ -6,6 +6,7 @@
 
 double wd_dsin(double x); /* |x| < 1e6 */
 double wd_dcos(double x);
+void wd_dsincos(double x, double *sine, double *cosine); /* both, for little more than one */
 double wd_dexp(double x); /* clamped to finite results */
 double wd_dlog(double x); /* x > 0; -1e308 otherwise */
 double wd_dpow(double x, double y); /* x >= 0; 0^y is 0 for y > 0 */

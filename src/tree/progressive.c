@@ -32,26 +32,40 @@ uint32_t wd_scrambled_radical(uint32_t index, uint32_t key)
     return reverse_bits(x);
 }
 
-/* Place along Hilbert's curve in three dimensions (Skilling, AIP Conf. Proc. 707, 2004). */
-static uint32_t curve_place(uint32_t x[3])
+/* Bit i to bit 3 i, of CURVE_BITS bits. */
+static inline uint32_t spread_bits(uint32_t x)
 {
-    for (uint32_t q = 1u << (CURVE_BITS - 1); q > 1; q >>= 1) {
-        uint32_t p = q - 1;
-        for (int i = 0; i < 3; i++) {
-            uint32_t swapped = x[i] & q ? 0 : (x[0] ^ x[i]) & p;
-            x[0] ^= (x[i] & q ? p : 0) ^ swapped;
-            x[i] ^= swapped;
-        }
-    }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    uint32_t turned = 0, place = 0;
-    for (uint32_t q = 1u << (CURVE_BITS - 1); q > 1; q >>= 1)
-        turned ^= x[2] & q ? q - 1 : 0;
-    for (int bit = CURVE_BITS - 1; bit >= 0; bit--)
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+enum { BATCH = 32 };
+
+/* Places along Hilbert's curve in three dimensions (Skilling, AIP Conf. Proc. 707, 2004), of many
+ * points at a time; masks in place of branches. */
+static void curve_batch(uint32_t place[BATCH], uint32_t x[3][BATCH])
+{
+    for (int bit = CURVE_BITS - 1; bit > 0; bit--) {
+        uint32_t p = (1u << bit) - 1;
         for (int i = 0; i < 3; i++)
-            place = place << 1 | ((x[i] ^ turned) >> bit & 1);
-    return place;
+            for (int n = 0; n < BATCH; n++) {
+                uint32_t set = 0u - (x[i][n] >> bit & 1);
+                uint32_t swapped = (x[0][n] ^ x[i][n]) & p & ~set;
+                x[0][n] ^= (p & set) ^ swapped;
+                x[i][n] ^= swapped;
+            }
+    }
+    for (int n = 0; n < BATCH; n++) {
+        x[1][n] ^= x[0][n];
+        x[2][n] ^= x[1][n];
+        uint32_t turned = x[2][n] >> 1; /* bit by bit: how many higher ones are set, odd or even */
+        for (int shift = 1; shift < CURVE_BITS; shift *= 2)
+            turned ^= turned >> shift;
+        place[n] = spread_bits(x[0][n] ^ turned) << 2 | spread_bits(x[1][n] ^ turned) << 1 |
+                   spread_bits(x[2][n] ^ turned);
+    }
 }
 
 /* Broken coordinates end in the first cell. */
@@ -72,10 +86,17 @@ static void curve_places(uint32_t *places, const struct wd_vec3 *points, size_t 
     struct wd_vec3 size = wd_v3_sub(high, low);
     float side = fmaxf(fmaxf(size.x, size.y), fmaxf(size.z, 1e-6f));
     float scale = (float)((1 << CURVE_BITS) - 1) / side;
-    for (size_t i = 0; i < count; i++) {
-        struct wd_vec3 p = wd_v3_scale(wd_v3_sub(points[i], low), scale);
-        uint32_t cell[3] = {curve_cell(p.x), curve_cell(p.y), curve_cell(p.z)};
-        places[i] = curve_place(cell);
+    for (size_t first = 0; first < count; first += BATCH) {
+        size_t some = count - first < BATCH ? count - first : BATCH;
+        uint32_t cells[3][BATCH] = {0}, found[BATCH];
+        for (size_t i = 0; i < some; i++) {
+            struct wd_vec3 p = wd_v3_scale(wd_v3_sub(points[first + i], low), scale);
+            cells[0][i] = curve_cell(p.x);
+            cells[1][i] = curve_cell(p.y);
+            cells[2][i] = curve_cell(p.z);
+        }
+        curve_batch(found, cells);
+        memcpy(places + first, found, some * sizeof *found);
     }
 }
 

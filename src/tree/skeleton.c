@@ -175,11 +175,12 @@ static struct wd_vec3 best_direction(const struct wd_skeleton *skeleton,
     struct wd_vec3 side = wd_v3_side(axis), over = wd_v3_cross(side, axis), best = axis;
     struct wd_vec3 crown = wd_tree_crown_direction(form, start);
     float most = -1e30f;
-    float along = (float)wd_dcos((double)angle_rad), out = (float)wd_dsin((double)angle_rad);
+    double out, along;
+    wd_dsincos((double)angle_rad, &out, &along);
     for (int i = 0; i < TRIES; i++) {
         float around = joint->around_rad + joint->jitter_rad * wd_random_signed(random);
-        struct wd_vec3 d = wd_v3_add(wd_v3_scale(axis, along),
-                                     wd_v3_scale(wd_v3_turn(side, over, around), out));
+        struct wd_vec3 d = wd_v3_add(wd_v3_scale(axis, (float)along),
+                                     wd_v3_scale(wd_v3_turn(side, over, around), (float)out));
         float score = place_score(skeleton, form, start, d, joint->length_m, crown);
         if (score > most) {
             most = score;

@@ -61,8 +61,9 @@ static inline struct wd_vec3 wd_v3_square(struct wd_vec3 a, struct wd_vec3 d)
 /* cos(angle) a + sin(angle) b */
 static inline struct wd_vec3 wd_v3_turn(struct wd_vec3 a, struct wd_vec3 b, float angle_rad)
 {
-    float c = (float)wd_dcos(angle_rad), s = (float)wd_dsin(angle_rad);
-    return wd_v3_add(wd_v3_scale(a, c), wd_v3_scale(b, s));
+    double s, c;
+    wd_dsincos(angle_rad, &s, &c);
+    return wd_v3_add(wd_v3_scale(a, (float)c), wd_v3_scale(b, (float)s));
 }
 
 #endif
