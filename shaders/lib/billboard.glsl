@@ -75,7 +75,7 @@ wd_card_flat billboard_flat(wd_billboard board, wd_model model, tree_pose pose, 
     constants.layer = model.card_layer + board.card;
     constants.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0,
                           float(WD_CARD_LAST_MIP));
-    constants.random = tree.random ^ (board.card * 0x9e3779b9u);
+    constants.random = wd_tree_random(tree) ^ (board.card * 0x9e3779b9u);
     constants.surface = surface;
     return card_pack(constants);
 }

@@ -213,7 +213,7 @@ wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show
     result.ratio = t.pose.up / t.pose.across;
     result.layer = t.model.card_layer + card.layer;
     result.lod = t.lod;
-    result.random = SHADOW != 0u ? t.tree.random ^ (card.layer * 0x9e3779b9u)
+    result.random = SHADOW != 0u ? wd_tree_random(t.tree) ^ (card.layer * 0x9e3779b9u)
                                  : card_noise_shift(t.tree, t.foot) | uint(card.begin * 255.0 + 0.5) << 8;
     result.surface = index + 1u;
     return card_pack(result);

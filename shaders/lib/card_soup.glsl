@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint SHADOW = 0u;
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Fades { wd_layer_fade fades[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Planes { wd_cull_planes cull; };
@@ -15,6 +15,7 @@ layout(scalar, set = 0, binding = 5) readonly buffer Chunks { wd_card_chunk chun
 layout(scalar, set = 0, binding = 6) buffer Firsts { uint first_card[]; };
 layout(scalar, push_constant) uniform Push { wd_card_soup_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/card_corner.glsl"
 
@@ -36,7 +37,7 @@ uint chunk_slots(wd_card_chunk chunk)
 
 card_tree soup_tree(uint index)
 {
-    wd_tree tree = trees[index];
+    wd_tree tree = tree_at(index);
     return card_tree_of(tree, models[WD_TREE_SPECIES(tree) * push.variants
                                      + WD_TREE_VARIANT(tree) % push.variants]);
 }

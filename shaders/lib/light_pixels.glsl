@@ -20,7 +20,7 @@ layout(set = 0, binding = 4) uniform sampler2D gbuffer_depth;
 layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_map;
 layout(set = 0, binding = 6) uniform sampler2DArray shadow_depth;
 layout(scalar, set = 0, binding = 7) readonly buffer SunHeights { float sun_height_m[]; };
-layout(scalar, set = 0, binding = 8) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 8) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 9) readonly buffer Models { wd_model models[]; };
 layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
 layout(scalar, set = 0, binding = 11) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
@@ -37,6 +37,7 @@ layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #define WATER_AT(index) river_m[index]
 
+#include "lib/trees.glsl"
 #include "lib/noise.glsl"
 #include "lib/sky.glsl"
 #include "lib/shadow.glsl"

@@ -1,4 +1,4 @@
-/* A tree in a picture of an octant: a rectangle that its card fills. Expects `trees`, `models`,
+/* A tree in a picture of an octant: a rectangle that its card fills. Expects `tree_at`, `models`,
  * `pictures` and `push`. Places in a picture are metres from its lower left far corner. */
 #include "shared/octant.h"
 #include "shared/tree_pose.h"
@@ -17,7 +17,7 @@ octant_tree octant_tree_of(uint tree, uint picture)
     octant_tree t;
     t.picture = pictures[picture];
     t.axes = wd_octant_frame_of(t.picture.side);
-    t.tree = trees[tree];
+    t.tree = tree_at(tree);
     t.model = models[WD_TREE_SPECIES(t.tree) * push.variants
                      + WD_TREE_VARIANT(t.tree) % push.variants];
     t.pose = wd_tree_pose_of(t.tree, t.model);

@@ -323,7 +323,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     wd_place place = ground_place(pixel);
     wd_shelter shelter = ground_shelter(pixel);
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u) {
-        wd_tree tree = trees[pixel.surface - 1u];
+        wd_tree tree = tree_at(pixel.surface - 1u);
         wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                                 + WD_TREE_VARIANT(tree) % push.variants];
         wd_crown crown = crown_of(tree, model);

@@ -91,6 +91,7 @@ uint card_noise_shift(wd_tree tree, vec3 foot)
     vec4 clip = frame.steady_clip_from_rel * vec4(foot, 1.0); /* samples share their noise */
     vec2 size = vec2(frame.width, frame.height);
     vec2 at = clamp((clip.xy / max(clip.w, 0.01) * 0.5 + 0.5) * size, -1e6, 1e6);
-    uvec2 shift = uvec2(tree.random & 255u, tree.random >> 8) - uvec2(ivec2(floor(at)));
+    uint random = wd_tree_random(tree);
+    uvec2 shift = uvec2(random & 255u, random >> 8) - uvec2(ivec2(floor(at)));
     return (shift.x & 255u) << 24 | (shift.y & 255u) << 16;
 }

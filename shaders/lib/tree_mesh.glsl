@@ -45,7 +45,7 @@ void tree_mesh_vertex(wd_instance instance, wd_tree tree, wd_model model, mesh_c
     out_tint.rgb *= leaf ? tree_tint(tree, model) : vec3(1.0);
     out_flat = uvec3(instance.tree + 1u, (leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
                          | (pose.mirror.x < 0.0 ? 4u : 0u),
-                     wd_hash2(v.name, tree.random));
+                     wd_hash2(v.name, wd_tree_random(tree)));
     out_show = instance.show;
     out_place = vec4(rel, leaf ? 0.0 : model.moss * moss_share(normal, offset.z));
     gl_Position = SHADOW != 0u ? shadow_clip(push.cascade, rel)

@@ -12,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1) uniform sampler2D gbuffer_depth;
 layout(set = 0, binding = 2) uniform sampler2D cover_map;
-layout(scalar, set = 0, binding = 3) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 5) readonly buffer ViewModels { wd_view_model view_models[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer CellFirst { uint cell_first[]; };
@@ -23,6 +23,7 @@ layout(set = 0, binding = 10) uniform sampler2DArray view_depth;
 layout(scalar, set = 0, binding = 11) writeonly buffer Canopy { wd_canopy_pixel canopy[]; };
 layout(scalar, push_constant) uniform Push { wd_canopy_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/view.glsl"
 #include "lib/tree.glsl"
 
@@ -53,7 +54,7 @@ uint tree_near(vec2 local_m, uint random)
 
 wd_canopy_pixel canopy_of(uint index, vec3 ray, uint random)
 {
-    wd_tree tree = trees[index];
+    wd_tree tree = tree_at(index);
     uint model = WD_TREE_SPECIES(tree) * push.variants
                  + WD_TREE_VARIANT(tree) % push.variants % push.baked_variants;
     tree_pose pose = tree_pose_of(tree, models[model]);

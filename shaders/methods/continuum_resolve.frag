@@ -12,13 +12,14 @@ layout(scalar, set = 0, binding = 2) readonly buffer SplatTrees { wd_splat_tree 
 layout(scalar, set = 0, binding = 3) readonly buffer Items { wd_splat_item items[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Splats { wd_splat splats[]; };
 layout(scalar, set = 0, binding = 5) readonly buffer Looks { uint looks[]; };
-layout(scalar, set = 0, binding = 6) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 6) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 8) readonly buffer WoodItems { wd_splat_item wood_items[]; };
 layout(scalar, set = 0, binding = 9) readonly buffer Wood { wd_splat_wood wood[]; };
 layout(set = 0, binding = 10) uniform sampler2DArray bark;
 layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/splat.glsl"
 
@@ -94,7 +95,7 @@ wd_seen seen_wood(uint id)
                    * float(textureSize(bark, 0).y);
     float lod = 0.5 * log2(max(texels / max(share.w, 1e-6), 1.0));
     vec2 at = share.x * uv[0] + share.y * uv[1] + share.z * uv[2];
-    wd_tree own = trees[tree.tree];
+    wd_tree own = tree_at(tree.tree);
     uint layer = models[WD_TREE_SPECIES(own) * push.variants
                         + WD_TREE_VARIANT(own) % push.variants].look_layer;
     seen.albedo *= textureLod(bark, vec3(at, float(layer)), lod).rgb;

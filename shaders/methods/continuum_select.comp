@@ -15,7 +15,7 @@ layout(scalar, set = 0, binding = 1) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 2) readonly buffer Clusters { wd_cluster clusters[]; };
 layout(scalar, set = 0, binding = 3) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 4) readonly buffer Visible { uint visible[]; };
-layout(scalar, set = 0, binding = 5) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 5) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer SplatModels { wd_splat_model splat_models[]; };
 layout(scalar, set = 0, binding = 8) writeonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
@@ -27,6 +27,7 @@ layout(set = 0, binding = 12) uniform sampler2D slopes;
 layout(scalar, set = 0, binding = 13) buffer PutOff { uint put_off[]; };
 layout(scalar, set = 0, binding = 14) readonly buffer Fades { wd_layer_fade fades[]; };
 
+#include "lib/trees.glsl"
 #include "lib/frustum.glsl"
 #include "lib/pyramid.glsl"
 #include "lib/occlusion.glsl"
@@ -199,7 +200,7 @@ vec2 slope_under(vec3 foot, float wide_m)
  * asks, as high as it is, and its splats grow with it. `place`: bit of the masks of put_off. */
 void select_tree(uint index, float share, uint place)
 {
-    wd_tree tree = trees[index];
+    wd_tree tree = tree_at(index);
     if (tree.size == 0u)
         return;
     float stretch = inversesqrt(share);
@@ -207,7 +208,8 @@ void select_tree(uint index, float share, uint place)
     if (tree_is_outside(tree, foot, stretch))
         return;
     /* Layers come and go with distance, tree by tree, as the path tracer has it. */
-    if (wd_hash_unit(tree.random) >= wd_layer_show(fades[WD_TREE_LAYER(tree)], length(foot)))
+    uint random = wd_tree_random(tree);
+    if (wd_hash_unit(random) >= wd_layer_show(fades[WD_TREE_LAYER(tree)], length(foot)))
         return;
     uint model_index = WD_TREE_SPECIES(tree) * view.variants
                        + WD_TREE_VARIANT(tree) % view.variants;
@@ -231,7 +233,7 @@ void select_tree(uint index, float share, uint place)
     vec3 sway = tree_sway_in(wind, tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
     float pixels_per_m = view.pixels / distance_m;
     float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m * view.detail;
-    bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(tree.random));
+    bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(random));
     float wanted = max(view.density * covered_px(tree, toward, pixels_per_m),
                        float(view.min_splats));
     wd_splat_tree splats;
@@ -265,7 +267,7 @@ void select_tree(uint index, float share, uint place)
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
     splats.first_wood = splat_models[model_index].wood_first;
-    splats.offset = wd_hash_mix(tree.random) + frame.sample_index * uint(ceil(each));
+    splats.offset = wd_hash_mix(random) + frame.sample_index * uint(ceil(each));
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
     splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);

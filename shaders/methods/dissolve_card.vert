@@ -4,11 +4,12 @@
 #include "shared/dissolve.h"
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Instances { wd_instance instances[]; };
 layout(scalar, push_constant) uniform Push { wd_one_view_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/billboard.glsl"
 
@@ -20,7 +21,7 @@ layout(location = 2) flat out uvec3 out_more;
 void main()
 {
     wd_instance instance = instances[gl_VertexIndex / 4];
-    wd_tree tree = trees[instance.tree];
+    wd_tree tree = tree_at(instance.tree);
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];
     vec3 foot = tree_foot_rel(tree);

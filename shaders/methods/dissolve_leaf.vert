@@ -8,13 +8,14 @@
 layout(constant_id = 0) const uint SHADOW = 0u;
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_tree_vertex vertices[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_leafy_instance instances[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer Places { wd_leaf_place places[]; };
 layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
 #include "lib/tree_mesh.glsl"
@@ -35,7 +36,7 @@ void main()
     corner.tint = unpackUnorm4x8(v.tint);
     corner.kind = v.kind;
     corner.name = uint(gl_VertexIndex);
-    wd_tree tree = trees[instance.tree];
+    wd_tree tree = tree_at(instance.tree);
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];
     tree_mesh_vertex(wd_instance(instance.tree, instance.show), tree, model, corner);

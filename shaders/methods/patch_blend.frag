@@ -6,7 +6,7 @@
 #include "shared/patch_order.h"
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
 layout(set = 0, binding = 5) uniform sampler2DArray card_normal;
@@ -20,6 +20,7 @@ layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
 #define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #define push patch_push.light /* the libraries' name for it; lib/tree.glsl has others of its own */
 #include "lib/noise.glsl"

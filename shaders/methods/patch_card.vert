@@ -9,7 +9,7 @@ uint first_tree(uint cell);
 #include "shared/patch_order.h"
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Table { uint table[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer Fades { wd_layer_fade fades[]; };
@@ -22,6 +22,7 @@ uint first_tree(uint cell)
     return table[push.table + cell];
 }
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/billboard.glsl"
 
@@ -31,7 +32,7 @@ layout(location = 1) flat out uvec4 out_card;
 layout(location = 2) flat out uvec3 out_more;
 
 /* The tree that is number `place` from the back. */
-uint tree_at(uint place)
+uint ordered_tree(uint place)
 {
     if (push.cells == 0u)
         return table[place];
@@ -50,8 +51,8 @@ float shown(wd_tree tree, float distance_m)
 void main()
 {
     gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
-    uint index = tree_at(uint(gl_VertexIndex) / 4u);
-    wd_tree tree = trees[index];
+    uint index = ordered_tree(uint(gl_VertexIndex) / 4u);
+    wd_tree tree = tree_at(index);
     wd_model model = models[WD_TREE_SPECIES(tree) * push.light.variants
                             + WD_TREE_VARIANT(tree) % push.light.variants];
     vec3 foot = tree_foot_rel(tree);

@@ -9,12 +9,13 @@ layout(constant_id = 0) const uint SHADOW = 0u;
 layout(constant_id = 1) const uint LISTED = 0u;
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Instances { wd_instance instances[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer Fades { wd_layer_fade fades[]; };
 layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/card_corner.glsl"
 
@@ -32,7 +33,7 @@ void main()
         index = instances[slot].tree;
         show = instances[slot].show;
     }
-    wd_tree tree = trees[index];
+    wd_tree tree = tree_at(index);
     card_tree t = card_tree_of(tree, models[WD_TREE_SPECIES(tree) * push.variants
                                             + WD_TREE_VARIANT(tree) % push.variants]);
     card_frame card = card_at(t, vertex / 4u);

@@ -11,13 +11,14 @@ layout(constant_id = 1) const uint DETAIL = 0u;
 layout(constant_id = 2) const uint FALLS = 0u; /* 1: leaves are on their way down */
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Corners { wd_leaf_vertex corners[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_instance instances[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer Leaves { wd_tree_leaf leaves[]; };
 layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
 #define push mesh.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
@@ -40,7 +41,7 @@ float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
     tree_pose pose = tree_pose_of(tree, models[model]);
     float far_m = length(tree_foot_rel(tree) + tree_offset(pose, foot_m));
     float sprays = wd_spray_share(far_m, max(push.spray_reach, 1e-6));
-    bool twig = DETAIL != 0u && wd_hash_unit(wd_hash2(index, tree.random)) < sprays;
+    bool twig = DETAIL != 0u && wd_hash_unit(wd_hash2(index, wd_tree_random(tree))) < sprays;
     float share = wd_leaf_share(push.leaf_m * pose.across * push.pixels_per_radian / far_m);
     bool thin = float(index) >= share * float(push.leaf_count);
     float grown = inversesqrt(share) * leaf_growth(model, share);
@@ -52,7 +53,7 @@ float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
 void main()
 {
     wd_instance instance = instances[gl_InstanceIndex];
-    wd_tree tree = trees[instance.tree];
+    wd_tree tree = tree_at(instance.tree);
     uint model_index =
         WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
     wd_model model = models[model_index];
@@ -79,7 +80,7 @@ void main()
     corner.name = mesh.first_name + index * mesh.corner_count + at;
     if (FALLS != 0u) {
         wd_leaf_fall fall = wd_leaf_fall_of(foot, model, wd_tree_pose_of(tree, model), tree_wind(),
-                                            wd_hash2(index, tree.random), frame.time_s);
+                                            wd_hash2(index, wd_tree_random(tree)), frame.time_s);
         corner.position_m = fall.foot_m + wd_leaf_fall_turn(fall, corner.position_m - foot);
         corner.normal = wd_leaf_fall_turn(fall, corner.normal);
     }

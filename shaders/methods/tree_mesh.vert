@@ -7,12 +7,13 @@
 layout(constant_id = 0) const uint SHADOW = 0u;
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_packed_vertex vertices[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_instance instances[]; };
 layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
 #define push mesh.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
@@ -21,7 +22,7 @@ layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 void main()
 {
     wd_instance instance = instances[gl_InstanceIndex];
-    wd_tree tree = trees[instance.tree];
+    wd_tree tree = tree_at(instance.tree);
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];
     wd_packed_vertex v = vertices[gl_VertexIndex];

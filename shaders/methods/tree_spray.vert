@@ -5,13 +5,14 @@
 #include "shared/hash.h"
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Vertices { wd_packed_vertex vertices[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_spray_instance instances[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer Leaves { wd_tree_leaf leaves[]; };
 layout(scalar, push_constant) uniform Push { wd_spray_push spray; };
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
 #define push spray.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
@@ -26,7 +27,7 @@ layout(location = 5) out vec4 out_place;
 void main()
 {
     wd_spray_instance instance = instances[gl_InstanceIndex];
-    wd_tree tree = trees[instance.tree];
+    wd_tree tree = tree_at(instance.tree);
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];
     wd_tree_leaf leaf = leaves[instance.leaf];

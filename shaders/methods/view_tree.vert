@@ -9,13 +9,14 @@
 layout(constant_id = 0) const uint DEPTH = 0u;
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Instances { wd_instance instances[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Fades { wd_layer_fade fades[]; };
 layout(scalar, set = 0, binding = 5) readonly buffer ViewModels { wd_view_model view_models[]; };
 layout(scalar, push_constant) uniform Push { wd_view_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 
 layout(location = 0) out vec3 out_model;      /* place on the quad, the model's own metres */
@@ -43,7 +44,7 @@ float enlarged(wd_view_frame view, float distance_m)
 void main()
 {
     wd_instance instance = instances[gl_VertexIndex / 4];
-    wd_tree tree = trees[instance.tree];
+    wd_tree tree = tree_at(instance.tree);
     uint index = WD_TREE_SPECIES(tree) * push.variants
                  + WD_TREE_VARIANT(tree) % push.variants % push.baked_variants;
     wd_model model = models[index];
@@ -86,7 +87,7 @@ void main()
     out_pose = vec4(pose.turn, pose.mirror.x * pose.across, pose.up);
     out_foot = vec4(foot, lod);
     out_tint = vec4(tree_tint(tree, model), show);
-    out_flat = uvec4(instance.tree + 1u, tree.random, index,
+    out_flat = uvec4(instance.tree + 1u, wd_tree_random(tree), index,
                      blend.view[0] | blend.view[1] << 10 | blend.view[2] << 20);
     for (uint i = 0u; i < 3u; i++) {
         wd_direction d = wd_hemisphere_direction(push.atlas.hemisphere, blend.view[i]);

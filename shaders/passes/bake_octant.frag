@@ -3,7 +3,7 @@
 #include "shared/hash.h"
 #include "shared/octant.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 0) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 1) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Pictures { wd_octant_picture pictures[]; };
 layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
@@ -11,6 +11,7 @@ layout(set = 0, binding = 5) uniform sampler2DArray card_normal;
 layout(set = 0, binding = 6) uniform sampler2DArray card_depth;
 layout(scalar, push_constant) uniform Push { wd_octant_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/octant.glsl"
 
 layout(location = 0) in vec2 in_place;

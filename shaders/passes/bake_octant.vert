@@ -3,12 +3,13 @@
 #include "shared/forest.h"
 #include "shared/octant.h"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 0) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 1) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Pictures { wd_octant_picture pictures[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Entries { wd_octant_entry entries[]; };
 layout(scalar, push_constant) uniform Push { wd_octant_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/octant.glsl"
 
 layout(location = 0) out vec2 out_place;

@@ -11,18 +11,19 @@ layout(set = 0, binding = 1) uniform sampler2D gbuffer_albedo;
 layout(set = 0, binding = 2) uniform sampler2D gbuffer_normal;
 layout(set = 0, binding = 3) uniform usampler2D gbuffer_surface;
 layout(set = 0, binding = 4) uniform sampler2D gbuffer_depth;
-layout(scalar, set = 0, binding = 5) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 5) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 6) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 7) writeonly buffer Velocity { vec2 velocity_px[]; };
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
+#include "lib/trees.glsl"
 #include "lib/gbuffer.glsl"
 #include "lib/tree.glsl"
 
 /* How far the wind has carried a tree's point since the previous time. */
 vec3 swayed(uint surface, vec3 rel)
 {
-    wd_tree tree = trees[surface - 1u];
+    wd_tree tree = tree_at(surface - 1u);
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree)];
     float height_m = rel.z - tree_foot_rel(tree).z;
     return tree_sway(tree, model.flexibility, height_m, frame.time_s)

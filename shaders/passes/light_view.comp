@@ -14,7 +14,7 @@ layout(set = 0, binding = 4) uniform sampler2D gbuffer_depth;
 layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_map;
 layout(set = 0, binding = 6) uniform sampler2DArray shadow_depth;
 layout(scalar, set = 0, binding = 7) readonly buffer SunHeights { float sun_height_m[]; };
-layout(scalar, set = 0, binding = 8) readonly buffer Trees { wd_tree trees[]; };
+layout(scalar, set = 0, binding = 8) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 9) readonly buffer Models { wd_model models[]; };
 layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
@@ -23,6 +23,7 @@ layout(scalar, push_constant) uniform Push { wd_light_push push; };
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
 #define PARTS WD_PART_ALL
 
+#include "lib/trees.glsl"
 #include "lib/noise.glsl"
 #include "lib/shadow.glsl"
 #include "lib/gbuffer.glsl"
@@ -35,7 +36,7 @@ vec3 id_color(uint surface)
 {
     if (surface == 0u)
         return vec3(0.02);
-    uint h = wd_hash1(trees[surface - 1u].id);
+    uint h = wd_hash1(wd_tree_random(tree_at(surface - 1u)));
     return vec3(h & 0xffu, (h >> 8) & 0xffu, (h >> 16) & 0xffu) * (0.9 / 255.0) + 0.1;
 }
 

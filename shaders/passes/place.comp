@@ -43,5 +43,5 @@ void main()
         sub_cell++;
     }
     for (uint i = cell.count; i < slots; i++)
-        trees[index * slots + i] = wd_tree(0, 0, 0, 0u, 0u, 0u, 0u, 0u);
+        trees[index * slots + i] = wd_tree(0, 0, 0, 0u, 0u, 0u, 0u);
 }

@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 /* Plants pages of layers on demand: a workgroup a cluster, a thread a tree. */
 #include "shared/page_layer.h"
-#include "shared/tree.h"
 #include "shared/continuum.h"
 
 layout(local_size_x = 64) in;
@@ -14,7 +13,7 @@ layout(set = 0, binding = 3, scalar) readonly buffer Maps { float probabilities[
 layout(set = 0, binding = 4, scalar) readonly buffer Tables { uint tables[]; };
 layout(set = 0, binding = 5, scalar) readonly buffer Layers { wd_page_layer layers[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer Jobs { wd_page_job jobs[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer Trees { wd_tree trees[]; };
+layout(set = 0, binding = 7, scalar) writeonly buffer Trees { wd_packed_tree trees[]; };
 layout(set = 0, binding = 8, scalar) writeonly buffer Clusters { wd_cluster clusters[]; };
 
 uint own_layer; /* of the workgroup's page */
@@ -67,8 +66,11 @@ void main()
     uint index = cluster * WD_PAGE_CLUSTER + thread;
     wd_page_cell cell = wd_page_cell_of(wd_page(job.layer, job.level, job.column, job.row), index);
     wd_tree tree = wd_page_tree(layers[own_layer].first_id, cell);
-    tree.look = (tree.look & 0x1ffffffu) | (layers[own_layer].fade << 25);
-    trees[push.first_tree + job.slot * WD_PAGE_TREES + index] = tree;
+    tree.look = WD_TREE_LOOK_OF_LAYER(tree.look, layers[own_layer].fade);
+    uint record = push.first_tree + job.slot * WD_PAGE_TREES + index;
+    trees[WD_PACKED_AT(record)] = wd_tree_pack(tree, job.block);
+    if (index == 0u)
+        trees[WD_PACKED_HEAD(record)] = wd_tree_block_record(job.block);
     if (tree.size != 0u)
         add_bounds(tree, job.level);
     barrier();

@@ -2,7 +2,7 @@
 #ifndef WD_SHARED_FOREST_H
 #define WD_SHARED_FOREST_H
 
-#include "shared/tree.h"
+#include "shared/packed_tree.h"
 
 #ifdef __STDC_VERSION__
 #define WD_FADE_STRUCT struct wd_layer_fade

@@ -85,7 +85,6 @@ WD_FUNC WD_STRUCT wd_tree wd_page_tree(WD_PLACE_IN uint32_t first_id,
     tree.kind = 0u;
     tree.size = 0u;
     tree.look = 0u;
-    tree.random = 0u;
     tree.id = 0u;
     if (at.column >= WD_LAYER(columns) || at.row >= WD_LAYER(rows))
         return tree;

@@ -2,6 +2,7 @@
 #ifndef WD_SHARED_PAGE_LAYER_H
 #define WD_SHARED_PAGE_LAYER_H
 
+#include "shared/packed_tree.h"
 #include "shared/place_layer.h"
 
 struct wd_page_layer {
@@ -16,6 +17,7 @@ struct wd_page_layer {
 struct wd_page_job {
     uint32_t layer, level, column, row;
     uint32_t slot;
+    WD_STRUCT wd_tree_block block;
 };
 
 struct wd_page_push {

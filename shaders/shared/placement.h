@@ -54,7 +54,6 @@ struct wd_place_input {
 #define WD_FOR_YAW 7u
 #define WD_FOR_TINT 8u
 #define WD_FOR_VARIANT 9u
-#define WD_FOR_OWN 10u
 
 /* ---- cells ---- */
 
@@ -244,19 +243,22 @@ WD_FUNC uint32_t wd_place_crown_cm(WD_PLACE_IN uint32_t pick, uint32_t height_cm
     uint32_t low = WD_TABLE_AT(first + index), high = WD_TABLE_AT(first + index + 1u);
     uint32_t quarters = (low * (WD_CROWN_STEP_CM - share) + high * share) / WD_CROWN_STEP_CM;
     uint32_t crown_cm = (quarters * aspect + 2048u) >> 12;
-    return crown_cm < 1u ? 1u : (crown_cm > 65535u ? 65535u : crown_cm);
+    uint32_t most = WD_TREE_CROWN_MOST_CM;
+    return crown_cm < 1u ? 1u : (crown_cm > most ? most : crown_cm);
 }
 
 #define WD_PLACE_ANY_TURN 0x10000u
 
+/* Trees that are to face one way still do so by a third of a degree more or less, so that no two of
+ * them have one random number. `turn`: in 1/65536. */
 WD_FUNC uint32_t wd_place_look(uint32_t tree_key, uint32_t tint, uint32_t turn)
 {
     uint32_t yaw = wd_hash2(tree_key, WD_FOR_YAW);
-    yaw = turn < WD_PLACE_ANY_TURN ? (yaw & 0xffff0000u) | turn : yaw;
+    uint32_t facing = turn < WD_PLACE_ANY_TURN ? turn + (yaw & 0x7fu) - 64u : yaw;
     uint32_t random = wd_hash2(tree_key, WD_FOR_TINT);
     /* the sum of two even numbers: most trees are near neutral */
     uint32_t step = ((random & 0xffffu) + (random >> 16)) * tint >> 16;
-    return (yaw & 0xffffu) | ((128u + step - tint) << 16) | ((yaw >> 31) << 24);
+    return WD_TREE_LOOK((facing >> 2) & 0x3fffu, 128u + step - tint, yaw >> 31);
 }
 
 WD_FUNC uint32_t wd_place_pick(WD_PLACE_IN uint32_t tree_key)
@@ -307,7 +309,6 @@ WD_FUNC WD_STRUCT wd_tree wd_place_grow(WD_PLACE_IN uint32_t tree_key, int32_t x
     tree.kind = WD_TABLE_AT(pick + WD_PICK_SPECIES) | (variant << 16);
     tree.size = height_cm | (wd_place_crown_cm(WD_PLACE_PASS pick, height_cm, aspect) << 16);
     tree.look = wd_place_look(tree_key, WD_LAYER(tint), WD_LAYER(turn));
-    tree.random = wd_hash2(tree_key, WD_FOR_OWN);
     return tree;
 }
 
@@ -338,7 +339,6 @@ WD_FUNC WD_STRUCT wd_tree wd_place_candidate(WD_PLACE_IN WD_STRUCT wd_place_cell
     tree.kind = 0u;
     tree.size = 0u;
     tree.look = 0u;
-    tree.random = key;
     return tree;
 }
 

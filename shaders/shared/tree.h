@@ -2,27 +2,43 @@
 #ifndef WD_SHARED_TREE_H
 #define WD_SHARED_TREE_H
 
+#include "shared/hash.h"
 #include "shared/vec.h"
 
 /* One standing tree. Positions are whole millimetres east, north and up of the world's origin, so
  * that a shader can subtract the camera's millimetres exactly: nothing jitters, however far the
- * world's origin is. 32 bytes. */
+ * world's origin is. Kept in 16 bytes: see shared/packed_tree.h. */
 struct wd_tree {
     int32_t x_mm, y_mm, z_mm; /* the trunk's foot, on the ground */
-    uint32_t id;              /* 1..: the same tree has the same id at every level and frame */
+    uint32_t id;              /* 1..: the same tree has the same id at every level and frame; 0 on
+                                 the device, to which it is not told */
     uint32_t kind;            /* species index in bits 0..15, model variant in bits 16..23 */
     uint32_t size;            /* height in cm in bits 0..15; crown diameter in cm in bits 16..31 */
-    uint32_t look;            /* yaw in 1/65536 turns in bits 0..15; tint in bits 16..23 (128 is
-                                 neutral); bit 24: mirrored; bits 25..31: layer + 1, 0 inventory */
-    uint32_t random;          /* the tree's own random number: fades, blends, wind phase */
+    uint32_t look;            /* yaw in 1/16384 turns in bits 0..13; tint in bits 14..21 (128 is
+                                 neutral); bit 22: mirrored; bits 23..29: layer + 1, 0 inventory */
 };
-WD_STATIC_ASSERT_SIZE(wd_tree, 32);
+WD_STATIC_ASSERT_SIZE(wd_tree, 28);
+
+#define WD_TREE_HEIGHT_MOST_CM 16383u
+#define WD_TREE_CROWN_MOST_CM 8191u
 
 #define WD_TREE_SPECIES(tree) ((tree).kind & 0xffffu)
 #define WD_TREE_VARIANT(tree) (((tree).kind >> 16) & 0xffu)
-#define WD_TREE_LAYER(tree) ((tree).look >> 25) /* 0: inventory */
 #define WD_TREE_HEIGHT_M(tree) (WD_FLOAT((tree).size & 0xffffu) * 0.01f)
 #define WD_TREE_CROWN_M(tree) (WD_FLOAT((tree).size >> 16) * 0.01f)
+#define WD_TREE_YAW(tree) (WD_FLOAT((tree).look & 0x3fffu) * (6.28318530718f / 16384.0f))
+#define WD_TREE_TINT(tree) (((tree).look >> 14) & 0xffu)
+#define WD_TREE_IS_MIRRORED(tree) (((tree).look & 0x400000u) != 0u)
+#define WD_TREE_LAYER(tree) ((tree).look >> 23) /* 0: inventory */
+#define WD_TREE_LOOK(yaw, tint, mirrored) ((yaw) | (tint) << 14 | (mirrored) << 22)
+#define WD_TREE_LOOK_OF_LAYER(look, layer) (((look) & 0x7fffffu) | (layer) << 23)
+
+/* The tree's own random number, for fades, blends and the phase of its swaying: of what it looks
+ * like in itself, so that it is the same wherever and at whatever level the tree is kept. */
+WD_FUNC uint32_t wd_tree_random(WD_STRUCT wd_tree tree)
+{
+    return wd_hash_mix((tree.size * 0x9e3779b9u) ^ (tree.look & 0x7fffffu));
+}
 
 /* A vertex of a tree model: metres, z up, the trunk's foot at (0, 0, 0), in the model's own size.
  * 28 bytes. */

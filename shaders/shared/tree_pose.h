@@ -23,10 +23,10 @@ struct wd_tree_pose {
 WD_FUNC WD_STRUCT wd_tree_pose wd_tree_pose_of(WD_STRUCT wd_tree tree, WD_STRUCT wd_model model)
 {
     WD_STRUCT wd_tree_pose pose;
-    float yaw = WD_FLOAT(tree.look & 0xffffu) * (6.28318530718f / 65536.0f);
+    float yaw = WD_TREE_YAW(tree);
     pose.turn_cos = WD_COS(yaw);
     pose.turn_sin = WD_SIN(yaw);
-    pose.mirror = (tree.look & 0x1000000u) != 0u ? -1.0f : 1.0f;
+    pose.mirror = WD_TREE_IS_MIRRORED(tree) ? -1.0f : 1.0f;
     pose.across = WD_TREE_CROWN_M(tree) / model.crown_m;
     pose.up = WD_TREE_HEIGHT_M(tree) / model.height_m;
     return pose;
@@ -38,7 +38,7 @@ WD_FUNC float wd_tree_phase(WD_STRUCT wd_tree tree, WD_STRUCT wd_model model)
 {
     float x = WD_FLOAT(tree.x_mm) * 0.001f, y = WD_FLOAT(tree.y_mm) * 0.001f;
     float place = WD_SIN(x * 0.043f + 2.1f * WD_SIN(y * 0.031f)) * WD_SIN(y * 0.037f + 1.7f);
-    float own = WD_FLOAT((tree.random >> 12) & 0xffu) * (1.0f / 127.5f) - 1.0f;
+    float own = WD_FLOAT((wd_tree_random(tree) >> 12) & 0xffu) * (1.0f / 127.5f) - 1.0f;
     return WD_CLAMP(0.6f * model.phase + 0.35f * place + 0.4f * own, -1.0f, 1.0f);
 }
 
@@ -50,8 +50,8 @@ WD_FUNC WD_VECTOR wd_tree_tint(WD_STRUCT wd_tree tree, WD_STRUCT wd_model model)
                                  phase < 0.0f ? WD_MODEL_V3(model, behind)
                                               : WD_MODEL_V3(model, ahead),
                                  WD_ABS(phase));
-    float spread = WD_FLOAT((tree.look >> 16) & 0xffu) * (1.0f / 128.0f) - 1.0f;
-    float other = WD_FLOAT(tree.random >> 24) * (1.0f / 128.0f) - 1.0f;
+    float spread = WD_FLOAT(WD_TREE_TINT(tree)) * (1.0f / 128.0f) - 1.0f;
+    float other = WD_FLOAT(wd_tree_random(tree) >> 24) * (1.0f / 128.0f) - 1.0f;
     return wd_v3_mul(season, WD_V3(1.0f + 0.30f * spread + 0.10f * other * WD_ABS(spread),
                                    1.0f + 0.22f * spread,
                                    1.0f + 0.16f * spread - 0.08f * other * WD_ABS(spread)));
@@ -65,7 +65,7 @@ WD_FUNC WD_STRUCT wd_wind_tree wd_wind_tree_of(WD_STRUCT wd_tree tree, float fle
     swaying.y_m = WD_FLOAT(tree.y_mm) * 0.001f;
     swaying.height_m = WD_TREE_HEIGHT_M(tree);
     swaying.flexibility = flexibility;
-    swaying.random = tree.random;
+    swaying.random = wd_tree_random(tree);
     return swaying;
 }
 

@@ -22,7 +22,7 @@ struct wd_wind_tree {
     float x_m, y_m;     /* its foot, local frame (for the phase of gusts: centimetres suffice) */
     float height_m;
     float flexibility;  /* top displacement over height at 10 m/s (struct wd_species) */
-    uint32_t random;    /* struct wd_tree.random */
+    uint32_t random;    /* wd_tree_random */
 };
 
 struct wd_wind_shift {

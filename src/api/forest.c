@@ -165,7 +165,7 @@ bool wd_forest_get_tree(const struct wd_forest *forest, uint32_t id, struct wd_t
         .position_m = {tree.x_mm * 0.001, tree.y_mm * 0.001, tree.z_mm * 0.001},
         .height_m = (tree.size & 0xffffu) * 0.01,
         .crown_diameter_m = (tree.size >> 16) * 0.01,
-        .yaw_rad = (tree.look & 0xffffu) * (6.283185307179586 / 65536.0),
+        .yaw_rad = (double)WD_TREE_YAW(tree),
     };
     return true;
 }

@@ -104,10 +104,10 @@ static bool make_scene(struct wd_scene *scene, const struct wd_specimen *const *
     return true;
 }
 
-static uint32_t whole_cm(double metres)
+static uint32_t whole_cm(double metres, uint32_t most)
 {
     double cm = round(metres * 100);
-    return cm < 1 ? 1 : cm > 65535 ? 65535 : (uint32_t)cm;
+    return cm < 1 ? 1 : cm > most ? most : (uint32_t)cm;
 }
 
 static struct wd_tree *make_trees(const struct wd_specimen *const *specimens, uint32_t count)
@@ -120,10 +120,10 @@ static struct wd_tree *make_trees(const struct wd_specimen *const *specimens, ui
             .x_mm = (int32_t)lround(x_m * 1000),
             .y_mm = GROUND_M / 2 * 1000,
             .kind = i,
-            .size = whole_cm((double)model->height_m) |
-                    whole_cm(fmax(2 * (double)model->crown_radius_m, 0.1)) << 16,
-            .look = 128u << 16,
-            .random = 0x80000000u,
+            .size = whole_cm((double)model->height_m, WD_TREE_HEIGHT_MOST_CM) |
+                    whole_cm(fmax(2 * (double)model->crown_radius_m, 0.1),
+                             WD_TREE_CROWN_MOST_CM) << 16,
+            .look = WD_TREE_LOOK(0u, 128u, 0u),
         };
     }
     return trees;

@@ -15,6 +15,7 @@
 #include "forest/model_bakes.h"
 #include "tree/variant.h"
 #include "world/cover.h"
+#include "world/packed_trees.h"
 
 /* Layers that seven bits can tell apart, inventories included. */
 enum { MAX_FADES = 128, LEAST_CARD_BATCH = 1024 };
@@ -71,7 +72,7 @@ static bool make_table(struct wd_buffer *buffer, struct wd_gpu *gpu, const char 
 static bool make_card_pattern(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
     static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
-    VkDeviceSize trees = forest->trees.size / sizeof(struct wd_tree);
+    VkDeviceSize trees = forest->trees.size / sizeof(struct wd_packed_tree);
     trees = trees < LEAST_CARD_BATCH ? LEAST_CARD_BATCH
                                      : trees < WD_CARD_BATCH ? trees : WD_CARD_BATCH;
     size_t cards = (size_t)trees * WD_CARD_VERTICES / 4;
@@ -104,12 +105,13 @@ static void describe_content(struct preparation *work, uint32_t index)
 
 /* --- the whole --------------------------------------------------------------------------- */
 
-/* Records of pages follow the stored trees; pages are filled when a view needs them. */
+/* Pages follow the stored trees, a block each; they are filled when a view needs them. */
 static bool make_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
     const struct wd_world *world = forest->world;
-    uint64_t count = world->tree_count + (uint64_t)wd_pages_capacity(gpu, world) * WD_PAGE_TREES;
-    uint64_t size = (count ? count : 1) * sizeof(struct wd_tree);
+    size_t pages = wd_pages_capacity(gpu, world);
+    size_t trees = pages ? wd_pages_first(world) + pages * WD_PAGE_TREES : world->tree_count;
+    uint64_t size = wd_packed_count(trees ? trees : 1) * sizeof(struct wd_packed_tree);
     uint32_t limit = gpu->properties.limits.maxStorageBufferRange;
     const struct wd_buffer_params params = {"trees", size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                             WD_MEMORY_DEVICE};
@@ -123,24 +125,41 @@ static bool make_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
 }
 
 /* The device's copy carries each tree's layer. */
+static struct wd_packed_tree *pack_trees(const struct wd_forest_device *forest)
+{
+    const struct wd_world *world = forest->world;
+    struct wd_packed_tree *packed =
+        wd_alloc_array(wd_packed_count(world->tree_count), sizeof *packed);
+    struct wd_tree *trees = wd_alloc_array(world->tree_count, sizeof *trees);
+    for (size_t i = 0; i < world->tree_count; i++) {
+        trees[i] = world->trees[i];
+        trees[i].look = WD_TREE_LOOK_OF_LAYER(trees[i].look, wd_forest_fade_of(forest, i));
+    }
+    wd_trees_pack(packed, trees, world->tree_count, forest->variants);
+    free(trees);
+    return packed;
+}
+
 static bool upload_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
     const struct wd_world *world = forest->world;
-    size_t count = world->tree_count ? world->tree_count : 1;
-    struct wd_tree *trees = wd_alloc_array(count, sizeof *trees);
-    for (size_t i = 0; i < world->tree_count; i++) {
-        trees[i] = world->trees[i];
-        trees[i].look = (trees[i].look & 0x1ffffffu) | wd_forest_fade_of(forest, i) << 25;
+    size_t species = forest->scene->species_file_count;
+    if (!wd_packed_models_fit(species, forest->variants))
+        return wd_error(gpu->log,
+                        "%zu species of %u variants are more than %u models, which trees can have",
+                        species, forest->variants, 1u << WD_MODEL_BITS);
+    for (size_t i = 0; i < world->tree_count; i++)
         forest->max_tree_height_m =
-            fmaxf(forest->max_tree_height_m, 0.01f * (float)(trees[i].size & 0xffffu));
-    }
+            fmaxf(forest->max_tree_height_m, WD_TREE_HEIGHT_M(world->trees[i]));
     for (uint32_t i = 0; i < world->demand.count; i++)
         forest->max_tree_height_m =
             fmaxf(forest->max_tree_height_m, world->demand.layers[i].max_height_m);
+    struct wd_packed_tree *trees = pack_trees(forest);
     bool ok = make_trees(forest, gpu) &&
-              wd_buffer_upload(gpu, &forest->trees, 0, trees, count * sizeof *trees) &&
-              wd_pages_init(&forest->pages, gpu, world, &forest->ground,
-                            (uint32_t)world->tree_count);
+              (world->tree_count == 0 ||
+               wd_buffer_upload(gpu, &forest->trees, 0, trees,
+                                wd_packed_count(world->tree_count) * sizeof *trees)) &&
+              wd_pages_init(&forest->pages, gpu, world, &forest->ground, forest->variants);
     free(trees);
     return ok;
 }
@@ -355,6 +374,6 @@ bool wd_forest_tree_at(const struct wd_forest_device *forest, uint32_t record, s
 
 uint32_t wd_forest_model_of(const struct wd_forest_device *forest, const struct wd_tree *tree)
 {
-    uint32_t variant = (tree->kind >> 16) & 0xffu;
-    return (tree->kind & 0xffffu) * forest->variants + variant % forest->variants;
+    uint32_t variant = WD_TREE_VARIANT(*tree) % forest->variants;
+    return WD_TREE_SPECIES(*tree) * forest->variants + variant;
 }

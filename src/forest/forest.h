@@ -14,7 +14,7 @@ struct wd_forest_device {
     const struct wd_scene *scene;
     const struct wd_world *world;
     struct wd_ground ground;
-    struct wd_buffer trees;    /* struct wd_tree[], octree order, then pages; never empty */
+    struct wd_buffer trees;    /* struct wd_packed_tree[], octree order, then pages; never empty */
     struct wd_pages pages;     /* of layers on demand */
     struct wd_buffer models;   /* struct wd_model[species * variants] */
     struct wd_buffer card_indices; /* two triangles a quad */

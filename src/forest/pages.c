@@ -7,6 +7,9 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "forest/page_slots.h"
+#include "world/packed_trees.h"
+
+static_assert(WD_PAGE_TREES == WD_BLOCK_TREES, "a page is a block");
 
 static const uint32_t populate_comp[] =
 #include "populate.comp.inc"
@@ -76,13 +79,19 @@ static bool upload_layers(struct wd_pages *pages)
 uint32_t wd_pages_capacity(const struct wd_gpu *gpu, const struct wd_world *world)
 {
     uint64_t bytes = gpu->properties.limits.maxStorageBufferRange;
-    uint64_t stored = (uint64_t)world->tree_count * sizeof(struct wd_tree);
-    uint64_t room = bytes > stored ? (bytes - stored) / (WD_PAGE_TREES * sizeof(struct wd_tree)) : 0;
+    uint64_t block = (WD_BLOCK_TREES + 1) * sizeof(struct wd_packed_tree);
+    uint64_t stored = wd_pages_first(world) / WD_BLOCK_TREES * block;
+    uint64_t room = bytes > stored ? (bytes - stored) / block : 0;
     return world->demand.count == 0 ? 0 : room < WD_PAGES_MOST ? (uint32_t)room : WD_PAGES_MOST;
 }
 
+uint32_t wd_pages_first(const struct wd_world *world)
+{
+    return (uint32_t)((world->tree_count + WD_BLOCK_TREES - 1) / WD_BLOCK_TREES * WD_BLOCK_TREES);
+}
+
 bool wd_pages_init(struct wd_pages *pages, struct wd_gpu *gpu, const struct wd_world *world,
-                   const struct wd_ground *ground, uint32_t first_tree)
+                   const struct wd_ground *ground, uint32_t variants)
 {
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const struct wd_compute_params populate = {
@@ -91,8 +100,11 @@ bool wd_pages_init(struct wd_pages *pages, struct wd_gpu *gpu, const struct wd_w
         .push_size = sizeof(struct wd_page_push),
     };
     uint32_t capacity = wd_pages_capacity(gpu, world);
-    *pages = (struct wd_pages){
-        .gpu = gpu, .world = world, .ground = ground, .first_tree = first_tree};
+    *pages = (struct wd_pages){.gpu = gpu,
+                               .world = world,
+                               .ground = ground,
+                               .first_tree = wd_pages_first(world),
+                               .variants = variants};
     if (!world->demand.count)
         return true;
     if (capacity < 64)
@@ -150,22 +162,35 @@ struct choice {
     size_t missing_slot_count, missing_slot_capacity;
 };
 
-/* Bounds of a page's trees in rel; false: it lies outside of the ground. */
-static bool page_box(const struct choice *c, const struct wd_page *page, float min[3], float max[3])
+/* Where the feet of a page's trees are, in local metres; false: it lies outside of the ground. */
+static bool page_feet(const struct wd_pages *pages, const struct wd_page *page, double low[3],
+                      double high[3])
 {
-    const struct wd_demand_layer *layer = &c->pages->world->demand.layers[page->layer];
-    const struct wd_place_layer *numbers = &layer->placement.input.layer;
+    const struct wd_place_layer *numbers =
+        &pages->world->demand.layers[page->layer].placement.input.layer;
     double side_m = (double)((uint64_t)WD_PAGE_SIDE << page->level) * numbers->cell_mm * 0.001;
-    double low[3] = {page->column * side_m, page->row * side_m}, high[3];
-    double reach_m = 0.75 * (double)layer->max_crown_m + 0.1 * (double)layer->max_height_m + 0.5;
+    low[0] = page->column * side_m;
+    low[1] = page->row * side_m;
     for (int k = 0; k < 2; k++) {
         if (low[k] * 1000.0 >= numbers->extent_mm[k])
             return false;
         high[k] = fmin(low[k] + side_m, numbers->extent_mm[k] * 0.001);
     }
-    struct wd_height_range range = wd_ground_range(c->pages->ground, low, high);
+    struct wd_height_range range = wd_ground_range(pages->ground, low, high);
     low[2] = (double)range.min_m;
-    high[2] = (double)range.max_m + 1.1 * (double)layer->max_height_m;
+    high[2] = (double)range.max_m;
+    return true;
+}
+
+/* Bounds of a page's trees in rel; false: it lies outside of the ground. */
+static bool page_box(const struct choice *c, const struct wd_page *page, float min[3], float max[3])
+{
+    const struct wd_demand_layer *layer = &c->pages->world->demand.layers[page->layer];
+    double reach_m = 0.75 * (double)layer->max_crown_m + 0.1 * (double)layer->max_height_m + 0.5;
+    double low[3], high[3];
+    if (!page_feet(c->pages, page, low, high))
+        return false;
+    high[2] += 1.1 * (double)layer->max_height_m;
     for (int k = 0; k < 3; k++) {
         min[k] = (float)(low[k] - (k < 2 ? reach_m : 1.0) - c->query->eye_m[k]);
         max[k] = (float)(high[k] + (k < 2 ? reach_m : 0.0) - c->query->eye_m[k]);
@@ -294,6 +319,19 @@ static void refine(struct choice *c, struct wd_page_list *list)
 
 /* --- planting ----------------------------------------------------------------------------- */
 
+/* A millimetre to spare, as metres are not whole ones. */
+static struct wd_tree_block block_of(const struct wd_pages *pages, const struct wd_page *page)
+{
+    double low[3] = {0}, high[3] = {0};
+    int64_t least_mm[3], most_mm[3];
+    page_feet(pages, page, low, high);
+    for (int k = 0; k < 3; k++) {
+        least_mm[k] = (int64_t)floor(low[k] * 1000.0) - 1;
+        most_mm[k] = (int64_t)ceil(high[k] * 1000.0) + 1;
+    }
+    return wd_tree_block_in(least_mm, most_mm, pages->variants);
+}
+
 static void plant(struct choice *c, struct wd_cmd *cmd, struct wd_buffer *trees,
                   struct wd_buffer *clusters, uint32_t first_cluster)
 {
@@ -304,8 +342,12 @@ static void plant(struct choice *c, struct wd_cmd *cmd, struct wd_buffer *trees,
         return;
     for (size_t i = 0; i < c->missing.count; i++) {
         const struct wd_page *page = &c->missing.items[i];
-        jobs[i] = (struct wd_page_job){page->layer, page->level, page->column, page->row,
-                                       c->missing_slots[i]};
+        jobs[i] = (struct wd_page_job){.layer = page->layer,
+                                       .level = page->level,
+                                       .column = page->column,
+                                       .row = page->row,
+                                       .slot = c->missing_slots[i],
+                                       .block = block_of(pages, page)};
     }
     const struct wd_page_push push = {(uint32_t)c->missing.count, pages->first_tree, first_cluster};
     struct wd_buffer *tables[] = {&pages->place_ground, &pages->layers, &pages->maps,

@@ -18,7 +18,8 @@ struct wd_pages {
     struct wd_pipeline populate;
     struct wd_buffer place_ground, layers, maps, tables;
     uint32_t capacity;   /* slots; 0: no layer is planted on demand */
-    uint32_t first_tree; /* record of the first slot among the forest's trees */
+    uint32_t first_tree; /* number of the first slot's among the forest's trees */
+    uint32_t variants;   /* of a species */
     struct wd_page_slot {
         struct wd_page page;
         uint32_t newer, older; /* neighbours in the order of use; capacity: none */
@@ -30,14 +31,15 @@ struct wd_pages {
     uint64_t planted;       /* pages since the beginning, for reports */
 };
 
-/* Pages for the layers of `world` that are planted on demand; none without such layers. `first_tree`:
- * where their records begin. */
+/* Pages for the layers of `world` that are planted on demand; none without such layers. */
 bool wd_pages_init(struct wd_pages *pages, struct wd_gpu *gpu, const struct wd_world *world,
-                   const struct wd_ground *ground, uint32_t first_tree);
+                   const struct wd_ground *ground, uint32_t variants);
 void wd_pages_finish(struct wd_pages *pages, struct wd_gpu *gpu); /* accepts {0} */
 
-/* Slots that a device has room for beside `stored` trees. */
+/* Slots that a device has room for beside the stored trees, and the number of the first one's first
+ * tree: a page is a block of trees (shared/packed_tree.h). */
 uint32_t wd_pages_capacity(const struct wd_gpu *gpu, const struct wd_world *world);
+uint32_t wd_pages_first(const struct wd_world *world);
 
 /* Forgets every page. */
 void wd_pages_forget(struct wd_pages *pages);

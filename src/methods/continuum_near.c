@@ -29,7 +29,8 @@ static void add_tree(const struct search *search, uint32_t index)
         return;
     const struct wd_layer_fade fade = forest->host_fades[wd_forest_fade_of(forest, index)];
     float foot_m = sqrtf(foot.x * foot.x + foot.y * foot.y + foot.z * foot.z);
-    if (wd_hash_unit(tree->random) < wd_layer_show(fade, foot_m) && wd_tree_in_view(view, tree))
+    if (wd_hash_unit(wd_tree_random(*tree)) < wd_layer_show(fade, foot_m) &&
+        wd_tree_in_view(view, tree))
         wd_selection_add_mesh(search->found, &(struct wd_mesh_choice){model, WD_LEVEL_MESH, 0},
                               index, show);
 }

@@ -77,7 +77,7 @@ static void gather_leaf(struct gather *gather, const struct wd_tree_draw *draw,
     float square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
     if (square > WD_SPRAY_NONE_M * WD_SPRAY_NONE_M * stand->reach * stand->reach)
         return;
-    float distance_m = sqrtf(square), chance = wd_hash_unit(wd_hash2(index, tree->random));
+    float distance_m = sqrtf(square), chance = wd_hash_unit(wd_hash2(index, wd_tree_random(*tree)));
     if (chance >= wd_spray_share(distance_m, stand->reach))
         return;
     float reach = 2 * wd_leaf_size_m(*leaf, *stand->box) * fmaxf(pose->across, pose->up), min[3], max[3];

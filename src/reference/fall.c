@@ -37,7 +37,7 @@ static struct wd_leaf_fall fall_of(const struct wd_trace_scene *scene, const str
                                  frame->wind_toward[1]};
     return wd_leaf_fall_of(wd_leaf_foot(model->grown.leaves[leaf], model->grown.leaf_box),
                            model->model, wd_tree_pose_of(*tree, model->model), wind,
-                           wd_hash2(leaf, tree->random), frame->time_s);
+                           wd_hash2(leaf, wd_tree_random(*tree)), frame->time_s);
 }
 
 /* Wood, of which there is none to speak of, comes before. */

@@ -54,7 +54,8 @@ static bool is_shown(const struct wd_trace_scene *scene, size_t index, const flo
         (float)from->fade_near_m[0], (float)from->fade_near_m[1], (float)from->fade_far_m[0],
         (float)from->fade_far_m[1]};
     float distance_m = sqrtf(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
-    return wd_hash_unit(scene->world->trees[index].random) < wd_layer_show(fade, distance_m);
+    uint32_t random = wd_tree_random(scene->world->trees[index]);
+    return wd_hash_unit(random) < wd_layer_show(fade, distance_m);
 }
 
 static void place_tree(struct wd_trace_scene *scene, size_t index)

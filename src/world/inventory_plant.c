@@ -44,10 +44,10 @@ bool wd_inventory_points(const struct wd_inventory *inventory, const char *crs,
     return ok;
 }
 
-static uint32_t whole_cm(double cm)
+static uint32_t whole_cm(double cm, uint32_t most)
 {
     cm = floor(cm + 0.5);
-    return cm < 1.0 ? 1 : cm > 65535.0 ? 65535 : (uint32_t)cm;
+    return cm < 1.0 ? 1 : cm > most ? most : (uint32_t)cm;
 }
 
 /* Measured, else by allometry from the diameter, else drawn from the inventory's range, else
@@ -57,25 +57,27 @@ static uint32_t height_cm_of(const struct wd_inventory *inventory,
                              uint32_t key)
 {
     if (tree->height_m > 0.0f)
-        return whole_cm((double)tree->height_m * 100.0);
+        return whole_cm((double)tree->height_m * 100.0, WD_TREE_HEIGHT_MOST_CM);
     if (tree->dbh_cm > 0.0f)
-        return whole_cm(wd_species_height_m(species, tree->dbh_cm) * 100.0);
+        return whole_cm(wd_species_height_m(species, tree->dbh_cm) * 100.0,
+                        WD_TREE_HEIGHT_MOST_CM);
     double low_m = inventory->wanted->height_m[0], high_m = inventory->wanted->height_m[1];
     if (!(low_m > 0.0 && high_m >= low_m))
-        return whole_cm((double)species->typical_height_m * 100.0);
+        return whole_cm((double)species->typical_height_m * 100.0, WD_TREE_HEIGHT_MOST_CM);
     double share = (double)wd_hash2(key, WD_FOR_HEIGHT) / 4294967296.0;
-    return whole_cm((low_m + (high_m - low_m) * share) * 100.0);
+    return whole_cm((low_m + (high_m - low_m) * share) * 100.0, WD_TREE_HEIGHT_MOST_CM);
 }
 
 static uint32_t crown_cm_of(const struct wd_inventory_tree *tree, const struct wd_species *species,
                             uint32_t height_cm)
 {
     if (tree->crown_m > 0.0f)
-        return whole_cm((double)tree->crown_m * 100.0);
+        return whole_cm((double)tree->crown_m * 100.0, WD_TREE_CROWN_MOST_CM);
     if (tree->dbh_cm > 0.0f)
         return whole_cm(wd_species_crown_m(species, tree->dbh_cm) *
-                        wd_species_open_crown(species, (double)species->openness) * 100.0);
-    return whole_cm(wd_crown_cm(species, height_cm));
+                        wd_species_open_crown(species, (double)species->openness) * 100.0,
+                        WD_TREE_CROWN_MOST_CM);
+    return whole_cm(wd_crown_cm(species, height_cm), WD_TREE_CROWN_MOST_CM);
 }
 
 struct planting {
@@ -133,7 +135,6 @@ static void plant_tree(struct planting *planting, size_t index, const double at_
                                                  height_cm, range_cm[0], range_cm[1]) << 16;
     tree.size = height_cm | crown_cm_of(from, species, height_cm) << 16;
     tree.look = wd_place_look(key, 64, WD_PLACE_ANY_TURN);
-    tree.random = wd_hash2(key, WD_FOR_OWN);
     planting->planted[planting->trees.count] = (uint32_t)index;
     wd_tree_list_add(&planting->trees, &tree);
 }

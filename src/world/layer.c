@@ -74,7 +74,7 @@ static bool set_patches(struct wd_placement *placement, const struct wd_log *log
 static uint32_t clamp_cm(double height_m)
 {
     double cm = floor(height_m * 100.0 + 0.5);
-    return cm < 1.0 ? 1 : cm > 65535.0 ? 65535 : (uint32_t)cm;
+    return cm < 1.0 ? 1 : cm > WD_TREE_HEIGHT_MOST_CM ? WD_TREE_HEIGHT_MOST_CM : (uint32_t)cm;
 }
 
 static uint32_t turn_of(const struct wd_scene_layer *from)

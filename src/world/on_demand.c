@@ -6,7 +6,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 
-/* The most trees that a device which binds 128 MiB at once can hold. */
+/* Half of what a device that binds 128 MiB at once can hold. */
 static const double MOST_STORED = 4.0 * 1024.0 * 1024.0;
 
 double wd_demand_density(const struct wd_placement *placement, const double min_m[2],

@@ -250,11 +250,11 @@ uint64_t wd_world_hash(const struct wd_world *world)
     XXH64_reset(state, 0);
     for (size_t id = 1; id <= world->tree_count; id++) {
         const struct wd_tree *tree = &world->trees[world->tree_of_id[id]];
-        const uint32_t words[8] = {
+        const uint32_t words[7] = {
             (uint32_t)tree->x_mm, (uint32_t)tree->y_mm, (uint32_t)tree->z_mm, tree->id,
-            tree->kind,           tree->size,           tree->look,           tree->random,
+            tree->kind,           tree->size,           tree->look,
         };
-        hash_words(state, words, 8);
+        hash_words(state, words, 7);
     }
     hash_demand(state, &world->demand);
     uint64_t hash = XXH64_digest(state);

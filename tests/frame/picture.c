@@ -74,9 +74,9 @@ static bool make_canopy_light(struct picture_test *test)
 static bool make_forest(struct picture_test *test)
 {
     const struct wd_buffer_params trees = {.name = "no trees",
-                                           .size = sizeof(struct wd_tree),
+                                           .size = sizeof(struct wd_packed_tree),
                                            .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
-    const struct wd_tree none = {0};
+    const struct wd_packed_tree none = {0};
     test->forest.scene = &test->scene;
     test->forest.world = &test->world;
     test->forest.variants = 1;

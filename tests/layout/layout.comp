@@ -4,7 +4,7 @@
 #include "shared/forest.h"
 #include "shared/frame.h"
 
-layout(scalar, binding = 0) buffer Trees { wd_tree tree; };
+layout(scalar, binding = 0) buffer Trees { wd_packed_tree tree; };
 layout(scalar, binding = 1) buffer Vertices { wd_tree_vertex vertex; };
 layout(scalar, binding = 2) buffer Models { wd_model model; };
 layout(scalar, binding = 3) buffer Fades { wd_layer_fade fade; };
@@ -24,10 +24,12 @@ layout(scalar, binding = 16) buffer Packed { wd_packed_vertex packed; };
 layout(scalar, binding = 17) buffer Forms { wd_leaf_vertex form; };
 layout(scalar, binding = 18) buffer MeshPushes { wd_mesh_push mesh_push; };
 layout(scalar, binding = 19) buffer SprayPushes { wd_spray_push spray_push; };
+layout(scalar, binding = 20) buffer Blocks { wd_tree_block block; };
 
 void main()
 {
-    tree.id = vertex.uv + point.kind + model.card_layer + uint(fade.near_begin_m) + instance.tree + push.level
+    tree.x_kind = block.steps + vertex.uv + point.kind + model.card_layer + uint(fade.near_begin_m)
+              + instance.tree + push.level
               + frame.width + chunk.first_tree + card.turn + corner.card + uint(cull.plane[0].x)
               + soup.variants + draw.index_count + leaf.turn + spray.leaf
               + packed.xy + form.kind + mesh_push.forms + spray_push.tree.level;

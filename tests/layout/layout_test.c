@@ -24,8 +24,9 @@ struct member {
 #define M(type, name) {#type, #name, offsetof(struct type, name)}
 
 static const struct member members[] = {
-    M(wd_tree, x_mm), M(wd_tree, y_mm), M(wd_tree, z_mm), M(wd_tree, id), M(wd_tree, kind),
-    M(wd_tree, size), M(wd_tree, look), M(wd_tree, random),
+    M(wd_packed_tree, x_kind), M(wd_packed_tree, y_look), M(wd_packed_tree, z_height),
+    M(wd_packed_tree, crown_look),
+    M(wd_tree_block, x_mm), M(wd_tree_block, y_mm), M(wd_tree_block, z_mm), M(wd_tree_block, steps),
     M(wd_tree_vertex, position_m), M(wd_tree_vertex, normal), M(wd_tree_vertex, uv),
     M(wd_tree_vertex, tint), M(wd_tree_vertex, kind),
     M(wd_tree_point, position_m), M(wd_tree_point, normal), M(wd_tree_point, albedo),

@@ -179,23 +179,26 @@ static void records_are_the_trees_of_their_pages(void **state)
     choose(&test, &query, &clusters, &list);
     assert_each_cell_once(&test, &list);
     uint32_t levels = 0, trees = 0;
-    struct wd_tree *there = wd_alloc_array(WD_PAGE_TREES, sizeof *there);
+    struct wd_packed_tree *there = wd_alloc_array(WD_PAGE_TREES + 1, sizeof *there);
     for (size_t i = 0; i < list.count; i++) {
         uint32_t slot = list.slots[i];
         levels |= 1u << test.forest.pages.slots[slot].page.level;
         assert_true(wd_buffer_read(&test.gpu, &test.forest.trees,
-                                   (VkDeviceSize)slot * WD_PAGE_TREES * sizeof *there, there,
-                                   WD_PAGE_TREES * sizeof *there));
+                                   WD_PACKED_HEAD((VkDeviceSize)slot * WD_PAGE_TREES) *
+                                       sizeof *there,
+                                   there, (WD_PAGE_TREES + 1) * sizeof *there));
+        struct wd_tree_block block = wd_tree_block_of(there[0]);
         for (uint32_t k = 0; k < WD_PAGE_TREES; k++) {
             struct wd_tree here;
             bool stands = wd_forest_tree_at(&test.forest, slot * WD_PAGE_TREES + k, &here);
-            assert_int_equal(there[k].size != 0, stands);
+            struct wd_tree tree = wd_tree_unpack(there[k + 1], block);
+            assert_int_equal((tree.size & 0xffffu) != 0, stands);
             if (!stands)
                 continue;
-            assert_int_equal(WD_TREE_LAYER(there[k]),
-                             1 + test.forest.pages.slots[slot].page.layer);
-            there[k].look &= 0x1ffffffu;
-            assert_memory_equal(&there[k], &here, sizeof here);
+            assert_int_equal(WD_TREE_LAYER(tree), 1 + test.forest.pages.slots[slot].page.layer);
+            tree.look = WD_TREE_LOOK_OF_LAYER(tree.look, 0u);
+            tree.id = here.id;
+            assert_memory_equal(&tree, &here, sizeof here);
             trees++;
         }
     }

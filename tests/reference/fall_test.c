@@ -86,7 +86,7 @@ static void rays_meet_leaves_where_they_have_come_to(void **state)
         made_scene_build(&made);
         struct wd_leaf_fall fall = wd_leaf_fall_of(
             WD_V3(0, 0, 0.5f), made.model.model, wd_tree_pose_of(made.trees[0], made.model.model),
-            calm, wd_hash2(0, made.trees[0].random), made.frame.time_s);
+            calm, wd_hash2(0, wd_tree_random(made.trees[0])), made.frame.time_s);
         struct wd_vec3 normal = wd_leaf_fall_turn(fall, WD_V3(0, 0, 1));
         struct wd_vec3 place = wd_v3_add(WD_V3(3, 5, 1), fall.foot_m);
         const struct wd_trace_ray ray = {wd_v3_mad(place, normal, 2), wd_v3_scale(normal, -1), 9};

@@ -83,8 +83,7 @@ void made_scene_add_tree(struct made_scene *made, float x_m, float y_m, float z_
         .z_mm = (int32_t)(z_m * 1000),
         .id = (uint32_t)i + 1,
         .size = 100u | 100u << 16,
-        .look = 128u << 16,
-        .random = 128u << 24,
+        .look = WD_TREE_LOOK(0u, 128u, 0u),
     };
 }
 

@@ -148,7 +148,7 @@ static void test_sizes(void **state)
         if (i < 200) /* the table's steps cost less than a centimetre or a percent */
             assert_true(fabs((tree->size >> 16) - crown_cm) < 1.0 + 0.01 * crown_cm);
         assert_true(WD_TREE_VARIANT(*tree) < 6);
-        assert_in_range(tree->look >> 16 & 255, 64, 192);
+        assert_in_range(WD_TREE_TINT(*tree), 64, 192);
     }
     assert_in_range(least, 1000, 1003);
     assert_in_range(most, 1997, 2000);
