@@ -20,8 +20,8 @@ struct middle {
 
 struct fit {
     struct wd_tree_mesh *mesh;
-    uint32_t *parts;         /* [vertex] a vertex of its leaf, the same for all of them */
-    struct middle *middles;  /* [of those] */
+    uint32_t *parts;         /* [vertex] number of its leaf */
+    struct middle *middles;  /* [leaf] */
     struct wd_vec3 *unscaled; /* [vertex] */
     struct wd_silhouette wood[VIEWS]; /* what it covers, whatever the size of leaves */
 };
@@ -39,26 +39,37 @@ static uint32_t root_of(uint32_t *parents, uint32_t i)
     return i;
 }
 
+/* Numbers what hangs together by triangles of leaves; a vertex's parent is never a later one. */
+static uint32_t number_parts(uint32_t *parts, const struct wd_tree_mesh *mesh)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        parts[i] = i;
+    for (uint32_t i = mesh->wood_index_count; i + 2 < mesh->index_count; i += 3)
+        for (uint32_t k = 1; k < 3; k++) {
+            uint32_t a = root_of(parts, mesh->indices[i]);
+            uint32_t b = root_of(parts, mesh->indices[i + k]);
+            parts[a < b ? b : a] = a < b ? a : b;
+        }
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        parts[i] = parts[i] == i ? count++ : parts[parts[i]];
+    return count;
+}
+
 static void find_middles(struct fit *fit)
 {
     const struct wd_tree_mesh *mesh = fit->mesh;
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
-        fit->parts[i] = i;
-    for (uint32_t i = mesh->wood_index_count; i + 2 < mesh->index_count; i += 3)
-        for (uint32_t k = 1; k < 3; k++)
-            fit->parts[root_of(fit->parts, mesh->indices[i + k])] =
-                root_of(fit->parts, mesh->indices[i]);
+    uint32_t count = number_parts(fit->parts, mesh);
+    fit->middles = wd_alloc_array(count + 1, sizeof *fit->middles);
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        uint32_t root = fit->parts[i] = root_of(fit->parts, i);
-        struct middle *middle = &fit->middles[root];
+        struct middle *middle = &fit->middles[fit->parts[i]];
         fit->unscaled[i] = position(mesh, i);
         middle->place = wd_v3_add(middle->place, fit->unscaled[i]);
         middle->members++;
     }
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
-        if (fit->parts[i] == i)
-            fit->middles[i].place =
-                wd_v3_scale(fit->middles[i].place, 1 / (float)fit->middles[i].members);
+    for (uint32_t i = 0; i < count; i++)
+        fit->middles[i].place =
+            wd_v3_scale(fit->middles[i].place, 1 / (float)fit->middles[i].members);
 }
 
 /* Wood is made of vertices of its own, which are left as they are. */
@@ -114,7 +125,6 @@ float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tr
     struct fit fit = {
         .mesh = reduced,
         .parts = wd_alloc_array(reduced->vertex_count, sizeof *fit.parts),
-        .middles = wd_alloc_array(reduced->vertex_count, sizeof *fit.middles),
         .unscaled = wd_alloc_array(reduced->vertex_count, sizeof *fit.unscaled),
     };
     size_t wanted = 0;

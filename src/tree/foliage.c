@@ -222,20 +222,31 @@ static void place_leaf(struct wd_leaf *leaf, const struct wd_foliage *foliage,
     tint_leaf(leaf, skeleton->branches[parent].key, &random);
 }
 
+/* leaves[i] becomes what leaves[order[i]] is, cycle by cycle; `order` is used up. */
+static void put_in_order(struct wd_leaf *leaves, uint32_t *order, size_t count)
+{
+    for (size_t first = 0; first < count; first++) {
+        struct wd_leaf kept = leaves[first];
+        size_t at = first, next = order[at];
+        for (; next != first; at = next, next = order[at]) {
+            leaves[at] = leaves[next];
+            order[at] = (uint32_t)at;
+        }
+        leaves[at] = kept;
+        order[at] = (uint32_t)at;
+    }
+}
+
 /* So that the first n leaves are spread over the crown as evenly as all of them. */
 static void order_leaves(struct wd_foliage *foliage, uint32_t key)
 {
     size_t count = foliage->count;
     struct wd_vec3 *places = wd_alloc_array(count + 1, sizeof *places);
     uint32_t *order = wd_alloc_array(count + 1, sizeof *order);
-    struct wd_leaf *ordered = wd_alloc_array(count + 1, sizeof *ordered);
     for (size_t i = 0; i < count; i++)
         places[i] = foliage->leaves[i].position_m;
     wd_progressive_order(order, places, count, key);
-    for (size_t i = 0; i < count; i++)
-        ordered[i] = foliage->leaves[order[i]];
-    free(foliage->leaves);
-    foliage->leaves = ordered;
+    put_in_order(foliage->leaves, order, count);
     free(places);
     free(order);
 }

@@ -6,6 +6,10 @@
 #include <stdint.h>
 #include <string.h>
 
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
 #include "tree/vec.h"
 
 typedef float wd_four __attribute__((vector_size(16)));
@@ -28,14 +32,23 @@ static inline wd_four wd_four_choose(wd_four_ints where, wd_four a, wd_four b)
     return (wd_four)((where & (wd_four_ints)a) | (~where & (wd_four_ints)b));
 }
 
+/* The second where one of them is no number. */
 static inline wd_four wd_four_min(wd_four a, wd_four b)
 {
+#ifdef __SSE__
+    return (wd_four)_mm_min_ps((__m128)a, (__m128)b);
+#else
     return wd_four_choose(a < b, a, b);
+#endif
 }
 
 static inline wd_four wd_four_max(wd_four a, wd_four b)
 {
+#ifdef __SSE__
+    return (wd_four)_mm_max_ps((__m128)a, (__m128)b);
+#else
     return wd_four_choose(a > b, a, b);
+#endif
 }
 
 static inline wd_four wd_four_abs(wd_four a)

@@ -91,8 +91,7 @@ static void place_corners(float at[3][BATCH], const float places_m[3][BATCH],
 static inline wd_four_ints pixels(wd_four x)
 {
     const wd_four none = {0};
-    x = wd_four_choose(x > none, x, none);
-    wd_four from = wd_four_min(x, wd_four_of(WD_SILHOUETTE)) - 0.5f;
+    wd_four from = wd_four_min(wd_four_max(x, none), wd_four_of(WD_SILHOUETTE)) - 0.5f;
     wd_four_ints pixel = wd_four_truncate(from);
     return pixel - (wd_four_convert(pixel) < from);
 }
@@ -109,14 +108,28 @@ static void find_range(int32_t *first, int32_t *end, const float *a, const float
     }
 }
 
+static float area_of(struct batch *batch, int i)
+{
+    float(*a)[BATCH] = batch->at[0], (*b)[BATCH] = batch->at[1], (*c)[BATCH] = batch->at[2];
+    float bx = b[0][i] - a[0][i], by = b[1][i] - a[1][i];
+    return bx * (c[1][i] - a[1][i]) - (c[0][i] - a[0][i]) * by;
+}
+
+static void find_turns(struct batch *batch)
+{
+    for (int i = 0; i < BATCH; i++) {
+        float area = area_of(batch, i);
+        batch->turn[i] = area > 1e-9f ? 1.0f : area < -1e-9f ? -1.0f : 0.0f;
+    }
+}
+
 static void find_slopes(struct batch *batch)
 {
     float(*a)[BATCH] = batch->at[0], (*b)[BATCH] = batch->at[1], (*c)[BATCH] = batch->at[2];
     for (int i = 0; i < BATCH; i++) {
         float bx = b[0][i] - a[0][i], by = b[1][i] - a[1][i], bz = b[2][i] - a[2][i];
         float cx = c[0][i] - a[0][i], cy = c[1][i] - a[1][i], cz = c[2][i] - a[2][i];
-        float area = bx * cy - cx * by, over = 1 / area;
-        batch->turn[i] = area > 1e-9f ? 1.0f : area < -1e-9f ? -1.0f : 0.0f;
+        float over = 1 / area_of(batch, i);
         batch->right[i] = (bz * cy - cz * by) * over;
         batch->down[i] = (cz * bx - bz * cx) * over;
         batch->most[i] = wd_maxf(wd_maxf(a[2][i], b[2][i]), c[2][i]);
@@ -277,7 +290,9 @@ static void prepare(struct batch *batch, const struct axes *axes, bool depth)
         place_corners(batch->at[corner], (const float(*)[BATCH])batch->places_m[corner], axes);
     find_range(batch->x0, batch->x1, batch->at[0][0], batch->at[1][0], batch->at[2][0]);
     find_range(batch->y0, batch->y1, batch->at[0][1], batch->at[1][1], batch->at[2][1]);
-    find_slopes(batch);
+    find_turns(batch);
+    if (depth)
+        find_slopes(batch);
     for (int i = 0; i < BATCH; i += 4)
         cover_small(batch, i, depth);
 }
