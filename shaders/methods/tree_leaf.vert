@@ -16,6 +16,7 @@ layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[];
 layout(scalar, set = 0, binding = 3) readonly buffer Corners { wd_leaf_vertex corners[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_instance instances[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer Leaves { wd_tree_leaf leaves[]; };
+layout(scalar, set = 0, binding = 8) readonly buffer Listed { uint listed[]; }; /* DETAIL: what is in view */
 layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 
 #include "lib/trees.glsl"
@@ -58,6 +59,8 @@ void main()
         WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
     wd_model model = models[model_index];
     uint index = uint(gl_VertexIndex) >> mesh.corner_bits;
+    if (DETAIL != 0u)
+        index = listed[index];
     uint at = uint(gl_VertexIndex) & ((1u << mesh.corner_bits) - 1u);
     wd_tree_leaf leaf = leaves[mesh.first_leaf + index];
     uint form = mesh.forms > 1u ? WD_LEAF_FORM(leaf) : 0u;

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "methods/leaf_view.h"
 #include "shared/hash.h"
-#include "shared/tree_pose.h"
 
 static const uint32_t tree_spray_vert[] =
 #include "tree_spray.vert.inc"
@@ -54,33 +54,29 @@ struct gather {
     bool weigh;
 };
 
-/* A tree as it stands: camera-relative. */
-struct stand {
+/* A tree whose twigs are gathered. */
+struct bearer {
     uint32_t index;
     uint32_t triangles; /* of a twig */
-    float foot[3], reach;
+    float reach;
     const struct wd_leaf_box *box;
-    struct wd_tree_pose pose;
+    struct wd_stand stand;
 };
 
 static void gather_leaf(struct gather *gather, const struct wd_tree_draw *draw,
-                        const struct stand *stand, const struct wd_tree_leaf *leaf, uint32_t index)
+                        const struct bearer *bearer, const struct wd_tree_leaf *leaf, uint32_t index)
 {
-    const struct wd_tree_pose *pose = &stand->pose;
-    const float *foot = stand->foot;
-    const struct wd_tree *tree = &draw->forest->world->trees[stand->index];
-    const struct wd_vec3 in_tree = wd_leaf_foot(*leaf, *stand->box);
-    float x = in_tree.x * pose->mirror, y = in_tree.y;
-    float at[3] = {foot[0] + (pose->turn_cos * x - pose->turn_sin * y) * pose->across,
-                   foot[1] + (pose->turn_sin * x + pose->turn_cos * y) * pose->across,
-                   foot[2] + in_tree.z * pose->up};
+    const struct wd_tree_pose *pose = &bearer->stand.pose;
+    const struct wd_tree *tree = &draw->forest->world->trees[bearer->index];
+    float at[3];
+    wd_stand_place(&bearer->stand, wd_leaf_foot(*leaf, *bearer->box), at);
     float square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
-    if (square > WD_SPRAY_NONE_M * WD_SPRAY_NONE_M * stand->reach * stand->reach)
+    if (square > WD_SPRAY_NONE_M * WD_SPRAY_NONE_M * bearer->reach * bearer->reach)
         return;
     float distance_m = sqrtf(square), chance = wd_hash_unit(wd_hash2(index, wd_tree_random(*tree)));
-    if (chance >= wd_spray_share(distance_m, stand->reach))
+    if (chance >= wd_spray_share(distance_m, bearer->reach))
         return;
-    float reach = 2 * wd_leaf_size_m(*leaf, *stand->box) * fmaxf(pose->across, pose->up), min[3], max[3];
+    float reach = 2 * wd_leaf_size_m(*leaf, *bearer->box) * fmaxf(pose->across, pose->up), min[3], max[3];
     for (int k = 0; k < 3; k++) {
         min[k] = at[k] - reach;
         max[k] = at[k] + reach;
@@ -89,10 +85,10 @@ static void gather_leaf(struct gather *gather, const struct wd_tree_draw *draw,
         return;
     if (gather->weigh)
         *wd_push(gather->candidates, gather->candidate_count, gather->candidate_capacity) =
-            (struct candidate){distance_m, stand->reach, chance, stand->triangles};
+            (struct candidate){distance_m, bearer->reach, chance, bearer->triangles};
     else
         *wd_push(gather->items, gather->count, gather->capacity) =
-            (struct wd_spray_instance){stand->index, index};
+            (struct wd_spray_instance){bearer->index, index};
 }
 
 static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, uint32_t model,
@@ -100,21 +96,19 @@ static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, 
 {
     const struct wd_forest_device *forest = draw->forest;
     const struct wd_tree *tree = &forest->world->trees[tree_index];
-    const int32_t place_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
     const struct wd_twig_range *range = &forest->meshes.twigs[model];
-    struct stand stand = {.index = tree_index,
-                          .triangles = range->mesh.index_count / 3,
-                          .reach = gather->scale * range->reach,
-                          .box = &range->box,
-                          .pose = wd_tree_pose_of(*tree, forest->host_models[model])};
-    for (int k = 0; k < 3; k++)
-        stand.foot[k] = (float)(place_mm[k] * 0.001 - draw->view->eye_m[k]);
-    float reach = 0.01f * (float)(tree->size >> 16) + WD_SPRAY_NONE_M * stand.reach;
-    if (stand.foot[0] * stand.foot[0] + stand.foot[1] * stand.foot[1] > reach * reach)
+    const struct bearer bearer = {.index = tree_index,
+                                  .triangles = range->mesh.index_count / 3,
+                                  .reach = gather->scale * range->reach,
+                                  .box = &range->box,
+                                  .stand = wd_stand_of(draw, tree_index)};
+    const float *foot = bearer.stand.foot;
+    float reach = 0.01f * (float)(tree->size >> 16) + WD_SPRAY_NONE_M * bearer.reach;
+    if (foot[0] * foot[0] + foot[1] * foot[1] > reach * reach)
         return;
     uint32_t leaves = forest->meshes.ranges[model][WD_LEVEL_MESH].sets[WD_SET_LEAVES].leaf_count;
     for (uint32_t i = 0; i < leaves; i++)
-        gather_leaf(gather, draw, &stand, &forest->meshes.host_leaves[range->first_leaf + i], i);
+        gather_leaf(gather, draw, &bearer, &forest->meshes.host_leaves[range->first_leaf + i], i);
 }
 
 static void draw_range(const struct wd_tree_draw *draw, const struct wd_twig_range *range,

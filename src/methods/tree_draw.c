@@ -1,8 +1,11 @@
 #include "methods/tree_draw.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "frame/targets.h"
+#include "methods/leaf_view.h"
 #include "methods/spray_draw.h"
 
 static const uint32_t tree_mesh_vert[] =
@@ -56,13 +59,13 @@ static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
     const uint32_t constants[] = {pass == WD_PASS_SHADOW, detail, falls};
     struct wd_graphics_params params = {
         .vertex = vertex,
-        .bindings = {8,
+        .bindings = {9,
                      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .constants = {3, constants},
     };
     const struct wd_spirv fragments[] = {SPIRV(tree_mesh_frag), SPIRV(tree_mesh_shadow_frag)};
@@ -192,7 +195,9 @@ struct meshes {
     const struct wd_tree_draw *draw;
     const struct wd_mesh_batch *batch;
     const struct wd_mesh_range *range;
-    struct wd_binding instances;
+    const struct wd_instance *trees; /* of the whole selection */
+    struct wd_binding instances;     /* the same */
+    struct wd_binding listed;        /* leaves in view; or of no use */
     float spray_scale;
 };
 
@@ -210,7 +215,8 @@ static void bind_meshes(const struct meshes *meshes, const struct wd_pipeline *p
                                           WD_BIND_IMAGE(&forest->looks, forest->look_sampler),
                                           WD_BIND_IMAGE(&forest->look_details,
                                                         forest->look_sampler),
-                                          bind_leaves(forest, meshes->batch->model)};
+                                          bind_leaves(forest, meshes->batch->model),
+                                          meshes->listed};
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, push, sizeof *push);
     wd_cmd_bind_indices_of(draw->cmd, &forest->meshes.indices, index_type);
@@ -281,15 +287,13 @@ static struct wd_mesh_push leaf_push(const struct meshes *meshes, const struct w
     return push;
 }
 
-/* The first `count` leaves of a set, as many with one draw as 16-bit indices can name. */
-static void draw_set(const struct meshes *meshes, int kind, uint32_t count)
+/* The first `count` leaves of a set or of a list, as many with one draw as 16-bit indices can name. */
+static void draw_leaves(const struct meshes *meshes, int kind, uint32_t count)
 {
     const struct wd_tree_draw *draw = meshes->draw;
     const struct wd_leaf_draw *set = &meshes->range->sets[kind];
     uint32_t most = WD_LEAF_DRAW_VERTICES >> set->corner_bits;
     const struct wd_mesh_push push = leaf_push(meshes, set, kind == WD_SET_LEAVES);
-    if (!count)
-        return;
     bind_meshes(meshes, leaf_pipeline(meshes), WD_BIND_BUFFER(&draw->forest->meshes.corners),
                 &push, VK_INDEX_TYPE_UINT16);
     for (uint32_t at = 0; at < count; at += most) {
@@ -297,6 +301,48 @@ static void draw_set(const struct meshes *meshes, int kind, uint32_t count)
         draw_indexed(draw, leaves * set->index_count, meshes->batch->count, set->first_index,
                      (int32_t)(at << set->corner_bits), meshes->batch->first);
     }
+}
+
+/* Leaves that fall are anywhere. */
+static uint32_t list_leaves(const struct meshes *meshes, uint32_t tree,
+                            const struct wd_leaf_draw *set, uint32_t count, uint32_t *list)
+{
+    const struct wd_forest_device *forest = meshes->draw->forest;
+    if (forest->host_models[meshes->batch->model].fall_mps <= 0.0f)
+        return wd_leaves_in_view(meshes->draw, tree, set, count, list);
+    for (uint32_t i = 0; i < count; i++)
+        list[i] = i;
+    return count;
+}
+
+/* Those in view, tree by tree: most of what stands near by lies beside the picture or above it. */
+static void draw_seen_leaves(const struct meshes *meshes, int kind, uint32_t count)
+{
+    uint32_t *list = wd_alloc_array(count, sizeof *list);
+    for (uint32_t i = 0; i < meshes->batch->count; i++) {
+        struct wd_mesh_batch batch = *meshes->batch;
+        struct meshes one = *meshes;
+        batch.first += i;
+        batch.count = 1;
+        one.batch = &batch;
+        uint32_t seen = list_leaves(meshes, meshes->trees[batch.first].tree,
+                                    &meshes->range->sets[kind], count, list);
+        uint32_t *memory =
+            seen ? wd_cmd_upload(meshes->draw->cmd, seen * sizeof *list, &one.listed) : NULL;
+        if (!memory)
+            continue;
+        memcpy(memory, list, seen * sizeof *list);
+        draw_leaves(&one, kind, seen);
+    }
+    free(list);
+}
+
+static void draw_set(const struct meshes *meshes, int kind, uint32_t count)
+{
+    if (count && is_detailed(meshes))
+        draw_seen_leaves(meshes, kind, count);
+    else if (count)
+        draw_leaves(meshes, kind, count);
 }
 
 /* Leaves of a step: at least those that the shader lets stand. */
@@ -328,7 +374,7 @@ static void draw_meshes(const struct wd_tree_draw *draw, const struct wd_selecti
     for (size_t i = 0; i < selection->batch_count; i++) {
         struct wd_mesh_batch batch = selection->batches[i];
         const struct meshes meshes = {draw, &batch, &forest->meshes.ranges[batch.model][batch.level],
-                                      instances, spray_scale};
+                                      selection->meshes, instances, instances, spray_scale};
         uint32_t draws = grouping == WD_DRAW_SINGLE ? batch.count : 1;
         draw->stats->trees[batch.level] += batch.count;
         batch.count /= draws;
