@@ -7,7 +7,7 @@
 
 /* Bytes that the leaves, or flowers, of a full mesh may take with their outlines; more leaves are
  * kites, and more flowers than fit are left out. */
-enum { OUTLINE_BYTES = 2200000 };
+enum { OUTLINE_BYTES = 2600000 };
 enum { REDUCED_SPRIG_TRIANGLES = 2 };
 
 /* --- places ------------------------------------------------------------------------------ */
