@@ -1,4 +1,4 @@
-/* A hundred unique trees, grown, baked and brought to the device. */
+/* A hundred unique trees, grown, baked and brought to the device; and one. */
 #include "figures.h"
 
 #include <stdio.h>
@@ -70,5 +70,43 @@ bool bench_bake_memory(const char *gpu)
     if (!bake(gpu, NULL, &seconds, &megabytes))
         return false;
     printf("bake-100-gpu-mb %.0f MB\n", megabytes);
+    return true;
+}
+
+/* Device memory after a picture by `continuum` of a scene with so many oaks at hand: meshes, leaves,
+ * cards, splats and wood of each are there, whatever the picture shows. */
+static bool oak_bytes(const char *gpu, const char *variants, double *bytes)
+{
+    const char *settings[] = {variants, NULL};
+    const struct wd_forest_params forest_params = {.scene_path = "bench/oaks.json",
+                                                   .settings = settings};
+    const struct wd_renderer_params renderer_params = {.gpu = gpu};
+    struct wd_render_params render = {.width = 64, .height = 64, .method = "continuum"};
+    struct wd_forest *forest = NULL;
+    struct wd_renderer *renderer = NULL;
+    struct wd_picture picture = {0};
+    struct wd_frame_stats stats;
+    bool ok = wd_forest_create(&forest, &forest_params) == WD_OK &&
+              wd_renderer_create(&renderer, &renderer_params) == WD_OK &&
+              wd_renderer_set_forest(renderer, forest) == WD_OK &&
+              wd_forest_get_camera(forest, NULL, &render.camera) == WD_OK &&
+              wd_renderer_render(renderer, &render, &picture) == WD_OK;
+    if (ok) {
+        wd_renderer_get_stats(renderer, &stats);
+        *bytes = (double)stats.device_bytes;
+        printf("%s: %.2f MB of device memory\n", variants, *bytes / 1e6);
+    }
+    wd_picture_finish(&picture);
+    wd_renderer_destroy(&renderer);
+    wd_forest_destroy(&forest);
+    return ok;
+}
+
+bool bench_oak_memory(const char *gpu)
+{
+    double one, more;
+    if (!oak_bytes(gpu, "variants=2", &one) || !oak_bytes(gpu, "variants=10", &more))
+        return false;
+    printf("oak-20k-mb %.2f MB\n", (more - one) / 8e6);
     return true;
 }

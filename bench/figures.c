@@ -25,6 +25,7 @@ static const struct figure {
     {"bake-100-cold-s", bench_bake_cold},
     {"bake-100-warm-s", bench_bake_warm},
     {"bake-100-gpu-mb", bench_bake_memory},
+    {"oak-20k-mb", bench_oak_memory},
     {"continuum-frame-ms", bench_continuum_frame},
     {"continuum-vs-octree", bench_continuum_vs_octree},
     {"continuum-floor-ratio", bench_continuum_floor},

@@ -20,6 +20,7 @@ bool bench_lod_radiance(const char *gpu);
 bool bench_bake_cold(const char *gpu);
 bool bench_bake_warm(const char *gpu);
 bool bench_bake_memory(const char *gpu);
+bool bench_oak_memory(const char *gpu);
 bool bench_reference_agreement(const char *gpu);
 bool bench_reference_rays(const char *gpu);
 bool bench_mean_colour(const char *gpu);
