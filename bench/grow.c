@@ -8,7 +8,9 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "tree/coverage.h"
 #include "tree/grow.h"
+#include "tree/openness.h"
 
 enum { RUNS = 15, TRIANGLES = 25000 };
 static const char SPECIES[] = "species/oak.json";
@@ -45,15 +47,25 @@ static bool find_detail(const struct wd_species *species, float *detail)
     return true;
 }
 
-/* Growing is skeleton, leaves, full mesh and reduced mesh: the median of CPU times and the least of
- * times on the wall. */
-static bool grow_ms(double *median_ms, double *least_wall_ms)
+/* What a grown model is asked once more takes as long as when it grew, or a little less. */
+static double measuring_ms(struct wd_tree_model *model)
+{
+    double start_s = wd_clock_s();
+    wd_tree_model_fit_openness(model);
+    wd_tree_mesh_fit_coverage(&model->reduced, &model->full);
+    return 1e3 * (wd_clock_s() - start_s);
+}
+
+/* Growing is skeleton, leaves, full mesh and reduced mesh, the sky that leaves see measured in the
+ * one and the size of leaves in the other: the median of CPU times and the least of times on the
+ * wall; of the latter what these two measurements take. */
+static bool grow_ms(double *median_ms, double *least_wall_ms, double *least_measuring_ms)
 {
     struct wd_arena arena = {0};
     struct wd_species species;
     double times[RUNS];
     float detail;
-    *least_wall_ms = INFINITY;
+    *least_wall_ms = *least_measuring_ms = INFINITY;
     bool ok = wd_species_load(&species, SPECIES, &arena, NULL) && find_detail(&species, &detail);
     for (int i = -1; ok && i < RUNS; i++) {
         struct wd_tree_model model;
@@ -64,6 +76,7 @@ static bool grow_ms(double *median_ms, double *least_wall_ms)
         if (ok && i >= 0) {
             times[i] = cpu_ms() - start;
             *least_wall_ms = fmin(*least_wall_ms, 1e3 * (wd_clock_s() - start_wall_s));
+            *least_measuring_ms = fmin(*least_measuring_ms, measuring_ms(&model));
         }
         if (ok && i == 0)
             printf("%s, detail %.2f: %u triangles, %u of them wood, and %u in reduced meshes\n",
@@ -79,9 +92,9 @@ static bool grow_ms(double *median_ms, double *least_wall_ms)
 
 bool bench_grow(const char *gpu)
 {
-    double ms, wall_ms;
+    double ms, wall_ms, measuring;
     (void)gpu;
-    if (!grow_ms(&ms, &wall_ms))
+    if (!grow_ms(&ms, &wall_ms, &measuring))
         return false;
     printf("grow-25k-ms %.1f ms\n", ms);
     return true;
@@ -109,12 +122,13 @@ static bool ez_tree_ms(double *ms)
 
 bool bench_grow_ratio(const char *gpu)
 {
-    double median, ours, theirs; /* the least of each: what else runs can only slow a run down */
+    double median, ours, measuring, theirs; /* the least of each: what else runs can only slow a run down */
     (void)gpu;
-    if (!ez_tree_ms(&theirs) || !grow_ms(&median, &ours))
+    if (!ez_tree_ms(&theirs) || !grow_ms(&median, &ours, &measuring))
         return false;
     if (theirs > 0)
-        printf("ours %.1f ms, ez-tree %.1f ms\ngrow-vs-ez-tree %.2f x\n", ours, theirs,
-               ours / theirs);
+        printf("ours %.1f ms, of which %.1f for openness and the reduced mesh's cover; ez-tree, which "
+               "has neither that mesh nor these, %.1f ms\ngrow-vs-ez-tree %.2f x\n",
+               ours, measuring, theirs, ours / theirs);
     return true;
 }
