@@ -18,6 +18,7 @@ const float PER_PI = 0.318309886;
 struct wd_shelter {
     vec4 through;     /* the share of the sky's quarters that no leaf stops */
     float floor_mean; /* the mean of that on the ground */
+    float under;      /* log2 of the share that leaves of the stand over the place let down */
 };
 
 wd_shelter ground_shelter(wd_pixel pixel)
@@ -26,6 +27,7 @@ wd_shelter ground_shelter(wd_pixel pixel)
     wd_shelter shelter;
     shelter.through = max(field * field, vec4(1e-3));
     shelter.floor_mean = dot(shelter.through, vec4(0.25));
+    shelter.under = log2(shelter.floor_mean);
     shelter.through *= pixel.surface == 0u ? pixel.openness : 1.0;
     return shelter;
 }
@@ -37,9 +39,10 @@ float canopy_above(vec2 layer_m, float height_m)
     return above * above;
 }
 
-/* On a tree: from what the ground gets, below all leaves, to what the tree's own leaves let through where
- * none of its neighbours rise higher; by how much of the canopy is above. What of it is above the
- * whole tree comes before its own leaves. Herbs get what the ground gets, less what their own take. */
+/* On a tree: what its own leaves let through, and of what the stand lets down to the ground as much as
+ * there are leaves of it higher up: what of it is above the whole tree, and neighbours beside it. The
+ * ground's own share is that of gaps between crowns, in which no leaf is. Herbs get what the ground
+ * gets, less what their own take. */
 wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter shelter)
 {
     vec4 field = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 1.0);
@@ -51,30 +54,32 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
     float close = max(crown_is_sward(crown), 0.6 * herb); /* taller ones stand less so */
     float over = close * crown_per_m(crown) * sward_depth_m(crown, pixel.rel);
     float own = max(pixel.openness, 1e-2);
-    vec4 ground = log2(shelter.through), tree = log2(own) + higher * ground;
-    vec4 stand = exp2(min(mix(tree, ground, above), tree));
+    float under = mix(higher, 1.0, above);
+    vec4 stand = own * exp2(under * log2(shelter.through));
     shelter.through = mix(stand, shelter.through * own * exp(-0.7 * over), herb);
+    shelter.under *= mix(under, 1.0, herb);
     return shelter;
 }
 
-/* Irradiance of the open sky on a surface is even + odd, on its other side even - odd. */
-vec3 sky_odd(vec3 n)
-{
-    return frame.sky_form[1] * n.x + frame.sky_form[2] * n.y + frame.sky_form[3] * n.z;
-}
+/* Irradiance of a sky's form on a surface is even + odd, on its other side even - odd. */
+#define SKY_ODD(form, n) (form[1] * n.x + form[2] * n.y + form[3] * n.z)
+#define SKY_EVEN(form, n)                                                                          \
+    (form[0] + form[4] * (n.x * n.y) + form[5] * (n.y * n.z) + form[6] * (n.z * n.z)               \
+     + form[7] * (n.x * n.z) + form[8] * (n.x * n.x - n.y * n.y))
 
-vec3 sky_even(vec3 n)
-{
-    return frame.sky_form[0] + frame.sky_form[4] * (n.x * n.y) + frame.sky_form[5] * (n.y * n.z)
-           + frame.sky_form[6] * (n.z * n.z) + frame.sky_form[7] * (n.x * n.z)
-           + frame.sky_form[8] * (n.x * n.x - n.y * n.y);
-}
+/* Where a stand lets down 0.115 of an even sky's light, its rays come from as steep as in sky_under: one
+ * over the log2. Path-traced stems in a closed forest under clouds get 0.24 of what the ground does. */
+const float UNDER_PER_LOG2 = -0.32;
 
 /* Irradiance of a surface and of its other side. Leaves scatter a share of what they stop, so that a
  * stand which lets t through if leaves were black lets t^s through, s the root of the share of light
  * that they absorb (Goudriaan 1977, sections 2.3 and 2.4; de Pury and Farquhar 1997); a deep canopy
  * returns (1 - s) / (1 + s). So all but the sun's own rays is had from the sky's share: a ray of the sun
- * meets as many leaves as its way is longer than that of the mean of the sky's, cos(48 degrees). */
+ * meets b times as many leaves as that of the mean of the sky's, cos(48 degrees). What leaves scatter
+ * of it downward, 1 - s, comes from where the ray met them as light from everywhere: of a depth that
+ * lets t through, (1 - s) b ln(1 / t) times the mean over its way of t^s below and t^b above, their
+ * logarithmic mean, within some percent (Carlson 1972). A low sun lights but the tops so; t^(s b), what
+ * the ray would bring along its own way, is next to nothing there. */
 struct wd_around {
     vec3 front, back;
 };
@@ -82,21 +87,28 @@ struct wd_around {
 wd_around light_around(vec3 normal, wd_shelter shelter, float ground_share)
 {
     vec3 n = normal, s = frame.leaf_scatter;
-    vec3 odd = sky_odd(n), even = sky_even(n);
+    /* Slanting rays meet more of the stand's leaves, and of the tree's own (below). */
+    float deep = min(shelter.under * UNDER_PER_LOG2, 1.0);
+    vec3 odd = mix(SKY_ODD(frame.sky_form, n), SKY_ODD(frame.sky_under, n), deep);
+    vec3 even = mix(SKY_EVEN(frame.sky_form, n), SKY_EVEN(frame.sky_under, n), deep);
     vec4 through = exp2(frame.sky_slant * log2(shelter.through));
     vec3 level = frame.sky_quarters[0] * through.x + frame.sky_quarters[1] * through.y
                  + frame.sky_quarters[2] * through.z + frame.sky_quarters[3] * through.w;
-    vec3 reach = level / max(frame.sky_irradiance, vec3(1e-12));
+    vec3 reach = level / max(frame.sky_irradiance, vec3(1e-12))
+                 * mix(vec3(1.0), frame.sky_under_tint, deep);
     float mean = dot(shelter.through, vec4(0.25));
-    /* Upright, less: low rays meet more leaves; numbers fitted to the integral over a level layer. */
-    float mean4 = mean * mean * mean * mean;
-    float upright = 0.40 + 0.45 * mean + 0.15 * mean4;
+    /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer. */
+    float own = min(mean * exp2(-shelter.under), 1.0), own4 = own * own * own * own;
+    float upright = 0.40 + 0.45 * own + 0.15 * own4;
     vec3 sky = reach * exp2((s - 1.0) * log2(mean)) * mix(upright, 1.0, abs(n.z));
     float rise = max(frame.sun_direction.z, 0.0);
-    float beam = 0.67 / max(rise, 0.05) * log2(dot(frame.sunward, shelter.through));
+    float longer = 0.67 / max(rise, 0.05);
+    float beam = exp2(longer * log2(dot(frame.sunward, shelter.through)));
     vec3 sun = frame.sun_irradiance * (rise * ground_share);
-    vec3 with_scattered = sun * exp2(s * beam);
-    vec3 scattered = with_scattered - sun * exp2(beam);
+    vec3 diffuse = exp2(s * log2(mean));
+    vec3 between = (sqrt(diffuse * beam) * 2.0 + 0.5 * (diffuse + beam)) * (1.0 / 3.0);
+    vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
+    vec3 with_scattered = sun * beam + scattered;
     float covered = 1.0 - shelter.floor_mean;
     vec3 floor_albedo = mix(frame.grass, frame.litter, covered);
     vec3 below = mix((1.0 - s) / (1.0 + s), floor_albedo,
@@ -211,9 +223,9 @@ vec3 sward_sheen(vec3 direction, float over, float open)
 {
     vec3 ahead = vec3(direction.xy * inversesqrt(dot(direction.xy, direction.xy) + 1e-6), 0.0);
     float flat_on = 1.0 - min(abs(direction.z), 1.0);
-    vec3 horizon = max(sky_even(ahead) + sky_odd(ahead), vec3(0.0));
+    vec3 horizon = SKY_EVEN(frame.sky_form, ahead) + SKY_ODD(frame.sky_form, ahead);
     return open * (0.5 * WAX * through_layer(over) * frame.sky_irradiance
-                   + 0.26 * flat_on * flat_on * flat_on * exp(-over) * horizon);
+                   + 0.26 * flat_on * flat_on * flat_on * exp(-over) * max(horizon, vec3(0.0)));
 }
 
 /* What light meets at a pixel. */

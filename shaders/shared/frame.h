@@ -73,6 +73,9 @@ struct wd_frame_uniforms {
     WD_VEC3(litter); float terrain_cell_m;
     WD_VEC3(sky_form[9]);            /* the sky's irradiance as a polynomial in the normal: 1, x, y,
                                         z, xy, yz, zz, xz, xx - yy */
+    WD_VEC3(sky_under[9]);           /* sky_form of what comes down below a closed forest, times so much
+                                        that level ground has as much by either, */
+    WD_VEC3(sky_under_tint);         /* and its colour: the share that comes down over that of green */
     WD_VEC3(sky_quarters[4]);        /* sky_irradiance by where it comes from: E, N, W, S */
     WD_VEC4(sky_slant);              /* by quarters: how much more a layer of leaves dims that light
                                         than an even sky's, as a power */

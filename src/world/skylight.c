@@ -34,6 +34,9 @@ static void add_slants(struct slants *slants, const float share[4], float weight
     slants->even_through += rise * through;
 }
 
+/* And one as deep as a closed forest. */
+static const float UNDER_DEPTH = 3;
+
 /* Light that arrives over a solid angle, cosine and all: half of it to either quarter where it comes
  * from between two. */
 static void add_quarters(struct wd_frame_uniforms *frame, struct slants *slants, struct wd_vec3 d,
@@ -57,9 +60,12 @@ static void add_direction(struct wd_frame_uniforms *frame, struct slants *slants
     const float light[3] = {radiance.x * solid_angle, radiance.y * solid_angle,
                             radiance.z * solid_angle};
     forms_of(d, forms);
+    float under = expf(-UNDER_DEPTH / d.z);
     for (int form = 0; form < FORMS; form++)
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++) {
             frame->sky_form[form][k] += forms[form] * light[k];
+            frame->sky_under[form][k] += forms[form] * light[k] * under;
+        }
     add_quarters(frame, slants, d, light);
     for (int k = 0; k < 3; k++)
         frame->sky_irradiance[k] += d.z * light[k];
@@ -67,11 +73,10 @@ static void add_direction(struct wd_frame_uniforms *frame, struct slants *slants
 
 /* From moments to irradiance as a polynomial in the normal: each order of the harmonics times what a
  * cosine lobe leaves of it, pi, 2 pi / 3, pi / 4 (Ramamoorthi and Hanrahan 2001). */
-static void settle_forms(struct wd_frame_uniforms *frame)
+static void settle_forms(float form[FORMS][3])
 {
     const float first = 2 * PI / 3 * (3 / (4 * PI)), second = PI / 4;
     const float cross = second * (15 / (4 * PI)), height = second * (5 / (16 * PI));
-    float(*form)[3] = frame->sky_form;
     for (int k = 0; k < 3; k++) {
         float mean = form[0][k], zz = 3 * form[6][k] - mean;
         form[0][k] = mean * 0.25f - height * zz;
@@ -83,6 +88,27 @@ static void settle_forms(struct wd_frame_uniforms *frame)
         form[7][k] *= cross;
         form[8][k] *= 0.25f * cross;
     }
+}
+
+static float on_level_ground(const float form[FORMS][3], int channel)
+{
+    return form[0][channel] + form[3][channel] + form[6][channel];
+}
+
+/* Light that comes down slantwise is dimmed the most, and so are its colours. `level`: irradiance of
+ * level ground under the layer. */
+static void settle_under(struct wd_frame_uniforms *frame, const float level[3])
+{
+    float(*form)[3] = frame->sky_under, share[3];
+    settle_forms(form);
+    for (int k = 0; k < 3; k++) {
+        float here = on_level_ground(form, k), open = on_level_ground(frame->sky_form, k);
+        for (int i = 0; i < FORMS && here > 0; i++)
+            form[i][k] *= open / here;
+        share[k] = frame->sky_irradiance[k] > 0 ? level[k] / frame->sky_irradiance[k] : 1;
+    }
+    for (int k = 0; k < 3; k++)
+        frame->sky_under_tint[k] = share[1] > 0 ? share[k] / share[1] : 1;
 }
 
 static void set_sunward(struct wd_frame_uniforms *frame)
@@ -109,13 +135,17 @@ void wd_skylight_fill(struct wd_frame_uniforms *frame, wd_skylight_radiance *rad
     struct slants slants = {0};
     memset(frame->sky_irradiance, 0, sizeof frame->sky_irradiance);
     memset(frame->sky_form, 0, sizeof frame->sky_form);
+    memset(frame->sky_under, 0, sizeof frame->sky_under);
     memset(frame->sky_quarters, 0, sizeof frame->sky_quarters);
     for (int part = 0; part < RINGS * BEARINGS; part++) {
         float ring = (float)(part / BEARINGS) + 0.5f, bearing = (float)(part % BEARINGS) + 0.5f;
         struct wd_vec3 d = wd_skylight_direction(ring, bearing);
         add_direction(frame, &slants, d, radiance(user, d), 2 * PI / (RINGS * BEARINGS));
     }
-    settle_forms(frame);
+    float under[3]; /* the moment of rise is the irradiance of level ground */
+    memcpy(under, frame->sky_under[3], sizeof under);
+    settle_forms(frame->sky_form);
+    settle_under(frame, under);
     set_sunward(frame);
     for (int quarter = 0; quarter < 4; quarter++)
         frame->sky_slant[quarter] =

@@ -126,6 +126,30 @@ static void test_slants(void **state)
         assert_true(frame.sky_slant[quarter] > 1.5f);
 }
 
+static struct wd_vec3 red_low(const void *user, struct wd_vec3 d)
+{
+    (void)user;
+    return d.z < 0.3f ? WD_V3(2, 1, 1) : WD_V3(1, 1, 1);
+}
+
+/* Below a forest level ground gets what it would, upright surfaces less, and less of low light's colour. */
+static void test_under_leaves(void **state)
+{
+    (void)state;
+    struct wd_frame_uniforms frame = {.sun_direction = {0, 0, 1}};
+    wd_skylight_fill(&frame, even, NULL);
+    const float(*open)[3] = frame.sky_form, (*under)[3] = frame.sky_under;
+    for (int k = 0; k < 3; k++) {
+        float level = open[0][k] + open[3][k] + open[6][k];
+        assert_float_equal(under[0][k] + under[3][k] + under[6][k], level, 0.001f * level);
+        assert_true(under[0][k] + under[8][k] < 0.8f * (open[0][k] + open[8][k]));
+        assert_float_equal(frame.sky_under_tint[k], 1, 1e-4);
+    }
+    wd_skylight_fill(&frame, red_low, NULL);
+    assert_true(frame.sky_under_tint[0] < 0.95f);
+    assert_float_equal(frame.sky_under_tint[2], 1, 1e-4);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -133,6 +157,7 @@ int main(void)
         cmocka_unit_test(test_every_normal),
         cmocka_unit_test(test_quarters),
         cmocka_unit_test(test_slants),
+        cmocka_unit_test(test_under_leaves),
     };
     return cmocka_run_group_tests_name("skylight", tests, NULL, NULL);
 }
