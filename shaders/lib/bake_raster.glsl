@@ -50,17 +50,25 @@ void draw_rows(uint shot_index, uint triangle, vec3 a, vec3 b, vec3 c, ivec2 row
     bake_look look;
     if (push.cut_out != 0u)
         look = look_of(triangle, area);
-    for (int row = rows.x; row <= rows.y; row += step) {
-        float y = float(row) + 0.5;
-        ivec2 span = row_span(a.xy, b.xy, c.xy, area > 0.0 ? 1.0 : -1.0, y);
-        span = ivec2(max(span.x, 0), min(span.y, size.x - 1));
-        uint at = (shot_index * uint(size.y) + uint(row)) * uint(size.x);
-        for (int column = span.x; column <= span.y; column++) {
+    int row = rows.x, column = 0, last = -1;
+    float y = 0.0;
+    uint at = 0u;
+    /* one loop over all samples: threads whose rows are short need not wait at each for long ones */
+    while (column <= last || row <= rows.y) {
+        if (column > last) {
+            y = float(row) + 0.5;
+            ivec2 span = row_span(a.xy, b.xy, c.xy, area > 0.0 ? 1.0 : -1.0, y);
+            column = max(span.x, 0);
+            last = min(span.y, size.x - 1);
+            at = (shot_index * uint(size.y) + uint(row)) * uint(size.x);
+            row += step;
+        }
+        if (column <= last) {
             vec2 shares = bake_shares(a, b, c, area, vec2(float(column) + 0.5, y));
-            if (push.cut_out != 0u && bake_look_at(look, shares).a < WD_LOOK_CUT)
-                continue;
             precise float depth = a.z + shares.x * (b.z - a.z) + shares.y * (c.z - a.z);
-            draw(at + uint(column), clamp(depth, 1e-6, 1.0), triangle);
+            if (push.cut_out == 0u || bake_look_at(look, shares).a >= WD_LOOK_CUT)
+                draw(at + uint(column), clamp(depth, 1e-6, 1.0), triangle);
+            column++;
         }
     }
 }
