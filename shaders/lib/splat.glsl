@@ -10,8 +10,10 @@ uvec2 splat_turn(wd_splat_tree tree, uint at)
 /* Index among all splats of the one in turn. */
 uint splat_index(wd_splat_tree tree, uvec2 turn)
 {
-    return tree.first_splat + turn.x * WD_STRATUM_SPLATS
-           + ((tree.offset + turn.y) & (WD_STRATUM_SPLATS - 1u));
+    bool wood = turn.x == WD_LEAF_STRATA;
+    uint at = (tree.offset + turn.y) & ((wood ? WD_WOOD_SPLATS : WD_STRATUM_SPLATS) - 1u);
+    at += wood ? (tree.offset >> 31) * WD_WOOD_SPLATS : 0u;
+    return tree.first_splat + turn.x * WD_STRATUM_SPLATS + at;
 }
 
 vec3 splat_place(wd_splat splat)

@@ -102,8 +102,7 @@ void main()
         bool wood = turn.x == WD_LEAF_STRATA;
         vec3 normal = splat_normal(disc);
         float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
-        float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0))
-                             : tree.radius * sqrt(abs(facing))) * inverse;
+        float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0)) : tree.radius) * inverse;
         vec2 at = (clip.xy * inverse * 0.5 + 0.5) * size;
         uint id = index * WD_ITEM_SPLATS + i + 1u;
         bool leaf = ORTHOGRAPHIC == 0u && SMALL == 0u && !wood && radius > LEAF_PX;

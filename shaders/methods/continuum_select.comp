@@ -251,6 +251,7 @@ void select_tree(uint index, float share, uint place)
     splats.wood_radius *= sqrt(max(missing, 0.0));
     uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
     splats.facing = model_facing(pose, toward);
+    splats.radius *= sqrt(length(splats.facing));
     float own_across = pose.across;
     pose.across *= stretch;
     if (ORTHOGRAPHIC == 0u && view.has_history != 0u) {
@@ -267,7 +268,9 @@ void select_tree(uint index, float share, uint place)
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
     splats.first_wood = splat_models[model_index].wood_first;
-    splats.offset = wd_hash_mix(random) + frame.sample_index * uint(ceil(each));
+    splats.offset = (wd_hash_mix(random) + frame.sample_index * uint(ceil(each)))
+                    & (WD_STRATUM_SPLATS - 1u);
+    splats.offset |= wood ? 0x80000000u : 0u;
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
     splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);

@@ -19,6 +19,9 @@
 #define WD_SPLAT_STRATA 8u
 #define WD_STRATUM_SPLATS (WD_SPLATS / WD_SPLAT_STRATA)
 #define WD_LEAF_STRATA (WD_SPLAT_STRATA - 1u)
+/* The stratum of wood: half of it of all wood; half without what the first triangles of wood show,
+ * for trees that have these. */
+#define WD_WOOD_SPLATS (WD_STRATUM_SPLATS / 2u)
 /* Splats or triangles of one item, a workgroup's work. An id in the visibility buffer is
  * item * WD_ITEM_SPLATS + splat of the item + 1, with the highest bit for triangles of wood. */
 #define WD_ITEM_SPLATS 512u
@@ -61,10 +64,10 @@ struct wd_splat_model {
     WD_GAINS_STRUCT light;                /* and the openness of what is seen */
     WD_VEC3(lower_over_upper);            /* albedo of leaves' lower sides over that of upper ones */
     float lower[WD_GAIN_SIDES];           /* share of the leaves seen that show the lower side */
-    float wood_spread;                    /* the first n of N triangles have (n / N)^this of all
-                                             bark's area */
+    float wood_spread;                    /* the first n of N triangles have (n / N)^this of the bark
+                                             that is seen */
     float grain;                          /* root of a mean triangle's area over the crown's width */
-    uint32_t wood_first, wood_count;      /* triangles, large ones first */
+    uint32_t wood_first, wood_count;      /* triangles, those that show most first */
 };
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
@@ -180,10 +183,11 @@ struct wd_splat_tree {
     WD_VEC4(clip_x); WD_VEC4(clip_y); WD_VEC4(clip_w); /* clip_w: w, or z of a cascade */
     WD_VEC3(sway);
     WD_VEC3(facing);       /* dot normal of the model: what a m^2 of it shows the eye, in m^2 */
-    float radius, wood_radius; /* of a disc of leaves and of wood in pixels at w = 1 */
+    float radius, wood_radius; /* of a disc of leaves, and of wood that faces the eye, in pixels at w = 1 */
     uint32_t tree;         /* in octree order */
     uint32_t first_splat;  /* of the model */
-    uint32_t offset;       /* of the window in each stratum */
+    uint32_t offset;       /* bits 0..12: of the window in each stratum; bit 31: of wood, from its
+                              second half */
     uint32_t strata;       /* of how many, from the top, it has splats */
     uint32_t first_wood;   /* triangle of the model */
     uint32_t turn;         /* cosine and sine of the tree's yaw, half floats */

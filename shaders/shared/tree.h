@@ -203,8 +203,9 @@ WD_STATIC_ASSERT_SIZE(wd_tree_point, 24);
 #define WD_POINT_LEAF 0x100u
 #define WD_POINT_ONE_SIDED 0x200u
 
-/* Points drawn as discs: pi r^2 = gain * facing * (area of all points) / count, where facing is the
- * cosine between normal and view: its size for leaves, 0 for one-sided points seen from behind.
+/* Points drawn as discs: pi r^2 = gain * facing * (area of all points) / count. Facing is 1 for leaves,
+ * whose normals are more the crown's than their own; of wood the cosine between normal and view, 0 for
+ * points seen from behind.
  * Gains are found for counts WD_POINT_LEAST << k, seen level, from half above and from above. */
 #define WD_POINT_LEAST 8
 #define WD_POINT_GAINS 12

@@ -6,6 +6,12 @@
 
 #include "base/color.h"
 #include "base/memory.h"
+#include "shared/hash.h"
+#include "tree/progressive.h"
+
+/* Most of a tree's bark lies behind leaves. Few discs spent on all of it alike leave a stem to one or
+ * two that are far too large. Of wood that is hidden from all sides so much is kept: crowns have gaps. */
+static const float LEAST_SEEN = 0.02f;
 
 /* Points to choose from: some kind may be rare. */
 enum { POINTS = 3 * (int)WD_SPLATS / 2 };
@@ -104,54 +110,38 @@ static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *
     return used > 0;
 }
 
-/* `leaves` and `wood` get the points of the splats: strata in turn, as a tree's window takes them. */
-static void fill_strata(struct wd_splats *splats, const struct wd_tree_points *points,
-                        struct wd_tree_point *leaves, struct wd_tree_point *wood)
+/* `leaves` get the points of the splats: strata in turn, as a tree's window takes them. */
+static void fill_leaves(struct wd_splats *splats, const struct wd_tree_points *points,
+                        struct wd_tree_point *leaves)
 {
     struct wd_splat_model *model = &splats->model;
-    const uint32_t last = WD_SPLAT_STRATA - 1;
+    const uint32_t strata = WD_LEAF_STRATA;
     uint32_t kind = points->leaf_area_m2 > 0.0f ? WD_POINT_LEAF : 0;
-    find_tops(points, kind, last, model->strata_top_m);
-    for (uint32_t s = 0; s < last; s++) {
+    find_tops(points, kind, strata, model->strata_top_m);
+    for (uint32_t s = 0; s < strata; s++) {
         float top = s ? model->strata_top_m[s] : INFINITY;
-        float bottom = s + 1 < last ? model->strata_top_m[s + 1] : -INFINITY;
-        if (!fill_stratum(splats, points, kind, s, top, bottom, leaves + s, last))
-            fill_stratum(splats, points, kind, s, INFINITY, -INFINITY, leaves + s, last);
+        float bottom = s + 1 < strata ? model->strata_top_m[s + 1] : -INFINITY;
+        if (!fill_stratum(splats, points, kind, s, top, bottom, leaves + s, strata))
+            fill_stratum(splats, points, kind, s, INFINITY, -INFINITY, leaves + s, strata);
     }
-    if (!fill_stratum(splats, points, 0, last, INFINITY, -INFINITY, wood, 1))
-        fill_stratum(splats, points, kind, last, INFINITY, -INFINITY, wood, 1);
     /* of the wood, the part under the crown's thick is what is seen */
     float tops[4];
     find_tops(points, points->wood_area_m2 > 0.0f ? 0 : kind, 4, tops);
-    model->strata_top_m[last] = tops[1];
-}
-
-static void make_discs(struct wd_splats *splats, const struct wd_tree_points *points,
-                       const struct wd_tree_mesh *mesh)
-{
-    size_t leaf_count = (size_t)WD_LEAF_STRATA * WD_STRATUM_SPLATS;
-    struct wd_tree_point *leaves = wd_alloc_array(leaf_count, sizeof *leaves);
-    struct wd_tree_point *wood = wd_alloc_array(WD_STRATUM_SPLATS, sizeof *wood);
-    fill_strata(splats, points, leaves, wood);
-    struct wd_disc_fit fits;
-    const float stratum = 1.0f / WD_SPLAT_STRATA;
-    const struct wd_disc_class woody = {wood, WD_STRATUM_SPLATS, points->wood_area_m2, stratum};
-    const struct wd_disc_class leafy = {leaves, leaf_count, points->leaf_area_m2, 1 - stratum};
-    wd_disc_fit(&fits, &woody, &leafy, mesh);
-    splats->model.wood = fits.wood;
-    splats->model.leaf = fits.leaf;
-    splats->model.light = fits.light;
-    memcpy(splats->model.lower, fits.lower, sizeof fits.lower);
-    free(leaves);
-    free(wood);
+    model->strata_top_m[strata] = tops[1];
 }
 
 /* --- wood -------------------------------------------------------------------------------- */
 
 struct sized {
-    float area;
+    float area; /* that is seen */
     uint32_t triangle;
 };
+
+/* As many of N as are drawn where the first are (shaders/methods/continuum_select.comp). */
+static uint32_t first_triangles(uint32_t count)
+{
+    return count / 2 < 38 ? count / 2 : 38;
+}
 
 static int larger_first(const void *a, const void *b)
 {
@@ -161,7 +151,9 @@ static int larger_first(const void *a, const void *b)
     return one->triangle < other->triangle ? -1 : 1;
 }
 
-static float triangle_area(const struct wd_tree_mesh *mesh, const uint32_t *corners)
+/* The middle, one side's normal and its area in m^2. */
+static float triangle_middle(struct wd_tree_point *point, const struct wd_tree_mesh *mesh,
+                             const uint32_t *corners)
 {
     float side[2][3];
     for (int k = 0; k < 3; k++) {
@@ -172,7 +164,30 @@ static float triangle_area(const struct wd_tree_mesh *mesh, const uint32_t *corn
     float x = side[0][1] * side[1][2] - side[0][2] * side[1][1];
     float y = side[0][2] * side[1][0] - side[0][0] * side[1][2];
     float z = side[0][0] * side[1][1] - side[0][1] * side[1][0];
-    return 0.5f * sqrtf(x * x + y * y + z * z);
+    float twice = sqrtf(x * x + y * y + z * z), scale = 1 / fmaxf(twice, 1e-12f);
+    *point = (struct wd_tree_point){
+        .normal = wd_pack_normal((float[3]){x * scale, y * scale, z * scale})};
+    for (int k = 0; k < 3; k++)
+        point->position_m[k] = mesh->vertices[corners[0]].position_m[k] +
+                               (side[0][k] + side[1][k]) / 3.0f;
+    return 0.5f * twice;
+}
+
+/* Those of which most is seen of the full mesh's tree come first. */
+static void order_wood(struct sized *order, uint32_t count, const struct wd_tree_model *model)
+{
+    struct wd_tree_points middles = {.points = wd_alloc_array(count + 1, sizeof *middles.points),
+                                     .count = count};
+    float *shares = wd_alloc_array(count + 1, sizeof *shares);
+    for (uint32_t i = 0; i < count; i++)
+        order[i] = (struct sized){
+            triangle_middle(&middles.points[i], &model->reduced, model->reduced.indices + 3 * i), i};
+    wd_tree_points_seen(shares, &middles, &model->full);
+    for (uint32_t i = 0; i < count; i++)
+        order[i].area *= fmaxf(shares[i], LEAST_SEEN);
+    qsort(order, count, sizeof *order, larger_first);
+    wd_tree_points_finish(&middles);
+    free(shares);
 }
 
 static struct wd_splat_wood wood_triangle(const struct wd_splat_model *model,
@@ -191,13 +206,10 @@ static struct wd_splat_wood wood_triangle(const struct wd_splat_model *model,
     return wood;
 }
 
-static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh)
+static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
+                      const struct sized *order)
 {
-    uint32_t count = mesh->wood_index_count / 3;
-    struct sized *order = wd_alloc_array(count, sizeof *order);
-    for (uint32_t i = 0; i < count; i++)
-        order[i] = (struct sized){triangle_area(mesh, mesh->indices + 3 * i), i};
-    qsort(order, count, sizeof *order, larger_first);
+    uint32_t count = mesh->wood_index_count / 3, first = first_triangles(count);
     splats->wood = wd_alloc_array(count, sizeof *splats->wood);
     splats->model.wood_count = count;
     for (uint32_t i = 0; i < count; i++)
@@ -206,11 +218,10 @@ static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh)
     float all = 0, large = 0;
     for (uint32_t i = 0; i < count; i++) {
         all += order[i].area;
-        large += i < count / 8 ? order[i].area : 0;
+        large += i < first ? order[i].area : 0;
     }
-    float spread = large > 0 ? logf(large / all) / logf((float)(count / 8) / (float)count) : 1;
+    float spread = large > 0 ? logf(large / all) / logf((float)first / (float)count) : 1;
     splats->model.wood_spread = fminf(fmaxf(spread, 0.05f), 1.0f);
-    free(order);
 }
 
 /* Mean colour of a look's texels that show. */
@@ -237,6 +248,118 @@ static void compare_sides(struct wd_splat_model *model, const struct wd_point_lo
         model->lower_over_upper[k] = upper[k] > 0 ? fminf(lower[k] / upper[k], 4.0f) : 1.0f;
 }
 
+/* --- discs of wood ----------------------------------------------------------------------- */
+
+/* Wood by lot, as much as is seen; all points of a tree without. */
+static void keep_seen(bool *keep, const struct wd_tree_points *points,
+                      const struct wd_tree_mesh *mesh)
+{
+    float *shares = wd_alloc_array(points->count, sizeof *shares);
+    wd_tree_points_seen(shares, points, mesh);
+    for (size_t i = 0; i < points->count; i++)
+        keep[i] = points->wood_area_m2 <= 0.0f ||
+                  (!(points->points[i].kind & WD_POINT_LEAF) &&
+                   wd_hash_unit(wd_hash2((uint32_t)i, 0x5ee9)) < fmaxf(shares[i], LEAST_SEEN));
+    free(shares);
+}
+
+/* Half of the stratum, in an order of which any window is well spread. False where none is kept. */
+static bool fill_wood(struct wd_splats *splats, uint32_t half, const struct wd_tree_points *points,
+                      const bool *keep, struct wd_tree_point *drawn)
+{
+    uint32_t first = WD_LEAF_STRATA * WD_STRATUM_SPLATS + half * WD_WOOD_SPLATS;
+    uint32_t *which = wd_alloc_array(points->count + 1, sizeof *which);
+    uint32_t *order = wd_alloc_array(points->count + 1, sizeof *order);
+    struct wd_vec3 *places = wd_alloc_array(points->count + 1, sizeof *places);
+    size_t count = 0;
+    for (uint32_t i = 0; i < points->count; i++)
+        if (keep[i]) {
+            places[count] = wd_v3_of(points->points[i].position_m);
+            which[count++] = i;
+        }
+    wd_progressive_order(order, places, count, 0x3a7d);
+    for (uint32_t i = 0; i < WD_WOOD_SPLATS && count; i++) {
+        const struct wd_tree_point *point = &points->points[which[order[i % count]]];
+        drawn[i] = *point;
+        splats->splats[first + i] = splat_at(&splats->model, point->position_m, point->normal);
+        splats->looks[first + i] = point_look(point);
+    }
+    free(which);
+    free(order);
+    free(places);
+    return count > 0;
+}
+
+/* Whether a place lies on a triangle, as nearly as the reduced mesh follows the full one. */
+static bool lies_on(struct wd_vec3 p, const struct wd_vec3 corners[3])
+{
+    struct wd_vec3 u = wd_v3_sub(corners[1], corners[0]), v = wd_v3_sub(corners[2], corners[0]);
+    struct wd_vec3 w = wd_v3_sub(p, corners[0]), n = wd_v3_cross(u, v);
+    float squared = wd_v3_dot(n, n), off = wd_v3_dot(w, n);
+    if (!(squared > 0) || off * off > 0.02f * squared * sqrtf(squared))
+        return false;
+    float b = wd_v3_dot(wd_v3_cross(w, v), n) / squared;
+    float c = wd_v3_dot(wd_v3_cross(u, w), n) / squared;
+    return b > -0.15f && c > -0.15f && b + c < 1.15f;
+}
+
+/* Leaves out what the triangles show that are drawn first. */
+static void keep_thin(bool *keep, const struct wd_tree_points *points,
+                      const struct wd_tree_mesh *mesh, const struct sized *first, uint32_t count)
+{
+    for (uint32_t t = 0; t < count; t++) {
+        struct wd_vec3 corners[3];
+        for (uint32_t k = 0; k < 3; k++)
+            corners[k] =
+                wd_v3_of(mesh->vertices[mesh->indices[3 * first[t].triangle + k]].position_m);
+        for (size_t i = 0; i < points->count; i++)
+            keep[i] = keep[i] && !lies_on(wd_v3_of(points->points[i].position_m), corners);
+    }
+}
+
+/* `wood` gets the points of all of it, the stratum's first half. */
+static void fill_wood_halves(struct wd_splats *splats, const struct wd_tree_points *points,
+                             const struct wd_tree_model *model, const struct sized *order,
+                             struct wd_tree_point *wood)
+{
+    bool *keep = wd_alloc_array(points->count, sizeof *keep);
+    struct wd_tree_point *thin = wd_alloc_array(WD_WOOD_SPLATS, sizeof *thin);
+    uint32_t first = first_triangles(model->reduced.wood_index_count / 3);
+    keep_seen(keep, points, &model->full);
+    fill_wood(splats, 0, points, keep, wood);
+    fill_wood(splats, 1, points, keep, thin);
+    keep_thin(keep, points, &model->reduced, order, first);
+    fill_wood(splats, 1, points, keep, thin);
+    free(thin);
+    free(keep);
+}
+
+static void make_discs(struct wd_splats *splats, const struct wd_tree_points *points,
+                       const struct wd_tree_model *model)
+{
+    size_t leaf_count = (size_t)WD_LEAF_STRATA * WD_STRATUM_SPLATS;
+    uint32_t triangles = model->reduced.wood_index_count / 3;
+    struct wd_tree_point *leaves = wd_alloc_array(leaf_count, sizeof *leaves);
+    struct wd_tree_point *wood = wd_alloc_array(WD_WOOD_SPLATS, sizeof *wood);
+    struct sized *order = wd_alloc_array(triangles + 1, sizeof *order);
+    order_wood(order, triangles, model);
+    make_wood(splats, &model->reduced, order);
+    fill_leaves(splats, points, leaves);
+    fill_wood_halves(splats, points, model, order, wood);
+    struct wd_disc_fit fits;
+    const float stratum = 1.0f / WD_SPLAT_STRATA;
+    const struct wd_disc_class woody = {wood, WD_WOOD_SPLATS, points->wood_area_m2, stratum};
+    const struct wd_disc_class leafy = {leaves, leaf_count, points->leaf_area_m2, 1 - stratum};
+    wd_disc_fit(&fits, &woody, &leafy, &model->full);
+    splats->model.wood = fits.wood;
+    splats->model.leaf = fits.leaf;
+    splats->model.light = fits.light;
+    memcpy(splats->model.lower, fits.lower, sizeof fits.lower);
+    free(leaves);
+    free(wood);
+    free(order);
+}
+
 /* --- the whole --------------------------------------------------------------------------- */
 
 bool wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
@@ -254,8 +377,7 @@ bool wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
         splats->model.min_m[k] = model->full.min_m[k];
         splats->model.extent_m[k] = fmaxf(model->full.max_m[k] - model->full.min_m[k], 1e-3f);
     }
-    make_discs(splats, &points, &model->full);
-    make_wood(splats, &model->reduced);
+    make_discs(splats, &points, model);
     compare_sides(&splats->model, look);
     wd_tree_points_finish(&points);
     return true;

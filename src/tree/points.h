@@ -29,7 +29,13 @@ bool wd_tree_points_build(struct wd_tree_points *points, const struct wd_tree_me
                           const struct wd_point_look *look, size_t count);
 void wd_tree_points_finish(struct wd_tree_points *points); /* accepts {0} */
 
-/* Points of one kind, in an order of which windows are drawn, and the surface that all stand for. */
+/* shares[points->count]: of what a point's side shows around and half above the tree, the share that
+ * nothing of the mesh hides. Points need no more than places and normals. */
+void wd_tree_points_seen(float *shares, const struct wd_tree_points *points,
+                         const struct wd_tree_mesh *mesh);
+
+/* Points of one kind, in an order of which windows are drawn, and the surface that all stand for:
+ * discs of wood turn with it, those of leaves face the eye, as what stands for many of any direction. */
 struct wd_disc_class {
     const struct wd_tree_point *points;
     size_t count;

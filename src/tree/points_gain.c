@@ -164,7 +164,7 @@ static float facing_of(const struct wd_tree_point *point, struct wd_vec3 toward)
     float n[3];
     wd_unpack_normal(point->normal, n);
     float cosine = wd_v3_dot(WD_V3(n[0], n[1], n[2]), toward);
-    return point->kind & WD_POINT_ONE_SIDED ? fmaxf(cosine, 0) : fabsf(cosine);
+    return point->kind & WD_POINT_ONE_SIDED ? fmaxf(cosine, 0) : 1;
 }
 
 static size_t disc_count(const struct plan *plan, int class, size_t count)
@@ -197,7 +197,7 @@ static void draw_window(struct canvas *canvas, const struct plan *plan, int clas
 /* Few discs differ more from window to window. */
 static uint32_t window_count(size_t count)
 {
-    return count < 100 ? 8 : count < 1000 ? 3 : 1;
+    return count < 32 ? 24 : count < 100 ? 8 : count < 1000 ? 3 : 1;
 }
 
 static struct shown show_discs(struct plan *plan, size_t count, const float gains[2])

@@ -258,7 +258,7 @@ static void cover(const struct sampled *sampled, size_t first, size_t count, dou
         wd_unpack_normal(points->points[i].normal, n);
         float facing = wd_v3_dot(WD_V3(n[0], n[1], n[2]), toward);
         bool one_sided = points->points[i].kind & WD_POINT_ONE_SIDED;
-        float radius = one_sided ? wood * sqrtf(fmaxf(facing, 0)) : leaf * sqrtf(fabsf(facing));
+        float radius = one_sided ? wood * sqrtf(fmaxf(facing, 0)) : leaf;
         for (int py = (int)fmaxf(y - radius, 0); py < N && (float)py < y + radius; py++)
             for (int px = (int)fmaxf(x - radius, 0); px < N && (float)px < x + radius; px++) {
                 float dx = (float)px + 0.5f - x, dy = (float)py + 0.5f - y;
