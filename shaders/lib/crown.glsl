@@ -74,18 +74,22 @@ float sward_card_height_m(wd_crown crown, vec3 direction)
  * as on the mean of what the ray may meet. Light falls off with e^-t; the eye's ray meets leaves and
  * wood half as often again (chosen by the brightness of cards beside that of meshes): with the
  * density 1.5 e^-1.5t / (1 - e^-1.5x) on a way of x. The mean of e^-t over that is
- * 0.6 (1 - e^-2.5x) / (1 - e^-1.5x). */
+ * 0.6 (1 - e^-2.5x) / (1 - e^-1.5x). Octants strew a tree's leaves all over its box: those well off the
+ * crown are lit as what lies half way in, for a disc's mean distance from its middle is 2/3. */
 vec3 crown_card_place(wd_crown crown, vec3 direction)
 {
     vec3 s = direction / crown.radii_m;
     float ss = dot(s, s), nearest_m = dot(crown.center_rel / crown.radii_m, s) / ss;
     vec3 off = (direction * nearest_m - crown.center_rel) / crown.radii_m;
+    float out_by = length(off);
+    off *= out_by > 1.25 ? 0.67 / out_by : 1.0;
     float half_m = sqrt(max(1.0 - dot(off, off), 0.0) / ss);
     float from_m = max(nearest_m - half_m, 0.1);
     float way_m = max(nearest_m + half_m - from_m, 0.0), x = way_m * crown_per_m(crown);
     float left = 0.6 * (1.0 - exp(-2.5 * x)) / (1.0 - exp(-1.5 * max(x, 1e-3)));
     float share = x < 0.02 ? 0.5 : -log(left) / x;
-    vec3 within = direction * (from_m + share * way_m);
+    vec3 within = crown.center_rel + off * crown.radii_m
+                  + direction * (from_m - nearest_m + share * way_m);
     within.z = mix(within.z, sward_card_height_m(crown, direction), crown_is_sward(crown));
     return within;
 }

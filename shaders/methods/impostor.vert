@@ -36,24 +36,32 @@ side_look side_of(wd_octant_look look, uint axis, float toward)
                      leaf);
 }
 
-/* Each side counts by the area that it shows: what the eye sees is then covered as much as by the
- * sides together. `area` is the sprite's over a side's. */
-side_look mixed_sides(wd_octant_look look, vec3 toward, float area)
+/* Each side counts by the area that it shows. Sides that are covered all over are those of a box, whose
+ * outlines add; crowns are round, of outlines whose squares add (a spheroid covers pi / 4 of each side
+ * of its box). `areas`: of sides, `area`: the sprite's. */
+float covered_by(float sum, float squares, float area)
+{
+    float boxy = clamp((sum / area - 0.785) / 0.215, 0.0, 1.0);
+    return clamp(mix(sqrt(squares), sum, boxy) / area, 0.0, 1.0);
+}
+
+side_look mixed_sides(wd_octant_look look, vec3 toward, vec3 areas, float area)
 {
     side_look sum = side_look(vec4(0.0), vec4(0.0), 0.0);
-    float covered = 0.0;
+    float covered = 0.0, squares = 0.0;
     for (uint axis = 0u; axis < 3u; axis++) {
         side_look side = side_of(look, axis, toward[axis]);
-        float weight = abs(toward[axis]) * side.color.a;
+        float weight = abs(toward[axis]) * areas[axis] * side.color.a;
         sum.color.rgb += weight * side.color.rgb;
         sum.normal += weight * side.normal;
         sum.leaf += weight * side.leaf;
         covered += weight;
+        squares += weight * weight;
     }
     sum.color.rgb /= max(covered, 1e-6);
     sum.normal /= max(covered, 1e-6);
     sum.leaf /= max(covered, 1e-6);
-    sum.color.a = clamp(covered / area, 0.0, 1.0);
+    sum.color.a = covered_by(covered, squares, area);
     return sum;
 }
 
@@ -69,7 +77,8 @@ void main()
     uint slot = uint(gl_VertexIndex) / vertices, vertex = uint(gl_VertexIndex) - slot * vertices;
     uint index = push.listed != 0u ? list[slot] : push.first + slot;
     wd_impostor impostor = impostors[index];
-    float half_m = 0.5 * impostor.size_m;
+    vec3 size_m = vec3(impostor.size_m[0], impostor.size_m[1], impostor.size_m[2]);
+    vec3 half_m = 0.5 * size_m;
     vec3 eye_m = vec3(frame.camera_mm[0], frame.camera_mm[1], frame.camera_mm[2]) * 0.001
                  + frame.camera_frac_m;
     vec3 center = impostor.min_m + half_m - eye_m;
@@ -87,15 +96,18 @@ void main()
         corner[last] = side.y;
         rel = center + corner * half_m;
         look = side_of(impostor.look, axis, toward[axis]);
-        extent_m = vec2(impostor.size_m);
+        extent_m = vec2(size_m[next], size_m[last]);
     } else {
         float level = max(length(toward.xy), 1e-4);
         vec3 right = vec3(-toward.y, toward.x, 0.0) / level;
         vec3 up = vec3(-toward.xy * (toward.z / level), level);
-        vec2 reach = vec2(dot(abs(right), vec3(1.0)), dot(abs(up), vec3(1.0)));
-        rel = center + half_m * (right * (side.x * reach.x) - up * (side.y * reach.y));
-        look = mixed_sides(impostor.look, toward, reach.x * reach.y);
-        extent_m = impostor.size_m * reach;
+        vec2 reach = vec2(dot(abs(right), half_m), dot(abs(up), half_m));
+        rel = center + right * (side.x * reach.x) - up * (side.y * reach.y);
+        /* from the box's near edge at its bottom to the far one at its top: the ground hides none */
+        float nearer_m = dot(abs(toward.xy), half_m.xy) - toward.z * half_m.z;
+        rel *= 1.0 - nearer_m * side.y / distance_m;
+        look = mixed_sides(impostor.look, toward, size_m.yzx * size_m.zxy, 4.0 * reach.x * reach.y);
+        extent_m = 2.0 * reach;
     }
     out_uv = side * 0.5 + 0.5;
     out_color = look.color;

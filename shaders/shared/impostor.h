@@ -15,12 +15,12 @@
 #define WD_CUBE_VERTICES 12  /* the three sides that do */
 
 struct wd_impostor {
-    WD_VEC3(min_m); /* least corner of the cube, local frame */
-    float size_m;
+    WD_VEC3(min_m); /* least corner of what of the cube trees fill, local frame */
+    WD_VEC3(size_m);
     uint32_t first_tree, tree_count; /* octree order: the trees it stands for */
-    WD_OCTANT_LOOK look;
+    WD_OCTANT_LOOK look; /* shares of the sides of that box */
 };
-WD_STATIC_ASSERT_SIZE(wd_impostor, 80);
+WD_STATIC_ASSERT_SIZE(wd_impostor, 88);
 
 struct wd_impostor_push {
     uint32_t first;  /* impostor of vertex 0, where they are not listed */

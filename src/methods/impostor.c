@@ -154,19 +154,75 @@ static uint32_t any_tree(const struct wd_octree *octree, uint32_t index)
     return octant->child_count ? any_tree(octree, octant->first_child) : UINT32_MAX;
 }
 
-static void fill_octants(struct wd_impostor *table, const struct wd_octree *octree,
+struct box {
+    float min_m[3], max_m[3];
+};
+
+static void add_box(struct box *sum, const float min_m[3], const float max_m[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        sum->min_m[axis] = fminf(sum->min_m[axis], min_m[axis]);
+        sum->max_m[axis] = fmaxf(sum->max_m[axis], max_m[axis]);
+    }
+}
+
+/* What trees fill of each octant's cube; children come after their parents. */
+static struct box *filled_boxes(const struct wd_world *world)
+{
+    const struct wd_octree *octree = &world->octree;
+    struct box *boxes = wd_alloc_array(octree->count, sizeof *boxes);
+    for (uint32_t i = octree->count; i-- > 0;) {
+        const struct wd_octant *octant = &octree->octants[i];
+        uint32_t child = octant->first_child;
+        struct box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+        for (uint32_t k = octant->tight_begin; k < octant->tight_end; k++) {
+            struct box tree;
+            wd_tree_bounds(&world->trees[octree->tight_trees[k]], tree.min_m, tree.max_m);
+            add_box(&box, tree.min_m, tree.max_m);
+        }
+        for (uint32_t k = 0; k < octant->child_count; k++) {
+            add_box(&box, boxes[child].min_m, boxes[child].max_m);
+            child = octree->octants[child].next_sibling;
+        }
+        for (int axis = 0; axis < 3; axis++) {
+            float low = octant->cube_min_m[axis], high = low + octant->cube_size_m;
+            boxes[i].min_m[axis] = fminf(fmaxf(box.min_m[axis], low), high);
+            boxes[i].max_m[axis] = fmaxf(fminf(box.max_m[axis], high), boxes[i].min_m[axis]);
+        }
+    }
+    return boxes;
+}
+
+/* From shares of the cube's sides to shares of the box's. */
+static void fit_look(struct wd_impostor *impostor, float cube_m)
+{
+    for (uint32_t side = 0; side < WD_OCTANT_SIDES; side++) {
+        uint32_t axis = side / 2, color = impostor->look.color[side];
+        float area = impostor->size_m[(axis + 1) % 3] * impostor->size_m[(axis + 2) % 3];
+        float root = (float)(color >> 24) * cube_m / sqrtf(fmaxf(area, 1e-6f));
+        impostor->look.color[side] = (color & 0xffffffu) | (uint32_t)fminf(root + 0.5f, 255.0f) << 24;
+    }
+}
+
+static void fill_octants(struct wd_impostor *table, const struct wd_world *world,
                          const struct wd_octant_colors *colors)
 {
+    const struct wd_octree *octree = &world->octree;
+    struct box *boxes = filled_boxes(world);
     for (uint32_t i = 0; i < octree->count; i++) {
         const struct wd_octant *octant = &octree->octants[i];
         table[i] = (struct wd_impostor){
-            .min_m = {octant->cube_min_m[0], octant->cube_min_m[1], octant->cube_min_m[2]},
-            .size_m = octant->cube_size_m,
             .first_tree = any_tree(octree, i),
             .tree_count = octant->end - octant->begin,
             .look = colors->looks[i],
         };
+        for (int axis = 0; axis < 3; axis++) {
+            table[i].min_m[axis] = boxes[i].min_m[axis];
+            table[i].size_m[axis] = boxes[i].max_m[axis] - boxes[i].min_m[axis];
+        }
+        fit_look(&table[i], octant->cube_size_m);
     }
+    free(boxes);
 }
 
 /* By trees, so that an octant's cells are one range of its cluster's. */
@@ -189,7 +245,8 @@ static void fill_cluster(struct wd_impostor *table, const struct wd_octant *octa
 {
     for (uint32_t i = 0; i < count; i++) {
         struct wd_impostor *impostor = &table[i];
-        *impostor = (struct wd_impostor){.size_m = size_m, .tree_count = 1, .look = cells[i].look};
+        *impostor = (struct wd_impostor){
+            .size_m = {size_m, size_m, size_m}, .tree_count = 1, .look = cells[i].look};
         for (int axis = 0; axis < 3; axis++)
             impostor->min_m[axis] =
                 octant->cube_min_m[axis] + size_m * (float)((cells[i].at >> 8 * axis) & 0xffu);
@@ -259,7 +316,7 @@ static bool impostor_use_forest(void *state, struct wd_gpu *gpu, struct wd_fores
     if (ok) {
         size_t total = (size_t)octree->count + clusters.cell_count;
         struct wd_impostor *table = wd_alloc_array(total, sizeof *table);
-        fill_octants(table, octree, &colors);
+        fill_octants(table, forest->world, &colors);
         if (count)
             fill_clusters(impostors, table, octree->count, forest->world, chosen, &clusters);
         ok = upload_table(impostors, gpu, table, total);
