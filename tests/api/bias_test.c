@@ -12,7 +12,7 @@
 static const struct bound {
     const char *form;
     double coverage_pct, radiance_pct;
-} bounds[] = {{"full", 2.5, 3}, {"reduced", 2.5, 4.5}, {"cards", 3, 3}, {"splats", 5.5, 5}};
+} bounds[] = {{"full", 2.5, 3}, {"reduced", 2.5, 4.5}, {"cards", 3, 3}, {"splats", 2.5, 4}};
 
 enum { PX_32 = 2, FROM_ABOVE = 1 };
 
