@@ -6,10 +6,17 @@
 #include <stdio.h>
 #include <time.h>
 
-enum { FRAMES = 9, MAX_SUBJECTS = 2 };
+enum { FRAMES = 9, MAX_SUBJECTS = 2, PASS_FRAMES = 5, MAX_PASSES = 32 };
 static const char *const SCENE = "scenes/bench75k.json";
 static const char *const VIEWS[] = {"overview", "walk"};
 enum { VIEW_COUNT = sizeof VIEWS / sizeof VIEWS[0] };
+
+/* Medians of the passes of a view, of frames drawn for these alone. */
+struct passes {
+    double processor_ms[MAX_PASSES][PASS_FRAMES];
+    char names[MAX_PASSES][40];
+    uint32_t count;
+};
 
 /* A renderer with its forest, to be drawn by one method. */
 struct subject {
@@ -45,9 +52,9 @@ static void walk(struct wd_camera *camera, double way_m)
     camera->position_m[1] += cos(camera->yaw_rad) * way_m;
 }
 
-static bool draw(struct subject *subject, const char *view, int frame)
+static bool draw(struct subject *subject, const char *view, int frame, enum wd_time_mode timing)
 {
-    struct wd_render_params params = {.samples = 1, .method = subject->method};
+    struct wd_render_params params = {.samples = 1, .method = subject->method, .timing = timing};
     struct wd_render_defaults defaults;
     struct wd_frame_stats stats;
     struct wd_picture picture = {0};
@@ -68,6 +75,35 @@ static bool draw(struct subject *subject, const char *view, int frame)
     return ok;
 }
 
+static void keep_passes(struct passes *passes, const struct wd_frame_stats *stats, int frame)
+{
+    passes->count = stats->pass_count < MAX_PASSES ? stats->pass_count : MAX_PASSES;
+    for (uint32_t k = 0; k < passes->count; k++) {
+        const struct wd_pass_time *pass = &stats->passes[k];
+        passes->processor_ms[k][frame] = pass->processor_ms;
+        snprintf(passes->names[k], sizeof passes->names[k], "%*s%s", 2 * (int)pass->depth, "",
+                 pass->name);
+    }
+}
+
+/* On software devices: processor time, so that other work on the machine does not count. */
+static bool print_passes(struct subject *subject, const char *view)
+{
+    struct passes passes = {0};
+    struct wd_frame_stats stats;
+    for (int frame = 0; frame < PASS_FRAMES; frame++) {
+        if (!draw(subject, view, frame, WD_TIME_PASSES))
+            return false;
+        wd_renderer_get_stats(subject->renderer, &stats);
+        keep_passes(&passes, &stats, frame);
+    }
+    printf("%-9s %-12s processor time of passes\n", view, subject->label);
+    for (uint32_t k = 0; k < passes.count; k++)
+        printf("    %-20s %7.1f ms\n", passes.names[k],
+               bench_median(passes.processor_ms[k], PASS_FRAMES));
+    return true;
+}
+
 /* Medians over the frames of one view; each subject draws each frame in turn. */
 struct result {
     double frame_ms[MAX_SUBJECTS], cpu_ms[MAX_SUBJECTS];
@@ -78,7 +114,7 @@ static bool measure_view(struct subject *subjects, int count, const char *view,
 {
     for (int frame = -2; frame < FRAMES; frame++) { /* the first two warm up */
         for (int i = 0; i < count; i++) {
-            if (!draw(&subjects[i], view, frame))
+            if (!draw(&subjects[i], view, frame, WD_TIME_OFF))
                 return false;
         }
     }
@@ -87,6 +123,10 @@ static bool measure_view(struct subject *subjects, int count, const char *view,
         result->cpu_ms[i] = bench_median(subjects[i].cpu_ms, FRAMES);
         printf("%-9s %-12s frame %7.1f ms, processor time %7.1f ms\n", view, subjects[i].label,
                result->frame_ms[i], result->cpu_ms[i]);
+    }
+    for (int i = 0; i < count; i++) {
+        if (!print_passes(&subjects[i], view))
+            return false;
     }
     return true;
 }

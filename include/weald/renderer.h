@@ -141,6 +141,8 @@ struct wd_pass_time {
     const char *name; /* "shadow", "trees", "terrain", "light", ... */
     double gpu_ms;    /* 0 without WD_TIME_PASSES */
     double cpu_ms;
+    double processor_ms; /* that all threads of the process ran, recording included; 0 on devices that
+                            run passes beside each other */
     uint32_t depth;   /* 0: a pass; more: a part of the pass before it, whose time holds its own */
 };
 struct wd_frame_stats {

@@ -223,6 +223,7 @@ void wd_renderer_keep_times(struct wd_renderer *renderer)
             continue;
         pass->gpu_ms += scope->gpu_us * 1e-3;
         pass->cpu_ms += scope->cpu_us * 1e-3;
+        pass->processor_ms += scope->processor_us * 1e-3;
     }
 }
 

@@ -12,6 +12,7 @@ struct wd_scope_time {
     char name[32];
     double gpu_us; /* device time (timestamps), or wall clock of the scope alone when `serial` */
     double cpu_us; /* time spent recording it */
+    double processor_us; /* that all threads ran in it, where the scope runs alone; else 0 */
     uint32_t depth; /* nesting, 0 outermost; a parent's time includes its children's */
 };
 
@@ -62,7 +63,7 @@ struct wd_cmd {
     VkCommandBuffer vk; /* changes when a scope is submitted alone: do not keep it */
     bool failed;        /* a descriptor or upload could not be had; wd_frame_submit returns false */
     uint32_t scope_stack[8], scope_depth;
-    double scope_start[WD_MAX_SCOPES];
+    double scope_start[WD_MAX_SCOPES], scope_processor[WD_MAX_SCOPES];
     enum wd_timing timing; /* of this frame */
     bool rendering;        /* between wd_cmd_begin_rendering and wd_cmd_end_rendering */
     bool recorded;         /* something was recorded since the frame or scope began or ended */

@@ -51,6 +51,7 @@ static uint32_t open_scope(struct wd_cmd *cmd, const char *name)
         stamp(cmd, 2 * index);
     else
         cut(cmd);
+    cmd->scope_processor[index] = wd_processor_s();
     cmd->scope_start[index] = wd_clock_s() - cmd->waited_s;
     return index;
 }
@@ -78,10 +79,13 @@ void wd_cmd_scope_end(struct wd_cmd *cmd)
     if (index != untimed) {
         double now_s = wd_clock_s() - cmd->waited_s;
         cmd->slot->scopes[index].cpu_us = 1e6 * (now_s - cmd->scope_start[index]);
-        if (has_timestamps(cmd->gpu))
+        if (has_timestamps(cmd->gpu)) {
             stamp(cmd, 2 * index + 1);
-        else
+        } else {
             cut(cmd);
+            cmd->slot->scopes[index].processor_us =
+                1e6 * (wd_processor_s() - cmd->scope_processor[index]);
+        }
     }
     cmd->scope_depth--;
 }
