@@ -53,6 +53,14 @@ float covered_px(wd_tree tree, vec3 toward, float pixels_per_m)
     return seen * pixels_per_m * pixels_per_m;
 }
 
+/* Herbs and ferns are fine work: discs a pixel or two wide fill the gaps between their leaflets. Where
+ * such a plant is large on screen, and few are, it has more discs. */
+float finer_near(uint model, float tall_px)
+{
+    float finer = splat_models[model].finer;
+    return mix(1.0, finer, smoothstep(24.0, 96.0, tall_px));
+}
+
 /* What a unit of surface shows along a direction of the world: its dot product with a normal in the
  * model's axes. The pose stretches areas by its cofactors. */
 vec3 model_facing(tree_pose pose, vec3 v)
@@ -234,7 +242,8 @@ void select_tree(uint index, float share, uint place)
     float pixels_per_m = view.pixels / distance_m;
     float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m * view.detail;
     bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(random));
-    float wanted = max(view.density * covered_px(tree, toward, pixels_per_m),
+    float wanted = max(view.density * finer_near(model_index, tall_px)
+                           * covered_px(tree, toward, pixels_per_m),
                        float(view.min_splats));
     wd_splat_tree splats;
     float each = min(wanted / float(WD_SPLAT_STRATA), float(WD_STRATUM_SPLATS));

@@ -66,7 +66,10 @@ struct wd_splat_model {
     float lower[WD_GAIN_SIDES];           /* share of the leaves seen that show the lower side */
     float wood_spread;                    /* the first n of N triangles have (n / N)^this of the bark
                                              that is seen */
-    float grain;                          /* root of a mean triangle's area over the crown's width */
+    float grain;                          /* root of a mean triangle's area over the crown's width,
+                                             times `finer` */
+    float finer;                          /* 1 .. 4: plants of few triangles are drawn as if they
+                                             were so many times as near */
     uint32_t wood_first, wood_count;      /* triangles, those that show most first */
 };
 

@@ -141,21 +141,27 @@ static bool make_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu, const char
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
 }
 
+/* A mesh of more triangles is worth its cost only where they are large on screen; that of a fern (some
+ * 13,000) or a herb costs little by itself. */
+static const float LARGE_MESH = 50000.0f, FINEST = 4.0f;
+
 /* Of the full mesh: wood, leaves and flowers. Leaves in the air are no surface that discs could stand
  * for: as if each were a triangle twice as wide, they are drawn one by one up to twice as far. */
-static float grain_of(const struct wd_forest_device *forest, uint32_t index,
-                      const struct wd_splat_model *model)
+static void measure_grain(struct wd_splat_model *model, const struct wd_forest_device *forest,
+                          uint32_t index)
 {
     const struct wd_mesh_range *range = &forest->meshes.ranges[index][WD_LEVEL_MESH];
     size_t triangles = range->index_count / 3;
     for (int kind = 0; kind < WD_LEAF_SETS; kind++)
         triangles += (size_t)range->sets[kind].leaf_count * range->sets[kind].index_count / 3;
     float area_m2 = model->leaf_area_m2 + model->wood_area_m2;
+    model->finer = fminf(fmaxf(LARGE_MESH / (float)(triangles ? triangles : 1), 1.0f), FINEST);
     if (forest->host_models[index].fall_mps > 0.0f) {
         area_m2 = 4.0f * model->leaf_area_m2;
         triangles = range->sets[WD_SET_LEAVES].leaf_count;
     }
-    return sqrtf(area_m2 / (float)(triangles ? triangles : 1)) / forest->host_models[index].crown_m;
+    float side_m = sqrtf(area_m2 / (float)(triangles ? triangles : 1));
+    model->grain = model->finer * side_m / forest->host_models[index].crown_m;
 }
 
 static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
@@ -195,8 +201,10 @@ static void measure_grains(struct wd_continuum_forest *own, const struct wd_fore
 {
     const struct wd_world *world = forest->world;
     own->grains = wd_alloc_array(forest->model_count, sizeof *own->grains);
-    for (uint32_t i = 0; i < forest->model_count; i++)
-        own->grains[i] = splats[i].model.grain = grain_of(forest, i, &splats[i].model);
+    for (uint32_t i = 0; i < forest->model_count; i++) {
+        measure_grain(&splats[i].model, forest, i);
+        own->grains[i] = splats[i].model.grain;
+    }
     for (size_t i = 0; i < world->tree_count; i++) {
         float share = own->grains[wd_forest_model_of(forest, &world->trees[i])];
         own->coarsest_m = fmaxf(own->coarsest_m, share * WD_TREE_CROWN_M(world->trees[i]));
