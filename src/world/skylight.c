@@ -90,7 +90,7 @@ static void settle_forms(float form[FORMS][3])
     }
 }
 
-static float on_level_ground(const float form[FORMS][3], int channel)
+static float on_level_ground(float form[FORMS][3], int channel)
 {
     return form[0][channel] + form[3][channel] + form[6][channel];
 }

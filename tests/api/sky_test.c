@@ -43,7 +43,8 @@ static enum wd_result open_forest(struct wd_forest **forest, const char *map, co
     return wd_forest_create(forest, &params);
 }
 
-/* Mean of the sky's pixels and of the rest. */
+/* Mean of the sky's pixels in the picture's upper half, where the map is of one radiance, and of the
+ * rest. Between trees sky shows below the horizon, too. */
 struct means {
     double sky[3], rest[3], skies, rests;
 };
@@ -53,6 +54,8 @@ static struct means means_of(const struct wd_picture *picture)
     struct means means = {0};
     for (size_t at = 0; at < (size_t)picture->width * picture->height; at++) {
         bool sky = isinf(picture->depth_m[at]);
+        if (sky && at >= (size_t)picture->width * picture->height / 2)
+            continue;
         for (size_t k = 0; k < 3; k++)
             (sky ? means.sky : means.rest)[k] += (double)picture->color[3 * at + k];
         *(sky ? &means.skies : &means.rests) += 1;
