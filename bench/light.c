@@ -79,11 +79,11 @@ struct painters {
 static bool compare_view(const struct painters *painters, const char *light, const char *view,
                          double *worst)
 {
-    struct wd_reference_picture_params trace = {
-        .width = WIDTH,
-        .height = HEIGHT,
-        .samples = TRACED_SAMPLES,
-        .layers = WD_LAYER_COLOR | WD_LAYER_DEPTH | WD_LAYER_TREE_ID};
+    struct wd_reference_picture_params trace = {.width = WIDTH,
+                                                .height = HEIGHT,
+                                                .samples = TRACED_SAMPLES,
+                                                .layers = WD_LAYER_COLOR | WD_LAYER_DEPTH |
+                                                          WD_LAYER_TREE_ID};
     struct wd_render_params draw = {.width = WIDTH,
                                     .height = HEIGHT,
                                     .samples = DRAWN_SAMPLES,
@@ -107,7 +107,8 @@ static bool compare_view(const struct painters *painters, const char *light, con
 
 static bool compare_light(const struct light *light, const char *gpu, double *worst)
 {
-    const struct wd_forest_params forest_params = {.scene_path = scene, .settings = light->settings};
+    const struct wd_forest_params forest_params = {.scene_path = scene,
+                                                   .settings = light->settings};
     const struct wd_renderer_params renderer_params = {.gpu = gpu};
     const struct wd_reference_params reference_params = {0};
     struct painters painters = {0};
@@ -137,10 +138,11 @@ bool bench_mean_colour(const char *gpu)
 
 /* --- costs ----------------------------------------------------------------------------------- */
 
-enum { FRAMES = 7, CASES = 4, MAX_PASSES = 24 };
+enum { FRAMES = 7, CASES = 6, MAX_PASSES = 24 };
 
 struct cost {
     const char *name, *shadow_taps, *wind;
+    enum wd_view_mode view; /* WD_VIEW_ALBEDO: without light */
     struct wd_forest *forest;
     struct wd_renderer *renderer;
     double frame_ms[FRAMES];
@@ -161,9 +163,13 @@ static bool open_case(struct cost *cost, const char *gpu)
 
 static bool draw_case(struct cost *cost, enum wd_time_mode timing, struct wd_frame_stats *stats)
 {
-    struct wd_render_params params = {
-        .time_s = 3, .width = 800, .height = 600, .samples = 1, .method = "octree",
-        .timing = timing};
+    struct wd_render_params params = {.time_s = 3,
+                                      .width = 800,
+                                      .height = 600,
+                                      .samples = 1,
+                                      .method = "octree",
+                                      .view = cost->view,
+                                      .timing = timing};
     struct wd_picture picture = {0};
     bool ok = wd_forest_get_camera(cost->forest, "overview", &params.camera) == WD_OK &&
               wd_renderer_render(cost->renderer, &params, &picture) == WD_OK;
@@ -222,10 +228,9 @@ static bool measure_cost(const char *gpu, const char *figure, int with, int with
     static const char off[] = "quality.shadow_taps=0", still[] = "wind.speed_mps=0";
     static const char on[] = "quality.shadow_taps=4", windy[] = "wind.speed_mps=6";
     struct cost cases[CASES] = {
-        {.name = "neither", .shadow_taps = off, .wind = still},
-        {.name = "shadow", .shadow_taps = on, .wind = still},
-        {.name = "sway", .shadow_taps = off, .wind = windy},
-        {.name = "shadow and sway", .shadow_taps = on, .wind = windy},
+        {"light", off, still, WD_VIEW_LIT},       {"light, shadow", on, still, WD_VIEW_LIT},
+        {"light, sway", off, windy, WD_VIEW_LIT}, {"light, shadow, sway", on, windy, WD_VIEW_LIT},
+        {"none", off, still, WD_VIEW_ALBEDO},     {"sway", off, windy, WD_VIEW_ALBEDO},
     };
     if (!time_cases(cases, gpu))
         return false;
