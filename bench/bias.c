@@ -91,12 +91,15 @@ static struct wd_render_params view_of(const struct bias_stand *stand, int heigh
     const double pi = 3.14159265358979323846;
     double pixels_per_m = zoom * bias_height_px[height] / stand->height_m;
     double elevation = bias_elevation_deg[view] * pi / 180, distance = 120 * stand->height_m;
-    double wide = tree_counts[height] * stand->spacing_m;
-    double tall = 1.15 * (stand->height_m * cos(elevation) + stand->spacing_m * sin(elevation));
+    double stretch_m = tree_counts[height] * stand->spacing_m;
+    double wide = stretch_m - stand->spacing_m + stand->width_m;
+    double tall = 1.15 * (stand->height_m * cos(elevation) + stand->width_m * sin(elevation));
     struct wd_render_params params = {.samples = 1, .layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID};
     params.width = (uint32_t)ceil(wide * pixels_per_m / zoom) * (uint32_t)zoom;
     params.height = (uint32_t)ceil(tall * pixels_per_m / zoom) * (uint32_t)zoom;
-    double middle = MAX_TREES * stand->spacing_m + (stretch - 0.5 * (stretches[height] - 1)) * wide;
+    double between = tree_counts[height] * stretches[height] % 2 ? 0.5 : 0; /* trees at the middle */
+    double middle = (MAX_TREES + between) * stand->spacing_m +
+                    (stretch - 0.5 * (stretches[height] - 1)) * stretch_m;
     double x = shift_x / pixels_per_m;
     double y = shift_y / pixels_per_m;
     params.camera = (struct wd_camera){
@@ -210,8 +213,11 @@ bool bias_stand_init(struct bias_stand *stand, const char *path)
     *stand = (struct bias_stand){0};
     if (!wd_species_load(&species, path, &arena, NULL))
         return false;
-    stand->height_m = 0.8 * (double)species.typical_height_m;
-    stand->spacing_m = 1.6 * stand->height_m;
+    double height_m = 0.8 * (double)species.typical_height_m;
+    double reach_m = 1.5 * wd_species_crown_of_height_m(&species, height_m); /* boughs lean out */
+    stand->height_m = height_m;
+    stand->width_m = fmin(reach_m + 0.15 * height_m, 1.6 * height_m);
+    stand->spacing_m = fmin(reach_m + 0.4 * height_m, 1.6 * height_m);
     wd_arena_finish(&arena);
     return write_scene(stand, path);
 }

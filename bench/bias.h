@@ -19,6 +19,7 @@ extern const struct bias_form bias_forms[BIAS_FORMS]; /* the first is the refere
 struct bias_stand {
     char folder[32], scene[64];
     double height_m, spacing_m;
+    double width_m; /* of one tree, about */
 };
 
 /* What trees show in a picture: pixels and radiance. */

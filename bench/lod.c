@@ -23,24 +23,28 @@ struct lod_bench {
     struct lod_worst worst;
 };
 
-static void keep_worst(double *worst, double found)
+static void keep_worst(struct lod_case *worst, double found, const char *name)
 {
-    if (fabs(found) > fabs(*worst))
-        *worst = found;
+    if (worst->name[0] && fabs(found) <= fabs(worst->pct))
+        return;
+    worst->pct = found;
+    snprintf(worst->name, sizeof worst->name, "%s", name);
 }
 
 static void note(struct lod_bench *bench, const char *species, const char *form, int height,
                  int view, const struct bias *bias, bool used)
 {
-    printf("%-14s %-9s %4d px %3.0f deg  coverage %+6.1f%%  radiance %+6.1f%%  error %5.1f%%%s\n",
-           species, form, bias_height_px[height], bias_elevation_deg[view], bias->coverage_pct,
-           bias->radiance_pct, bias->error_pct, used ? "  used" : "");
+    char name[64];
+    snprintf(name, sizeof name, "%-14s %-9s %4d px %3.0f deg", species, form,
+             bias_height_px[height], bias_elevation_deg[view]);
+    printf("%s  coverage %+6.1f%%  radiance %+6.1f%%  error %5.1f%%%s\n", name,
+           bias->coverage_pct, bias->radiance_pct, bias->error_pct, used ? "  used" : "");
     fflush(stdout);
-    keep_worst(&bench->worst.any.coverage_pct, bias->coverage_pct);
-    keep_worst(&bench->worst.any.radiance_pct, bias->radiance_pct);
+    keep_worst(&bench->worst.coverage, bias->coverage_pct, name);
+    keep_worst(&bench->worst.radiance, bias->radiance_pct, name);
     if (used) {
-        keep_worst(&bench->worst.used.coverage_pct, bias->coverage_pct);
-        keep_worst(&bench->worst.used.radiance_pct, bias->radiance_pct);
+        keep_worst(&bench->worst.used_coverage, bias->coverage_pct, name);
+        keep_worst(&bench->worst.used_radiance, bias->radiance_pct, name);
     }
 }
 
@@ -147,20 +151,23 @@ static bool run_kinds(struct lod_worst *worst, const char *gpu)
     return lod_run(worst, &(struct lod_choice){gpu, kinds, ~0u, ~0u, true});
 }
 
+static bool print_figure(bool measured, const char *name, const struct lod_case *worst)
+{
+    if (measured)
+        printf("worst: %s\n%s %.1f %%\n", worst->name, name, fabs(worst->pct));
+    return measured;
+}
+
 bool bench_lod_coverage(const char *gpu)
 {
     struct lod_worst worst;
     bool ok = run_kinds(&worst, gpu);
-    if (ok)
-        printf("lod-coverage-bias-pct %.1f %%\n", fabs(worst.used.coverage_pct));
-    return ok;
+    return print_figure(ok, "lod-coverage-bias-pct", &worst.used_coverage);
 }
 
 bool bench_lod_radiance(const char *gpu)
 {
     struct lod_worst worst;
     bool ok = run_kinds(&worst, gpu);
-    if (ok)
-        printf("lod-radiance-bias-pct %.1f %%\n", fabs(worst.used.radiance_pct));
-    return ok;
+    return print_figure(ok, "lod-radiance-bias-pct", &worst.used_radiance);
 }

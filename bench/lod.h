@@ -12,9 +12,14 @@ struct lod_choice {
     bool used;                  /* forms only where they are drawn by default */
 };
 
+struct lod_case {
+    double pct;
+    char name[64]; /* species, form, height and view */
+};
+
 struct lod_worst {
-    struct bias any;  /* of every form and height */
-    struct bias used; /* of forms where they are drawn by default */
+    struct lod_case coverage, radiance;           /* of every form and height */
+    struct lod_case used_coverage, used_radiance; /* of forms where they are drawn by default */
 };
 
 /* Prints a line for each species, form, height and view. */

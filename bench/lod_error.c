@@ -32,6 +32,12 @@ static bool add_height(unsigned *heights, const char *text)
     return false;
 }
 
+static void print_worst(const char *among, const char *what, const struct lod_case *worst)
+{
+    if (worst->name[0])
+        printf("worst %s, %s: %+.1f%%  %s\n", what, among, worst->pct, worst->name);
+}
+
 int main(int argc, char **argv)
 {
     const char *species[MAX_SPECIES + 1] = {0};
@@ -57,8 +63,9 @@ int main(int argc, char **argv)
     }
     if (!lod_run(&worst, &choice))
         return 1;
-    printf("worst where used: coverage %+.1f%%, radiance %+.1f%%; of all: %+.1f%%, %+.1f%%\n",
-           worst.used.coverage_pct, worst.used.radiance_pct, worst.any.coverage_pct,
-           worst.any.radiance_pct);
+    print_worst("used", "coverage", &worst.used_coverage);
+    print_worst("used", "radiance", &worst.used_radiance);
+    print_worst("all", "coverage", &worst.coverage);
+    print_worst("all", "radiance", &worst.radiance);
     return 0;
 }
