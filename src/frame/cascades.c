@@ -3,8 +3,18 @@
 #include <math.h>
 #include <string.h>
 
+#include "world/surroundings.h"
+
 /* A cascade ends at this share of the next one's distance. */
 static const double CASCADE_RATIO = 0.28;
+/* The farthest ground seen is counted in steps of this, so that a moving camera seldom changes it. */
+static const double FARTHEST_STEP = 1.1;
+/* Through a long lens a slice is a rod: where a square about it is smaller than this share of the
+ * sphere, the map holds that. Its size is counted in steps, too. */
+static const double LENS_SHARE = 0.7;
+static const double SIZE_STEP = 1.1;
+/* Look-ups of what lies at a slice's edge. */
+static const double LOOK_MARGIN_M = 0.2;
 /* Penumbras and the offsets of shadow look-ups reach this far. */
 static const float CASTER_MARGIN_M = 3.0f;
 
@@ -40,6 +50,28 @@ static double slice_sphere(const struct wd_view *view, double near, double far, 
     return sqrt((far - middle) * (far - middle) + corner * far * far);
 }
 
+/* Half of the side of the square across the sun's rays that holds the slice, and its middle along
+ * `right` and `up`; counted in steps, so that a turning camera seldom changes the map's texels. */
+static double slice_square(const struct wd_cascade_box *box, const struct wd_view *view, double near,
+                           double far, double middle[2])
+{
+    double half_height = tan(view->camera.fov_rad * 0.5);
+    double half_width = half_height * view->width / view->height;
+    double right[3], forward[3], up[3], half_m = 0.0;
+    wd_camera_axes(&view->camera, right, forward, up);
+    const double *axes[2] = {box->right, box->up};
+    for (int axis = 0; axis < 2; axis++) {
+        double wide = fabs(half_width * dot(right, axes[axis])) +
+                      fabs(half_height * dot(up, axes[axis]));
+        double along = dot(forward, axes[axis]);
+        double low = fmin(near * (along - wide), far * (along - wide));
+        double high = fmax(near * (along + wide), far * (along + wide));
+        middle[axis] = dot(view->eye_m, axes[axis]) + 0.5 * (low + high);
+        half_m = fmax(half_m, 0.5 * (high - low));
+    }
+    return pow(SIZE_STEP, ceil(log(half_m + LOOK_MARGIN_M) / log(SIZE_STEP)));
+}
+
 /* Moves the centre by whole texels, calm maps by large steps that they have room for, so that a
  * camera that moves or turns changes little. */
 static void snap(struct wd_cascade_box *box, const struct wd_cascades_params *params,
@@ -47,13 +79,11 @@ static void snap(struct wd_cascade_box *box, const struct wd_cascades_params *pa
 {
     const double *axes[3] = {box->right, box->up, box->toward};
     double step = 2.0 * box->radius / params->size;
-    box->calm = params->calm_m > 0.0 && step >= params->calm_m;
     if (box->calm) {
         step = box->radius / 8.0;
         box->radius += step;
     }
     for (int k = 0; k < 3; k++) {
-        box->center[k] = dot(center, axes[k]);
         if (box->calm || k < 2)
             box->center[k] = floor(box->center[k] / step + 0.5) * step;
     }
@@ -67,21 +97,32 @@ static void cascade_box(struct wd_cascade_box *box, const struct wd_cascades_par
 {
     const struct wd_view *view = params->view;
     double distance, center[3];
-    *box = (struct wd_cascade_box){.radius = slice_sphere(view, near, far, &distance)};
+    /* Rounded up, so that a turning camera changes nothing. */
+    double radius = ceil(slice_sphere(view, near, far, &distance) * 16.0) / 16.0;
+    *box = (struct wd_cascade_box){
+        .radius = radius,
+        .calm = params->calm_m > 0.0 && 2.0 * radius / params->size >= params->calm_m};
     double sp = sin(view->camera.pitch_rad), cp = cos(view->camera.pitch_rad);
     const double forward[3] = {sin(view->camera.yaw_rad) * cp, cos(view->camera.yaw_rad) * cp, sp};
     for (int k = 0; k < 3; k++)
         center[k] = view->eye_m[k] + forward[k] * distance;
-    /* Rounded up, so that a turning camera changes nothing. */
-    box->radius = ceil(box->radius * 16.0) / 16.0;
     sun_axes(box, params->sun_direction);
+    const double *axes[3] = {box->right, box->up, box->toward};
+    for (int k = 0; k < 3; k++)
+        box->center[k] = dot(center, axes[k]);
+    double middle[2], half_m = slice_square(box, view, near, far, middle);
+    if (half_m < LENS_SHARE * box->radius) {
+        box->radius = half_m;
+        memcpy(box->center, middle, sizeof middle);
+    }
     snap(box, params, center);
+    radius = fmax(radius, box->radius);
     /* Casters stand between the slice and the sun, no higher than the highest of all. */
     double rise = box->toward[2] > 0.05 ? box->toward[2] : 0.05;
-    double reach = (params->max_z_m - (center[2] - box->radius)) / rise;
-    double extent = fmin(fmax(reach, 2.0 * box->radius), 2.0 * box->radius + 20000.0);
+    double reach = (params->max_z_m - (center[2] - radius)) / rise;
+    double extent = fmin(fmax(reach, 2.0 * radius), 2.0 * radius + 20000.0);
     box->depth = extent + 64.0;
-    box->center[2] -= box->radius + 32.0;
+    box->center[2] -= radius + 32.0;
 }
 
 static void cascade_view(struct wd_view *cascade, const struct wd_view *view, const double eye_m[3])
@@ -113,7 +154,7 @@ static void cascade_view(struct wd_view *cascade, const struct wd_view *view, co
 
 /* Where cascade i ends: a fixed ratio between neighbours, drawn out so that the first begins at the
  * nearest thing seen; that is counted in whole steps, so that a moving camera seldom changes it. */
-static double cascade_end(const struct wd_cascades_params *params, int i)
+static double split_end(const struct wd_cascades_params *params, int i)
 {
     double first = params->distance_m * pow(CASCADE_RATIO, WD_CASCADES);
     if (params->nearest_m <= first)
@@ -121,6 +162,16 @@ static double cascade_end(const struct wd_cascades_params *params, int i)
     double step = floor(log(params->nearest_m / first) / log(1.5));
     double near = fmin(first * pow(1.5, step), 0.5 * params->distance_m);
     return near * pow(params->distance_m / near, (i + 1.0) / WD_CASCADES);
+}
+
+/* The same, but for the last no farther than the ground where the camera looks down on it. */
+static double cascade_end(const struct wd_cascades_params *params, int i)
+{
+    double end = split_end(params, i);
+    if (i + 1 == WD_CASCADES || (double)params->farthest_m >= end)
+        return end;
+    double seen = pow(FARTHEST_STEP, ceil(log(params->farthest_m) / log(FARTHEST_STEP)));
+    return fmin(end, fmax(seen, fmax(2.0 * params->near_m, 1.2 * params->nearest_m)));
 }
 
 /* What stands before the plane, or throws its shadow of length `shadow_m` across it. The plane counts
@@ -161,7 +212,10 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
                       const struct wd_cascades_params *params)
 {
     const double *eye_m = params->eye_m ? params->eye_m : params->view->eye_m;
-    double near = fmax(params->near_m, 0.66 * params->nearest_m);
+    double half_height = tan(params->view->camera.fov_rad * 0.5);
+    double half_width = half_height * params->view->width / params->view->height;
+    double corner = 1.0 / sqrt(1.0 + half_height * half_height + half_width * half_width);
+    double near = fmax(params->near_m, corner * params->nearest_m);
     for (int i = 0; i < WD_CASCADES; i++) {
         double far = cascade_end(params, i);
         cascades[i] = (struct wd_view){

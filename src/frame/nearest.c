@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "world/surroundings.h"
+
 struct search {
     const struct wd_forest_device *forest;
     const struct wd_view *view;
@@ -25,6 +27,17 @@ static float seen_distance(const struct search *search, const double min_m[3], c
     return distance;
 }
 
+/* As wide as the wind and leaning boughs reach (methods/selection.c). */
+static float tree_distance(const struct search *search, const struct wd_tree *tree)
+{
+    double height_m = 0.01 * (tree->size & 0xffffu), half_m = 0.005 * (tree->size >> 16);
+    double reach_m = 1.5 * half_m + 0.1 * height_m + 0.5;
+    const double foot_m[3] = {0.001 * tree->x_mm, 0.001 * tree->y_mm, 0.001 * tree->z_mm};
+    const double min_m[3] = {foot_m[0] - reach_m, foot_m[1] - reach_m, foot_m[2] - 1.0};
+    const double max_m[3] = {foot_m[0] + reach_m, foot_m[1] + reach_m, foot_m[2] + 1.1 * height_m};
+    return seen_distance(search, min_m, max_m);
+}
+
 static void search_trees(struct search *search, uint32_t index)
 {
     const struct wd_octant *octants = search->forest->world->octree.octants;
@@ -37,8 +50,9 @@ static void search_trees(struct search *search, uint32_t index)
     float distance = seen_distance(search, min_m, max_m);
     if (distance >= search->nearest_m)
         return;
-    if (octant->own_end > octant->begin || octant->child_count == 0)
-        search->nearest_m = distance;
+    for (uint32_t i = octant->begin; i < octant->own_end; i++)
+        search->nearest_m =
+            fminf(search->nearest_m, tree_distance(search, &search->forest->world->trees[i]));
     uint32_t child = octant->first_child;
     for (uint32_t i = 0; i < octant->child_count; i++) {
         search_trees(search, child);
@@ -77,4 +91,45 @@ float wd_nearest_seen(const struct wd_forest_device *forest, const struct wd_vie
     if (forest->world->octree.count)
         search_trees(&search, 0);
     return search.nearest_m;
+}
+
+/* --- the farthest ---------------------------------------------------------------------------- */
+
+/* Rays that fall less than this, metres a metre, are taken to reach the horizon. */
+static const double LEAST_FALL = 0.1;
+enum { RAYS_A_SIDE = 5, MOST_STEPS = 512 };
+
+/* Metres along `ray` until the ground. */
+static double ray_to_ground(const struct wd_terrain *terrain, const double eye_m[3],
+                            const double ray[3])
+{
+    double way_m = 0.0;
+    for (int i = 0; i < MOST_STEPS; i++) {
+        double x_m = eye_m[0] + way_m * ray[0], y_m = eye_m[1] + way_m * ray[1];
+        if (!wd_terrain_contains(terrain, x_m, y_m))
+            return INFINITY;
+        double above_m = eye_m[2] + way_m * ray[2] - (double)wd_terrain_height(terrain, x_m, y_m);
+        if (above_m <= 0.0)
+            return way_m;
+        way_m += fmax(0.5 * above_m, 0.25 * terrain->cell_m);
+    }
+    return INFINITY;
+}
+
+float wd_farthest_seen(const struct wd_terrain *terrain, const struct wd_view *view)
+{
+    double right[3], forward[3], up[3], ray[3], farthest_m = 0.0;
+    double half_height = tan(view->camera.fov_rad * 0.5);
+    double half_width = half_height * view->width / view->height;
+    wd_camera_axes(&view->camera, right, forward, up);
+    for (int i = 0; i < RAYS_A_SIDE * RAYS_A_SIDE; i++) {
+        double x = half_width * (2.0 * (i % RAYS_A_SIDE) / (RAYS_A_SIDE - 1) - 1.0);
+        double y = half_height * (1.0 - 2.0 * (i / RAYS_A_SIDE) / (RAYS_A_SIDE - 1));
+        for (int k = 0; k < 3; k++)
+            ray[k] = forward[k] + x * right[k] + y * up[k];
+        if (ray[2] > -LEAST_FALL)
+            return INFINITY;
+        farthest_m = fmax(farthest_m, ray_to_ground(terrain, view->eye_m, ray));
+    }
+    return (float)farthest_m;
 }

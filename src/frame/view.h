@@ -59,6 +59,7 @@ struct wd_cascades_params {
     float distance_m;        /* at which the last cascade ends */
     float near_m;
     float nearest_m;         /* distance of the nearest thing that the camera may see */
+    float farthest_m;        /* along its axis, of the farthest ground that it sees, or infinite */
     uint32_t size;           /* texels a side */
     double max_z_m;          /* of everything that casts, local frame */
     double min_z_m;          /* of the ground */
