@@ -72,7 +72,18 @@ static double make_cameras(struct wd_scene *scene, const struct row *row, double
                  &scene->arena);
     place_camera(&scene->cameras[1], "eye", row, near, eye,
                  fmin(half_height, eye + 0.4 * near), 50, &scene->arena);
+    /* the meter takes a picture filled with leaves for a dim day */
+    scene->quality.exposure_ev -= 0.9 * fmax(1 - near / fit, 0);
     return fmax(fit, near);
+}
+
+/* Distances of quality.* are for trees of 20 m and shrink with the height; a low plant is looked at
+ * from within twelve metres, or not at all. */
+static void hold_low_plants(struct wd_scene *scene, const struct row *row)
+{
+    const double whole_m = 12;
+    scene->quality.mesh_distance_m =
+        fmax(scene->quality.mesh_distance_m, whole_m * 20 / fmax(row->height_m, 0.1));
 }
 
 /* --- the forest -------------------------------------------------------------------------- */
@@ -142,6 +153,7 @@ enum wd_result wd_forest_create_specimens(struct wd_forest **result,
         struct wd_tree *trees = make_trees(specimens, count);
         struct row row = measure(specimens, count);
         double far = make_cameras(&forest->scene, &row, aspect, distance_m);
+        hold_low_plants(&forest->scene, &row);
         forest->scene.quality.shadow_distance_m = far + 3 * row.height_m;
         const struct wd_world_params world = {
             .trees = trees, .tree_count = count, .log = &forest->log};

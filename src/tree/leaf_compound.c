@@ -108,9 +108,9 @@ static void add_strap(struct wd_leaf_template *leaf, const struct wd_blade_place
 }
 
 static void add_leaflet(struct wd_leaf_template *leaf, const struct wd_species *species,
+                        const struct wd_leaf_outline *outline,
                         const struct wd_blade_place *place, struct wd_random *random)
 {
-    const struct wd_leaf_outline *outline = wd_leaf_outline_of(species);
     if (species->leaf.compound == WD_COMPOUND_BIPINNATE)
         add_pinna(leaf, place);
     else if (species->leaf.shape == WD_LEAF_BLADE)
@@ -131,7 +131,7 @@ static struct axis frond_axis(const struct wd_species *species, struct wd_random
 }
 
 void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species *species,
-                         uint32_t variant)
+                         const struct wd_leaf_outline *outline, uint32_t variant)
 {
     struct wd_random random = wd_random_of(variant, 0xf40d);
     const struct axis axis = frond_axis(species, &random);
@@ -158,11 +158,12 @@ void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species 
                                                      last ? d : wd_v3_unit(out), up,
                                                      size * length, width * (0.5f + 0.5f * size));
         place.stiff = 0.6f * at;
-        add_leaflet(leaf, species, &place, &random);
+        add_leaflet(leaf, species, outline, &place, &random);
     }
 }
 
-void wd_leaf_add_palmate(struct wd_leaf_template *leaf, const struct wd_species *species)
+void wd_leaf_add_palmate(struct wd_leaf_template *leaf, const struct wd_species *species,
+                         const struct wd_leaf_outline *outline)
 {
     float whole = species->leaf.length_cm, from = species->leaf.stalk_cm / whole;
     float length = species->leaf.leaflet_length_cm / whole;
@@ -179,7 +180,7 @@ void wd_leaf_add_palmate(struct wd_leaf_template *leaf, const struct wd_species 
         struct wd_blade_place place = wd_blade_place(wd_v3_mad(hub, out, 0.06f), out,
                                                      WD_V3(0, 0, 1), size * length, size * width);
         place.stiff = 0.3f;
-        wd_leaf_add_blade(leaf, wd_leaf_outline_of(species), &place);
+        wd_leaf_add_blade(leaf, outline, &place);
     }
 }
 

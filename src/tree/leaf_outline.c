@@ -23,6 +23,43 @@ static const struct wd_leaf_outline shapes[] = {
     [WD_LEAF_NEEDLES] = {0, {{1, 0.08f}, {0.9f, 0.75f}}, 2, 0.1f, 0.05f, WD_VEINS_PARALLEL, 1, 0},
 };
 
+/* Drawn after the figures in Stace, New Flora of the British Isles (2019): four or five lobes a side
+ * of oak, birch's double teeth as single ones, Norway maple's lobes with one tooth a side. */
+static const struct wd_leaf_outline near_shapes[] = {
+    [WD_LEAF_OVATE] = {0, {{0.40f, 0.05f}, {0.74f, 0.14f}, {0.95f, 0.28f}, {1, 0.42f},
+                           {0.91f, 0.58f}, {0.66f, 0.76f}, {0.34f, 0.90f}, {0.10f, 0.97f}}, 8,
+                       0.14f, 0.10f, WD_VEINS_PINNATE, 7, 0.20f},
+    [WD_LEAF_LOBED] = {0, {{0.16f, 0.02f}, {0.22f, 0.12f}, {0.54f, 0.22f}, {0.52f, 0.30f},
+                           {0.34f, 0.34f}, {0.80f, 0.45f}, {0.78f, 0.54f}, {0.46f, 0.56f},
+                           {1, 0.70f}, {0.92f, 0.79f}, {0.50f, 0.78f}, {0.64f, 0.90f},
+                           {0.50f, 0.955f}, {0.26f, 0.94f}}, 14, 0.12f, 0.10f,
+                       WD_VEINS_PINNATE, 5, 0.22f},
+    [WD_LEAF_TRIANGULAR] = {0, {{0.52f, 0.03f}, {0.92f, 0.12f}, {1, 0.25f}, {0.83f, 0.28f},
+                                {0.86f, 0.39f}, {0.66f, 0.43f}, {0.66f, 0.54f}, {0.46f, 0.58f},
+                                {0.43f, 0.69f}, {0.26f, 0.73f}, {0.13f, 0.88f}}, 11, 0.10f, 0.08f,
+                            WD_VEINS_PINNATE, 6, 0.24f},
+    [WD_LEAF_PALMATE] = {0.06f, {{0.34f, 0.01f}, {0.70f, 0.03f}, {0.58f, 0.14f}, {0.44f, 0.20f},
+                                 {0.80f, 0.34f}, {1, 0.56f}, {0.74f, 0.57f}, {0.60f, 0.68f},
+                                 {0.30f, 0.54f}, {0.40f, 0.74f}, {0.32f, 0.83f}, {0.12f, 0.87f}},
+                         12, 0.10f, 0.10f, WD_VEINS_PALMATE, 2, 0},
+    [WD_LEAF_LANCEOLATE] = {0, {{0.36f, 0.06f}, {0.80f, 0.20f}, {1, 0.40f}, {0.84f, 0.61f},
+                                {0.50f, 0.80f}, {0.20f, 0.93f}}, 6, 0.20f, 0.14f,
+                            WD_VEINS_PINNATE, 14, 0.10f},
+    [WD_LEAF_HEART] = {0.08f, {{0.24f, 0.01f}, {0.62f, 0}, {0.90f, 0.09f}, {1, 0.24f},
+                               {0.97f, 0.39f}, {0.80f, 0.55f}, {0.54f, 0.71f}, {0.26f, 0.85f},
+                               {0.09f, 0.94f}}, 9, 0.10f, 0.12f, WD_VEINS_PALMATE, 4, 0},
+    [WD_LEAF_ELLIPTIC] = {0, {{0.40f, 0.06f}, {0.75f, 0.18f}, {0.95f, 0.33f}, {1, 0.48f},
+                              {0.93f, 0.64f}, {0.68f, 0.80f}, {0.36f, 0.91f}, {0.11f, 0.97f}}, 8,
+                          0.16f, 0.08f, WD_VEINS_PINNATE, 6, 0.16f},
+};
+
+const struct wd_leaf_outline *wd_leaf_outline_near(const struct wd_species *species)
+{
+    enum wd_leaf_shape shape = species->leaf.shape;
+    bool drawn = shape < sizeof near_shapes / sizeof *near_shapes && near_shapes[shape].count > 0;
+    return drawn ? &near_shapes[shape] : &shapes[shape];
+}
+
 const struct wd_leaf_outline *wd_leaf_outline_of(const struct wd_species *species)
 {
     return &shapes[species->leaf.shape];

@@ -7,7 +7,7 @@
 
 enum wd_leaf_veins { WD_VEINS_PINNATE, WD_VEINS_PALMATE, WD_VEINS_PARALLEL };
 
-enum { WD_OUTLINE_POINTS = 6 };
+enum { WD_OUTLINE_POINTS = 14 };
 
 /* The right half of a blade of unit length and unit half width: from the foot on the midrib, the
  * points, to the tip at (0, 1). The left half mirrors it. */
@@ -23,6 +23,9 @@ struct wd_leaf_outline {
 };
 
 const struct wd_leaf_outline *wd_leaf_outline_of(const struct wd_species *species);
+
+/* The same blade with its lobes, teeth and curves, for leaves that are seen from near. */
+const struct wd_leaf_outline *wd_leaf_outline_near(const struct wd_species *species);
 
 /* Corner i of the right half: 0 the foot, then the points, then the tip; z is 0. */
 struct wd_vec3 wd_leaf_outline_corner(const struct wd_leaf_outline *shape, int i);

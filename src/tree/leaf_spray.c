@@ -48,6 +48,12 @@ static void add_leaves(struct spray *spray, const struct wd_species *species,
                        const struct wd_leaf_template *leaf, int count)
 {
     float reach = wd_sprig_reach(count);
+    if (count < 2) {
+        const struct wd_blade_place place = {.across = {1, 0, 0}, .along = {0, 1, 0},
+                                             .above = {0, 0, 1}, .length = 1};
+        add_copy(&spray->twig, leaf, &place);
+        return;
+    }
     for (int i = 0; i < count; i++) {
         struct wd_blade_place place = wd_sprig_place(species, &spray->random, i, count);
         add_copy(&spray->twig, leaf, &place);
@@ -144,6 +150,17 @@ static void add_needles(struct spray *spray, const struct wd_species *species, f
 
 /* --- the whole --------------------------------------------------------------------------- */
 
+/* Whether a single leaf has lobes or teeth that trees' meshes leave out. */
+static bool has_finer_outline(const struct wd_species *species,
+                              const struct wd_leaf_template *near)
+{
+    struct wd_leaf_template blade;
+    wd_leaf_template_init(&blade, species, WD_LEAF_AS_BLADE, 0);
+    bool finer = near->index_count > blade.index_count;
+    wd_leaf_template_finish(&blade);
+    return finer;
+}
+
 static void pack(struct wd_tree_mesh *mesh, const struct wd_leaf_template *twig,
                  const struct wd_species *species)
 {
@@ -170,14 +187,14 @@ void wd_leaf_spray_mesh(struct wd_tree_mesh *mesh, const struct wd_species *spec
 {
     struct spray spray = {.random = wd_random_of(0x5b4a, 1), .size_m = size_m};
     struct wd_leaf_template leaf;
-    wd_leaf_template_init(&leaf, species, WD_LEAF_AS_BLADE, 0);
+    wd_leaf_template_init(&leaf, species, WD_LEAF_AS_NEAR, 0);
     float area = wd_leaf_template_area(&leaf), real_m = 0.01f * species->leaf.length_cm;
     int count = (int)(size_m * size_m / (real_m * real_m) + 0.5f);
     int most = WD_SPRAY_TRIANGLES / (int)(leaf.index_count / 3 + 1);
     most = most < WD_SPRIG_LEAVES ? most : WD_SPRIG_LEAVES;
     if (species->leaf.shape == WD_LEAF_NEEDLES)
         add_needles(&spray, species, area);
-    else if (count > 1 && most > 1)
+    else if ((count > 1 && most > 1) || has_finer_outline(species, &leaf))
         add_leaves(&spray, species, &leaf, count < most ? count : most);
     pack(mesh, &spray.twig, species);
     wd_tree_mesh_update_bounds(mesh);

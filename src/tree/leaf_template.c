@@ -29,31 +29,32 @@ static struct wd_blade_place whole_leaf(const struct wd_species *species, float 
                           species->leaf.width_cm / species->leaf.length_cm);
 }
 
-static void add_simple(struct wd_leaf_template *leaf, const struct wd_species *species)
+static void add_simple(struct wd_leaf_template *leaf, const struct wd_species *species,
+                       const struct wd_leaf_outline *outline)
 {
     float from = fminf(species->leaf.stalk_cm / species->leaf.length_cm, 0.8f);
     struct wd_blade_place place = whole_leaf(species, from);
     if (from > 0)
         wd_leaf_add_stalk(leaf, WD_V3(0, 0, 0), place.foot, WD_V3(1, 0, 0), 0.025f);
-    wd_leaf_add_blade(leaf, wd_leaf_outline_of(species), &place);
+    wd_leaf_add_blade(leaf, outline, &place);
 }
 
 static void add_outlined(struct wd_leaf_template *leaf, const struct wd_species *species,
-                         uint32_t variant)
+                         const struct wd_leaf_outline *outline, uint32_t variant)
 {
     switch (species->leaf.compound) {
     case WD_COMPOUND_PINNATE:
     case WD_COMPOUND_BIPINNATE:
-        wd_leaf_add_pinnate(leaf, species, variant);
+        wd_leaf_add_pinnate(leaf, species, outline, variant);
         break;
     case WD_COMPOUND_PALMATE:
-        wd_leaf_add_palmate(leaf, species);
+        wd_leaf_add_palmate(leaf, species, outline);
         break;
     default:
         if (species->leaf.shape == WD_LEAF_BLADE)
             wd_leaf_add_arching_blade(leaf, species);
         else
-            add_simple(leaf, species);
+            add_simple(leaf, species, outline);
     }
 }
 
@@ -72,11 +73,16 @@ void wd_leaf_template_init(struct wd_leaf_template *leaf, const struct wd_specie
         wd_leaf_add_needles(leaf, species, variant);
         return;
     }
-    add_outlined(leaf, species, variant);
+    add_outlined(leaf, species, wd_leaf_outline_of(species), variant);
     if (form == WD_LEAF_AS_BLADE)
         return;
     float area = wd_leaf_template_area(leaf);
     leaf->corner_count = leaf->index_count = 0;
+    if (form == WD_LEAF_AS_NEAR) {
+        add_outlined(leaf, species, wd_leaf_outline_near(species), variant);
+        wd_leaf_template_scale(leaf, area);
+        return;
+    }
     struct wd_blade_place place = whole_leaf(species, 0);
     wd_leaf_add_kite(leaf, wd_leaf_outline_of(species), &place);
     wd_leaf_template_scale(leaf, area);

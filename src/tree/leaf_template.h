@@ -25,6 +25,7 @@ struct wd_leaf_template {
 enum wd_leaf_form {
     WD_LEAF_AS_KITE,  /* two triangles; needle shoots: a comb or brush of thin ones */
     WD_LEAF_AS_BLADE, /* its outline, folded and curved; leaflets one by one */
+    WD_LEAF_AS_NEAR,  /* the same with lobes and teeth; several times as many triangles */
 };
 
 /* Builds one of `WD_LEAF_VARIANTS` that differ in their random numbers. All forms have the same

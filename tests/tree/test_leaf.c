@@ -58,14 +58,19 @@ static void every_shape_is_sound(void **state)
     for (int shape = 0; shape <= WD_LEAF_NEEDLES; shape++)
         for (int compound = 0; compound <= WD_COMPOUND_BIPINNATE; compound++) {
             struct wd_species species = leafy(&arena, shape, compound);
-            struct wd_leaf_template leaf;
+            struct wd_leaf_template leaf, near;
             wd_leaf_template_init(&leaf, &species, WD_LEAF_AS_BLADE, 0);
+            wd_leaf_template_init(&near, &species, WD_LEAF_AS_NEAR, 0);
             check_template(&leaf);
+            check_template(&near);
             if (compound == WD_COMPOUND_SIMPLE && shape < WD_LEAF_BLADE) {
                 assert_in_range(leaf.index_count / 3, 4, 15);
+                assert_in_range(near.index_count / 3, 12, 29);
                 check_winding(&leaf);
+                check_winding(&near);
             }
             wd_leaf_template_finish(&leaf);
+            wd_leaf_template_finish(&near);
         }
     wd_arena_finish(&arena);
 }
@@ -191,14 +196,18 @@ static void twigs_keep_the_area(void **state)
     wd_arena_finish(&arena);
 }
 
+/* Near, a leaf of its real size is itself with all its lobes; a frond is whole at any distance. */
 static void a_leaf_of_its_real_size_needs_no_twig(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    struct wd_species oak = test_species(&arena, "oak");
-    struct wd_tree_mesh spray = {0};
+    struct wd_species oak = test_species(&arena, "oak"), fern = test_species(&arena, "fern");
+    struct wd_tree_mesh spray = {0}, frond = {0};
     wd_leaf_spray_mesh(&spray, &oak, 0.01f * oak.leaf.length_cm);
-    assert_int_equal(spray.index_count, 0);
+    assert_int_equal(spray.index_count / 3, 28);
+    assert_float_equal(spray_leaf_area(&spray) / (double)wd_leaf_unit_area(&oak), 1, 1e-3);
+    wd_leaf_spray_mesh(&frond, &fern, 0.01f * fern.leaf.length_cm);
+    assert_int_equal(frond.index_count, 0);
     wd_tree_mesh_finish(&spray);
     wd_arena_finish(&arena);
 }
