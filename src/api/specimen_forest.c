@@ -73,7 +73,7 @@ static double make_cameras(struct wd_scene *scene, const struct row *row, double
     place_camera(&scene->cameras[1], "eye", row, near, eye,
                  fmin(half_height, eye + 0.4 * near), 50, &scene->arena);
     /* the meter takes a picture filled with leaves for a dim day */
-    scene->quality.exposure_ev -= 0.9 * fmax(1 - near / fit, 0);
+    scene->quality.exposure_ev -= 0.9 * fmax(1 - 2 * near / fit, 0);
     return fmax(fit, near);
 }
 

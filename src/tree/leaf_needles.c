@@ -1,6 +1,6 @@
 #include "tree/leaf_parts.h"
 
-enum { COMB_NEEDLES = 7, BRUSH_NEEDLES = 15, ROSETTES = 4, ROSETTE_NEEDLES = 3 };
+enum { COMB_NEEDLES = 9, BRUSH_NEEDLES = 15, ROSETTES = 5, ROSETTE_NEEDLES = 5 };
 
 /* A feather: needles left and right of the shoot, shorter toward its tip, one at the tip. They
  * share their feet: a shoot has half the vertices so. */
@@ -13,16 +13,16 @@ static void add_comb(struct wd_leaf_template *leaf, struct wd_random *random)
                            0.3f);
     for (int i = 0; i < 2 * COMB_NEEDLES; i++) {
         float side = i & 1 ? 1.0f : -1.0f, at = ((float)(i / 2) + 0.5f) * step;
-        float length = (0.41f - 0.18f * at) * wd_random_range(random, 0.8f, 1.2f);
+        float length = (0.41f - 0.18f * at) * wd_random_range(random, 0.6f, 1.4f);
         float up = 0.25f + 0.35f * wd_random_signed(random);
-        struct wd_vec3 d = wd_v3_unit(WD_V3(side, 0.95f, up));
+        struct wd_vec3 d = wd_v3_unit(WD_V3(side, wd_random_range(random, 0.65f, 1.35f), up));
         struct wd_vec3 n = wd_v3_unit(WD_V3(-up * side, 0, 1));
         uint32_t tip = wd_leaf_add_corner(leaf, wd_v3_mad(WD_V3(0, at, 0), d, length), n, 0.5f, 1,
                                           1);
         uint32_t low = feet + (uint32_t)(i / 2);
         wd_leaf_add_triangle(leaf, side > 0 ? low : low + 1, tip, side > 0 ? low + 1 : low);
     }
-    wd_leaf_add_needle(leaf, WD_V3(0, 0.7f, 0), WD_V3(0, 1, 0), WD_V3(1, 0, 0), 0.3f, 0.12f);
+    wd_leaf_add_needle(leaf, WD_V3(0, 0.7f, 0), WD_V3(0, 1, 0), WD_V3(1, 0, 0), 0.3f, 0.1f);
 }
 
 /* A brush: needles all around the end of a shoot, pointing forward. */
@@ -52,7 +52,7 @@ static void add_rosettes(struct wd_leaf_template *leaf, struct wd_random *random
                                             ROSETTE_NEEDLES);
         struct wd_vec3 d = wd_v3_unit(wd_v3_mad(out, axis, 0.6f));
         wd_leaf_add_needle(leaf, WD_V3(0, at, 0), d, wd_v3_unit(wd_v3_cross(d, axis)),
-                           wd_random_range(random, 0.2f, 0.28f), 0.1f);
+                           wd_random_range(random, 0.19f, 0.29f), 0.048f);
     }
 }
 
