@@ -97,7 +97,7 @@ void main()
     if (index >= lists.count[LIST])
         return;
     uint tile = tiles[LIST * push.tile_columns * push.tile_rows + index];
-    uvec2 corner = uvec2(tile % push.tile_columns, tile / push.tile_columns) * WD_TILE;
+    uvec2 corner = uvec2(tile & 0xffffu, tile >> 16) * WD_TILE;
     ivec2 at = ivec2(corner + gl_LocalInvocationID.xy);
     if (at.x >= int(frame.width) || at.y >= int(frame.height))
         return;

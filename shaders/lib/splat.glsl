@@ -1,10 +1,44 @@
-/* Where a visible tree's splats lie on screen. Expects `splats` (wd_splat[]). */
+/* Where a visible tree's splats lie on screen, and the tables of them, fetched as texels: llvmpipe reads
+ * storage buffers lane by lane. */
+
+wd_splat splat_at(usamplerBuffer table, uint index)
+{
+    uvec2 texel = texelFetch(table, int(index)).xy;
+    return wd_splat(texel.x, texel.y);
+}
+
+wd_splat_wood splat_wood_at(usamplerBuffer table, uint index)
+{
+    int first = int(index) * WD_SPLAT_WOOD_TEXELS;
+    uvec4 a = texelFetch(table, first), b = texelFetch(table, first + 1),
+          c = texelFetch(table, first + 2);
+    return wd_splat_wood(wd_splat[3](wd_splat(a.x, a.y), wd_splat(a.z, a.w), wd_splat(b.x, b.y)),
+                         uint[3](b.z, b.w, c.x), uint[3](c.y, c.z, c.w));
+}
+
+wd_splat_item splat_item_at(usamplerBuffer table, uint index)
+{
+    uvec2 texel = texelFetch(table, int(index)).xy;
+    return wd_splat_item(texel.x, texel.y);
+}
+
+wd_splat_tree splat_tree_at(usamplerBuffer table, uint index)
+{
+    int first = int(index) * WD_SPLAT_TREE_TEXELS;
+    vec4 sway = uintBitsToFloat(texelFetch(table, first + 3));
+    vec4 facing = uintBitsToFloat(texelFetch(table, first + 4));
+    uvec4 from = texelFetch(table, first + 5), look = texelFetch(table, first + 6);
+    return wd_splat_tree(uintBitsToFloat(texelFetch(table, first)),
+                         uintBitsToFloat(texelFetch(table, first + 1)),
+                         uintBitsToFloat(texelFetch(table, first + 2)), sway.xyz, sway.w, facing.xyz,
+                         facing.w, from.x, from.y, from.z, from.w, look.x, look.y, look.z, look.w);
+}
 
 /* Stratum (x) of the tree's splat number `at`, and which of that stratum's window it is (y). */
 uvec2 splat_turn(wd_splat_tree tree, uint at)
 {
-    uint turn = uint((float(at) + 0.5) / float(tree.strata)); /* exact: at is less than 2^17 */
-    return uvec2(at - turn * tree.strata, turn);
+    uint turn = uint((float(at) + 0.5) / float(WD_TREE_STRATA(tree))); /* exact: at is less than 2^17 */
+    return uvec2(at - turn * WD_TREE_STRATA(tree), turn);
 }
 
 /* Index among all splats of the one in turn. */
@@ -13,7 +47,7 @@ uint splat_index(wd_splat_tree tree, uvec2 turn)
     bool wood = turn.x == WD_LEAF_STRATA;
     uint at = (tree.offset + turn.y) & ((wood ? WD_WOOD_SPLATS : WD_STRATUM_SPLATS) - 1u);
     at += wood ? (tree.offset >> 31) * WD_WOOD_SPLATS : 0u;
-    return tree.first_splat + turn.x * WD_STRATUM_SPLATS + at;
+    return tree.first_splat + at * WD_SPLAT_STRATA + turn.x;
 }
 
 vec3 splat_place(wd_splat splat)

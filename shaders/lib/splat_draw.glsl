@@ -9,9 +9,9 @@ layout(constant_id = 3) const uint SMALL = 0u; /* 1: an item is a thread's work,
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
-layout(scalar, set = 0, binding = 2) readonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
-layout(scalar, set = 0, binding = 3) readonly buffer Items { wd_splat_item items[]; };
-layout(scalar, set = 0, binding = 4) readonly buffer Splats { wd_splat splats[]; };
+layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
+layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
+layout(set = 0, binding = 4) uniform usamplerBuffer splats;      /* wd_splat */
 
 #include "lib/splat.glsl"
 
@@ -85,12 +85,13 @@ void main()
         return;
     if (SMALL != 0u)
         index = view.item_capacity - 1u - index;
-    wd_splat_item item = items[index];
-    wd_splat_tree tree = splat_trees[item.tree];
+    wd_splat_item item = splat_item_at(items, index);
+    wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
+    uint count = WD_ITEM_COUNT(item), from = WD_ITEM_FIRST(item);
     vec2 size = vec2(view.width, view.height);
-    for (uint i = first; i < item.count; i += step_size) {
-        uvec2 turn = splat_turn(tree, item.first + i);
-        wd_splat disc = splats[splat_index(tree, turn)];
+    for (uint i = first; i < count; i += step_size) {
+        uvec2 turn = splat_turn(tree, from + i);
+        wd_splat disc = splat_at(splats, splat_index(tree, turn));
         vec3 clip = splat_clip(tree, splat_place(disc));
         float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
         if (w < view.near_m)

@@ -7,9 +7,9 @@ layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
-layout(scalar, set = 0, binding = 2) readonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
-layout(scalar, set = 0, binding = 3) readonly buffer Items { wd_splat_item items[]; };
-layout(scalar, set = 0, binding = 4) readonly buffer Wood { wd_splat_wood wood[]; };
+layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
+layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
+layout(set = 0, binding = 4) uniform usamplerBuffer wood;        /* wd_splat_wood */
 
 #include "lib/splat.glsl"
 
@@ -54,11 +54,12 @@ void main()
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x + counts.done_wood;
     if (group >= counts.wood_items)
         return;
-    wd_splat_item item = items[group];
-    wd_splat_tree tree = splat_trees[item.tree];
+    wd_splat_item item = splat_item_at(items, group);
+    wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
+    uint count = WD_ITEM_COUNT(item), from = tree.first_wood + WD_ITEM_FIRST(item);
     vec2 size = vec2(view.width, view.height);
-    for (uint i = gl_LocalInvocationID.x; i < item.count; i += gl_WorkGroupSize.x) {
-        wd_splat_wood triangle = wood[tree.first_wood + item.first + i];
+    for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
+        wd_splat_wood triangle = splat_wood_at(wood, from + i);
         vec3 at[3];
         float nearest = 1e9;
         for (uint k = 0u; k < 3u; k++) {

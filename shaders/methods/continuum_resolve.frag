@@ -1,25 +1,23 @@
 #version 460
-/* From ids in the visibility buffer to surface, once a pixel. */
+/* From ids in the visibility buffer to surface, once a pixel: of wood where it has depth and nothing else
+ * yet, then of splats where either has. llvmpipe passes over pixels that fail the depth test; after a
+ * discard it runs to the end all the same. */
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/continuum.h"
 
-layout(constant_id = 0) const uint WOOD = 0u; /* splats and wood apart: see main */
+layout(constant_id = 0) const uint WOOD = 0u; /* splats and wood apart */
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) readonly buffer Pixels { uvec2 pixels[]; };
-layout(scalar, set = 0, binding = 2) readonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
-layout(scalar, set = 0, binding = 3) readonly buffer Items { wd_splat_item items[]; };
-layout(scalar, set = 0, binding = 4) readonly buffer Splats { wd_splat splats[]; };
-layout(scalar, set = 0, binding = 5) readonly buffer Looks { uint looks[]; };
-layout(scalar, set = 0, binding = 6) readonly buffer Trees { wd_packed_tree trees[]; };
-layout(scalar, set = 0, binding = 7) readonly buffer Models { wd_model models[]; };
-layout(scalar, set = 0, binding = 8) readonly buffer WoodItems { wd_splat_item wood_items[]; };
-layout(scalar, set = 0, binding = 9) readonly buffer Wood { wd_splat_wood wood[]; };
-layout(set = 0, binding = 10) uniform sampler2DArray bark;
-layout(scalar, push_constant) uniform Push { wd_tree_push push; };
+layout(set = 0, binding = 1) uniform usamplerBuffer pixels;      /* id, depth */
+layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
+layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
+layout(set = 0, binding = 4) uniform usamplerBuffer splats;      /* wd_splat */
+layout(set = 0, binding = 5) uniform usamplerBuffer looks;
+layout(set = 0, binding = 6) uniform usamplerBuffer wood_items;  /* wd_splat_item */
+layout(set = 0, binding = 7) uniform usamplerBuffer wood;        /* wd_splat_wood */
+layout(set = 0, binding = 8) uniform sampler2DArray bark;
 
-#include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/splat.glsl"
 
@@ -29,7 +27,7 @@ layout(location = 2) out uint out_surface;
 
 /* What is seen, in the model's axes. */
 struct wd_seen {
-    uint tree; /* wd_splat_tree */
+    wd_splat_tree tree;
     vec3 albedo, normal;
     float openness;
     bool wood;
@@ -43,15 +41,17 @@ vec3 look_albedo(uint look)
 
 wd_seen seen_splat(uint id)
 {
-    wd_splat_item item = items[id / WD_ITEM_SPLATS];
-    wd_splat_tree tree = splat_trees[item.tree];
-    uint index = splat_index(tree, splat_turn(tree, item.first + id % WD_ITEM_SPLATS));
+    wd_splat_item item = splat_item_at(items, id / WD_ITEM_SPLATS);
+    wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
+    uint index =
+        splat_index(tree, splat_turn(tree, WD_ITEM_FIRST(item) + id % WD_ITEM_SPLATS));
+    uint look = texelFetch(looks, int(index)).x;
     wd_seen seen;
-    seen.tree = item.tree;
-    seen.normal = splat_normal(splats[index]);
-    seen.albedo = look_albedo(looks[index]);
-    seen.openness = float(looks[index] >> 24 & 0x7fu) * (1.0 / 127.0);
-    seen.wood = (looks[index] & WD_SPLAT_WOOD) != 0u;
+    seen.tree = tree;
+    seen.normal = splat_normal(splat_at(splats, index));
+    seen.albedo = look_albedo(look);
+    seen.openness = float(look >> 24 & 0x7fu) * (1.0 / 127.0);
+    seen.wood = (look & WD_SPLAT_WOOD) != 0u;
     return seen;
 }
 
@@ -75,13 +75,14 @@ vec4 corner_shares(wd_splat_tree tree, wd_splat_wood triangle)
 
 wd_seen seen_wood(uint id)
 {
-    wd_splat_item item = wood_items[id / WD_ITEM_SPLATS];
-    wd_splat_tree tree = splat_trees[item.tree];
-    wd_splat_wood triangle = wood[tree.first_wood + item.first + id % WD_ITEM_SPLATS];
+    wd_splat_item item = splat_item_at(wood_items, id / WD_ITEM_SPLATS);
+    wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
+    wd_splat_wood triangle =
+        splat_wood_at(wood, tree.first_wood + WD_ITEM_FIRST(item) + id % WD_ITEM_SPLATS);
     vec4 share = corner_shares(tree, triangle);
     vec2 uv[3];
     wd_seen seen;
-    seen.tree = item.tree;
+    seen.tree = tree;
     seen.normal = seen.albedo = vec3(0.0);
     seen.openness = 0.0;
     for (uint k = 0u; k < 3u; k++) {
@@ -95,10 +96,7 @@ wd_seen seen_wood(uint id)
                    * float(textureSize(bark, 0).y);
     float lod = 0.5 * log2(max(texels / max(share.w, 1e-6), 1.0));
     vec2 at = share.x * uv[0] + share.y * uv[1] + share.z * uv[2];
-    wd_tree own = tree_at(tree.tree);
-    uint layer = models[WD_TREE_SPECIES(own) * push.variants
-                        + WD_TREE_VARIANT(own) % push.variants].look_layer;
-    seen.albedo *= textureLod(bark, vec3(at, float(layer)), lod).rgb;
+    seen.albedo *= textureLod(bark, vec3(at, float(WD_TREE_BARK(tree))), lod).rgb;
     seen.wood = true;
     return seen;
 }
@@ -106,20 +104,17 @@ wd_seen seen_wood(uint id)
 void main()
 {
     uvec2 at = uvec2(gl_FragCoord.xy);
-    uvec2 pixel = pixels[at.y * frame.width + at.x];
-    /* software devices run both sides of a branch, but not what follows a discard of all */
-    if (pixel.x == 0u || ((pixel.x & WD_ID_WOOD) != 0u) != (WOOD != 0u))
+    uvec2 pixel = texelFetch(pixels, int(at.y * frame.width + at.x)).xy;
+    if (((pixel.x & WD_ID_WOOD) != 0u) != (WOOD != 0u))
         discard;
-    gl_FragDepth = uintBitsToFloat(pixel.y);
     wd_seen seen;
     if (WOOD != 0u)
         seen = seen_wood((pixel.x & ~WD_ID_WOOD) - 1u);
     else
         seen = seen_splat(pixel.x - 1u);
-    uint index = splat_trees[seen.tree].tree;
-    vec2 turn = unpackHalf2x16(splat_trees[seen.tree].turn);
-    vec2 shape = unpackHalf2x16(splat_trees[seen.tree].shape);
-    vec4 tint = unpackUnorm4x8(splat_trees[seen.tree].tint) * 2.0;
+    vec2 turn = unpackHalf2x16(seen.tree.turn);
+    vec2 shape = unpackHalf2x16(seen.tree.shape);
+    vec4 tint = unpackUnorm4x8(seen.tree.tint) * 2.0;
     if (!seen.wood)
         seen.albedo *= tint.rgb;
     if (WOOD == 0u)
@@ -132,5 +127,5 @@ void main()
     out_albedo = vec4(seen.albedo, seen.openness);
     out_normal = vec4(normal * 0.5 + 0.5,
                       float(seen.wood ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF) / 3.0);
-    out_surface = index + 1u;
+    out_surface = seen.tree.tree + 1u;
 }

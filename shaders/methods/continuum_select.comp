@@ -135,7 +135,7 @@ uint item_count(uint count)
 wd_splat_item item_at(uint slot, uint count, uint i)
 {
     uint begin = i * WD_ITEM_SPLATS;
-    return wd_splat_item(slot, begin, min(count - begin, WD_ITEM_SPLATS));
+    return wd_splat_item(slot, min(count - begin, WD_ITEM_SPLATS) | i << 16);
 }
 
 void add_splats(uint slot, uint count)
@@ -143,7 +143,7 @@ void add_splats(uint slot, uint count)
     if (count <= WD_SMALL_SPLATS) {
         uint at = atomicAdd(counts.small_items, 1u);
         if (at < view.item_capacity)
-            items[view.item_capacity - 1u - at] = wd_splat_item(slot, 0u, count);
+            items[view.item_capacity - 1u - at] = wd_splat_item(slot, count);
         return;
     }
     uint wanted = item_count(count), first = atomicAdd(counts.items, wanted);
@@ -277,7 +277,7 @@ void select_tree(uint index, float share, uint place)
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
     splats.first_wood = splat_models[model_index].wood_first;
-    splats.offset = (wd_hash_mix(random) + frame.sample_index * uint(ceil(each)))
+    splats.offset = (wd_hash_mix(random) * WD_WINDOW_STEP + frame.sample_index * uint(ceil(each)))
                     & (WD_STRATUM_SPLATS - 1u);
     splats.offset |= wood ? 0x80000000u : 0u;
     splats.turn = packHalf2x16(pose.turn);
@@ -285,7 +285,7 @@ void select_tree(uint index, float share, uint place)
     splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);
     vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
                              : vec2(0.0);
-    splats.strata = strata;
+    splats.strata = strata | model.look_layer << 8;
     fill_rows(splats, pose, model_index, foot, slope);
     splats.sway = clip_of(view.clip_from_rel * vec4(sway, 0.0));
 

@@ -44,7 +44,7 @@ void main()
     if (gl_LocalInvocationIndex == 0u) {
         uint list = wd_tile_list_of(parts);
         uint slot = atomicAdd(lists.count[list], 1u);
-        uint tile = gl_WorkGroupID.y * push.tile_columns + gl_WorkGroupID.x;
-        tiles[list * push.tile_columns * push.tile_rows + slot] = tile;
+        tiles[list * push.tile_columns * push.tile_rows + slot] =
+            gl_WorkGroupID.y << 16 | gl_WorkGroupID.x;
     }
 }

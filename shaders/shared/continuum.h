@@ -18,6 +18,8 @@
 #define WD_SPLATS 65536u
 #define WD_SPLAT_STRATA 8u
 #define WD_STRATUM_SPLATS (WD_SPLATS / WD_SPLAT_STRATA)
+/* Trees' windows begin at multiples of this: few places, which small trees read again and again. */
+#define WD_WINDOW_STEP 128u
 #define WD_LEAF_STRATA (WD_SPLAT_STRATA - 1u)
 /* The stratum of wood: half of it of all wood; half without what the first triangles of wood show,
  * for trees that have these. */
@@ -54,6 +56,7 @@ struct wd_splat_wood {
     uint32_t tints[3]; /* as a splat's look; RGB are factors of the bark's texture */
 };
 WD_STATIC_ASSERT_SIZE(wd_splat_wood, 48);
+#define WD_SPLAT_WOOD_TEXELS 3
 
 struct wd_splat_model {
     WD_VEC3(min_m);
@@ -185,22 +188,32 @@ struct wd_splat_groups {
 struct wd_splat_tree {
     WD_VEC4(clip_x); WD_VEC4(clip_y); WD_VEC4(clip_w); /* clip_w: w, or z of a cascade */
     WD_VEC3(sway);
+    float radius;          /* of a disc of leaves, in pixels at w = 1, */
     WD_VEC3(facing);       /* dot normal of the model: what a m^2 of it shows the eye, in m^2 */
-    float radius, wood_radius; /* of a disc of leaves, and of wood that faces the eye, in pixels at w = 1 */
+    float wood_radius;     /* and of one of wood that faces the eye */
     uint32_t tree;         /* in octree order */
     uint32_t first_splat;  /* of the model */
     uint32_t offset;       /* bits 0..12: of the window in each stratum; bit 31: of wood, from its
                               second half */
-    uint32_t strata;       /* of how many, from the top, it has splats */
+    uint32_t strata;       /* bits 0..7: of how many, from the top, it has splats; 8..31: the layer of
+                              its bark among looks */
     uint32_t first_wood;   /* triangle of the model */
     uint32_t turn;         /* cosine and sine of the tree's yaw, half floats */
     uint32_t shape;        /* 1 or -1 mirrored, vertical over horizontal scale, half floats */
     uint32_t tint;         /* half of each factor of the leaves' colour and of openness, unorm 8 */
 };
+WD_STATIC_ASSERT_SIZE(wd_splat_tree, 112);
+#define WD_SPLAT_TREE_TEXELS 7
+#define WD_TREE_STRATA(tree) ((tree).strata & 0xffu)
+#define WD_TREE_BARK(tree) ((tree).strata >> 8)
 
+/* Splats of its strata in turn, or triangles of its wood. */
 struct wd_splat_item {
-    uint32_t tree; /* index of a wd_splat_tree */
-    uint32_t first, count; /* splats of its strata in turn, or triangles of its wood */
+    uint32_t tree;  /* index of a wd_splat_tree */
+    uint32_t parts; /* bits 0..15: their count; 16..31: the first, in WD_ITEM_SPLATS */
 };
+WD_STATIC_ASSERT_SIZE(wd_splat_item, 8);
+#define WD_ITEM_FIRST(item) (((item).parts >> 16) * WD_ITEM_SPLATS)
+#define WD_ITEM_COUNT(item) ((item).parts & 0xffffu)
 
 #endif

@@ -14,6 +14,7 @@ static bool add_pool(struct wd_frame_slot *slot, struct wd_gpu *gpu)
         VK_DESCRIPTOR_TYPE_SAMPLER,        VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
         VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,  VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
         VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
     };
     enum { TYPE_COUNT = sizeof types / sizeof types[0] };
     VkDescriptorPoolSize sizes[TYPE_COUNT];
@@ -129,7 +130,10 @@ static bool write_set(struct wd_cmd *cmd, VkDescriptorSet set, const struct wd_b
     VkDescriptorImageInfo images[WD_MAX_BINDINGS];
     for (uint32_t i = 0; i < types->count; i++) {
         VkDescriptorType type = types->types[i];
-        if (!is_buffer(type))
+        assert(type != VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER || bindings[i].buffer->texels);
+        if (type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER)
+            images[i] = (VkDescriptorImageInfo){0};
+        else if (!is_buffer(type))
             images[i] = describe_image(&bindings[i], type);
         else if (!describe_buffer(cmd, &bindings[i], type, i, &buffers[i]))
             return false;
@@ -141,6 +145,7 @@ static bool write_set(struct wd_cmd *cmd, VkDescriptorSet set, const struct wd_b
             .descriptorType = type,
             .pBufferInfo = &buffers[i],
             .pImageInfo = &images[i],
+            .pTexelBufferView = bindings[i].buffer ? &bindings[i].buffer->texels : NULL,
         };
     }
     vkUpdateDescriptorSets(cmd->gpu->device, types->count, writes, 0, NULL);

@@ -10,7 +10,8 @@ static bool create_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu,
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = params->size,
         .usage = params->usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                 VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                 (params->texels ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT : 0),
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
     VkResult result = vkCreateBuffer(gpu->device, &info, NULL, &buffer->buffer);
@@ -36,6 +37,28 @@ static bool back_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu,
     return wd_gpu_check(gpu, result, params->name);
 }
 
+static bool view_texels(struct wd_buffer *buffer, struct wd_gpu *gpu,
+                        const struct wd_buffer_params *params)
+{
+    uint64_t most = gpu->properties.limits.maxTexelBufferElements;
+    uint64_t count = params->size / wd_format_texel_bytes(params->texels);
+    if (count > most)
+        return wd_error(gpu->log, "GPU buffer \"%s\" has %llu texels; \"%s\" lets a shader fetch "
+                                  "from at most %llu",
+                        params->name, (unsigned long long)count, gpu->properties.deviceName,
+                        (unsigned long long)most);
+    const VkBufferViewCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+        .buffer = buffer->buffer,
+        .format = params->texels,
+        .range = count * wd_format_texel_bytes(params->texels),
+    };
+    VkResult result = vkCreateBufferView(gpu->device, &info, NULL, &buffer->texels);
+    if (result != VK_SUCCESS)
+        buffer->texels = VK_NULL_HANDLE;
+    return wd_gpu_check(gpu, result, params->name);
+}
+
 bool wd_buffer_init(struct wd_buffer *buffer, struct wd_gpu *gpu,
                     const struct wd_buffer_params *params)
 {
@@ -47,7 +70,8 @@ bool wd_buffer_init(struct wd_buffer *buffer, struct wd_gpu *gpu,
     if (params->size > gpu->max_buffer_size)
         return wd_report_no_memory(gpu, params->name, params->size);
     buffer->size = params->size;
-    if (!create_buffer(buffer, gpu, params) || !back_buffer(buffer, gpu, params)) {
+    if (!create_buffer(buffer, gpu, params) || !back_buffer(buffer, gpu, params) ||
+        (params->texels && !view_texels(buffer, gpu, params))) {
         wd_buffer_finish(buffer, gpu);
         return false;
     }
@@ -58,6 +82,8 @@ bool wd_buffer_init(struct wd_buffer *buffer, struct wd_gpu *gpu,
 
 void wd_buffer_finish(struct wd_buffer *buffer, struct wd_gpu *gpu)
 {
+    if (buffer->texels)
+        vkDestroyBufferView(gpu->device, buffer->texels, NULL);
     if (buffer->buffer)
         vkDestroyBuffer(gpu->device, buffer->buffer, NULL);
     wd_free_memory(gpu, buffer->memory, buffer->memory_size);

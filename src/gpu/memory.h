@@ -32,6 +32,7 @@ enum wd_gpu_memory_kind {
 
 struct wd_buffer {
     VkBuffer buffer;
+    VkBufferView texels; /* of all of it, where its parameters name a format */
     VkDeviceMemory memory;
     VkDeviceSize size;
     VkDeviceSize memory_size;
@@ -40,12 +41,15 @@ struct wd_buffer {
     uint32_t reads; /* bit 1 << use for each reading use that the last write is visible to */
 };
 
-/* `usage` is ORed with TRANSFER_SRC and TRANSFER_DST. `name` shows in errors and debuggers. */
+/* `usage` is ORed with TRANSFER_SRC and TRANSFER_DST. `name` shows in errors and debuggers. With a
+ * format of texels shaders can fetch from it, too: llvmpipe does so for all lanes at once, while storage
+ * buffers are read lane by lane. */
 struct wd_buffer_params {
     const char *name;
     VkDeviceSize size; /* > 0 */
     VkBufferUsageFlags usage;
     enum wd_gpu_memory_kind memory;
+    VkFormat texels; /* 0: none */
 };
 bool wd_buffer_init(struct wd_buffer *buffer, struct wd_gpu *gpu,
                     const struct wd_buffer_params *params);

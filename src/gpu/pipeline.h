@@ -61,6 +61,7 @@ struct wd_graphics_params {
     struct wd_spec_constants constants; /* for both stages */
     uint32_t color_count;
     VkFormat color_formats[WD_MAX_COLOR_TARGETS];
+    enum wd_color_writes { WD_COLORS_WRITTEN, WD_COLORS_KEPT } color_writes;
     enum wd_blend blend;
     VkFormat depth_format;       /* VK_FORMAT_UNDEFINED: no depth */
     VkCompareOp depth_compare;   /* NEVER (0): GREATER, depth is reversed: 1 near, 0 far */

@@ -39,22 +39,24 @@ static VkPipelineDepthStencilStateCreateInfo depth_state(const struct wd_graphic
 }
 
 /* Integer formats cannot blend: there the switch does nothing. */
-static VkPipelineColorBlendAttachmentState blend_state(struct wd_gpu *gpu, enum wd_blend blend,
+static VkPipelineColorBlendAttachmentState blend_state(struct wd_gpu *gpu,
+                                                       const struct wd_graphics_params *params,
                                                        VkFormat format)
 {
+    const VkColorComponentFlags all = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                                      VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     VkFormatProperties properties;
     vkGetPhysicalDeviceFormatProperties(gpu->physical_device, format, &properties);
     bool can = properties.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
     return (VkPipelineColorBlendAttachmentState){
-        .blendEnable = can && blend == WD_BLEND_PREMULTIPLIED,
+        .blendEnable = can && params->blend == WD_BLEND_PREMULTIPLIED,
         .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
         .dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
         .colorBlendOp = VK_BLEND_OP_ADD,
         .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
         .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
         .alphaBlendOp = VK_BLEND_OP_ADD,
-        .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                          VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT,
+        .colorWriteMask = params->color_writes == WD_COLORS_KEPT ? 0 : all,
     };
 }
 
@@ -108,7 +110,7 @@ static VkResult create_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu
     const VkPipelineDepthStencilStateCreateInfo depth = depth_state(params);
     VkPipelineColorBlendAttachmentState targets[WD_MAX_COLOR_TARGETS];
     for (uint32_t i = 0; i < params->color_count; i++)
-        targets[i] = blend_state(gpu, params->blend, params->color_formats[i]);
+        targets[i] = blend_state(gpu, params, params->color_formats[i]);
     const VkPipelineColorBlendStateCreateInfo blend = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
         .attachmentCount = params->color_count,

@@ -91,7 +91,7 @@ static bool init_resolve(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
-        .depth_compare = VK_COMPARE_OP_ALWAYS,
+        .depth_compare = VK_COMPARE_OP_LESS, /* it lies behind all that has depth */
         .depth_read_only = true,
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };

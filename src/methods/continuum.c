@@ -51,11 +51,11 @@ static void continuum_finish(void *state, struct wd_gpu *gpu)
 /* --- forest ------------------------------------------------------------------------------ */
 
 static bool make_work(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
-                      VkDeviceSize size)
+                      VkDeviceSize size, VkFormat texels)
 {
     const struct wd_buffer_params params = {
         name, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
-        WD_MEMORY_DEVICE};
+        WD_MEMORY_DEVICE, texels};
     return wd_buffer_init(buffer, gpu, &params);
 }
 
@@ -74,17 +74,19 @@ static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_fore
     c->cluster_capacity = c->forest.cluster_count + (uint32_t)(paged / WD_PAGE_CLUSTER);
     return ok &&
            make_work(&c->visible, gpu, "visible clusters",
-                     c->cluster_capacity * sizeof(uint32_t)) &&
+                     c->cluster_capacity * sizeof(uint32_t), VK_FORMAT_UNDEFINED) &&
            make_work(&c->put_off, gpu, "trees put off",
-                     (VkDeviceSize)c->cluster_capacity * 4 * sizeof(uint32_t)) &&
-           make_work(&c->counts, gpu, "splat counts", sizeof(struct wd_splat_counts)) &&
-           make_work(&c->groups, gpu, "splat groups", sizeof(struct wd_splat_groups)) &&
+                     (VkDeviceSize)c->cluster_capacity * 4 * sizeof(uint32_t), VK_FORMAT_UNDEFINED) &&
+           make_work(&c->counts, gpu, "splat counts", sizeof(struct wd_splat_counts),
+                     VK_FORMAT_UNDEFINED) &&
+           make_work(&c->groups, gpu, "splat groups", sizeof(struct wd_splat_groups),
+                     VK_FORMAT_UNDEFINED) &&
            make_work(&c->trees, gpu, "splat trees",
-                     c->tree_capacity * sizeof(struct wd_splat_tree)) &&
+                     c->tree_capacity * sizeof(struct wd_splat_tree), VK_FORMAT_R32G32B32A32_UINT) &&
            make_work(&c->items, gpu, "splat items",
-                     c->item_capacity * sizeof(struct wd_splat_item)) &&
+                     c->item_capacity * sizeof(struct wd_splat_item), VK_FORMAT_R32G32_UINT) &&
            make_work(&c->wood_items, gpu, "wood items",
-                     c->item_capacity * sizeof(struct wd_splat_item));
+                     c->item_capacity * sizeof(struct wd_splat_item), VK_FORMAT_R32G32_UINT);
 }
 
 static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
@@ -108,7 +110,7 @@ static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_
     if (c->pixels.size >= size)
         return true;
     wd_cmd_defer_buffer(cmd, &c->pixels);
-    return make_work(&c->pixels, cmd->gpu, "visibility", size);
+    return make_work(&c->pixels, cmd->gpu, "visibility", size, VK_FORMAT_R32G32_UINT);
 }
 
 static bool fit_pyramid(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
@@ -118,7 +120,7 @@ static bool fit_pyramid(struct continuum *c, struct wd_cmd *cmd, const struct wd
     if (c->pyramid.size >= size)
         return true;
     wd_cmd_defer_buffer(cmd, &c->pyramid);
-    return make_work(&c->pyramid, cmd->gpu, "depth pyramid", size);
+    return make_work(&c->pyramid, cmd->gpu, "depth pyramid", size, VK_FORMAT_UNDEFINED);
 }
 
 static bool sees_all_at_once(const struct continuum *c)
@@ -378,24 +380,23 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
 
 static void draw_camera(struct continuum *c, const struct wd_tree_draw *draw)
 {
-    const struct wd_tree_push push = {.variants = draw->forest->variants};
     const struct wd_binding bindings[] = {draw->uniforms,
                                           WD_BIND_BUFFER(&c->pixels),
                                           WD_BIND_BUFFER(&c->trees),
                                           WD_BIND_BUFFER(&c->items),
                                           WD_BIND_BUFFER(&c->forest.splats),
                                           WD_BIND_BUFFER(&c->forest.looks),
-                                          WD_BIND_BUFFER(&draw->forest->trees),
-                                          WD_BIND_BUFFER(&draw->forest->models),
                                           WD_BIND_BUFFER(&c->wood_items),
                                           WD_BIND_BUFFER(&c->forest.wood),
                                           WD_BIND_IMAGE(&draw->forest->looks,
                                                         draw->forest->look_sampler)};
-    for (uint32_t wood = 0; wood < 2; wood++) {
-        wd_cmd_bind(draw->cmd, &c->pipelines.resolve[wood], bindings);
-        wd_cmd_push(draw->cmd, &c->pipelines.resolve[wood], &push, sizeof push);
+    const struct wd_binding depth_bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels)};
+    for (uint32_t wood = 2; wood-- > 0;) {
+        wd_cmd_bind(draw->cmd, &c->pipelines.depth[wood], depth_bindings);
         wd_cmd_draw(draw->cmd, 3, 1);
-        draw->stats->draw_calls++;
+        wd_cmd_bind(draw->cmd, &c->pipelines.resolve[wood], bindings);
+        wd_cmd_draw(draw->cmd, 3, 1);
+        draw->stats->draw_calls += 2;
     }
 }
 
@@ -436,7 +437,7 @@ static uint64_t count_splats(struct continuum *c, struct wd_gpu *gpu, uint32_t f
     struct wd_splat_item *items = wd_alloc_array(count ? count : 1, sizeof *items);
     if (count && wd_buffer_read(gpu, &c->items, first * sizeof *items, items, size)) {
         for (uint32_t i = 0; i < count; i++)
-            splats += items[i].count;
+            splats += WD_ITEM_COUNT(items[i]);
     }
     free(items);
     return splats;

@@ -134,10 +134,10 @@ static void sample_model(void *user, size_t index)
 }
 
 static bool make_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
-                        const void *data, size_t size)
+                        const void *data, size_t size, VkFormat texels)
 {
     const struct wd_buffer_params params = {name, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                            WD_MEMORY_DEVICE};
+                                            WD_MEMORY_DEVICE, texels};
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
 }
 
@@ -164,6 +164,16 @@ static void measure_grain(struct wd_splat_model *model, const struct wd_forest_d
     model->grain = model->finer * side_m / forest->host_models[index].crown_m;
 }
 
+/* One of each stratum in turn, so that a window of all strata is one run of memory. */
+static void deal_strata(void *to, const void *from, size_t size)
+{
+    for (size_t stratum = 0; stratum < WD_SPLAT_STRATA; stratum++) {
+        for (size_t at = 0; at < WD_STRATUM_SPLATS; at++)
+            memcpy((char *)to + (at * WD_SPLAT_STRATA + stratum) * size,
+                   (const char *)from + (stratum * WD_STRATUM_SPLATS + at) * size, size);
+    }
+}
+
 static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
                           const struct wd_splats *splats, uint32_t models)
 {
@@ -177,17 +187,20 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
     uint32_t *looks = wd_alloc_array(count, sizeof *looks);
     struct wd_splat_model *headers = wd_alloc_array(models, sizeof *headers);
     for (size_t i = 0; i < models; i++) {
-        memcpy(all + i * WD_SPLATS, splats[i].splats, WD_SPLATS * sizeof *all);
-        memcpy(looks + i * WD_SPLATS, splats[i].looks, WD_SPLATS * sizeof *looks);
+        deal_strata(all + i * WD_SPLATS, splats[i].splats, sizeof *all);
+        deal_strata(looks + i * WD_SPLATS, splats[i].looks, sizeof *looks);
         memcpy(wood + triangles, splats[i].wood, splats[i].model.wood_count * sizeof *wood);
         headers[i] = splats[i].model;
         headers[i].wood_first = (uint32_t)triangles;
         triangles += splats[i].model.wood_count;
     }
-    bool ok = make_buffer(&own->splats, gpu, "splats", all, count * sizeof *all) &&
-              make_buffer(&own->looks, gpu, "splat looks", looks, count * sizeof *looks) &&
-              make_buffer(&own->wood, gpu, "splat wood", wood, (triangles + 1) * sizeof *wood) &&
-              make_buffer(&own->models, gpu, "splat models", headers, models * sizeof *headers);
+    bool ok = make_buffer(&own->splats, gpu, "splats", all, count * sizeof *all,
+                          VK_FORMAT_R32G32_UINT) &&
+              make_buffer(&own->looks, gpu, "splat looks", looks, count * sizeof *looks, VK_FORMAT_R32_UINT) &&
+              make_buffer(&own->wood, gpu, "splat wood", wood, (triangles + 1) * sizeof *wood,
+                          VK_FORMAT_R32G32B32A32_UINT) &&
+              make_buffer(&own->models, gpu, "splat models", headers, models * sizeof *headers,
+                          VK_FORMAT_UNDEFINED);
     free(all);
     free(looks);
     free(wood);

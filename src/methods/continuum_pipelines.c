@@ -27,6 +27,9 @@ static const uint32_t wood_twice_comp[] =
 static const uint32_t resolve_vert[] =
 #include "whole_target.vert.inc"
     ;
+static const uint32_t depth_frag[] =
+#include "continuum_depth.frag.inc"
+    ;
 static const uint32_t resolve_frag[] =
 #include "continuum_resolve.frag.inc"
     ;
@@ -41,6 +44,7 @@ static const uint32_t resolve_shadow_frag[] =
 
 #define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
 #define UNIFORM VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+#define TEXELS VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
 
 static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
@@ -57,7 +61,7 @@ static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
                                       shape == WD_SHAPE_SMALL};
         const struct wd_compute_params params = {
             .shader = shaders[shape][once],
-            .bindings = {6, {UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}},
+            .bindings = {6, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER}},
             .constants = {4, constants},
         };
         bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
@@ -72,23 +76,31 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     struct wd_graphics_params params = {
         .vertex = SPIRV(resolve_vert),
         .fragment = SPIRV(resolve_frag),
-        .bindings = {11, {UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
-                          BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
-        .push_size = sizeof(struct wd_tree_push),
+        .bindings = {9, {UNIFORM, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS,
+                         VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
+    struct wd_graphics_params depth = params;
+    depth.fragment = (struct wd_spirv)SPIRV(depth_frag);
+    depth.bindings.count = 2;
+    depth.color_writes = WD_COLORS_KEPT;
+    params.depth_compare = VK_COMPARE_OP_LESS; /* the triangle lies behind all that has depth */
+    params.depth_read_only = true;
     for (uint32_t wood = 0; wood < 2; wood++) {
-        params.constants = (struct wd_spec_constants){1, &wood};
-        if (!wd_pipeline_init_graphics(&p->resolve[wood], gpu, &params))
+        params.constants = depth.constants = (struct wd_spec_constants){1, &wood};
+        if (!wd_pipeline_init_graphics(&p->depth[wood], gpu, &depth) ||
+            !wd_pipeline_init_graphics(&p->resolve[wood], gpu, &params))
             return false;
     }
+    params.depth_compare = VK_COMPARE_OP_NEVER;
+    params.depth_read_only = false;
     params.fragment = (struct wd_spirv)SPIRV(resolve_shadow_frag);
     params.constants.count = 0;
     params.bindings.count = 2;
-    params.push_size = 0;
+    params.bindings.types[1] = BUFFER;
     params.color_count = 0;
     return wd_pipeline_init_graphics(&p->resolve_shadow, gpu, &params);
 }
@@ -160,7 +172,8 @@ void wd_continuum_pipelines_finish(struct wd_continuum_pipelines *p, struct wd_g
 {
     struct wd_pipeline *pipelines[] = {&p->cull,       &p->args[0],    &p->args[1],
                                        &p->choose[0],  &p->choose[1],  &p->choose_again,
-                                       &p->resolve[0], &p->resolve[1], &p->resolve_shadow,
+                                       &p->depth[0],   &p->depth[1],   &p->resolve[0],
+                                       &p->resolve[1], &p->resolve_shadow,
                                        &p->pyramid_of_trees};
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         wd_pipeline_finish(pipelines[i], gpu);
