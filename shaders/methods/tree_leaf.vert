@@ -25,27 +25,33 @@ layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 #define push mesh.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
 #include "lib/tree_mesh.glsl"
 
-/* Between the shares that the tables have; the whole has 1. */
-float leaf_growth(uint model, float share)
+#define GROWTH(table, k)                                                                           \
+    wd_side_mix(models[model].table.of[0][k], models[model].table.of[1][k],                        \
+                models[model].table.of[2][k], sine)
+
+/* Between the shares that the tables have, seen from elevation asin(sine). */
+float leaf_growth(uint model, float share, float sine)
 {
-    uint k = wd_leaf_halvings(share), j = max(k, 1u) - 1u;
-    float part = clamp(log2(1.0 / share) - float(k), 0.0, 1.0);
+    float at = min(log2(1.0 / share), float(WD_LEAF_GROWTHS - 1));
+    uint k = min(uint(at), WD_LEAF_GROWTHS - 2u);
     bool full = push.level == WD_LEVEL_MESH;
-    float fewer = full ? models[model].full_growth[k] : models[model].reduced_growth[k];
-    float more = full ? models[model].full_growth[j] : models[model].reduced_growth[j];
-    return mix(k == 0u ? 1.0 : more, fewer, part);
+    float more = full ? GROWTH(full_growth, k) : GROWTH(reduced_growth, k);
+    float fewer = full ? GROWTH(full_growth, k + 1u) : GROWTH(reduced_growth, k + 1u);
+    return mix(more, fewer, at - float(k));
 }
 
 /* Factor on a leaf's size, 0 where it is not drawn: it may be drawn as a twig, or thinned out. */
 float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
 {
     tree_pose pose = tree_pose_of(tree, models[model]);
-    float far_m = length(tree_foot_rel(tree) + tree_offset(pose, foot_m));
+    vec3 at_m = tree_foot_rel(tree) + tree_offset(pose, foot_m);
+    float far_m = length(at_m);
+    float sine = SHADOW != 0u ? frame.sun_direction.z : at_m.z / far_m;
     float sprays = wd_spray_share(far_m, max(push.spray_reach, 1e-6));
     bool twig = DETAIL != 0u && wd_hash_unit(wd_hash2(index, wd_tree_random(tree))) < sprays;
     float share = wd_leaf_share(push.leaf_m * pose.across * push.pixels_per_radian / far_m);
     bool thin = float(index) >= share * float(push.leaf_count);
-    float grown = inversesqrt(share) * leaf_growth(model, share);
+    float grown = inversesqrt(share) * leaf_growth(model, share, sine);
     grown = thin ? 0.0 : grown;
     grown = twig ? 0.0 : grown;
     return push.leaf_count != 0u ? grown : 1.0;

@@ -57,8 +57,8 @@ struct wd_model {
     float phase;            /* how far the individual is ahead in the season: -1..1 */
     WD_VEC3(behind);        /* factors on the leaves' colour of trees that are late in the season */
     WD_VEC3(ahead);         /* or early */
-    float full_growth[WD_LEAF_GROWTHS];    /* of wd_leaf_growth, of the full mesh */
-    float reduced_growth[WD_LEAF_GROWTHS]; /* and of the reduced one */
+    WD_GROWTHS_STRUCT full_growth;    /* of the full mesh's leaves */
+    WD_GROWTHS_STRUCT reduced_growth; /* and of the reduced one's */
     WD_VEC3(seen_m2); /* that the whole tree covers, seen from the sides of wd_seen_m2 */
 };
 
@@ -148,15 +148,6 @@ WD_FUNC float wd_leaf_share(float leaf_px)
 {
     float t = leaf_px / WD_LEAF_WHOLE_PX, share = t * t;
     return share > 1.0f ? 1.0f : (share < WD_LEAF_LEAST_SHARE ? WD_LEAF_LEAST_SHARE : share);
-}
-
-/* Place of a share in a table of growths: number of the next smaller one, and how near it is. */
-WD_FUNC uint32_t wd_leaf_halvings(float share)
-{
-    uint32_t halvings = 0u;
-    for (float left = share; left < 0.5f && halvings < WD_LEAF_GROWTHS - 1u; left *= 2.0f)
-        halvings++;
-    return halvings;
 }
 
 #endif

@@ -158,9 +158,6 @@ struct wd_leaf_vertex {
 };
 WD_STATIC_ASSERT_SIZE(wd_leaf_vertex, 24);
 
-/* Factors on the length of a level's leaves where the first 1/2, 1/4, .. of them are drawn, besides
- * the one that keeps their area: with them the mesh covers what it did (src/tree/thinning.h). */
-#define WD_LEAF_GROWTHS 6
 
 /* Twigs of broad leaves are whole nearer than the one, and nothing is drawn as a twig beyond the
  * other; those of needles come at half of either: they are smaller, and many more. */
@@ -226,6 +223,19 @@ WD_FUNC float wd_side_mix(float level, float half_above, float above, float sine
     return t < 1.0f ? level + (half_above - level) * t
                     : half_above + (above - half_above) * (t - 1.0f);
 }
+
+/* Factors on the length of a level's leaves where the first 1, 1/2, 1/4, .. of them are drawn, besides
+ * the one that keeps their area: with them the mesh covers what the full one does, seen level, from half
+ * above and from above (src/tree/thinning.h). */
+#define WD_LEAF_GROWTHS 7
+struct wd_leaf_growths {
+    float of[WD_GAIN_SIDES][WD_LEAF_GROWTHS];
+};
+#ifdef __STDC_VERSION__
+#define WD_GROWTHS_STRUCT struct wd_leaf_growths
+#else
+#define WD_GROWTHS_STRUCT wd_leaf_growths
+#endif
 
 #define WD_POINT_GAIN(table, k, sine)                                                              \
     wd_side_mix((table).gains[0][k], (table).gains[1][k], (table).gains[2][k], sine)

@@ -14,7 +14,7 @@
 /* A kept model: words, then the wood of the full mesh and of the reduced one and the twig, each as
  * vertices and indices, then the leaves and the forms of their sets, packed by meshoptimizer's codecs
  * (the sequence codec keeps the order of indices). */
-enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_LEAF_GROWTHS,
+enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD_LEAF_GROWTHS,
        FIGURES = 7 + 7 + BOUNDS + GROWTHS + WD_GAIN_SIDES,
        SETS = 2 * WD_LEAF_SETS, SET_WORDS = 10, SET_AT = FIGURES + MESHES * MESH_WORDS,
        LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
@@ -124,8 +124,11 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
                           : i % 7 < 3 ? &mesh->min_m[i % 7]
                                       : &mesh->max_m[i % 7 - 3];
     }
-    for (size_t k = 0; k < GROWTHS; k++)
-        figures[14 + BOUNDS + k] = &model->leaf_growth[k / WD_LEAF_GROWTHS][k % WD_LEAF_GROWTHS];
+    for (size_t k = 0; k < GROWTHS; k++) {
+        size_t side = k / WD_LEAF_GROWTHS;
+        figures[14 + BOUNDS + k] =
+            &model->leaf_growth[side / WD_GAIN_SIDES].of[side % WD_GAIN_SIDES][k % WD_LEAF_GROWTHS];
+    }
     for (size_t k = 0; k < WD_GAIN_SIDES; k++)
         figures[14 + BOUNDS + GROWTHS + k] = &model->seen_m2[k];
 }

@@ -42,8 +42,8 @@ static struct reach reach_of(const struct wd_tree_draw *draw, uint32_t tree,
     const struct wd_mesh_range *range = &forest->meshes.ranges[index][WD_LEVEL_MESH];
     float speed_mps = (float)forest->scene->wind.speed_mps, gust = (float)forest->scene->wind.gust;
     float growth = 1.0f;
-    for (int i = 0; i < WD_LEAF_GROWTHS; i++)
-        growth = fmaxf(growth, model->full_growth[i]);
+    for (int i = 0; i < WD_GAIN_SIDES * WD_LEAF_GROWTHS; i++)
+        growth = fmaxf(growth, model->full_growth.of[i / WD_LEAF_GROWTHS][i % WD_LEAF_GROWTHS]);
     return (struct reach){
         .size = 3.0f * growth * fmaxf(stand->pose.across, stand->pose.up),
         .px_m = range->leaf_count ? range->leaf_m * stand->pose.across *

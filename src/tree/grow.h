@@ -47,7 +47,7 @@ struct wd_tree_model {
     uint32_t leaf_count, flower_count;
     struct wd_leaf_box leaf_box;
     struct wd_leaf_set sets[2][WD_LEAF_SETS]; /* of the full mesh and of the reduced one */
-    float leaf_growth[2][WD_LEAF_GROWTHS]; /* of either level (tree/thinning.h); 0: not known yet */
+    struct wd_leaf_growths leaf_growth[2]; /* of either level (tree/thinning.h); 0: not known yet */
     float seen_m2[WD_GAIN_SIDES]; /* that the full mesh covers (tree/coverage.h); 0: not known yet */
     float spray_reach;           /* of wd_spray_share; 0 without twigs */
     struct wd_tree_mesh spray;   /* the twig that each leaf stands for (tree/leaf_spray.h), or

@@ -5,8 +5,9 @@
 #include "tree/grow.h"
 
 /* Fills model->leaf_growth: factors on a leaf's length besides the one that keeps all leaves' area,
- * with which the first leaf_count >> (k + 1) of each level's leaves cover as much as all of them,
- * seen level and from half above. The meshes have their leaves. */
+ * with which the first leaf_count >> k of each level's leaves cover as much as those of the full mesh,
+ * from each of the sides. Few large leaves hide one another less where the way through the crown is
+ * long: with one factor for all sides they cover too much from above. The meshes have their leaves. */
 void wd_tree_thinning_fit(struct wd_tree_model *model);
 
 #endif

@@ -77,7 +77,7 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         model->transmittance[k] =
             species->leaf.transmittance[k] / fmaxf(species->leaf.color[k], 1e-3f);
     }
-    memcpy(model->full_growth, grown->leaf_growth[0], sizeof model->full_growth);
-    memcpy(model->reduced_growth, grown->leaf_growth[1], sizeof model->reduced_growth);
+    model->full_growth = grown->leaf_growth[0];
+    model->reduced_growth = grown->leaf_growth[1];
     memcpy(model->seen_m2, grown->seen_m2, sizeof model->seen_m2);
 }

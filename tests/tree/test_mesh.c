@@ -1,3 +1,6 @@
+#include "base/memory.h"
+#include "tree/silhouette.h"
+#include "tree/thinning.h"
 #include "tree_test.h"
 
 static void packed_normals_come_back(void **state)
@@ -57,6 +60,74 @@ static void mesh_grows_and_knows_its_bounds(void **state)
     wd_tree_mesh_finish(&mesh);
 }
 
+/* Those of the first `count` leaves of the reduced mesh, as methods draw them where the others are left
+ * out; its vertices are `unscaled`. */
+static void grow_leaves(struct wd_tree_model *model, const struct wd_tree_vertex *unscaled,
+                        uint32_t count, float factor)
+{
+    const struct wd_leaf_set *set = &model->sets[1][WD_SET_LEAVES];
+    uint32_t first = model->reduced.vertex_count - set->leaf_count * set->corner_count;
+    for (uint32_t i = 0; i < count * set->corner_count; i++) {
+        const struct wd_tree_leaf *leaf = &model->leaves[i / set->corner_count];
+        struct wd_vec3 middle = wd_v3_mad(wd_leaf_foot(*leaf, model->leaf_box),
+                                          wd_leaf_axes_of(leaf->turn).along,
+                                          0.5f * wd_leaf_size_m(*leaf, model->leaf_box));
+        const float *p = unscaled[first + i].position_m;
+        struct wd_vec3 grown = wd_v3_mix(middle, WD_V3(p[0], p[1], p[2]), factor);
+        memcpy(model->reduced.vertices[first + i].position_m, &grown, sizeof grown);
+    }
+}
+
+enum { TURNS = 5 };
+
+/* Pixels that the wood and the first leaves cover, over several sides. */
+static double covered(const struct wd_tree_mesh *mesh, const struct wd_tree_mesh *frame,
+                      uint32_t end, float sine)
+{
+    struct wd_silhouette views[TURNS];
+    double sum = 0;
+    for (int i = 0; i < TURNS; i++) {
+        float turn = 1.1f + 6.2831853f * (float)i / TURNS, level = sqrtf(1 - sine * sine);
+        wd_silhouette_init(&views[i], frame, WD_V3(level * cosf(turn), level * sinf(turn), sine));
+    }
+    wd_silhouette_cover(views, TURNS, mesh, 0, end);
+    for (int i = 0; i < TURNS; i++)
+        sum += (double)wd_silhouette_count(&views[i]);
+    return sum;
+}
+
+static void few_leaves_cover_what_all_do_from_each_side(void **state)
+{
+    (void)state;
+    static const float sines[WD_GAIN_SIDES] = {0.07f, 0.7071f, 1};
+    struct wd_arena arena = {0};
+    struct wd_species oak = test_species(&arena, "oak");
+    const struct wd_grow_params params = {.seed = 5, .height_m = 10};
+    struct wd_tree_model model;
+    assert_true(wd_tree_grow(&model, &oak, &params, NULL));
+    wd_tree_thinning_fit(&model);
+    const struct wd_leaf_set *set = &model.sets[1][WD_SET_LEAVES];
+    size_t bytes = model.reduced.vertex_count * sizeof *model.reduced.vertices;
+    struct wd_tree_vertex *unscaled = wd_alloc(bytes);
+    memcpy(unscaled, model.reduced.vertices, bytes);
+    for (int side = 0; side < WD_GAIN_SIDES; side++) {
+        double all = covered(&model.full, &model.full, model.full.index_count, sines[side]);
+        for (uint32_t k = 0; k < WD_LEAF_GROWTHS; k += 3) {
+            uint32_t count = set->leaf_count >> k;
+            float area = sqrtf((float)set->leaf_count / (float)count);
+            grow_leaves(&model, unscaled, count, area * model.leaf_growth[1].of[side][k]);
+            double few = covered(&model.reduced, &model.full,
+                                 model.reduced.wood_index_count + count * set->index_count,
+                                 sines[side]);
+            print_message("side %d, %u leaves: %+.1f %%\n", side, count, 100 * (few / all - 1));
+            assert_true(fabs(few / all - 1) < 0.06); /* one tree, from other sides than were fitted */
+        }
+    }
+    free(unscaled);
+    wd_tree_model_finish(&model);
+    wd_arena_finish(&arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -64,6 +135,7 @@ int main(void)
         cmocka_unit_test(axes_pack_exactly),
         cmocka_unit_test(uv_packs_as_halves),
         cmocka_unit_test(mesh_grows_and_knows_its_bounds),
+        cmocka_unit_test(few_leaves_cover_what_all_do_from_each_side),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
