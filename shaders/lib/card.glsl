@@ -2,6 +2,7 @@
  * below its opacity, so that covered area is kept at any distance without sorting, and the pattern
  * stays with the tree. Magnified edges are sharpened instead. */
 #include "shared/hash.h"
+#include "lib/dither.glsl"
 
 float card_noise(vec2 uv, float lod, uint random, uint sample_index)
 {
@@ -13,12 +14,10 @@ float card_noise(vec2 uv, float lod, uint random, uint sample_index)
 /* Whether one of a tree's crossed cards shows. All of them ask the same noise, fixed to the pixels
  * round the tree's foot, each an interval of its own: together they cover the mean of their
  * opacities, where cards that know nothing of one another would cover 1 - (1 - a)^2. Neighbours and
- * successive samples differ as much as they can (interleaved gradient noise, Jimenez 2014; golden
- * ratio). `interval`: its shift in bits 16..31, its begin in bits 8..15; `length`: of it. */
+ * successive samples differ as much as they can (golden ratio). `interval`: its shift in bits 16..31, its begin in bits 8..15; `length`: of it. */
 bool card_shows(uint interval, float length, uint sample_index)
 {
-    vec2 cell = vec2((uvec2(gl_FragCoord.xy) + uvec2(interval >> 24, interval >> 16)) & 255u);
-    float noise = fract(52.9829189 * fract(dot(cell, vec2(0.06711056, 0.00583715)))
+    float noise = fract(dither_from(uvec2(gl_FragCoord.xy), interval)
                         + float(sample_index & 1023u) * 0.61803399);
     float from = float(interval >> 8 & 255u) * (1.0 / 255.0);
     return noise >= from && noise < from + length;

@@ -1,5 +1,6 @@
 /* Noise for shaders: shared/noise.h in vectors. Expects `frame` (wd_frame_uniforms). */
 #include "shared/noise.h"
+#include "lib/dither.glsl"
 
 wd_lattice lattice_at(vec2 rel, int bits)
 {
@@ -19,7 +20,6 @@ float noise_share(float footprint_m, int bits)
 /* White noise of a pixel and sample, for sampling patterns. */
 float pixel_noise(uvec2 pixel, uint salt)
 {
-    /* interleaved gradient noise (Jimenez 2014), moved on by the golden ratio a sample */
-    float phase = fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
-    return fract(phase + 0.618033989 * float(salt));
+    /* moved on by the golden ratio a sample */
+    return fract(dither(vec2(pixel)) + 0.618033989 * float(salt));
 }

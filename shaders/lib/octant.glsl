@@ -37,7 +37,8 @@ bool octant_level(octant_tree t)
     return t.picture.side >= 4u;
 }
 
-/* The rectangle's lower left (xy) and upper right (zw) corner, as far as the picture goes. */
+/* The rectangle's lower left (xy) and upper right (zw) corner, as far as the picture goes; half a pixel
+ * more all around, for pixels look up a place anywhere within them. */
 vec4 octant_rectangle(octant_tree t)
 {
     float reach = t.pose.across
@@ -46,7 +47,8 @@ vec4 octant_rectangle(octant_tree t)
                    ? t.foot.xyxy + vec4(-reach, -reach, reach, reach)
                    : vec4(t.foot.x - reach, t.foot.y + t.model.bottom_m * t.pose.up,
                           t.foot.x + reach, t.foot.y + t.model.top_m * t.pose.up);
-    return clamp(box, 0.0, t.picture.size_m);
+    float more_m = 0.5 * t.picture.size_m / float(push.tile_pixels);
+    return clamp(box + more_m * vec4(-1.0, -1.0, 1.0, 1.0), 0.0, t.picture.size_m);
 }
 
 /* A world direction in the model's axes, level part. */

@@ -17,13 +17,16 @@ layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_surface;
 
 #include "lib/card_material.glsl"
+#include "lib/dither.glsl"
 
 void main()
 {
     uvec2 cell = uvec2(in_uv * in_cells.xy);
     uint noise = wd_hash_mix((cell.x | (cell.y << 16)) ^ in_flat.z
                              ^ frame.sample_index * 0x9e3779b9u);
-    if (wd_hash_unit(noise) >= in_color.a)
+    float threshold = fract(dither_from(cell, in_flat.z)
+                            + float(frame.sample_index & 1023u) * 0.61803399);
+    if (threshold >= in_color.a)
         discard;
     uint tree = in_flat.x + wd_hash1(noise) % max(in_flat.y, 1u);
     vec3 albedo = in_color.rgb;

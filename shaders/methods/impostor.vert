@@ -38,17 +38,12 @@ side_look side_of(wd_octant_look look, uint axis, float toward)
 
 /* Each side counts by the area that it shows. Sides that are covered all over are those of a box, whose
  * outlines add; crowns are round, of outlines whose squares add (a spheroid covers pi / 4 of each side
- * of its box). `areas`: of sides, `area`: the sprite's. */
-float covered_by(float sum, float squares, float area)
-{
-    float boxy = clamp((sum / area - 0.785) / 0.215, 0.0, 1.0);
-    return clamp(mix(sqrt(squares), sum, boxy) / area, 0.0, 1.0);
-}
-
-side_look mixed_sides(wd_octant_look look, vec3 toward, vec3 areas, float area)
+ * of its box), and the trees' own slant tells how far from round. Colour's a is in square metres.
+ * `boxy`: 0 round, 1 a box; `area`: of the box's outline. */
+side_look mixed_sides(wd_octant_look look, vec3 toward, vec3 areas, float area, out float boxy)
 {
     side_look sum = side_look(vec4(0.0), vec4(0.0), 0.0);
-    float covered = 0.0, squares = 0.0;
+    float covered = 0.0, squares[3];
     for (uint axis = 0u; axis < 3u; axis++) {
         side_look side = side_of(look, axis, toward[axis]);
         float weight = abs(toward[axis]) * areas[axis] * side.color.a;
@@ -56,12 +51,19 @@ side_look mixed_sides(wd_octant_look look, vec3 toward, vec3 areas, float area)
         sum.normal += weight * side.normal;
         sum.leaf += weight * side.leaf;
         covered += weight;
-        squares += weight * weight;
+        squares[axis] = weight * weight;
     }
     sum.color.rgb /= max(covered, 1e-6);
     sum.normal /= max(covered, 1e-6);
     sum.leaf /= max(covered, 1e-6);
-    sum.color.a = covered_by(covered, squares, area);
+    /* what would be seen level, from half above and from above, squared */
+    float sine = abs(toward.z), slant = wd_octant_slant(look);
+    float level = (squares[0] + squares[1]) / max(1.0 - sine * sine, 1e-6);
+    float above = squares[2] / max(sine * sine, 1e-6);
+    float half_above = 0.5 * slant * slant * (level + above);
+    float round_m2 = sqrt(wd_side_mix(level, half_above, above, sine));
+    boxy = clamp((covered / area - 0.785) / 0.215, 0.0, 1.0);
+    sum.color.a = mix(round_m2, covered, boxy);
     return sum;
 }
 
@@ -101,12 +103,16 @@ void main()
         float level = max(length(toward.xy), 1e-4);
         vec3 right = vec3(-toward.y, toward.x, 0.0) / level;
         vec3 up = vec3(-toward.xy * (toward.z / level), level);
-        vec2 reach = vec2(dot(abs(right), half_m), dot(abs(up), half_m));
+        vec2 box = vec2(dot(abs(right), half_m), dot(abs(up), half_m));
+        vec2 round = vec2(length(right * half_m), length(up * half_m));
+        float boxy;
+        look = mixed_sides(impostor.look, toward, size_m.yzx * size_m.zxy, 4.0 * box.x * box.y, boxy);
+        vec2 reach = mix(round, box, boxy);
+        look.color.a = min(look.color.a / (4.0 * reach.x * reach.y), 1.0);
         rel = center + right * (side.x * reach.x) - up * (side.y * reach.y);
         /* from the box's near edge at its bottom to the far one at its top: the ground hides none */
         float nearer_m = dot(abs(toward.xy), half_m.xy) - toward.z * half_m.z;
         rel *= 1.0 - nearer_m * side.y / distance_m;
-        look = mixed_sides(impostor.look, toward, size_m.yzx * size_m.zxy, 4.0 * reach.x * reach.y);
         extent_m = 2.0 * reach;
     }
     out_uv = side * 0.5 + 0.5;

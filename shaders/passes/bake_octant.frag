@@ -13,6 +13,7 @@ layout(scalar, push_constant) uniform Push { wd_octant_push push; };
 
 #include "lib/trees.glsl"
 #include "lib/octant.glsl"
+#include "lib/dither.glsl"
 
 layout(location = 0) in vec2 in_place;
 layout(location = 1) flat in uvec2 in_entry;
@@ -25,10 +26,21 @@ struct octant_card {
     vec3 uv;
     vec2 width, normal;
     float behind, mirrored; /* 1: seen from behind; -1: its width runs to the left */
+    float denser; /* factor on its opacity */
 };
 
+/* Factor from a way from the foot in the picture to the one in the tree. Crowns reach beyond the bounds by
+ * which cubes hold trees; where no other cube holds what sticks out of this one, it is pressed into it. */
+float pressed(octant_tree t, float foot_m, float off_m)
+{
+    float room_m = off_m < 0.0 ? foot_m : t.picture.size_m - foot_m;
+    float reach_m = t.model.half_width_m * t.pose.across;
+    bool alone = room_m > 0.5 * WD_TREE_CROWN_M(t.tree) - 0.002;
+    return alone ? max(reach_m / room_m, 1.0) : 1.0;
+}
+
 /* Seen from the side: the card that faces the viewer most, turned to face it wholly. */
-octant_card upright_card(octant_tree t)
+octant_card upright_card(octant_tree t, vec2 place)
 {
     vec2 toward = octant_model_axis(t, t.axes.toward.xy);
     vec2 right = octant_model_axis(t, t.axes.right.xy);
@@ -47,20 +59,25 @@ octant_card upright_card(octant_tree t)
     card.width = vec2(-card.normal.y, card.normal.x);
     card.behind = dot(card.normal, toward) < 0.0 ? 1.0 : 0.0;
     card.mirrored = dot(card.width, right) < 0.0 ? -1.0 : 1.0;
-    float across = (in_place.x - t.foot.x) / (t.model.half_width_m * t.pose.across);
-    float z = (in_place.y - t.foot.y) / t.pose.up;
+    float off_m = place.x - t.foot.x;
+    card.denser = pressed(t, t.foot.x, off_m);
+    float across = off_m * card.denser / (t.model.half_width_m * t.pose.across);
+    float z = (place.y - t.foot.y) / t.pose.up;
     card.uv = vec3(0.5 + 0.5 * card.mirrored * across,
                    (t.model.top_m - z) / (t.model.top_m - t.model.bottom_m),
                    float(t.model.card_layer + index));
     return card;
 }
 
-octant_card level_card(octant_tree t)
+octant_card level_card(octant_tree t, vec2 place)
 {
-    vec2 off = in_place - t.foot.xy;
+    vec2 off = place - t.foot.xy;
+    vec2 press = vec2(pressed(t, t.foot.x, off.x), pressed(t, t.foot.y, off.y));
+    off *= press;
     vec2 world = off.x * t.axes.right.xy + off.y * t.axes.up.xy;
     vec2 own = octant_model_axis(t, world) / (t.pose.across * t.model.half_depth_m);
     octant_card card;
+    card.denser = press.x * press.y;
     card.behind = t.picture.side == 5u ? 1.0 : 0.0;
     card.mirrored = 1.0;
     card.width = card.normal = vec2(0.0);
@@ -78,6 +95,18 @@ float depth_m(octant_tree t, octant_card card, vec4 depth)
     return t.foot.z + t.pose.up * (card.behind > 0.5 ? mix(-to, -from, near) : mix(from, to, near));
 }
 
+/* What of a tree reaches beyond its bounds is in the cube that these are in: no other holds it. */
+float within_m(octant_tree t, float toward_m)
+{
+    float half_m = 0.5 * WD_TREE_CROWN_M(t.tree), height_m = WD_TREE_HEIGHT_M(t.tree);
+    vec2 bounds_m = t.foot.z + (t.picture.side == 4u   ? vec2(0.0, height_m)
+                                : t.picture.side == 5u ? vec2(-height_m, 0.0)
+                                                       : vec2(-half_m, half_m));
+    float least_m = bounds_m.x > -0.002 ? 0.0 : min(toward_m, 0.0);
+    float most_m = bounds_m.y < t.picture.size_m + 0.002 ? 0.9999 * t.picture.size_m : toward_m;
+    return clamp(toward_m, least_m, max(most_m, least_m));
+}
+
 vec3 world_normal(octant_tree t, octant_card card, vec3 n)
 {
     if (!octant_level(t))
@@ -89,28 +118,36 @@ vec3 world_normal(octant_tree t, octant_card card, vec3 n)
     return card.behind > 0.5 ? vec3(n.xy, -n.z) : n;
 }
 
+/* A place in a pixel, -0.5..0.5: pixels are coarse beside a tree, and stand alike to many of them. */
+vec2 within_pixel(uvec2 at, uint seed)
+{
+    uint random = wd_hash2(seed, at.x | at.y << 16);
+    return vec2(random & 0xffffu, random >> 16) * (1.0 / 65536.0) - 0.5;
+}
+
 void main()
 {
     octant_tree t = octant_tree_of(in_entry.x, in_entry.y);
+    float pixel_m = t.picture.size_m / float(push.tile_pixels);
+    uvec2 at = uvec2(gl_FragCoord.xy) % push.tile_pixels;
+    uint seed = wd_hash1(in_entry.x * 6u + t.picture.side);
+    vec2 place = in_place + pixel_m * within_pixel(at, seed);
     octant_card card;
     if (octant_level(t))
-        card = level_card(t);
+        card = level_card(t, place);
     else
-        card = upright_card(t);
-    float pixel_m = t.picture.size_m / float(push.tile_pixels);
+        card = upright_card(t, place);
     float texel_m = 2.0 * t.model.half_width_m * t.pose.across / float(WD_CARD_WIDTH_TEXELS);
     float lod = max(log2(pixel_m / texel_m), 0.0);
     vec4 albedo = textureLod(card_albedo, card.uv, lod);
-    uint seed = in_entry.x * 6u + t.picture.side;
-    uvec2 at = uvec2(gl_FragCoord.xy) % push.tile_pixels;
-    float noise = wd_hash_unit(wd_hash2(seed, at.x | at.y << 16));
+    float noise = dither_from(at, seed);
     vec4 depth = textureLod(card_depth, card.uv, lod);
-    float toward_m = depth_m(t, card, depth);
+    float toward_m = within_m(t, depth_m(t, card, depth));
     float slice_m = t.picture.size_m / float(t.picture.slices);
     float from_m = float(t.picture.slice) * slice_m;
     bool inside = all(greaterThanEqual(card.uv.xy, vec2(0.0)))
                   && all(lessThan(card.uv.xy, vec2(1.0))) && toward_m >= from_m && toward_m < from_m + slice_m;
-    if (noise >= albedo.a || !inside)
+    if (noise >= albedo.a * card.denser || !inside)
         discard;
     vec4 normal = textureLod(card_normal, card.uv, lod - float(WD_CARD_NORMAL_MIP));
     vec3 turned = world_normal(t, card, normal.xyz * 2.0 - 1.0);

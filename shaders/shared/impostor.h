@@ -5,12 +5,6 @@
 #include "shared/octant.h"
 #include "shared/types.h"
 
-#ifdef __STDC_VERSION__
-#define WD_OCTANT_LOOK struct wd_octant_look
-#else
-#define WD_OCTANT_LOOK wd_octant_look
-#endif
-
 #define WD_SPRITE_VERTICES 4 /* one quad that faces the eye */
 #define WD_CUBE_VERTICES 12  /* the three sides that do */
 

@@ -7,6 +7,12 @@
 /* Sides: seen from east (+x), west, north (+y), south, above (+z), below. */
 #define WD_OCTANT_SIDES 6
 
+#ifdef __STDC_VERSION__
+#define WD_OCTANT_LOOK struct wd_octant_look
+#else
+#define WD_OCTANT_LOOK wd_octant_look
+#endif
+
 /* 56 bytes. An empty side is 0. */
 struct wd_octant_look {
     uint32_t color[WD_OCTANT_SIDES];  /* R in the low byte, G, B: sRGB albedo of what shows;
@@ -14,7 +20,8 @@ struct wd_octant_look {
                                          parts of a tree cover less than a byte could tell */
     uint32_t normal[WD_OCTANT_SIDES]; /* its mean normal * 0.5 + 0.5, world axes, shorter where they
                                          spread; A: sky openness */
-    uint32_t leaf[2]; /* share of it that is leaf: bits 8 s .. of side s, four sides a word */
+    uint32_t leaf[2]; /* share of it that is leaf: bits 8 s .. of side s, four sides a word; in the
+                         second word's bits 16..23: 128 times wd_octant_slant */
 };
 WD_STATIC_ASSERT_SIZE(wd_octant_look, 56);
 
@@ -22,6 +29,13 @@ WD_FUNC float wd_octant_coverage(uint32_t color)
 {
     float root = WD_FLOAT(color >> 24) * (1.0f / 255.0f);
     return root * root;
+}
+
+/* What trees cover from half above, over the root of the mean square of what they cover seen level and
+ * from above: 1 of an ellipsoid, 1.16 of a beech, whose crown lets through level rays. */
+WD_FUNC float wd_octant_slant(WD_OCTANT_LOOK look)
+{
+    return WD_FLOAT((look.leaf[1] >> 16) & 0xffu) * (1.0f / 128.0f);
 }
 
 /* Opacity of wood in pictures of octants; that of leaves is 1, of nothing 0. */

@@ -107,6 +107,50 @@ static void add_children(struct wd_octant_look *looks, const struct wd_octree *o
     }
 }
 
+/* Of trees: their slant by what they cover, summed. */
+struct slant {
+    float sum, weight;
+};
+
+static struct slant slant_of(const struct wd_forest_device *forest, uint32_t tree)
+{
+    const struct wd_tree *t = &forest->world->trees[tree];
+    const struct wd_model *model = &forest->host_models[wd_forest_model_of(forest, t)];
+    const float *seen = model->seen_m2;
+    float round = sqrtf(0.5f * (seen[0] * seen[0] + seen[2] * seen[2]));
+    float scale = WD_TREE_CROWN_M(*t) / model->crown_m * (WD_TREE_HEIGHT_M(*t) / model->height_m);
+    return (struct slant){scale * seen[1], scale * round};
+}
+
+static void pack_slant(struct wd_octant_look *look, struct slant slant)
+{
+    float byte = slant.weight > 0 ? 128.0f * slant.sum / slant.weight + 0.5f : 128.0f;
+    look->leaf[1] = (look->leaf[1] & 0xffffu) | (uint32_t)fminf(byte, 255.0f) << 16;
+}
+
+/* Children come after their parents, whose trees are theirs as well. */
+static void add_slants(struct wd_octant_look *looks, const struct wd_forest_device *forest)
+{
+    const struct wd_octree *octree = &forest->world->octree;
+    struct slant *slants = wd_alloc_array(octree->count, sizeof *slants);
+    for (uint32_t i = octree->count; i-- > 0;) {
+        const struct wd_octant *octant = &octree->octants[i];
+        uint32_t child = octant->first_child;
+        for (uint32_t k = octant->tight_begin; k < octant->tight_end; k++) {
+            struct slant tree = slant_of(forest, octree->tight_trees[k]);
+            slants[i].sum += tree.sum;
+            slants[i].weight += tree.weight;
+        }
+        for (uint32_t k = 0; k < octant->child_count; k++) {
+            slants[i].sum += slants[child].sum;
+            slants[i].weight += slants[child].weight;
+            child = octree->octants[child].next_sibling;
+        }
+        pack_slant(&looks[i], slants[i]);
+    }
+    free(slants);
+}
+
 static struct wd_octant_cube cube_of(const struct wd_octree *octree, uint32_t octant,
                                      uint32_t owner)
 {
@@ -155,6 +199,7 @@ bool wd_octant_colors_bake(struct wd_octant_colors *colors, struct wd_gpu *gpu,
         return false;
     }
     add_children(colors->looks, octree, params->average);
+    add_slants(colors->looks, forest);
     colors->bytes = octree->count * sizeof *colors->looks;
     colors->baked_us = (uint64_t)((wd_clock_s() - start) * 1e6);
     return true;
@@ -186,6 +231,7 @@ static void close_cluster(struct filling *f)
         bool shows = false;
         for (int side = 0; side < WD_OCTANT_SIDES; side++)
             shows |= f->grid[i].color[side] >> 24 >= f->least_alpha;
+        pack_slant(&f->grid[i], (struct slant){0});
         if (shows)
             *wd_push(clusters->cells, count, f->cell_capacity) = (struct wd_cluster_cell){
                 i % c | i / c % c << 8 | i / (c * c) << 16, f->grid[i]};

@@ -166,18 +166,32 @@ static void add_box(struct box *sum, const float min_m[3], const float max_m[3])
     }
 }
 
-/* What trees fill of each octant's cube; children come after their parents. */
-static struct box *filled_boxes(const struct wd_world *world)
+/* A tree with all that reaches beyond the bounds by which octants hold it. */
+static struct box whole_tree(const struct wd_forest_device *forest, uint32_t index)
 {
-    const struct wd_octree *octree = &world->octree;
+    const struct wd_tree *tree = &forest->world->trees[index];
+    const struct wd_model *model = &forest->host_models[wd_forest_model_of(forest, tree)];
+    float more_m = WD_TREE_CROWN_M(*tree) * (model->half_depth_m / model->crown_m - 0.5f);
+    struct box box;
+    wd_tree_bounds(tree, box.min_m, box.max_m);
+    for (int axis = 0; axis < 2; axis++) {
+        box.min_m[axis] -= fmaxf(more_m, 0.0f);
+        box.max_m[axis] += fmaxf(more_m, 0.0f);
+    }
+    return box;
+}
+
+/* What trees fill of each octant's cube; children come after their parents. */
+static struct box *filled_boxes(const struct wd_forest_device *forest)
+{
+    const struct wd_octree *octree = &forest->world->octree;
     struct box *boxes = wd_alloc_array(octree->count, sizeof *boxes);
     for (uint32_t i = octree->count; i-- > 0;) {
         const struct wd_octant *octant = &octree->octants[i];
         uint32_t child = octant->first_child;
         struct box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
         for (uint32_t k = octant->tight_begin; k < octant->tight_end; k++) {
-            struct box tree;
-            wd_tree_bounds(&world->trees[octree->tight_trees[k]], tree.min_m, tree.max_m);
+            struct box tree = whole_tree(forest, octree->tight_trees[k]);
             add_box(&box, tree.min_m, tree.max_m);
         }
         for (uint32_t k = 0; k < octant->child_count; k++) {
@@ -204,11 +218,11 @@ static void fit_look(struct wd_impostor *impostor, float cube_m)
     }
 }
 
-static void fill_octants(struct wd_impostor *table, const struct wd_world *world,
+static void fill_octants(struct wd_impostor *table, const struct wd_forest_device *forest,
                          const struct wd_octant_colors *colors)
 {
-    const struct wd_octree *octree = &world->octree;
-    struct box *boxes = filled_boxes(world);
+    const struct wd_octree *octree = &forest->world->octree;
+    struct box *boxes = filled_boxes(forest);
     for (uint32_t i = 0; i < octree->count; i++) {
         const struct wd_octant *octant = &octree->octants[i];
         table[i] = (struct wd_impostor){
@@ -316,7 +330,7 @@ static bool impostor_use_forest(void *state, struct wd_gpu *gpu, struct wd_fores
     if (ok) {
         size_t total = (size_t)octree->count + clusters.cell_count;
         struct wd_impostor *table = wd_alloc_array(total, sizeof *table);
-        fill_octants(table, forest->world, &colors);
+        fill_octants(table, forest, &colors);
         if (count)
             fill_clusters(impostors, table, octree->count, forest->world, chosen, &clusters);
         ok = upload_table(impostors, gpu, table, total);
