@@ -27,7 +27,7 @@ float billboard_growth(wd_model model, float level, float sine, bool from_above)
     float drawn_m2 = from_above ? model.seen_m2.z * model.half_width_m * tall_m / (depth_m * depth_m)
                                 : model.seen_m2.x * tall_m / half_m;
     float wanted_m2 = wd_seen_m2(model.seen_m2.x, model.seen_m2.y, model.seen_m2.z, sine);
-    return sqrt(clamp(wanted_m2 / max(drawn_m2, 1e-9), 0.5, 2.0));
+    return sqrt(clamp(wanted_m2 / max(drawn_m2, 1e-9), 0.25, 4.0));
 }
 
 /* Corner `side` (-1..1 right, -1..1 down) of the billboard seen from `toward` (unit). It is as tall

@@ -54,7 +54,7 @@ float card_growth(card_tree t, float sine, float drawn_m2)
 {
     vec3 seen = t.model.seen_m2;
     float wanted_m2 = wd_seen_m2(seen.x, seen.y, seen.z, sine);
-    return sqrt(clamp(wanted_m2 / max(drawn_m2, 1e-9), 0.5, 2.0));
+    return sqrt(clamp(wanted_m2 / max(drawn_m2, 1e-9), 0.25, 4.0));
 }
 
 /* The more of what is seen of the crown is its top. */
@@ -197,7 +197,8 @@ vec4 card_clip(card_tree t, card_frame card, vec2 side)
     vec3 offset = card.middle + card.across * side.x + card.down * side.y;
     offset += tree_sway(t.tree, t.model.flexibility, offset.z, frame.time_s);
     vec3 rel = t.foot + offset;
-    return SHADOW != 0u ? shadow_clip(push.cascade, rel) : frame.clip_from_rel * vec4(rel, 1.0);
+    return SHADOW != 0u ? shadow_clip(push.cascade, rel)
+                        : frame.clip_from_rel * vec4(card_over_ground(rel, t.foot), 1.0);
 }
 
 /* `show` is that of the level of detail. */

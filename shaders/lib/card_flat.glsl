@@ -54,3 +54,14 @@ vec3 card_world_normal(vec3 stored, uvec4 card)
         normal -= 2.0 * dot(normal, own) * own;
     return normal * (mean_length / max(length(normal), 1e-5));
 }
+
+/* Pictures of low, wide plants reach below the foot, as what lies on the ground before it does from above.
+ * Such corners come nearer along the eye's ray, until the ground hides none of them but where it is seen
+ * all but level. */
+vec3 card_over_ground(vec3 rel, vec3 foot)
+{
+    float under_m = foot.z - rel.z;
+    if (under_m <= 0.0 || foot.z >= 0.0)
+        return rel;
+    return rel * max(foot.z / rel.z, 1.0 - 3.0 * under_m / length(rel));
+}

@@ -72,5 +72,5 @@ void main()
     out_uv = board.uv;
     out_card = uvec4(packed.turn, packed.tint_show, packed.normal, packed.ratio_flags);
     out_more = uvec3(packed.layer_lod, card_noise_shift(tree, foot), packed.surface);
-    gl_Position = frame.clip_from_rel * vec4(foot + offset, 1.0);
+    gl_Position = frame.clip_from_rel * vec4(card_over_ground(foot + offset, foot), 1.0);
 }
