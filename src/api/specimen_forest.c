@@ -23,11 +23,12 @@ static const char scene_text[] =
 
 struct row {
     double left_m, right_m, height_m, depth_m;
+    double leafy_m; /* above the ground: the lowest crown of leaves */
 };
 
 static struct row measure(const struct wd_specimen *const *specimens, uint32_t count)
 {
-    struct row row = {0};
+    struct row row = {.leafy_m = 1e9};
     for (uint32_t i = 0; i < count; i++) {
         const struct wd_tree_mesh *mesh = &specimens[i]->model.full;
         double at = wd_specimen_place_m(specimens, i);
@@ -35,6 +36,8 @@ static struct row measure(const struct wd_specimen *const *specimens, uint32_t c
         row.right_m = fmax(row.right_m, at + (double)mesh->max_m[0]);
         row.height_m = fmax(row.height_m, (double)mesh->max_m[2]);
         row.depth_m = fmax(row.depth_m, -(double)mesh->min_m[1]);
+        if (specimens[i]->model.leaf_area_m2 > 0)
+            row.leafy_m = fmin(row.leafy_m, (double)specimens[i]->model.crown_base_m);
     }
     return row;
 }
@@ -73,7 +76,8 @@ static double make_cameras(struct wd_scene *scene, const struct row *row, double
     place_camera(&scene->cameras[1], "eye", row, near, eye,
                  fmin(half_height, eye + 0.4 * near), 50, &scene->arena);
     /* the meter takes a picture filled with leaves for a dim day */
-    scene->quality.exposure_ev -= 0.9 * fmax(1 - 2 * near / fit, 0);
+    double leafy = fmax(1 - row->leafy_m / (eye + 0.8 * near), 0);
+    scene->quality.exposure_ev -= 1.1 * leafy * fmax(1 - 2 * near / fit, 0);
     return fmax(fit, near);
 }
 

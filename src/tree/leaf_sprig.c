@@ -26,11 +26,12 @@ struct wd_blade_place wd_sprig_place(const struct wd_species *species, struct wd
 {
     float length = 1 / sqrtf((float)count), reach = wd_sprig_reach(count);
     bool pairs = species->leaf.phyllotaxis != WD_PHYLLOTAXIS_ALTERNATE, last = i == count - 1;
+    float hang = wd_maxf(species->leaf.droop - 0.3f, 0); /* on long stalks, every way */
     float step = pairs ? (float)(i & ~1) + 0.5f : (float)i;
     float at = last ? reach : reach * (0.15f + 0.8f * step / (float)count);
     struct wd_vec3 side = last ? WD_V3(0, 0, 0) : leaf_side(species, i);
     struct wd_vec3 along = wd_v3_mad(WD_V3(0, 0.75f, -0.1f), side, 0.8f);
-    along = wd_v3_unit(wd_v3_mad(along, wd_random_vec3(random), 0.22f));
+    along = wd_v3_unit(wd_v3_mad(along, wd_random_vec3(random), 0.22f + 1.2f * hang));
     struct wd_vec3 up = wd_v3_mad(WD_V3(0, 0.15f, 1), wd_random_vec3(random), 0.35f);
     return wd_blade_place(wd_sprig_axis(at), along, up,
                           length * wd_random_range(random, 0.85f, 1.12f), 1);
