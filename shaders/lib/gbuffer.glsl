@@ -1,5 +1,6 @@
 /* What the G-buffer says of a pixel. Expects `frame` and the four images. */
 #include "lib/pixel.glsl"
+#include "lib/disc.glsl"
 
 wd_pixel gbuffer_pixel(ivec2 at, float depth)
 {
@@ -12,9 +13,14 @@ wd_pixel gbuffer_pixel(ivec2 at, float depth)
     vec4 normal = texelFetch(gbuffer_normal, at, 0);
     pixel.albedo = albedo.rgb;
     pixel.openness = albedo.a;
-    pixel_set_normal(pixel, normal.xyz * 2.0 - 1.0);
     pixel.material = uint(normal.w * 3.0 + 0.5);
     pixel.surface = texelFetch(gbuffer_surface, at, 0).x;
+    bool disc = pixel.material == WD_MATERIAL_GROUND && pixel.surface != 0u;
+    pixel_set_normal(pixel, disc ? disc_normal(normal) : normal.xyz * 2.0 - 1.0);
+    if (disc)
+        pixel.material = disc_kind(normal) == DISC_WOOD ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF;
+    pixel.lit = disc ? disc_lit(normal) : -1.0;
+    pixel.above = disc_kind(normal) == DISC_LEAF_ABOVE ? 1.0 : 0.0;
     pixel_lay_snow(pixel);
     return pixel;
 }

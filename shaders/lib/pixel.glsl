@@ -12,6 +12,8 @@ struct wd_pixel {
     vec3 normal;      /* unit */
     vec3 facing;      /* mean of the normals of what the pixel shows: the shorter, the more they spread */
     uint material;
+    float lit;        /* share of the sun that a disc's own tree lets through; -1: not known */
+    float above;      /* 1: the upper side of a disc's leaf */
     uint surface;     /* tree + 1, or 0 */
     float snow;       /* share of a tree's surface that lies under snow */
 };

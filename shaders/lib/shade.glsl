@@ -279,11 +279,45 @@ void shade_by_crown(inout wd_place place, wd_crown crown, float openness, float 
     place.ahead_m = mapped > 0.0 ? 0.0 : path_m + frame.cascade_texel_m[min(cascade, 3u)];
 }
 
+/* GGX (Walter et al. 2007), with the shadowing of facets by each other. */
+float ggx_hidden(float cosine, float alpha2)
+{
+    float square = max(cosine * cosine, 1e-6);
+    return 0.5 * (sqrt(1.0 + alpha2 * (1.0 - square) / square) - 1.0);
+}
+
+/* What the wax of one leaf mirrors of the sun, over a lit wall. */
+float leaf_coat(vec3 normal, vec3 eye, float roughness)
+{
+    float toward_eye = max(dot(normal, eye), 0.05), lit = dot(normal, frame.sun_direction);
+    vec3 half_way = normalize(eye + frame.sun_direction);
+    float alpha = roughness * roughness, alpha2 = alpha * alpha, along = dot(normal, half_way);
+    float spread = along * along * (alpha2 - 1.0) + 1.0;
+    float rest = 1.0 - max(dot(half_way, eye), 0.0), rest2 = rest * rest;
+    float mirrored = WAX + (1.0 - WAX) * rest2 * rest2 * rest;
+    float open = 1.0 + ggx_hidden(toward_eye, alpha2) + ggx_hidden(lit, alpha2);
+    return lit <= 0.0 ? 0.0 : mirrored * alpha2 / (spread * spread * open * 4.0 * toward_eye);
+}
+
+/* A disc of a leaf is lit as the leaf that it is. */
+void light_disc(inout wd_place place, wd_pixel pixel, wd_model model, uint cascade)
+{
+    if (pixel.lit < 0.0)
+        return;
+    place.own = pixel.lit;
+    place.ahead_m = min(place.ahead_m, 0.5 + 1.5 * frame.cascade_texel_m[min(cascade, 3u)]);
+    float cosine = dot(pixel.normal, frame.sun_direction);
+    place.sides = vec2(max(cosine, 0.0), max(-cosine, 0.0));
+    place.waxed = pixel.above;
+    place.gloss = leaf_coat(pixel.normal, -pixel.direction, model.roughness) * pixel.above;
+}
+
 /* Wood within a crown is in its shade as leaves are. */
 wd_place wood_place(wd_pixel pixel, wd_crown crown, uint cascade)
 {
     wd_place place = ground_place(pixel);
     shade_by_crown(place, crown, pixel.openness, cascade == 0u ? 1.0 : 0.0, cascade);
+    place.own = pixel.lit < 0.0 ? place.own : pixel.lit;
     return place;
 }
 
@@ -324,6 +358,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, uint cascade
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
     place.sheet = mapped > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
+    light_disc(place, pixel, model, cascade);
     return place;
 }
 

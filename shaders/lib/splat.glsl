@@ -28,10 +28,12 @@ wd_splat_tree splat_tree_at(usamplerBuffer table, uint index)
     vec4 sway = uintBitsToFloat(texelFetch(table, first + 3));
     vec4 facing = uintBitsToFloat(texelFetch(table, first + 4));
     uvec4 from = texelFetch(table, first + 5), look = texelFetch(table, first + 6);
+    uvec4 light = texelFetch(table, first + 7);
     return wd_splat_tree(uintBitsToFloat(texelFetch(table, first)),
                          uintBitsToFloat(texelFetch(table, first + 1)),
                          uintBitsToFloat(texelFetch(table, first + 2)), sway.xyz, sway.w, facing.xyz,
-                         facing.w, from.x, from.y, from.z, from.w, look.x, look.y, look.z, look.w);
+                         facing.w, from.x, from.y, from.z, from.w, look.x, look.y, look.z, look.w,
+                         light.x, light.y, light.z, uintBitsToFloat(light.w));
 }
 
 /* Stratum (x) of the tree's splat number `at`, and which of that stratum's window it is (y). */
@@ -56,13 +58,18 @@ vec3 splat_place(wd_splat splat)
 }
 
 /* Not of unit length. */
-vec3 splat_normal(wd_splat splat)
+vec3 octahedral(vec2 e)
 {
-    vec2 e = unpackSnorm4x8(splat.z_normal).zw;
     vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
     float below = max(-n.z, 0.0);
     n.xy -= sign(n.xy) * below;
     return n;
+}
+
+/* Its face, likewise. */
+vec3 splat_normal(wd_splat splat)
+{
+    return octahedral(unpackSnorm4x8(splat.z_normal).zw);
 }
 
 /* Clip coordinates x, y and w (z of a cascade) of a place in the model's box. */

@@ -2,6 +2,7 @@
  * splat, and of those at the same depth the one with the greatest id, in whatever order they come.
  * Expects SPLAT(pixel, depth_bits, id). */
 #include "shared/continuum.h"
+#include "shared/sun_ways.h"
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
@@ -12,6 +13,7 @@ layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts co
 layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
 layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
 layout(set = 0, binding = 4) uniform usamplerBuffer splats;      /* wd_splat */
+layout(set = 0, binding = 6) uniform usamplerBuffer lit;         /* ways that are open, of each */
 
 #include "lib/splat.glsl"
 
@@ -91,25 +93,31 @@ void main()
     vec2 size = vec2(view.width, view.height);
     for (uint i = first; i < count; i += step_size) {
         uvec2 turn = splat_turn(tree, from + i);
-        wd_splat disc = splat_at(splats, splat_index(tree, turn));
+        uint at_disc = splat_index(tree, turn);
+        wd_splat disc = splat_at(splats, at_disc);
         vec3 clip = splat_clip(tree, splat_place(disc));
         float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
         if (w < view.near_m)
             continue;
         float inverse = 1.0 / w;
-        float depth = ORTHOGRAPHIC != 0u ? clip.z : view.near_m * inverse;
+        uint random = disc.xy * 0x9e3779b9u;
+        uint way = wd_sun_way_by_lot(tree.eye, random >> 8);
+        float seen = wd_sun_way_lit(texelFetch(lit, int(at_disc)).x, way);
+        float depth = ORTHOGRAPHIC != 0u ? clip.z
+                                         : view.near_m / max(w - tree.nearer_m * seen, view.near_m);
         if (depth <= 0.0)
             continue;
         bool wood = turn.x == WD_LEAF_STRATA;
         vec3 normal = splat_normal(disc);
         float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
-        float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0)) : tree.radius) * inverse;
+        float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0))
+                             : tree.radius * sqrt(2.0 * abs(facing))) * inverse;
+        radius *= sqrt(mix(WD_DISC_HIDDEN, WD_DISC_SEEN, seen));
         vec2 at = (clip.xy * inverse * 0.5 + 0.5) * size;
         uint id = index * WD_ITEM_SPLATS + i + 1u;
         bool leaf = ORTHOGRAPHIC == 0u && SMALL == 0u && !wood && radius > LEAF_PX;
         draw_disc(at, leaf ? 0.0 : radius, floatBitsToUint(depth), id);
         if (ORTHOGRAPHIC == 0u && SMALL == 0u)
-            draw_leaf(at, leaf ? radius : -1.0, floatBitsToUint(depth), id,
-                      disc.xy * 0x9e3779b9u >> 16);
+            draw_leaf(at, leaf ? radius : -1.0, floatBitsToUint(depth), id, random >> 16);
     }
 }

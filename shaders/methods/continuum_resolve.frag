@@ -5,6 +5,7 @@
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/continuum.h"
+#include "shared/sun_ways.h"
 
 layout(constant_id = 0) const uint WOOD = 0u; /* splats and wood apart */
 
@@ -13,13 +14,16 @@ layout(set = 0, binding = 1) uniform usamplerBuffer pixels;      /* id, depth */
 layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
 layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
 layout(set = 0, binding = 4) uniform usamplerBuffer splats;      /* wd_splat */
-layout(set = 0, binding = 5) uniform usamplerBuffer looks;
+layout(set = 0, binding = 5) uniform usamplerBuffer looks;       /* wd_splat_look */
 layout(set = 0, binding = 6) uniform usamplerBuffer wood_items;  /* wd_splat_item */
 layout(set = 0, binding = 7) uniform usamplerBuffer wood;        /* wd_splat_wood */
 layout(set = 0, binding = 8) uniform sampler2DArray bark;
+layout(set = 0, binding = 9) uniform usamplerBuffer lit;         /* ways that are open, of each splat */
 
 #include "lib/tree.glsl"
 #include "lib/splat.glsl"
+#include "lib/view.glsl"
+#include "lib/disc.glsl"
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
@@ -28,8 +32,9 @@ layout(location = 2) out uint out_surface;
 /* What is seen, in the model's axes. */
 struct wd_seen {
     wd_splat_tree tree;
-    vec3 albedo, normal;
+    vec3 albedo, normal, face;
     float openness;
+    float lit; /* share of the sun that its tree lets through */
     bool wood;
 };
 
@@ -45,13 +50,15 @@ wd_seen seen_splat(uint id)
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
     uint index =
         splat_index(tree, splat_turn(tree, WD_ITEM_FIRST(item) + id % WD_ITEM_SPLATS));
-    uint look = texelFetch(looks, int(index)).x;
+    uvec2 look = texelFetch(looks, int(index)).xy;
     wd_seen seen;
     seen.tree = tree;
-    seen.normal = splat_normal(splat_at(splats, index));
-    seen.albedo = look_albedo(look);
-    seen.openness = float(look >> 24 & 0x7fu) * (1.0 / 127.0);
-    seen.wood = (look & WD_SPLAT_WOOD) != 0u;
+    seen.face = splat_normal(splat_at(splats, index));
+    seen.normal = octahedral(unpackSnorm4x8(look.y).xy);
+    seen.albedo = look_albedo(look.x);
+    seen.openness = float(look.x >> 24 & 0x7fu) * (1.0 / 127.0);
+    seen.lit = wd_sun_lit(texelFetch(lit, int(index)).x, tree.sun);
+    seen.wood = (look.x & WD_SPLAT_WOOD) != 0u;
     return seen;
 }
 
@@ -84,7 +91,8 @@ wd_seen seen_wood(uint id)
     wd_seen seen;
     seen.tree = tree;
     seen.normal = seen.albedo = vec3(0.0);
-    seen.openness = 0.0;
+    seen.openness = seen.lit = 0.0;
+    seen.face = vec3(0.0);
     for (uint k = 0u; k < 3u; k++) {
         seen.albedo += share[k] * look_albedo(triangle.tints[k]);
         seen.openness += share[k] * float(triangle.tints[k] >> 24 & 0x7fu) * (1.0 / 127.0);
@@ -101,6 +109,18 @@ wd_seen seen_wood(uint id)
     return seen;
 }
 
+/* As the path tracer turns normals: on the side of the leaf that the eye sees. Where the sun is on one
+ * side of the leaf and on the other of that normal, none of its light goes on to the eye. */
+vec4 pack_splat(wd_seen seen, vec3 normal, vec3 face, bool below, vec3 eye)
+{
+    face = below ? -face : face;
+    normal = dot(normal, face) < 0.0 ? -normal : normal;
+    normal = dot(normal, eye) <= 0.0 ? face : normal;
+    bool lost = dot(normal, frame.sun_direction) * dot(face, frame.sun_direction) < 0.0;
+    uint kind = seen.wood ? DISC_WOOD : below ? DISC_LEAF_BELOW : DISC_LEAF_ABOVE;
+    return disc_pack(normal, kind, lost ? 0.0 : seen.lit);
+}
+
 void main()
 {
     uvec2 at = uvec2(gl_FragCoord.xy);
@@ -115,17 +135,20 @@ void main()
     vec2 turn = unpackHalf2x16(seen.tree.turn);
     vec2 shape = unpackHalf2x16(seen.tree.shape);
     vec4 tint = unpackUnorm4x8(seen.tree.tint) * 2.0;
+    tree_pose pose = tree_pose(turn, vec2(shape.x, 1.0), 1.0, shape.y);
+    vec3 normal = tree_normal(pose, seen.normal), eye = -normalize(pixel_ray(ivec2(at)));
+    vec3 face = WOOD != 0u ? normal : tree_normal(pose, seen.face);
+    bool below = dot(face, eye) < 0.0;
+    vec3 lower = unpackUnorm4x8(seen.tree.lower).rgb * 4.0;
     if (!seen.wood)
-        seen.albedo *= tint.rgb;
+        seen.albedo = min(seen.albedo * tint.rgb * (below ? lower : vec3(1.0)), 1.0);
     if (WOOD == 0u)
         seen.openness = min(seen.openness * tint.a, 1.0);
     if (frame.view_mode == WD_MODE_LOD)
         seen.albedo = (seen.wood ? vec3(0.5, 0.3, 0.1) : vec3(0.1, 0.6, 0.15))
                       * (0.3 + 0.7 * seen.openness);
-    vec3 normal =
-        tree_normal(tree_pose(turn, vec2(shape.x, 1.0), 1.0, shape.y), seen.normal);
     out_albedo = vec4(seen.albedo, seen.openness);
-    out_normal = vec4(normal * 0.5 + 0.5,
-                      float(seen.wood ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF) / 3.0);
+    out_normal = WOOD != 0u ? vec4(normal * 0.5 + 0.5, float(WD_MATERIAL_WOOD) / 3.0)
+                            : pack_splat(seen, normal, face, below, eye);
     out_surface = seen.tree.tree + 1u;
 }

@@ -5,6 +5,7 @@
 #include "shared/forest.h"
 #include "shared/continuum.h"
 #include "shared/hash.h"
+#include "shared/sun_ways.h"
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* as view.orthographic */
@@ -69,6 +70,13 @@ vec3 model_facing(tree_pose pose, vec3 v)
     return pose.across * vec3(pose.up * turned * pose.mirror, pose.across * v.z);
 }
 
+/* A direction of the world, seen from the model. */
+vec3 model_toward(tree_pose pose, vec3 v)
+{
+    vec2 turned = vec2(pose.turn.x * v.x + pose.turn.y * v.y, pose.turn.x * v.y - pose.turn.y * v.x);
+    return normalize(vec3(pose.up * turned * pose.mirror, pose.across * v.z));
+}
+
 /* Clip coordinates of an offset. */
 vec3 clip_of(vec4 column)
 {
@@ -95,9 +103,12 @@ void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot
     splats.clip_w = vec4(along_x.z, along_y.z, along_z.z, start.z);
 }
 
+/* A disc's radius over a model's: it faces the eye, which sees it. */
+const float LARGEST_DISC = sqrt(2.0 * WD_DISC_SEEN);
+
 /* How many strata, from the top, show anything past what the frame before saw. */
 uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint model, vec3 sway,
-                 float disc, uint strata)
+                 float disc, float nearer_m, uint strata)
 {
     float height_m = WD_TREE_HEIGHT_M(tree) * 1.02;
     vec2 wide = max(-splat_models[model].min_m.xy,
@@ -105,7 +116,7 @@ uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint mode
     float reach_m = length(wide) * pose.across + length(sway) + 0.1;
     vec4 low = view.history_from_rel * vec4(foot, 1.0);
     vec4 high = view.history_from_rel * vec4(foot + vec3(0.0, 0.0, height_m), 1.0);
-    float nearest_m = min(low.w, high.w) - reach_m;
+    float nearest_m = min(low.w, high.w) - reach_m - nearer_m;
     if (nearest_m < 1.0)
         return strata;
     vec2 size = vec2(view.width, view.height);
@@ -180,12 +191,10 @@ vec2 disc_radii(uint model, float each, float sine)
     return sqrt(gain * area_m2 / (3.14159265 * each * vec2(WD_LEAF_STRATA, 1.0)));
 }
 
-/* Factors of what leaves show: those whose lower side is seen, and how open few discs look. */
+/* Factors of the leaves' colour and of how open few discs look. */
 uint leaf_tint(wd_tree tree, uint model, float count, float sine)
 {
-    float lower = wd_side_mix(splat_models[model].lower[0], splat_models[model].lower[1],
-                              splat_models[model].lower[2], sine);
-    vec3 tint = tree_tint(tree, models[model]) * mix(vec3(1.0), splat_models[model].lower_over_upper, lower);
+    vec3 tint = tree_tint(tree, models[model]);
     vec2 place = gain_place(count);
     uint k = uint(place.x);
     return packUnorm4x8(vec4(tint, mix(GAIN(light, k), GAIN(light, k + 1u), place.y)) * 0.5);
@@ -260,13 +269,17 @@ void select_tree(uint index, float share, uint place)
     splats.wood_radius *= sqrt(max(missing, 0.0));
     uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
     splats.facing = model_facing(pose, toward);
-    splats.radius *= sqrt(length(splats.facing));
+    splats.sun = wd_sun_mix(model_toward(pose, frame.sun_direction));
+    splats.eye = wd_sun_mix(model_toward(pose, toward));
+    splats.nearer_m = WD_DISC_NEARER * splat_models[model_index].extent_m.x * pose.across
+                    * smoothstep(-0.4, -0.1, toward.z); /* nothing is known of the view from below */
     float own_across = pose.across;
     pose.across *= stretch;
     if (ORTHOGRAPHIC == 0u && view.has_history != 0u) {
         uint seen = seen_strata(tree, foot, toward, pose, model_index, sway,
-                                max(splats.radius, splats.wood_radius) * max(own_across, pose.up),
-                                strata);
+                                LARGEST_DISC * max(splats.radius, splats.wood_radius)
+                                    * max(own_across, pose.up),
+                                splats.nearer_m, strata);
         if (seen == 0u && view.moved != 0u)
             put_off_trees(place >> 5u, 1u << (place & 31u));
         if (seen == 0u)
@@ -283,6 +296,7 @@ void select_tree(uint index, float share, uint place)
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
     splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);
+    splats.lower = packUnorm4x8(vec4(splat_models[model_index].lower_over_upper * 0.25, 0.0));
     vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
                              : vec2(0.0);
     splats.strata = strata | model.look_layer << 8;

@@ -59,6 +59,8 @@ void main()
     pixel_set_normal(pixel, card_world_normal(packed.xyz, in_card));
     pixel.material = card_material(leaf, in_more.z);
     pixel.surface = in_more.z;
+    pixel.lit = -1.0;
+    pixel.above = 0.0;
     pixel_lay_snow(pixel);
     float sun_share, ground_share;
     vec3 radiance = shade(pixel, uvec2(gl_FragCoord.xy), sun_share, ground_share);

@@ -32,15 +32,20 @@
  * not by every thread of a group. Their items are stored from the end of the list. */
 #define WD_SMALL_SPLATS 96u
 
-/* A splat: its place in the model's box (unorm 16) and its normal (octahedral, snorm 8). */
+/* A splat: its place in the model's box (unorm 16) and its face (octahedral, snorm 8): of leaves the flat
+ * upper side, of wood its normal. */
 struct wd_splat {
     uint32_t xy;       /* x in the low half */
-    uint32_t z_normal; /* z in the low half, normal above */
+    uint32_t z_normal; /* z in the low half, face above */
 };
 WD_STATIC_ASSERT_SIZE(wd_splat, 8);
 
 /* What a splat looks like: RGB square roots of its albedo and, in A, 7 bits of sky openness under
- * one bit that says wood. */
+ * one bit that says wood; the normal that it is shaded with, as its face. */
+struct wd_splat_look {
+    uint32_t albedo, normal;
+};
+WD_STATIC_ASSERT_SIZE(wd_splat_look, 8);
 #define WD_SPLAT_WOOD 0x80000000u
 
 #ifdef __STDC_VERSION__
@@ -201,9 +206,12 @@ struct wd_splat_tree {
     uint32_t turn;         /* cosine and sine of the tree's yaw, half floats */
     uint32_t shape;        /* 1 or -1 mirrored, vertical over horizontal scale, half floats */
     uint32_t tint;         /* half of each factor of the leaves' colour and of openness, unorm 8 */
+    uint32_t lower;        /* a fourth of each factor of the colour of lower sides, unorm 8 */
+    uint32_t sun, eye;     /* wd_sun_mix of where they are, seen from the model */
+    float nearer_m;        /* discs that nothing of the tree hides are drawn so much nearer */
 };
-WD_STATIC_ASSERT_SIZE(wd_splat_tree, 112);
-#define WD_SPLAT_TREE_TEXELS 7
+WD_STATIC_ASSERT_SIZE(wd_splat_tree, 128);
+#define WD_SPLAT_TREE_TEXELS 8
 #define WD_TREE_STRATA(tree) ((tree).strata & 0xffu)
 #define WD_TREE_BARK(tree) ((tree).strata >> 8)
 

@@ -15,7 +15,7 @@
 
 #include "shared/types.h"
 
-#define WD_MATERIAL_GROUND 0
+#define WD_MATERIAL_GROUND 0 /* where a tree is seen, a disc of it (lib/disc.glsl) */
 #define WD_MATERIAL_WOOD 1
 #define WD_MATERIAL_LEAF 2
 #define WD_MATERIAL_CARD 3 /* a billboard: its position is that of the card, not of the leaf */

@@ -187,16 +187,17 @@ WD_FUNC uint32_t wd_vertex_layer(uint32_t kind)
 }
 
 /* A point of a tree model's surface, in progressive order: any prefix of a model's points is a fair
- * sample of its surface (src/tree/points.h). 24 bytes. */
+ * sample of its surface (src/tree/points.h). 28 bytes. */
 struct wd_tree_point {
     WD_VEC3(position_m);
     uint32_t normal; /* as in wd_tree_vertex */
+    uint32_t face;   /* packed alike: of the flat triangle that the point lies on; a leaf's upper side */
     uint32_t albedo; /* R, G, B: sRGB albedo, look texture and tint included; A: sky openness */
     uint32_t kind;   /* bits 0..7: flexibility; bit 8: leaf; bit 9: one-sided (wood): unseen from
                         behind; bits 16..31: half float: m^2 of surface that the point stands for
                         among all of its model's points, one side */
 };
-WD_STATIC_ASSERT_SIZE(wd_tree_point, 24);
+WD_STATIC_ASSERT_SIZE(wd_tree_point, 28);
 #define WD_POINT_LEAF 0x100u
 #define WD_POINT_ONE_SIDED 0x200u
 
@@ -205,6 +206,12 @@ WD_STATIC_ASSERT_SIZE(wd_tree_point, 24);
  * points seen from behind.
  * Gains are found for counts WD_POINT_LEAST << k, seen level, from half above and from above. */
 #define WD_POINT_LEAST 8
+/* What nothing of a tree hides is drawn nearer by this share of the box's width: discs, larger than leaves
+ * and fewer, would hide some of it. */
+#define WD_DISC_NEARER 0.2f
+/* And larger, that the rest shows in gaps alone; areas over the mean face's. */
+#define WD_DISC_SEEN 2.0f
+#define WD_DISC_HIDDEN 0.5f
 #define WD_POINT_GAINS 12
 #define WD_GAIN_SIDES 3
 struct wd_point_gains {

@@ -59,24 +59,40 @@ static bool read_depth(struct wd_picture *picture, struct wd_renderer *renderer,
     return true;
 }
 
+/* As shaders/lib/disc.glsl has it: folded to an octahedron. */
+static void unfold(float normal[3])
+{
+    float x = normal[0], y = normal[1], z = 1.0f - fabsf(x) - fabsf(y), below = fmaxf(-z, 0.0f);
+    normal[0] = x + (x < 0.0f ? below : -below);
+    normal[1] = y + (y < 0.0f ? below : -below);
+    normal[2] = z;
+}
+
 /* A2B10G10R10: R in the low bits. Where nothing was drawn the target is 0 and so is the normal. */
 static bool read_normal(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
 {
     uint32_t *packed = read_target(renderer, &renderer->frame.targets.normal, 4);
-    if (!packed)
+    uint32_t *surface = read_target(renderer, &renderer->frame.targets.surface, 4);
+    if (!packed || !surface) {
+        free(packed);
+        free(surface);
         return false;
+    }
     picture->normal = wd_alloc_array(pixels * 3, sizeof(float));
     for (size_t i = 0; i < pixels; i++) {
         float normal[3], squared = 0.0f;
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++)
             normal[k] = (float)(packed[i] >> (10 * k) & 1023u) / 511.5f - 1.0f;
+        if (packed[i] >> 30 == WD_MATERIAL_GROUND && surface[i] != 0)
+            unfold(normal);
+        for (int k = 0; k < 3; k++)
             squared += normal[k] * normal[k];
-        }
         float scale = (packed[i] & 0x3fffffffu) && squared > 0.0f ? 1.0f / sqrtf(squared) : 0.0f;
         for (int k = 0; k < 3; k++)
             picture->normal[3 * i + k] = normal[k] * scale;
     }
     free(packed);
+    free(surface);
     return true;
 }
 

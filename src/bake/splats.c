@@ -53,15 +53,25 @@ static uint32_t pack_look(const float color[3], float openness, bool wood)
     return packed;
 }
 
-static uint32_t point_look(const struct wd_tree_point *point)
+static struct wd_splat_look point_look(const struct wd_tree_points *points, size_t i)
 {
+    const struct wd_tree_point *point = &points->points[i];
     float color[3];
     for (int k = 0; k < 3; k++)
         color[k] = wd_srgb_decode((uint8_t)(point->albedo >> (8 * k)));
-    return pack_look(color, (float)(point->albedo >> 24) / 255.0f, !(point->kind & WD_POINT_LEAF));
+    float openness = (float)(point->albedo >> 24) / 255.0f;
+    return (struct wd_splat_look){pack_look(color, openness, !(point->kind & WD_POINT_LEAF)),
+                                  normal8(point->normal)};
 }
 
 /* --- discs ------------------------------------------------------------------------------- */
+
+static struct wd_tree_points room_for(size_t count)
+{
+    return (struct wd_tree_points){.points = wd_alloc_array(count, sizeof(struct wd_tree_point)),
+                                   .lit = wd_alloc_array(count, sizeof(uint32_t)),
+                                   .count = count};
+}
 
 static int descending(const void *a, const void *b)
 {
@@ -89,21 +99,24 @@ static void find_tops(const struct wd_tree_points *points, uint32_t leaf, uint32
  * again, and `drawn` with the points themselves, `step` apart. False where there are none. */
 static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *points,
                          uint32_t leaf, uint32_t stratum, float top, float bottom,
-                         struct wd_tree_point *drawn, uint32_t step)
+                         struct wd_tree_points *drawn, uint32_t step)
 {
     struct wd_splat *to = splats->splats + stratum * WD_STRATUM_SPLATS;
-    uint32_t *looks = splats->looks + stratum * WD_STRATUM_SPLATS, used = 0;
+    struct wd_splat_look *looks = splats->looks + stratum * WD_STRATUM_SPLATS;
+    uint32_t *lit = splats->lit + stratum * WD_STRATUM_SPLATS, used = 0;
     for (size_t i = 0; i < points->count && used < WD_STRATUM_SPLATS; i++) {
         const struct wd_tree_point *point = &points->points[i];
         if ((point->kind & WD_POINT_LEAF) != leaf || point->position_m[2] > top ||
             point->position_m[2] <= bottom)
             continue;
-        drawn[used * step] = *point;
-        to[used] = splat_at(&splats->model, point->position_m, point->normal);
-        looks[used++] = point_look(point);
+        drawn->points[used * step + stratum] = *point;
+        drawn->lit[used * step + stratum] = lit[used] = points->lit[i];
+        to[used] = splat_at(&splats->model, point->position_m, point->face);
+        looks[used++] = point_look(points, i);
     }
     for (uint32_t i = used; used && i < WD_STRATUM_SPLATS; i++) {
-        drawn[i * step] = drawn[(i - used) * step];
+        drawn->points[i * step + stratum] = drawn->points[(i - used) * step + stratum];
+        drawn->lit[i * step + stratum] = lit[i] = lit[i - used];
         to[i] = to[i - used];
         looks[i] = looks[i - used];
     }
@@ -112,7 +125,7 @@ static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *
 
 /* `leaves` get the points of the splats: strata in turn, as a tree's window takes them. */
 static void fill_leaves(struct wd_splats *splats, const struct wd_tree_points *points,
-                        struct wd_tree_point *leaves)
+                        struct wd_tree_points *leaves)
 {
     struct wd_splat_model *model = &splats->model;
     const uint32_t strata = WD_LEAF_STRATA;
@@ -121,8 +134,8 @@ static void fill_leaves(struct wd_splats *splats, const struct wd_tree_points *p
     for (uint32_t s = 0; s < strata; s++) {
         float top = s ? model->strata_top_m[s] : INFINITY;
         float bottom = s + 1 < strata ? model->strata_top_m[s + 1] : -INFINITY;
-        if (!fill_stratum(splats, points, kind, s, top, bottom, leaves + s, strata))
-            fill_stratum(splats, points, kind, s, INFINITY, -INFINITY, leaves + s, strata);
+        if (!fill_stratum(splats, points, kind, s, top, bottom, leaves, strata))
+            fill_stratum(splats, points, kind, s, INFINITY, -INFINITY, leaves, strata);
     }
     /* of the wood, the part under the crown's thick is what is seen */
     float tops[4];
@@ -265,7 +278,7 @@ static void keep_seen(bool *keep, const struct wd_tree_points *points,
 
 /* Half of the stratum, in an order of which any window is well spread. False where none is kept. */
 static bool fill_wood(struct wd_splats *splats, uint32_t half, const struct wd_tree_points *points,
-                      const bool *keep, struct wd_tree_point *drawn)
+                      const bool *keep, struct wd_tree_points *drawn)
 {
     uint32_t first = WD_LEAF_STRATA * WD_STRATUM_SPLATS + half * WD_WOOD_SPLATS;
     uint32_t *which = wd_alloc_array(points->count + 1, sizeof *which);
@@ -279,10 +292,12 @@ static bool fill_wood(struct wd_splats *splats, uint32_t half, const struct wd_t
         }
     wd_progressive_order(order, places, count, 0x3a7d);
     for (uint32_t i = 0; i < WD_WOOD_SPLATS && count; i++) {
-        const struct wd_tree_point *point = &points->points[which[order[i % count]]];
-        drawn[i] = *point;
-        splats->splats[first + i] = splat_at(&splats->model, point->position_m, point->normal);
-        splats->looks[first + i] = point_look(point);
+        uint32_t chosen = which[order[i % count]];
+        const struct wd_tree_point *point = &points->points[chosen];
+        drawn->points[i] = *point;
+        drawn->lit[i] = splats->lit[first + i] = points->lit[chosen];
+        splats->splats[first + i] = splat_at(&splats->model, point->position_m, point->face);
+        splats->looks[first + i] = point_look(points, chosen);
     }
     free(which);
     free(order);
@@ -320,17 +335,17 @@ static void keep_thin(bool *keep, const struct wd_tree_points *points,
 /* `wood` gets the points of all of it, the stratum's first half. */
 static void fill_wood_halves(struct wd_splats *splats, const struct wd_tree_points *points,
                              const struct wd_tree_model *model, const struct sized *order,
-                             struct wd_tree_point *wood)
+                             struct wd_tree_points *wood)
 {
     bool *keep = wd_alloc_array(points->count, sizeof *keep);
-    struct wd_tree_point *thin = wd_alloc_array(WD_WOOD_SPLATS, sizeof *thin);
+    struct wd_tree_points thin = room_for(WD_WOOD_SPLATS);
     uint32_t first = first_triangles(model->reduced.wood_index_count / 3);
     keep_seen(keep, points, &model->full);
     fill_wood(splats, 0, points, keep, wood);
-    fill_wood(splats, 1, points, keep, thin);
+    fill_wood(splats, 1, points, keep, &thin);
     keep_thin(keep, points, &model->reduced, order, first);
-    fill_wood(splats, 1, points, keep, thin);
-    free(thin);
+    fill_wood(splats, 1, points, keep, &thin);
+    wd_tree_points_finish(&thin);
     free(keep);
 }
 
@@ -339,24 +354,23 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
 {
     size_t leaf_count = (size_t)WD_LEAF_STRATA * WD_STRATUM_SPLATS;
     uint32_t triangles = model->reduced.wood_index_count / 3;
-    struct wd_tree_point *leaves = wd_alloc_array(leaf_count, sizeof *leaves);
-    struct wd_tree_point *wood = wd_alloc_array(WD_WOOD_SPLATS, sizeof *wood);
+    struct wd_tree_points leaves = room_for(leaf_count), wood = room_for(WD_WOOD_SPLATS);
     struct sized *order = wd_alloc_array(triangles + 1, sizeof *order);
     order_wood(order, triangles, model);
     make_wood(splats, &model->reduced, order);
-    fill_leaves(splats, points, leaves);
-    fill_wood_halves(splats, points, model, order, wood);
+    fill_leaves(splats, points, &leaves);
+    fill_wood_halves(splats, points, model, order, &wood);
     struct wd_disc_fit fits;
     const float stratum = 1.0f / WD_SPLAT_STRATA;
-    const struct wd_disc_class woody = {wood, WD_WOOD_SPLATS, points->wood_area_m2, stratum};
-    const struct wd_disc_class leafy = {leaves, leaf_count, points->leaf_area_m2, 1 - stratum};
+    const struct wd_disc_class woody = {&wood, points->wood_area_m2, stratum};
+    const struct wd_disc_class leafy = {&leaves, points->leaf_area_m2, 1 - stratum};
     wd_disc_fit(&fits, &woody, &leafy, &model->full);
     splats->model.wood = fits.wood;
     splats->model.leaf = fits.leaf;
     splats->model.light = fits.light;
     memcpy(splats->model.lower, fits.lower, sizeof fits.lower);
-    free(leaves);
-    free(wood);
+    wd_tree_points_finish(&leaves);
+    wd_tree_points_finish(&wood);
     free(order);
 }
 
@@ -369,8 +383,10 @@ bool wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
     *splats = (struct wd_splats){0};
     if (!wd_tree_points_build(&points, &model->full, look, POINTS))
         return wd_error(log, "a tree of %.1f m has no surface to draw", (double)model->height_m);
+    wd_tree_points_light(&points, &model->full);
     splats->splats = wd_alloc_array(WD_SPLATS, sizeof *splats->splats);
     splats->looks = wd_alloc_array(WD_SPLATS, sizeof *splats->looks);
+    splats->lit = wd_alloc_array(WD_SPLATS, sizeof *splats->lit);
     splats->model.leaf_area_m2 = points.leaf_area_m2;
     splats->model.wood_area_m2 = points.wood_area_m2;
     for (int k = 0; k < 3; k++) {
@@ -387,13 +403,14 @@ void wd_splats_finish(struct wd_splats *splats)
 {
     free(splats->splats);
     free(splats->looks);
+    free(splats->lit);
     free(splats->wood);
     *splats = (struct wd_splats){0};
 }
 
 /* --- cache ------------------------------------------------------------------------------- */
 
-enum { POINTS_BYTES = WD_SPLATS * (sizeof(struct wd_splat) + sizeof(uint32_t)) };
+enum { POINTS_BYTES = WD_SPLATS * (sizeof(struct wd_splat) + sizeof(struct wd_splat_look) + sizeof(uint32_t)) };
 
 /* Of the wood of a reduced mesh: what is larger was not kept. */
 enum { MOST_TRIANGLES = 1 << 20 };
@@ -418,11 +435,14 @@ bool wd_splats_load(struct wd_splats *splats, struct wd_bake_cache *cache, uint6
         const uint8_t *at = block + sizeof splats->model;
         splats->splats = wd_alloc_array(WD_SPLATS, sizeof *splats->splats);
         splats->looks = wd_alloc_array(WD_SPLATS, sizeof *splats->looks);
+        splats->lit = wd_alloc_array(WD_SPLATS, sizeof *splats->lit);
         splats->wood = wd_alloc_array(splats->model.wood_count, sizeof *splats->wood);
         memcpy(splats->splats, at, WD_SPLATS * sizeof *splats->splats);
         at += WD_SPLATS * sizeof *splats->splats;
         memcpy(splats->looks, at, WD_SPLATS * sizeof *splats->looks);
         at += WD_SPLATS * sizeof *splats->looks;
+        memcpy(splats->lit, at, WD_SPLATS * sizeof *splats->lit);
+        at += WD_SPLATS * sizeof *splats->lit;
         memcpy(splats->wood, at, splats->model.wood_count * sizeof *splats->wood);
     }
     free(block);
@@ -442,6 +462,8 @@ void wd_splats_store(const struct wd_splats *splats, struct wd_bake_cache *cache
     at += WD_SPLATS * sizeof *splats->splats;
     memcpy(at, splats->looks, WD_SPLATS * sizeof *splats->looks);
     at += WD_SPLATS * sizeof *splats->looks;
+    memcpy(at, splats->lit, WD_SPLATS * sizeof *splats->lit);
+    at += WD_SPLATS * sizeof *splats->lit;
     memcpy(at, splats->wood, splats->model.wood_count * sizeof *splats->wood);
     wd_cache_store(cache, "splats", model_key, block, bytes);
     free(block);

@@ -9,7 +9,8 @@
 
 struct wd_splats {
     struct wd_splat *splats; /* WD_SPLATS: strata of leaves from the top down, then wood */
-    uint32_t *looks;         /* parallel; see WD_SPLAT_WOOD */
+    struct wd_splat_look *looks; /* parallel, as is: */
+    uint32_t *lit;               /* ways of shared/sun_ways.h that the tree leaves open, a bit each */
     struct wd_splat_wood *wood; /* model.wood_count triangles, large ones first */
     struct wd_splat_model model; /* model.wood_first is 0 */
 };

@@ -298,7 +298,8 @@ static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
                                               WD_BIND_BUFFER(&c->trees),
                                               WD_BIND_BUFFER(items[kind]),
                                               WD_BIND_BUFFER(shapes[kind]),
-                                              WD_BIND_BUFFER(&c->pixels)};
+                                              WD_BIND_BUFFER(&c->pixels),
+                                              WD_BIND_BUFFER(&c->forest.lit)};
         if (!pipeline->pipeline)
             continue;
         wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
@@ -389,7 +390,8 @@ static void draw_camera(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_BUFFER(&c->wood_items),
                                           WD_BIND_BUFFER(&c->forest.wood),
                                           WD_BIND_IMAGE(&draw->forest->looks,
-                                                        draw->forest->look_sampler)};
+                                                        draw->forest->look_sampler),
+                                          WD_BIND_BUFFER(&c->forest.lit)};
     const struct wd_binding depth_bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels)};
     for (uint32_t wood = 2; wood-- > 0;) {
         wd_cmd_bind(draw->cmd, &c->pipelines.depth[wood], depth_bindings);

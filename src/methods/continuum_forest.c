@@ -184,11 +184,13 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
     struct wd_splat_wood *wood = wd_alloc_array(triangles + 1, sizeof *wood);
     triangles = 0;
     struct wd_splat *all = wd_alloc_array(count, sizeof *all);
-    uint32_t *looks = wd_alloc_array(count, sizeof *looks);
+    struct wd_splat_look *looks = wd_alloc_array(count, sizeof *looks);
+    uint32_t *lit = wd_alloc_array(count, sizeof *lit);
     struct wd_splat_model *headers = wd_alloc_array(models, sizeof *headers);
     for (size_t i = 0; i < models; i++) {
         deal_strata(all + i * WD_SPLATS, splats[i].splats, sizeof *all);
         deal_strata(looks + i * WD_SPLATS, splats[i].looks, sizeof *looks);
+        deal_strata(lit + i * WD_SPLATS, splats[i].lit, sizeof *lit);
         memcpy(wood + triangles, splats[i].wood, splats[i].model.wood_count * sizeof *wood);
         headers[i] = splats[i].model;
         headers[i].wood_first = (uint32_t)triangles;
@@ -196,13 +198,17 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
     }
     bool ok = make_buffer(&own->splats, gpu, "splats", all, count * sizeof *all,
                           VK_FORMAT_R32G32_UINT) &&
-              make_buffer(&own->looks, gpu, "splat looks", looks, count * sizeof *looks, VK_FORMAT_R32_UINT) &&
+              make_buffer(&own->looks, gpu, "splat looks", looks, count * sizeof *looks,
+                          VK_FORMAT_R32G32_UINT) &&
+              make_buffer(&own->lit, gpu, "splat lit", lit, count * sizeof *lit,
+                          VK_FORMAT_R32_UINT) &&
               make_buffer(&own->wood, gpu, "splat wood", wood, (triangles + 1) * sizeof *wood,
                           VK_FORMAT_R32G32B32A32_UINT) &&
               make_buffer(&own->models, gpu, "splat models", headers, models * sizeof *headers,
                           VK_FORMAT_UNDEFINED);
     free(all);
     free(looks);
+    free(lit);
     free(wood);
     free(headers);
     return ok;
@@ -271,7 +277,8 @@ bool wd_continuum_forest_init(struct wd_continuum_forest *own, struct wd_gpu *gp
 
 void wd_continuum_forest_finish(struct wd_continuum_forest *own, struct wd_gpu *gpu)
 {
-    struct wd_buffer *buffers[] = {&own->clusters, &own->splats, &own->looks, &own->wood, &own->models};
+    struct wd_buffer *buffers[] = {&own->clusters, &own->splats, &own->looks,
+                                   &own->lit,      &own->wood,   &own->models};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
     free(own->grains);

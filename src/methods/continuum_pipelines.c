@@ -61,7 +61,7 @@ static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
                                       shape == WD_SHAPE_SMALL};
         const struct wd_compute_params params = {
             .shader = shaders[shape][once],
-            .bindings = {6, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER}},
+            .bindings = {7, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS}},
             .constants = {4, constants},
         };
         bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
@@ -76,8 +76,8 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     struct wd_graphics_params params = {
         .vertex = SPIRV(resolve_vert),
         .fragment = SPIRV(resolve_frag),
-        .bindings = {9, {UNIFORM, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS,
-                         VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
+        .bindings = {10, {UNIFORM, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS,
+                          VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, TEXELS}},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,

@@ -125,6 +125,22 @@ static const uint8_t *texel(const struct wd_point_look *look, uint32_t layer, co
     return look->rgba + 4 * (((size_t)layer * look->size + y) * look->size + x);
 }
 
+/* Across the triangle, out of the side that its texture is not mirrored on: a leaf's upper one. */
+static uint32_t face_of(const struct wd_tree_mesh *mesh, size_t triangle)
+{
+    struct wd_vec3 a = corner(mesh, 3 * triangle);
+    struct wd_vec3 b = wd_v3_sub(corner(mesh, 3 * triangle + 1), a);
+    struct wd_vec3 c = wd_v3_sub(corner(mesh, 3 * triangle + 2), a), n = wd_v3_cross(b, c);
+    float uv[3][2];
+    for (size_t k = 0; k < 3; k++)
+        wd_unpack_uv(mesh->vertices[mesh->indices[3 * triangle + k]].uv, uv[k]);
+    float turn = (uv[1][0] - uv[0][0]) * (uv[2][1] - uv[0][1]) -
+                 (uv[1][1] - uv[0][1]) * (uv[2][0] - uv[0][0]);
+    n = wd_v3_unit(turn < 0 ? wd_v3_scale(n, -1) : n);
+    const float normal[3] = {n.x, n.y, n.z};
+    return wd_pack_normal(normal);
+}
+
 static void sample_point(struct wd_tree_point *point, const struct surface *surface,
                          const struct wd_point_look *look, uint32_t index, float area_m2)
 {
@@ -149,6 +165,7 @@ static void sample_point(struct wd_tree_point *point, const struct surface *surf
         albedo[k] = blend.tint[k] * wd_srgb_decode(color[k]);
     }
     point->normal = wd_pack_normal(normal);
+    point->face = wood ? point->normal : face_of(surface->mesh, surface->order[place]);
     point->albedo = pack_albedo(albedo, blend.tint[3]);
     point->kind = (uint32_t)wd_clampf(blend.flexibility + 0.5f, 0, 255) |
                   (wood ? WD_POINT_ONE_SIDED : WD_POINT_LEAF) |
@@ -178,5 +195,6 @@ bool wd_tree_points_build(struct wd_tree_points *points, const struct wd_tree_me
 void wd_tree_points_finish(struct wd_tree_points *points)
 {
     free(points->points);
+    free(points->lit);
     *points = (struct wd_tree_points){0};
 }

@@ -12,6 +12,7 @@
 
 struct wd_tree_points {
     struct wd_tree_point *points;
+    uint32_t *lit; /* parallel; NULL before wd_tree_points_light */
     size_t count;
     float leaf_area_m2, wood_area_m2; /* one side; of wood the outer */
 };
@@ -34,11 +35,14 @@ void wd_tree_points_finish(struct wd_tree_points *points); /* accepts {0} */
 void wd_tree_points_seen(float *shares, const struct wd_tree_points *points,
                          const struct wd_tree_mesh *mesh);
 
-/* Points of one kind, in an order of which windows are drawn, and the surface that all stand for:
- * discs of wood turn with it, those of leaves face the eye, as what stands for many of any direction. */
+/* Finds the ways of shared/sun_ways.h, a bit each, on which nothing of the mesh lies between a point and
+ * the sky. */
+void wd_tree_points_light(struct wd_tree_points *points, const struct wd_tree_mesh *mesh);
+
+/* Points of one kind, in an order of which windows are drawn, and the surface that all stand for: discs
+ * are as large as their faces seem, and what nothing of the tree hides is drawn before the rest. */
 struct wd_disc_class {
-    const struct wd_tree_point *points;
-    size_t count;
+    const struct wd_tree_points *discs; /* with what is lit */
     float area_m2;
     float share; /* of all discs of a tree those that are of this class */
 };

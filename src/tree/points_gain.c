@@ -10,6 +10,7 @@
 #include "base/dmath.h"
 #include "base/memory.h"
 #include "shared/hash.h"
+#include "shared/sun_ways.h"
 #include "tree/points.h"
 #include "tree/silhouette.h"
 
@@ -36,6 +37,7 @@ struct plan {
     const struct wd_disc_class *classes[2]; /* wood, leaves */
     struct canvas views[MOST_VIEWS];
     int view_count;
+    float nearer_m;    /* what nothing of the tree hides */
     struct shown mesh; /* over all views */
 };
 
@@ -159,12 +161,13 @@ static void draw_disc(struct canvas *canvas, const struct corner *middle, float 
             }
 }
 
+/* Over the mean of faces of every direction, for leaves. */
 static float facing_of(const struct wd_tree_point *point, struct wd_vec3 toward)
 {
     float n[3];
-    wd_unpack_normal(point->normal, n);
+    wd_unpack_normal(point->face, n);
     float cosine = wd_v3_dot(WD_V3(n[0], n[1], n[2]), toward);
-    return point->kind & WD_POINT_ONE_SIDED ? fmaxf(cosine, 0) : 1;
+    return point->kind & WD_POINT_ONE_SIDED ? fmaxf(cosine, 0) : 2 * fabsf(cosine);
 }
 
 static size_t disc_count(const struct plan *plan, int class, size_t count)
@@ -172,23 +175,29 @@ static size_t disc_count(const struct plan *plan, int class, size_t count)
     const struct wd_disc_class *discs = plan->classes[class];
     size_t wanted = (size_t)((float)count * discs->share + 0.5f);
     wanted = wanted > 0 ? wanted : 1;
-    return discs->area_m2 > 0 ? wanted < discs->count ? wanted : discs->count : 0;
+    return discs->area_m2 > 0 ? wanted < discs->discs->count ? wanted : discs->discs->count : 0;
 }
 
 /* A window of one class that begins anywhere. */
 static void draw_window(struct canvas *canvas, const struct plan *plan, int class, size_t count,
                         float gain, uint32_t window)
 {
-    const struct wd_disc_class *discs = plan->classes[class];
+    const struct wd_tree_points *discs = plan->classes[class]->discs;
     size_t wanted = disc_count(plan, class, count);
     if (!wanted)
         return;
-    float squared = gain * discs->area_m2 / (float)WD_PI / (float)wanted;
+    float squared = gain * plan->classes[class]->area_m2 / (float)WD_PI / (float)wanted;
     size_t first = wd_hash2(window, (uint32_t)count) % discs->count;
+    uint32_t eye = wd_sun_mix(canvas->frame.toward);
     for (size_t i = 0; i < wanted; i++) {
-        const struct wd_tree_point *point = &discs->points[(first + i) % discs->count];
+        size_t at = (first + i) % discs->count;
+        const struct wd_tree_point *point = &discs->points[at];
         struct corner middle = corner_of(canvas, point->position_m);
+        uint32_t way = wd_sun_way_by_lot(eye, wd_hash2((uint32_t)at, 0x1e5));
+        bool seen = discs->lit[at] >> way & 1;
+        middle.toward += seen ? plan->nearer_m : 0;
         float facing = facing_of(point, canvas->frame.toward);
+        facing *= seen ? WD_DISC_SEEN : WD_DISC_HIDDEN;
         draw_disc(canvas, &middle, sqrtf(squared * facing) * canvas->frame.scale,
                   class == 0 ? WOOD : LEAF, (uint8_t)(point->albedo >> 24));
     }
@@ -293,7 +302,8 @@ void wd_disc_fit(struct wd_disc_fit *fits, const struct wd_disc_class *wood,
                  const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh)
 {
     static const float elevations_deg[WD_GAIN_SIDES] = {4, 45, 90};
-    struct plan plan = {.classes = {wood, leaves}};
+    struct plan plan = {.classes = {wood, leaves},
+                        .nearer_m = WD_DISC_NEARER * (mesh->max_m[0] - mesh->min_m[0])};
     for (int side = 0; side < WD_GAIN_SIDES; side++) {
         plan_init(&plan, mesh, elevations_deg[side], side < 2 ? MOST_VIEWS : 1);
         fit_side(&plan, fits, side);

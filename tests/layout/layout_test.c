@@ -29,7 +29,7 @@ static const struct member members[] = {
     M(wd_tree_block, x_mm), M(wd_tree_block, y_mm), M(wd_tree_block, z_mm), M(wd_tree_block, steps),
     M(wd_tree_vertex, position_m), M(wd_tree_vertex, normal), M(wd_tree_vertex, uv),
     M(wd_tree_vertex, tint), M(wd_tree_vertex, kind),
-    M(wd_tree_point, position_m), M(wd_tree_point, normal), M(wd_tree_point, albedo),
+    M(wd_tree_point, position_m), M(wd_tree_point, normal), M(wd_tree_point, face), M(wd_tree_point, albedo),
     M(wd_tree_point, kind),
     M(wd_model, height_m), M(wd_model, crown_m), M(wd_model, half_width_m),
     M(wd_model, half_depth_m), M(wd_model, bottom_m), M(wd_model, top_m), M(wd_model, flexibility),

@@ -1,0 +1,58 @@
+/* Which ways over the sky a tree itself leaves open at points of its surface. */
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "shared/sun_ways.h"
+#include "tree/points.h"
+#include "tree/silhouette.h"
+
+enum { TOGETHER = 8 }; /* pictures */
+
+/* Leaves are no plane all through, nor is bark. */
+static const float CLEAR_M = 0.02f, MOST_TILT = 6.0f;
+
+/* Pictures hold what is nearest at the middles of their pixels: how much nearer than the point the plane
+ * that it lies on is there. */
+static float nearer_m(const struct wd_silhouette *frame, const float at[3], const float face[3])
+{
+    struct wd_vec3 n = wd_v3_of(face);
+    float right = floorf(at[0]) + 0.5f - at[0], up = floorf(at[1]) + 0.5f - at[1];
+    float toward = wd_v3_dot(n, frame->toward);
+    float tilt = -(right * wd_v3_dot(n, frame->right) + up * wd_v3_dot(n, frame->up));
+    float most = MOST_TILT * (fabsf(right) + fabsf(up));
+    float rise = fabsf(toward) > 1e-3f ? tilt / toward : most;
+    return wd_clampf(rise, -most, most) / frame->scale;
+}
+
+static bool is_lit(const struct wd_tree_point *point, const struct wd_silhouette *frame,
+                   const float *front)
+{
+    float face[3], at[3];
+    wd_unpack_normal(point->face, face);
+    if ((point->kind & WD_POINT_ONE_SIDED) && wd_v3_dot(wd_v3_of(face), frame->toward) <= 0)
+        return false;
+    wd_silhouette_place(frame, point->position_m, at);
+    bool framed = at[0] >= 0 && at[0] < WD_SILHOUETTE && at[1] >= 0 && at[1] < WD_SILHOUETTE;
+    if (!framed) /* corners of a box, where crowns have little */
+        return true;
+    int x = (int)at[0], y = (int)at[1];
+    return front[y * WD_SILHOUETTE + x] <= at[2] + nearer_m(frame, at, face) + CLEAR_M;
+}
+
+void wd_tree_points_light(struct wd_tree_points *points, const struct wd_tree_mesh *mesh)
+{
+    uint32_t *lit = points->lit = wd_alloc_array(points->count + 1, sizeof *lit);
+    struct wd_silhouette frames[TOGETHER];
+    float *fronts = wd_alloc_array((size_t)TOGETHER * WD_SILHOUETTE_FRONT, sizeof *fronts);
+    for (uint32_t first = 0; first < WD_SUN_WAYS; first += TOGETHER) {
+        for (uint32_t k = 0; k < TOGETHER; k++)
+            wd_silhouette_init(&frames[k], mesh, wd_sun_way(first + k));
+        wd_silhouette_front(frames, TOGETHER, mesh, fronts);
+        for (size_t i = 0; i < points->count; i++)
+            for (uint32_t k = 0; k < TOGETHER; k++) {
+                const float *front = fronts + (size_t)k * WD_SILHOUETTE_FRONT;
+                lit[i] |= (uint32_t)is_lit(&points->points[i], &frames[k], front) << (first + k);
+            }
+    }
+    free(fronts);
+}
