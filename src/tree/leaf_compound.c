@@ -70,7 +70,7 @@ static void add_pinna(struct wd_leaf_template *leaf, const struct wd_blade_place
         struct wd_vec3 p = wd_v3_mad(place->foot, place->along, t * place->length);
         p = wd_v3_mad(p, place->above, -0.08f * t * t * place->length);
         struct wd_vec3 out = wd_v3_mad(wd_v3_scale(place->across, side), place->along, 0.35f);
-        wd_leaf_add_needle(leaf, p, wd_v3_unit(out), wd_v3_scale(place->along, side), reach, foot);
+        wd_leaf_add_needle(leaf, p, wd_v3_unit(out), wd_v3_scale(place->along, -side), reach, foot);
     }
 }
 
