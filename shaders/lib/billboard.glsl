@@ -18,15 +18,15 @@ uint nearest_card(vec2 toward)
     return facing.x >= facing.y && facing.x >= facing.z ? 0u : facing.y >= facing.z ? 1u : 2u;
 }
 
-/* Factor on width and height with which a billboard covers what the tree does. `level`: of the view,
- * cosine of its elevation. */
-float billboard_growth(wd_model model, float level, float sine, bool from_above)
+/* Factor on width and height with which a billboard `tall_m` high, from its middle, covers what the tree
+ * does. */
+float billboard_growth(wd_model model, tree_pose pose, float tall_m, float sine, bool from_above)
 {
-    float half_m = 0.5 * (model.top_m - model.bottom_m), depth_m = model.half_depth_m;
-    float tall_m = half_m * level + depth_m * sine * 0.8;
-    float drawn_m2 = from_above ? model.seen_m2.z * model.half_width_m * tall_m / (depth_m * depth_m)
-                                : model.seen_m2.x * tall_m / half_m;
-    float wanted_m2 = wd_seen_m2(model.seen_m2.x, model.seen_m2.y, model.seen_m2.z, sine);
+    float half_m = 0.5 * (model.top_m - model.bottom_m) * pose.up;
+    float drawn_m2 = from_above ? pose.across * model.seen_m2.z * model.half_width_m * tall_m
+                                      / (model.half_depth_m * model.half_depth_m)
+                                : pose.across * pose.up * model.seen_m2.x * tall_m / half_m;
+    float wanted_m2 = wd_tree_seen_m2(model, pose.across, pose.up, sine);
     return sqrt(clamp(wanted_m2 / max(drawn_m2, 1e-9), 0.25, 4.0));
 }
 
@@ -52,7 +52,7 @@ wd_billboard billboard_corner(wd_model model, tree_pose pose, vec3 toward, vec2 
     float middle_m = 0.5 * (model.top_m + model.bottom_m) * pose.up;
     float tall_m = 0.5 * (model.top_m - model.bottom_m) * pose.up * level
                    + model.half_depth_m * pose.across * abs(toward.z) * 0.8;
-    float growth = billboard_growth(model, level, abs(toward.z), from_above);
+    float growth = billboard_growth(model, pose, tall_m, abs(toward.z), from_above);
     middle_m += (growth - 1.0) * tall_m * level; /* the foot keeps its place */
     board.offset = vec3(across * (side.x * growth * model.half_width_m * pose.across), middle_m)
                    - up * (side.y * growth * tall_m);

@@ -33,15 +33,10 @@ struct card_tree {
 
 /* The crown as an ellipsoid: its middle's height over the foot, half its width and half its height.
  * Seen from the elevation e its outline is sqrt(h^2 cos^2 e + w^2 sin^2 e) high. */
-vec3 card_crown(card_tree t, float across, float up)
-{
-    float half_m = 0.5 * (t.model.height_m - t.model.crown_base_m) * up;
-    return vec3(t.model.height_m * up - half_m, 0.5 * t.model.crown_m * across, half_m);
-}
-
 vec3 card_crown(card_tree t)
 {
-    return card_crown(t, t.pose.across, t.pose.up);
+    float half_m = 0.5 * (t.model.height_m - t.model.crown_base_m) * t.pose.up;
+    return vec3(t.model.height_m * t.pose.up - half_m, 0.5 * t.model.crown_m * t.pose.across, half_m);
 }
 
 float outline_half_m(vec3 crown, float sine)
@@ -49,11 +44,10 @@ float outline_half_m(vec3 crown, float sine)
     return sqrt(mix(crown.z * crown.z, crown.y * crown.y, sine * sine));
 }
 
-/* Factor on width and height of a picture that would cover `drawn_m2` of the model. */
+/* Factor on width and height of a picture that would cover `drawn_m2` of the tree. */
 float card_growth(card_tree t, float sine, float drawn_m2)
 {
-    vec3 seen = t.model.seen_m2;
-    float wanted_m2 = wd_seen_m2(seen.x, seen.y, seen.z, sine);
+    float wanted_m2 = wd_tree_seen_m2(t.model, t.pose.across, t.pose.up, sine);
     return sqrt(clamp(wanted_m2 / max(drawn_m2, 1e-9), 0.25, 4.0));
 }
 
@@ -125,9 +119,8 @@ card_frame level_card(card_tree t)
     float half_m = t.model.half_depth_m;
     vec3 crown = card_crown(t);
     float scale = outline_half_m(crown, t.toward.z) / crown.y;
-    vec3 own = card_crown(t, 1.0, 1.0);
     half_m *= card_growth(t, t.toward.z,
-                          t.model.seen_m2.z * outline_half_m(own, t.toward.z) / own.y);
+                          t.pose.across * t.pose.across * t.model.seen_m2.z * scale);
     card_frame card;
     card.middle = vec3(0.0, 0.0, crown.x);
     card.across = leaned(tree_offset(t.pose, vec3(half_m, 0.0, 0.0)), t.toward, scale);
@@ -167,8 +160,9 @@ card_frame upright_card(card_tree t, uint slot)
 
     vec3 crown = card_crown(t);
     float sine = min(abs(t.toward.z), 0.95);
-    vec3 own = card_crown(t, 1.0, 1.0);
-    float growth = card_growth(t, sine, t.model.seen_m2.x * outline_half_m(own, sine) / own.z);
+    float drawn_m2 = t.pose.across * t.pose.up * t.model.seen_m2.x
+                     * outline_half_m(crown, sine) / crown.z;
+    float growth = card_growth(t, sine, drawn_m2);
     float higher = growth * outline_half_m(crown, sine) / (crown.z * sqrt(1.0 - sine * sine));
     float middle_m = 0.5 * (t.model.top_m + t.model.bottom_m) * t.pose.up;
     /* a long stem keeps its foot, a wide crown its middle */

@@ -61,7 +61,7 @@ side_look mixed_sides(wd_octant_look look, vec3 toward, vec3 areas, float area, 
     float level = (squares[0] + squares[1]) / max(1.0 - sine * sine, 1e-6);
     float above = squares[2] / max(sine * sine, 1e-6);
     float half_above = 0.5 * slant * slant * (level + above);
-    float round_m2 = sqrt(wd_side_mix(level, half_above, above, sine));
+    float round_m2 = sqrt(wd_seen_squared(level, half_above, above, sine));
     boxy = clamp((covered / area - 0.785) / 0.215, 0.0, 1.0);
     sum.color.a = mix(round_m2, covered, boxy);
     return sum;

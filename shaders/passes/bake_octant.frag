@@ -36,7 +36,7 @@ float pressed(octant_tree t, float foot_m, float off_m)
     float room_m = off_m < 0.0 ? foot_m : t.picture.size_m - foot_m;
     float reach_m = t.model.half_width_m * t.pose.across;
     bool alone = room_m > 0.5 * WD_TREE_CROWN_M(t.tree) - 0.002;
-    return alone ? max(reach_m / room_m, 1.0) : 1.0;
+    return alone ? clamp(reach_m / room_m, 1.0, 1.3) : 1.0;
 }
 
 /* Seen from the side: the card that faces the viewer most, turned to face it wholly. */

@@ -62,11 +62,22 @@ struct wd_model {
     WD_VEC3(seen_m2); /* that the whole tree covers, seen from the sides of wd_seen_m2 */
 };
 
-/* Area that a tree covers seen from elevation asin(sine), of what it covers level, from half above and
- * from above. Squares are mixed: an ellipsoid's go with the sine's. */
+/* Area that a tree covers seen from elevation asin(sine), squared, of what it covers level, from half above
+ * and from above, squared. An ellipsoid's squares go with the sine's; so do those of crowns seen from the
+ * lower half, while from the upper half what they cover beyond an ellipsoid goes with sine and cosine. */
+WD_FUNC float wd_seen_squared(float level, float half_above, float above, float sine)
+{
+    float low = 2.0f * sine * sine;
+    if (low < 1.0f)
+        return level + (half_above - level) * low;
+    float cosine = WD_SQRT(1.0f - WD_MIN(sine * sine, 1.0f));
+    return cosine * cosine * level + sine * sine * above
+           + cosine * sine * (2.0f * half_above - level - above);
+}
+
 WD_FUNC float wd_seen_m2(float level, float half_above, float above, float sine)
 {
-    return WD_SQRT(wd_side_mix(level * level, half_above * half_above, above * above, sine));
+    return WD_SQRT(wd_seen_squared(level * level, half_above * half_above, above * above, sine));
 }
 
 /* 0 up to begin, 1 from end on, linear between. */

@@ -32,6 +32,18 @@ WD_FUNC WD_STRUCT wd_tree_pose wd_tree_pose_of(WD_STRUCT wd_tree tree, WD_STRUCT
     return pose;
 }
 
+/* Area that a model covers seen from elevation asin(sine), `across` as wide and `up` as high. Under a
+ * scaling M areas' vectors go with det M times the inverse of M, and so does the direction from which the
+ * model is seen. */
+WD_FUNC float wd_tree_seen_m2(WD_STRUCT wd_model model, float across, float up, float sine)
+{
+    float level = WD_SQRT(WD_MAX(1.0f - sine * sine, 0.0f)) / across, above = sine / up;
+    float long_by = WD_SQRT(level * level + above * above);
+    WD_VECTOR seen = WD_MODEL_V3(model, seen_m2);
+    return across * across * up * long_by
+           * wd_seen_m2(seen.x, seen.y, seen.z, above / long_by);
+}
+
 /* How far a tree's leaves are ahead of its species' in the season, -1..1: by its individual's, for
  * neighbours alike (their soil and their frosts are), and by chance. */
 WD_FUNC float wd_tree_phase(WD_STRUCT wd_tree tree, WD_STRUCT wd_model model)

@@ -8,6 +8,7 @@
 #include "base/color.h"
 #include "base/memory.h"
 #include "forest/octant_pictures.h"
+#include "shared/tree_pose.h"
 
 enum { MAX_PIXELS = 64, MAX_TILE = 2048 };
 static const float LEAST_ALPHA = 0.02f;
@@ -116,10 +117,12 @@ static struct slant slant_of(const struct wd_forest_device *forest, uint32_t tre
 {
     const struct wd_tree *t = &forest->world->trees[tree];
     const struct wd_model *model = &forest->host_models[wd_forest_model_of(forest, t)];
-    const float *seen = model->seen_m2;
-    float round = sqrtf(0.5f * (seen[0] * seen[0] + seen[2] * seen[2]));
-    float scale = WD_TREE_CROWN_M(*t) / model->crown_m * (WD_TREE_HEIGHT_M(*t) / model->height_m);
-    return (struct slant){scale * seen[1], scale * round};
+    float across = WD_TREE_CROWN_M(*t) / model->crown_m;
+    float up = WD_TREE_HEIGHT_M(*t) / model->height_m;
+    float level = wd_tree_seen_m2(*model, across, up, 0.0f);
+    float above = wd_tree_seen_m2(*model, across, up, 1.0f);
+    return (struct slant){wd_tree_seen_m2(*model, across, up, 0.70710678f),
+                          sqrtf(0.5f * (level * level + above * above))};
 }
 
 static void pack_slant(struct wd_octant_look *look, struct slant slant)
