@@ -14,6 +14,21 @@ vec4 disc_pack(vec3 normal, uint kind, float lit)
     return vec4(e * 0.5 + 0.5, (float(kind << 8) + share) / 1023.0, 0.0);
 }
 
+/* Of a leaf's mesh, whose shade the maps hold. */
+const float DISC_LIT_MESH = 1.0;
+const float DISC_LIT_LEAST = 1.0 / 255.0, DISC_LIT_MOST = 254.0 / 255.0;
+
+/* `face`: across the leaf, out of the side that the eye sees; `normal` is turned as the path tracer turns
+ * it. Where the sun is on one side of the leaf and on the other of that normal, none of its light goes
+ * on to the eye: 0. */
+vec4 disc_pack_seen(vec3 normal, vec3 face, vec3 eye, vec3 sun, uint kind, float lit)
+{
+    normal = dot(normal, face) < 0.0 ? -normal : normal;
+    normal = dot(normal, eye) <= 0.0 ? face : normal;
+    bool lost = dot(normal, sun) * dot(face, sun) < 0.0;
+    return disc_pack(normal, kind, lost ? 0.0 : lit);
+}
+
 vec3 disc_normal(vec4 packed)
 {
     vec2 e = packed.xy * 2.0 - 1.0;

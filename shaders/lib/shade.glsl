@@ -299,13 +299,30 @@ float leaf_coat(vec3 normal, vec3 eye, float roughness)
     return lit <= 0.0 ? 0.0 : mirrored * alpha2 / (spread * spread * open * 4.0 * toward_eye);
 }
 
+/* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
+ * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
+ * Of leaves' meshes (lit 1) the map alone knows; 0: none goes on to the eye. */
+void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint cascade)
+{
+    float texel_m = frame.cascade_texel_m[min(cascade, 3u)];
+    float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
+    float tall_px = (crown.center_rel.z + crown.radii_m.z - crown.foot_z) / pixel_m;
+    bool mesh = pixel.lit >= 1.0;
+    float known = mesh ? 1.0 : WD_DISC_CLOSE(tall_px) * (1.0 - smoothstep(0.04, 0.12, texel_m));
+    known = cascade == 0u ? known : 0.0;
+    float through = mesh ? place.own : pixel.lit;
+    float ahead_m = mesh ? place.ahead_m : min(place.ahead_m, 0.5 + 1.5 * texel_m);
+    place.own = pixel.lit <= 0.0 ? 0.0 : mix(through, 1.0, known);
+    place.ahead_m = mix(ahead_m, mesh ? 0.0 : pixel_m, known);
+}
+
 /* A disc of a leaf is lit as the leaf that it is. */
-void light_disc(inout wd_place place, wd_pixel pixel, wd_model model, uint cascade)
+void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_model model, uint cascade)
 {
     if (pixel.lit < 0.0)
         return;
-    place.own = pixel.lit;
-    place.ahead_m = min(place.ahead_m, 0.5 + 1.5 * frame.cascade_texel_m[min(cascade, 3u)]);
+    shade_disc(place, pixel, crown, cascade);
+    place.normal = pixel.normal;
     float cosine = dot(pixel.normal, frame.sun_direction);
     place.sides = vec2(max(cosine, 0.0), max(-cosine, 0.0));
     place.waxed = pixel.above;
@@ -358,7 +375,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, uint cascade
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
     place.sheet = mapped > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
-    light_disc(place, pixel, model, cascade);
+    light_disc(place, pixel, crown, model, cascade);
     return place;
 }
 

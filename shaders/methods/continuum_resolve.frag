@@ -109,16 +109,11 @@ wd_seen seen_wood(uint id)
     return seen;
 }
 
-/* As the path tracer turns normals: on the side of the leaf that the eye sees. Where the sun is on one
- * side of the leaf and on the other of that normal, none of its light goes on to the eye. */
 vec4 pack_splat(wd_seen seen, vec3 normal, vec3 face, bool below, vec3 eye)
 {
-    face = below ? -face : face;
-    normal = dot(normal, face) < 0.0 ? -normal : normal;
-    normal = dot(normal, eye) <= 0.0 ? face : normal;
-    bool lost = dot(normal, frame.sun_direction) * dot(face, frame.sun_direction) < 0.0;
     uint kind = seen.wood ? DISC_WOOD : below ? DISC_LEAF_BELOW : DISC_LEAF_ABOVE;
-    return disc_pack(normal, kind, lost ? 0.0 : seen.lit);
+    return disc_pack_seen(normal, below ? -face : face, eye, frame.sun_direction, kind,
+                          clamp(seen.lit, DISC_LIT_LEAST, DISC_LIT_MOST));
 }
 
 void main()

@@ -271,7 +271,8 @@ void select_tree(uint index, float share, uint place)
     splats.facing = model_facing(pose, toward);
     splats.sun = wd_sun_mix(model_toward(pose, frame.sun_direction));
     splats.eye = wd_sun_mix(model_toward(pose, toward));
-    splats.nearer_m = WD_DISC_NEARER * splat_models[model_index].extent_m.x * pose.across
+    float close = WD_DISC_CLOSE(tall_px);
+    splats.nearer_m = (1.0 - close) * WD_DISC_NEARER * splat_models[model_index].extent_m.x * pose.across
                     * smoothstep(-0.4, -0.1, toward.z); /* nothing is known of the view from below */
     float own_across = pose.across;
     pose.across *= stretch;
@@ -299,7 +300,7 @@ void select_tree(uint index, float share, uint place)
     splats.lower = packUnorm4x8(vec4(splat_models[model_index].lower_over_upper * 0.25, 0.0));
     vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
                              : vec2(0.0);
-    splats.strata = strata | model.look_layer << 8;
+    splats.strata = strata | uint(close * 15.0 + 0.5) << 4 | model.look_layer << 8;
     fill_rows(splats, pose, model_index, foot, slope);
     splats.sway = clip_of(view.clip_from_rel * vec4(sway, 0.0));
 

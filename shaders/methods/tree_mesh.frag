@@ -13,6 +13,7 @@ layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
 #include "lib/tree.glsl"
 #include "lib/look.glsl"
+#include "lib/disc.glsl"
 
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_uv;
@@ -32,11 +33,15 @@ struct wd_surface {
     float openness;
 };
 
+bool is_blade()
+{
+    return (uint(in_uv.z + 0.5) & (WD_LOOK_LAYERS - 1u)) == WD_LOOK_LEAF;
+}
+
 /* Where the look of this side is: leaves have another below. */
 vec3 seen_side()
 {
-    bool leaf = (uint(in_uv.z + 0.5) & (WD_LOOK_LAYERS - 1u)) == WD_LOOK_LEAF;
-    bool back = leaf && !look_upper(in_uv.xy, (in_flat.y & 4u) != 0u);
+    bool back = is_blade() && !look_upper(in_uv.xy, (in_flat.y & 4u) != 0u);
     return vec3(in_uv.xy, in_uv.z + (back ? float(WD_LOOK_LEAF_BACK - WD_LOOK_LEAF) : 0.0));
 }
 
@@ -65,6 +70,15 @@ void detail_wood(inout wd_surface wood, float near)
     wood.normal = normalize(mix(wood.normal, relief.normal, near * (1.0 - 0.6 * moss)));
 }
 
+/* As the path tracer lights it: by its own face and side. */
+vec4 pack_leaf(vec3 normal)
+{
+    bool above = is_blade() && look_upper(in_uv.xy, (in_flat.y & 4u) != 0u);
+    return disc_pack_seen(normal, look_face(in_place.xyz), -normalize(in_place.xyz),
+                          frame.sun_direction, above ? DISC_LEAF_ABOVE : DISC_LEAF_BELOW,
+                          DISC_LIT_MESH);
+}
+
 void main()
 {
     /* G7: leaf by leaf: whole triangles come and go. */
@@ -87,5 +101,7 @@ void main()
         surface.albedo = level_color(push.level) * (0.3 + 0.7 * in_tint.a);
     out_albedo = vec4(surface.albedo, surface.openness);
     out_normal = vec4(surface.normal * 0.5 + 0.5, float(material) / 3.0);
+    if (DETAIL != 0u && material == WD_MATERIAL_LEAF)
+        out_normal = pack_leaf(surface.normal);
     out_surface = in_flat.x;
 }

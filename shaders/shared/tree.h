@@ -212,6 +212,8 @@ WD_STATIC_ASSERT_SIZE(wd_tree_point, 28);
 /* And larger, that the rest shows in gaps alone; areas over the mean face's. */
 #define WD_DISC_SEEN 2.0f
 #define WD_DISC_HIDDEN 0.5f
+/* So where trees are small; 1: so tall, in pixels, that discs are where they are and as large. */
+#define WD_DISC_CLOSE(tall_px) smoothstep(64.0, 128.0, tall_px)
 #define WD_POINT_GAINS 12
 #define WD_GAIN_SIDES 3
 struct wd_point_gains {
