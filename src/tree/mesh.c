@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "tree/four.h"
 
 enum { FIRST_CAPACITY = 1024 };
 
@@ -35,16 +36,15 @@ void wd_tree_mesh_finish(struct wd_tree_mesh *mesh)
 
 void wd_tree_mesh_update_bounds(struct wd_tree_mesh *mesh)
 {
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    wd_four low = wd_four_of(INFINITY), high = wd_four_of(-INFINITY);
     float reach = 0;
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        const float *p = mesh->vertices[i].position_m;
+        wd_four p; /* and what follows it, which nobody asks for */
+        memcpy(&p, &mesh->vertices[i], sizeof p);
         float squared = p[0] * p[0] + p[1] * p[1];
         reach = squared > reach ? squared : reach;
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = p[axis] < low[axis] ? p[axis] : low[axis];
-            high[axis] = p[axis] > high[axis] ? p[axis] : high[axis];
-        }
+        low = wd_four_min(p, low);
+        high = wd_four_max(p, high);
     }
     mesh->reach_m = sqrtf(reach);
     for (int axis = 0; axis < 3; axis++) {

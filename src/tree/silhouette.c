@@ -62,17 +62,23 @@ struct batch {
     int32_t x0[BATCH], x1[BATCH], y0[BATCH], y1[BATCH]; /* pixels whose middles it reaches over */
     /* of triangles that reach over two by two or fewer: what they cover, their distance there */
     int32_t covered[BATCH]; /* a bit a pixel */
+    int32_t large[BATCH];   /* 1 of triangles that reach over more */
     float distance[4][BATCH];
 };
 
 static void gather(struct batch *batch, const struct wd_tree_mesh *mesh, const uint32_t *indices,
                    int count)
 {
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; i += 4)
         for (int corner = 0; corner < 3; corner++) {
-            const float *p = mesh->vertices[indices[3 * i + corner]].position_m;
+            wd_four rows[4], columns[3];
+            for (int k = 0; k < 4; k++) { /* the last one again where there are no four */
+                int triangle = i + k < count ? i + k : count - 1;
+                memcpy(&rows[k], &mesh->vertices[indices[3 * triangle + corner]], sizeof rows[k]);
+            }
+            wd_four_columns(columns, rows);
             for (int axis = 0; axis < 3; axis++)
-                batch->places_m[corner][axis][i] = p[axis];
+                memcpy(batch->places_m[corner][axis] + i, &columns[axis], sizeof *columns);
         }
 }
 
@@ -167,6 +173,7 @@ static inline void cover_small(struct batch *batch, int i, bool depth)
     wd_four_ints x0 = load_ints(batch->x0 + i), y0 = load_ints(batch->y0 + i);
     wd_four_ints wide = load_ints(batch->x1 + i) - x0, tall = load_ints(batch->y1 + i) - y0;
     wd_four_ints small = (turn != none) & (wide <= 2) & (tall <= 2), covered = {0};
+    wd_four_ints large = ((wide > 2) | (tall > 2)) & (wide > 0) & (tall > 0) & (turn != none) & 1;
     struct four_edge edges[3];
     for (int k = 0; k < 3; k++)
         for (int axis = 0; axis < 2; axis++) {
@@ -190,6 +197,7 @@ static inline void cover_small(struct batch *batch, int i, bool depth)
         memcpy(batch->distance[pixel] + i, &own, sizeof own);
     }
     memcpy(batch->covered + i, &covered, sizeof covered);
+    memcpy(batch->large + i, &large, sizeof large);
 }
 
 static inline void or_bits(uint8_t *row, int x, uint32_t bits)
@@ -304,10 +312,9 @@ static inline void draw_batch(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *fron
 {
     int small[BATCH + 1], large[BATCH + 1], smalls = 0, larges = 0;
     for (int i = 0; i < count; i++) {
-        int wide = batch->x1[i] - batch->x0[i], tall = batch->y1[i] - batch->y0[i];
         small[smalls] = large[larges] = i;
         smalls += batch->covered[i] != 0;
-        larges += ((wide > 2) | (tall > 2)) & (wide > 0) & (tall > 0) & (batch->turn[i] != 0);
+        larges += batch->large[i];
     }
     for (int i = 0; i < smalls; i++)
         draw_small(covered, front, batch, small[i]);
@@ -323,6 +330,7 @@ static int next_batch(struct batch *batch, const struct wd_tree_mesh *mesh, uint
     return count;
 }
 
+WD_FOUR_TWICE
 void wd_silhouette_cover(struct wd_silhouette *views, int view_count,
                          const struct wd_tree_mesh *mesh, uint32_t first, uint32_t end)
 {
@@ -337,6 +345,7 @@ void wd_silhouette_cover(struct wd_silhouette *views, int view_count,
     }
 }
 
+WD_FOUR_TWICE
 void wd_silhouette_front(const struct wd_silhouette *views, int view_count,
                          const struct wd_tree_mesh *mesh, float *fronts)
 {
