@@ -406,10 +406,13 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     ground_share = ground_shadow(place.rel);
     vec3 ahead = place.rel + frame.sun_direction * place.ahead_m;
     float past_trees = tree_shadow(ahead, place.normal, place.sheet, cascade, noise);
-    if (pixel.surface == 0u) { /* no maps so far out: the canopy's cover stands for its shadow */
+    /* No maps so far out: the canopy's cover stands for its shadow. Cards' own shade holds it. */
+    if (pixel.surface == 0u || pixel.lit >= 0.0) {
         float out_of_maps = smoothstep(0.7, 0.95, pixel.axis_m / frame.cascade_far_m.w);
         float beam = 0.67 / max(frame.sun_direction.z, 0.05);
-        past_trees = mix(past_trees, pow(dot(frame.sunward, shelter.through), beam), out_of_maps);
+        float own = pixel.surface == 0u ? 1.0 : max(pixel.openness, 1e-2);
+        float stand = min(dot(frame.sunward, shelter.through) / own, 1.0);
+        past_trees = mix(past_trees, pow(stand, beam), out_of_maps);
     }
     sun_share = place.own * ground_share * past_trees;
     vec3 transmitted = pixel.albedo * place.transmittance;
