@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "scene/species.h"
 
-enum { MAX_TREES = 256 };
+enum { MAX_TREES = 256, EYE_HEIGHTS = 120 /* away */ };
 
 #define MESHES "quality.mesh_distance_m=1000000", "quality.reduced_distance_m=1000000"
 #define REDUCED "quality.mesh_distance_m=0", "quality.reduced_distance_m=1000000"
@@ -65,8 +65,8 @@ static bool write_scene(struct bias_stand *stand, const char *species)
                        "\"inventories\": [{\"file\": \"trees.csv\", \"frame\": \"local\"}],\n"
                        "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40},\n"
                        "\"wind\": {\"speed_mps\": 0}, \"fog\": {\"visibility_m\": 10000000},\n"
-                       "\"quality\": {\"shadow_distance_m\": 1, \"shadow_size\": 16}}\n",
-                side, side, root, species);
+                       "\"quality\": {\"shadow_distance_m\": %g}}\n",
+                side, side, root, species, 1.2 * EYE_HEIGHTS * stand->height_m);
     }
     ok = (!trees || fclose(trees) == 0) && (!scene || fclose(scene) == 0) && ok;
     if (!ok)
@@ -90,7 +90,7 @@ static struct wd_render_params view_of(const struct bias_stand *stand, int heigh
 {
     const double pi = 3.14159265358979323846;
     double pixels_per_m = zoom * bias_height_px[height] / stand->height_m;
-    double elevation = bias_elevation_deg[view] * pi / 180, distance = 120 * stand->height_m;
+    double elevation = bias_elevation_deg[view] * pi / 180, distance = EYE_HEIGHTS * stand->height_m;
     double stretch_m = tree_counts[height] * stand->spacing_m;
     double wide = stretch_m - stand->spacing_m + stand->width_m;
     double tall = 1.15 * (stand->height_m * cos(elevation) + stand->width_m * sin(elevation));

@@ -1,7 +1,7 @@
 /* How far reduced forms are from the full mesh: coverage, mean radiance and picture error.
  *
  * Rows of one species, tall enough for each height in pixels, are drawn by the renderer itself in
- * each form, with one light for all (no cast shadows), from a low and a high viewpoint. The
+ * each form, with one light for all and cast shadows, from a low and a high viewpoint. The
  * reference is the full mesh, none of its leaves left out, with 64 samples a pixel. Forms are drawn
  * one sample a pixel, several times with the camera shifted by parts of a pixel, so that the bias is
  * not lost in noise. */

@@ -8,12 +8,12 @@
 #include "../../bench/bias.h"
 #include "suite.h"
 
-/* Bounds lie a little above what was measured (docs/trees.md). The mesh that all are compared with is lit
- * leaf by leaf, cards as the mean of leaves that lie every way: +3.0 %. */
+/* Bounds lie a little above what was measured (docs/trees.md): with cast shadows, full -0.4 %, reduced -1.4,
+ * splats -0.5, cards +4.8: these are lit as the mean of leaves that lie every way, the others leaf by leaf. */
 static const struct bound {
     const char *form;
     double coverage_pct, radiance_pct;
-} bounds[] = {{"full", 2.5, 3}, {"reduced", 2.5, 4.5}, {"cards", 3, 4}, {"splats", 2.5, 4}};
+} bounds[] = {{"full", 2.5, 3}, {"reduced", 2.5, 3}, {"cards", 3, 6}, {"splats", 3, 3}};
 
 enum { PX_32 = 2, FROM_ABOVE = 1 };
 
