@@ -20,7 +20,7 @@ layout(set = 0, binding = 4) uniform sampler2D gbuffer_depth;
 layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_map;
 layout(set = 0, binding = 6) uniform sampler2DArray shadow_depth;
 layout(scalar, set = 0, binding = 7) readonly buffer SunHeights { float sun_height_m[]; };
-layout(scalar, set = 0, binding = 8) readonly buffer Trees { wd_packed_tree trees[]; };
+layout(set = 0, binding = 8) uniform usamplerBuffer trees; /* wd_packed_tree */
 layout(scalar, set = 0, binding = 9) readonly buffer Models { wd_model models[]; };
 layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
 layout(scalar, set = 0, binding = 11) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
@@ -30,6 +30,7 @@ layout(set = 0, binding = 14) uniform sampler2D sky_map;
 layout(scalar, set = 0, binding = 15) readonly buffer Waters { float river_m[]; };
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
+#define TREE_TEXELS
 #define SHADOW_DEPTH shadow_depth
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
 #define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)

@@ -1,4 +1,5 @@
-/* The depth pyramid. Expects `view` (wd_splat_view) and `pyramid` (float[]). */
+/* The depth pyramid. Expects `view` (wd_splat_view) and `pyramid`: float[] or, with PYRAMID_TEXELS, its
+ * samplerBuffer. */
 
 uvec2 pyramid_size(uint level)
 {
@@ -8,5 +9,10 @@ uvec2 pyramid_size(uint level)
 
 float pyramid_at(uint level, uvec2 at)
 {
-    return pyramid[view.pyramid_first[level] + at.y * pyramid_size(level).x + at.x];
+    uint index = view.pyramid_first[level] + at.y * pyramid_size(level).x + at.x;
+#ifdef PYRAMID_TEXELS
+    return texelFetch(pyramid, int(index)).x;
+#else
+    return pyramid[index];
+#endif
 }

@@ -11,10 +11,11 @@ layout(scalar, set = 0, binding = 2) readonly buffer Clusters { wd_cluster clust
 layout(scalar, set = 0, binding = 3) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 4) writeonly buffer Visible { uint visible[]; };
 
-layout(scalar, set = 0, binding = 5) readonly buffer Pyramid { float pyramid[]; };
+layout(set = 0, binding = 5) uniform samplerBuffer pyramid;
 layout(scalar, set = 0, binding = 6) readonly buffer Pages { uint pages[]; }; /* slots */
 layout(scalar, set = 0, binding = 7) buffer PutOff { uint put_off[]; };
 
+#define PYRAMID_TEXELS
 #include "lib/frustum.glsl"
 #include "lib/pyramid.glsl"
 #include "lib/occlusion.glsl"

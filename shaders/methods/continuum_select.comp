@@ -16,18 +16,21 @@ layout(scalar, set = 0, binding = 1) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 2) readonly buffer Clusters { wd_cluster clusters[]; };
 layout(scalar, set = 0, binding = 3) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 4) readonly buffer Visible { uint visible[]; };
-layout(scalar, set = 0, binding = 5) readonly buffer Trees { wd_packed_tree trees[]; };
+layout(set = 0, binding = 5) uniform usamplerBuffer trees; /* wd_packed_tree */
 layout(scalar, set = 0, binding = 6) readonly buffer Models { wd_model models[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer SplatModels { wd_splat_model splat_models[]; };
 layout(scalar, set = 0, binding = 8) writeonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
 layout(scalar, set = 0, binding = 9) writeonly buffer Items { wd_splat_item items[]; };
 
 layout(scalar, set = 0, binding = 10) writeonly buffer WoodItems { wd_splat_item wood_items[]; };
-layout(scalar, set = 0, binding = 11) readonly buffer Pyramid { float pyramid[]; };
+layout(set = 0, binding = 11) uniform samplerBuffer pyramid;
 layout(set = 0, binding = 12) uniform sampler2D slopes;
 layout(scalar, set = 0, binding = 13) buffer PutOff { uint put_off[]; };
 layout(scalar, set = 0, binding = 14) readonly buffer Fades { wd_layer_fade fades[]; };
+layout(set = 0, binding = 15) uniform samplerBuffer model_words; /* of splat_models */
 
+#define TREE_TEXELS
+#define PYRAMID_TEXELS
 #include "lib/trees.glsl"
 #include "lib/frustum.glsl"
 #include "lib/pyramid.glsl"
@@ -169,8 +172,20 @@ void add_wood(uint slot, uint count)
         wood_items[first + i] = item_at(slot, count, i);
 }
 
-/* wd_point_gain, without copies of its tables. */
-#define GAIN(kind, k) WD_POINT_GAIN(splat_models[model].kind, k, sine)
+/* One entry of wd_point_gain's tables. */
+float gain_at(uint model, uint kind, uint k, float sine)
+{
+    int at = int(model * WD_SPLAT_MODEL_WORDS + kind + k);
+    return wd_side_mix(texelFetch(model_words, at).x, texelFetch(model_words, at + WD_POINT_GAINS).x,
+                       texelFetch(model_words, at + 2 * WD_POINT_GAINS).x, sine);
+}
+
+/* `place`: as gain_place has it. */
+float gain_of(uint model, uint kind, vec2 place, float sine)
+{
+    uint k = uint(place.x);
+    return mix(gain_at(model, kind, k, sine), gain_at(model, kind, k + 1u, sine), place.y);
+}
 
 /* Where a count lies in the tables: index of an entry and share of the next. */
 vec2 gain_place(float count)
@@ -185,9 +200,8 @@ vec2 disc_radii(uint model, float each, float sine)
 {
     vec2 area_m2 = vec2(splat_models[model].leaf_area_m2, splat_models[model].wood_area_m2);
     vec2 place = gain_place(each * float(WD_SPLAT_STRATA));
-    uint k = uint(place.x);
-    vec2 gain = vec2(mix(GAIN(leaf, k), GAIN(leaf, k + 1u), place.y),
-                     mix(GAIN(wood, k), GAIN(wood, k + 1u), place.y));
+    vec2 gain = vec2(gain_of(model, WD_GAINS_LEAF, place, sine),
+                     gain_of(model, WD_GAINS_WOOD, place, sine));
     return sqrt(gain * area_m2 / (3.14159265 * each * vec2(WD_LEAF_STRATA, 1.0)));
 }
 
@@ -195,9 +209,8 @@ vec2 disc_radii(uint model, float each, float sine)
 uint leaf_tint(wd_tree tree, uint model, float count, float sine)
 {
     vec3 tint = tree_tint(tree, models[model]);
-    vec2 place = gain_place(count);
-    uint k = uint(place.x);
-    return packUnorm4x8(vec4(tint, mix(GAIN(light, k), GAIN(light, k + 1u), place.y)) * 0.5);
+    float light = gain_of(model, WD_GAINS_LIGHT, gain_place(count), sine);
+    return packUnorm4x8(vec4(tint, light) * 0.5);
 }
 
 /* Triangles of wood for a tree that tall: few of the largest while it is small. */

@@ -1,10 +1,11 @@
 #version 460
 /* Sorts the picture's tiles by what their pixels show into one list a pipeline of the light pass.
- * The order within a list may vary; the picture does not depend on it. */
+ * The order within a list may vary; the picture does not depend on it. A thread a tile: barriers and
+ * shared atomics for each pixel cost software devices four times as much. */
 #include "shared/frame.h"
 #include "shared/light.h"
 
-layout(local_size_x = WD_TILE, local_size_y = WD_TILE) in;
+layout(local_size_x = WD_TILE_THREADS) in;
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1) uniform usampler2D gbuffer_surface;
@@ -13,8 +14,6 @@ layout(scalar, set = 0, binding = 3) buffer Tiles { wd_tile_lists lists; uint ti
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #include "lib/view.glsl"
-
-shared uint parts;
 
 uint pixel_parts(ivec2 at)
 {
@@ -34,17 +33,19 @@ uint pixel_parts(ivec2 at)
 
 void main()
 {
-    if (gl_LocalInvocationIndex == 0u)
-        parts = 0u;
-    barrier();
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x < int(frame.width) && at.y < int(frame.height))
-        atomicOr(parts, pixel_parts(at));
-    barrier();
-    if (gl_LocalInvocationIndex == 0u) {
-        uint list = wd_tile_list_of(parts);
-        uint slot = atomicAdd(lists.count[list], 1u);
-        tiles[list * push.tile_columns * push.tile_rows + slot] =
-            gl_WorkGroupID.y << 16 | gl_WorkGroupID.x;
+    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint tile = group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+    if (tile >= push.tile_columns * push.tile_rows)
+        return;
+    uvec2 place = uvec2(tile % push.tile_columns, tile / push.tile_columns);
+    ivec2 corner = ivec2(place) * WD_TILE;
+    ivec2 last = min(corner + WD_TILE, ivec2(frame.width, frame.height)) - 1;
+    uint parts = 0u;
+    for (int y = corner.y; y <= last.y; y++) {
+        for (int x = corner.x; x <= last.x; x++)
+            parts |= pixel_parts(ivec2(x, y));
     }
+    uint list = wd_tile_list_of(parts);
+    uint slot = atomicAdd(lists.count[list], 1u);
+    tiles[list * push.tile_columns * push.tile_rows + slot] = place.y << 16 | place.x;
 }

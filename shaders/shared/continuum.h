@@ -64,12 +64,12 @@ WD_STATIC_ASSERT_SIZE(wd_splat_wood, 48);
 #define WD_SPLAT_WOOD_TEXELS 3
 
 struct wd_splat_model {
+    WD_GAINS_STRUCT wood, leaf; /* what keeps the mesh's coverage */
+    WD_GAINS_STRUCT light;      /* and the openness of what is seen */
     WD_VEC3(min_m);
     WD_VEC3(extent_m);
     float leaf_area_m2, wood_area_m2;     /* of the surface that the splats stand for */
     float strata_top_m[WD_SPLAT_STRATA];  /* height below which a stratum's splats lie */
-    WD_GAINS_STRUCT wood, leaf;           /* what keeps the mesh's coverage */
-    WD_GAINS_STRUCT light;                /* and the openness of what is seen */
     WD_VEC3(lower_over_upper);            /* albedo of leaves' lower sides over that of upper ones */
     float lower[WD_GAIN_SIDES];           /* share of the leaves seen that show the lower side */
     float wood_spread;                    /* the first n of N triangles have (n / N)^this of the bark
@@ -80,6 +80,12 @@ struct wd_splat_model {
                                              were so many times as near */
     uint32_t wood_first, wood_count;      /* triangles, those that show most first */
 };
+WD_STATIC_ASSERT_SIZE(wd_splat_model, 540);
+#define WD_SPLAT_MODEL_WORDS 135u
+/* Words at which its gains begin. */
+#define WD_GAINS_WOOD 0u
+#define WD_GAINS_LEAF 36u
+#define WD_GAINS_LIGHT 72u
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u

@@ -23,6 +23,7 @@ struct wd_light_push {
 
 /* What a tile of pixels shows; each list of tiles is shaded by a pipeline with these parts. */
 #define WD_TILE 8
+#define WD_TILE_THREADS 64 /* of a workgroup that sorts tiles, a tile each */
 #define WD_PART_SKY 1u
 #define WD_PART_GROUND 2u /* any surface */
 #define WD_PART_TREES 4u

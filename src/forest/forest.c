@@ -114,7 +114,7 @@ static bool make_trees(struct wd_forest_device *forest, struct wd_gpu *gpu)
     uint64_t size = wd_packed_count(trees ? trees : 1) * sizeof(struct wd_packed_tree);
     uint32_t limit = gpu->properties.limits.maxStorageBufferRange;
     const struct wd_buffer_params params = {"trees", size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                            WD_MEMORY_DEVICE};
+                                            WD_MEMORY_DEVICE, VK_FORMAT_R32G32B32A32_UINT};
     if (size > limit)
         return wd_error(gpu->log,
                         "trees: %llu MB are more than the %u MB that %s can bind at once; with "

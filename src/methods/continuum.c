@@ -120,7 +120,7 @@ static bool fit_pyramid(struct continuum *c, struct wd_cmd *cmd, const struct wd
     if (c->pyramid.size >= size)
         return true;
     wd_cmd_defer_buffer(cmd, &c->pyramid);
-    return make_work(&c->pyramid, cmd->gpu, "depth pyramid", size, VK_FORMAT_UNDEFINED);
+    return make_work(&c->pyramid, cmd->gpu, "depth pyramid", size, VK_FORMAT_R32_SFLOAT);
 }
 
 static bool sees_all_at_once(const struct continuum *c)
@@ -257,7 +257,8 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw, 
                                           WD_BIND_IMAGE(&draw->forest->ground.slopes,
                                                         draw->forest->ground.sampler),
                                           WD_BIND_BUFFER(&c->put_off),
-                                          WD_BIND_BUFFER(&draw->forest->fades)};
+                                          WD_BIND_BUFFER(&draw->forest->fades),
+                                          WD_BIND_BUFFER(&c->forest.models)};
     wd_cmd_bind(cmd, pipeline, bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
     record_args(c, cmd, FIRST_ROUND);

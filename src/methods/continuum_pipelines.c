@@ -135,9 +135,9 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         const uint32_t constants[] = {gpu->software ? 8 : 64, i == WD_PASS_SHADOW, i == 2};
         const struct wd_compute_params choose = {
             .shader = SPIRV(select_comp),
-            .bindings = {15, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER,
-                              BUFFER, BUFFER, BUFFER, BUFFER,
-                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER, BUFFER}},
+            .bindings = {16, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, TEXELS, BUFFER, BUFFER,
+                              BUFFER, BUFFER, BUFFER, TEXELS,
+                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER, BUFFER, TEXELS}},
             .constants = {3, constants}};
         if (!wd_pipeline_init_compute(pipelines[i], gpu, &choose))
             return false;
@@ -162,7 +162,7 @@ bool wd_continuum_pipelines_init(struct wd_continuum_pipelines *p, struct wd_gpu
 {
     const struct wd_compute_params cull = {
         .shader = SPIRV(cull_comp),
-        .bindings = {8, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER, BUFFER}}};
+        .bindings = {8, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, TEXELS, BUFFER, BUFFER}}};
     return wd_pipeline_init_compute(&p->cull, gpu, &cull) && init_args(p, gpu) &&
            init_choose(p, gpu) && init_draws(p, gpu) && init_resolve(p, gpu) &&
            init_pyramid(p, gpu);

@@ -29,6 +29,7 @@ static const uint32_t light_view_comp[] =
 
 static const VkDescriptorType IMAGE = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 static const VkDescriptorType BUFFER = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+static const VkDescriptorType TEXELS = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 static const VkDescriptorType UNIFORM = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 
 static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
@@ -36,7 +37,7 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     struct wd_compute_params params = {
         .shader = SPIRV(light_view_comp),
         .bindings = {11,
-                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER,
+                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, TEXELS, BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
@@ -181,7 +182,8 @@ static void sort_tiles(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(&targets->depth, pass->nearest), WD_BIND_BUFFER(&pass->lists)};
     wd_cmd_bind(cmd, &pass->tiles, tiles);
     wd_cmd_push(cmd, &pass->tiles, push, sizeof *push);
-    wd_cmd_dispatch(cmd, push->tile_columns, push->tile_rows, 1);
+    uint32_t tile_count = push->tile_columns * push->tile_rows;
+    wd_cmd_dispatch_1d(cmd, (tile_count + WD_TILE_THREADS - 1) / WD_TILE_THREADS);
     wd_cmd_use_buffer(cmd, &pass->lists, WD_USE_COMPUTE_WRITE);
     wd_cmd_bind(cmd, &pass->args, &WD_BIND_BUFFER(&pass->lists));
     wd_cmd_dispatch(cmd, 1, 1, 1);
