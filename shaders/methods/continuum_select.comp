@@ -213,9 +213,11 @@ uint leaf_tint(wd_tree tree, uint model, float count, float sine)
     return packUnorm4x8(vec4(tint, light) * 0.5);
 }
 
-/* Triangles of wood for a tree that tall: few of the largest while it is small. */
+/* Triangles of wood for a tree that tall: few of the largest while it is small. In a cascade twigs, which
+ * discs stand for then, are lost in the penumbra. */
 uint wood_triangles(uint model, float tall_px)
 {
+    tall_px *= ORTHOGRAPHIC != 0u ? 0.5 : 1.0;
     return min(uint(tall_px * tall_px * 0.006 + tall_px), splat_models[model].wood_count);
 }
 
