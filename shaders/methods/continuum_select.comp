@@ -18,8 +18,8 @@ layout(scalar, set = 0, binding = 3) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 4) readonly buffer Visible { uint visible[]; };
 layout(set = 0, binding = 5) uniform usamplerBuffer trees; /* wd_packed_tree */
 layout(scalar, set = 0, binding = 6) readonly buffer Models { wd_model models[]; };
-layout(scalar, set = 0, binding = 7) readonly buffer SplatModels { wd_splat_model splat_models[]; };
-layout(scalar, set = 0, binding = 8) writeonly buffer SplatTrees { wd_splat_tree splat_trees[]; };
+layout(set = 0, binding = 7) uniform usamplerBuffer model_words; /* wd_splat_model */
+layout(set = 0, binding = 8, rgba32ui) uniform writeonly uimageBuffer splat_trees; /* wd_splat_tree */
 layout(scalar, set = 0, binding = 9) writeonly buffer Items { wd_splat_item items[]; };
 
 layout(scalar, set = 0, binding = 10) writeonly buffer WoodItems { wd_splat_item wood_items[]; };
@@ -27,7 +27,6 @@ layout(set = 0, binding = 11) uniform samplerBuffer pyramid;
 layout(set = 0, binding = 12) uniform sampler2D slopes;
 layout(scalar, set = 0, binding = 13) buffer PutOff { uint put_off[]; };
 layout(scalar, set = 0, binding = 14) readonly buffer Fades { wd_layer_fade fades[]; };
-layout(set = 0, binding = 15) uniform samplerBuffer model_words; /* of splat_models */
 
 #define TREE_TEXELS
 #define PYRAMID_TEXELS
@@ -37,6 +36,35 @@ layout(set = 0, binding = 15) uniform samplerBuffer model_words; /* of splat_mod
 #include "lib/occlusion.glsl"
 #include "lib/put_off.glsl"
 #include "lib/tree.glsl"
+
+uint model_word(uint model, uint word)
+{
+    return texelFetch(model_words, int(model * WD_SPLAT_MODEL_WORDS + word)).x;
+}
+
+float model_float(uint model, uint word)
+{
+    return uintBitsToFloat(model_word(model, word));
+}
+
+vec3 model_vec3(uint model, uint word)
+{
+    return vec3(model_float(model, word), model_float(model, word + 1u), model_float(model, word + 2u));
+}
+
+void store_tree(uint slot, wd_splat_tree tree)
+{
+    int at = int(slot) * WD_SPLAT_TREE_TEXELS;
+    imageStore(splat_trees, at, floatBitsToUint(tree.clip_x));
+    imageStore(splat_trees, at + 1, floatBitsToUint(tree.clip_y));
+    imageStore(splat_trees, at + 2, floatBitsToUint(tree.clip_w));
+    imageStore(splat_trees, at + 3, floatBitsToUint(vec4(tree.sway, tree.radius)));
+    imageStore(splat_trees, at + 4, floatBitsToUint(vec4(tree.facing, tree.wood_radius)));
+    imageStore(splat_trees, at + 5, uvec4(tree.tree, tree.first_splat, tree.offset, tree.strata));
+    imageStore(splat_trees, at + 6, uvec4(tree.first_wood, tree.turn, tree.shape, tree.tint));
+    imageStore(splat_trees, at + 7,
+               uvec4(tree.lower, tree.sun, tree.eye, floatBitsToUint(tree.nearer_m)));
+}
 
 /* Reach of crowns that lean and sway, as octree's selection has it. */
 bool tree_is_outside(wd_tree tree, vec3 foot, float stretch)
@@ -61,7 +89,7 @@ float covered_px(wd_tree tree, vec3 toward, float pixels_per_m)
  * such a plant is large on screen, and few are, it has more discs. */
 float finer_near(uint model, float tall_px)
 {
-    float finer = splat_models[model].finer;
+    float finer = model_float(model, WD_WORD_FINER);
     return mix(1.0, finer, smoothstep(24.0, 96.0, tall_px));
 }
 
@@ -89,7 +117,7 @@ vec3 clip_of(vec4 column)
 /* `slope`: how far the model leans with the ground, rise over run. */
 void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot, vec2 slope)
 {
-    vec3 extent_m = splat_models[model].extent_m;
+    vec3 extent_m = model_vec3(model, WD_WORD_EXTENT_M);
     mat4 clip = view.clip_from_rel;
     vec3 east = clip_of(clip[0]), north = clip_of(clip[1]), up = clip_of(clip[2]);
     vec2 x_axis = tree_turn(pose, vec2(pose.across, 0.0));
@@ -97,7 +125,7 @@ void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot
     vec3 along_x = (x_axis.x * east + x_axis.y * north + dot(slope, x_axis) * up) * extent_m.x;
     vec3 along_y = (y_axis.x * east + y_axis.y * north + dot(slope, y_axis) * up) * extent_m.y;
     vec3 along_z = up * pose.up * extent_m.z;
-    vec3 corner = tree_offset(pose, splat_models[model].min_m);
+    vec3 corner = tree_offset(pose, model_vec3(model, WD_WORD_MIN_M));
     corner.z += dot(slope, corner.xy);
     corner += foot;
     vec3 start = clip_of(clip * vec4(corner, 1.0));
@@ -114,8 +142,8 @@ uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint mode
                  float disc, float nearer_m, uint strata)
 {
     float height_m = WD_TREE_HEIGHT_M(tree) * 1.02;
-    vec2 wide = max(-splat_models[model].min_m.xy,
-                    splat_models[model].min_m.xy + splat_models[model].extent_m.xy);
+    vec3 min_m = model_vec3(model, WD_WORD_MIN_M);
+    vec2 wide = max(-min_m.xy, min_m.xy + model_vec3(model, WD_WORD_EXTENT_M).xy);
     float reach_m = length(wide) * pose.across + length(sway) + 0.1;
     vec4 low = view.history_from_rel * vec4(foot, 1.0);
     vec4 high = view.history_from_rel * vec4(foot + vec3(0.0, 0.0, height_m), 1.0);
@@ -133,7 +161,7 @@ uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint mode
     float lowest = lowest_seen(box);
     strata = lowest < 0.0 ? 0u : strata;
     while (strata > 1u) {
-        float share = splat_models[model].strata_top_m[strata - 1u] * pose.up / height_m;
+        float share = model_float(model, WD_WORD_STRATA_TOP_M + strata - 1u) * pose.up / height_m;
         if (mix(bottom.y, top.y, share) - around.y <= lowest)
             break;
         strata--;
@@ -175,9 +203,9 @@ void add_wood(uint slot, uint count)
 /* One entry of wd_point_gain's tables. */
 float gain_at(uint model, uint kind, uint k, float sine)
 {
-    int at = int(model * WD_SPLAT_MODEL_WORDS + kind + k);
-    return wd_side_mix(texelFetch(model_words, at).x, texelFetch(model_words, at + WD_POINT_GAINS).x,
-                       texelFetch(model_words, at + 2 * WD_POINT_GAINS).x, sine);
+    uint word = kind + k;
+    return wd_side_mix(model_float(model, word), model_float(model, word + WD_POINT_GAINS),
+                       model_float(model, word + 2u * WD_POINT_GAINS), sine);
 }
 
 /* `place`: as gain_place has it. */
@@ -198,10 +226,11 @@ vec2 gain_place(float count)
 /* Radii in metres of discs of leaves and of wood that face the viewer, `each` of a stratum. */
 vec2 disc_radii(uint model, float each, float sine)
 {
-    vec2 area_m2 = vec2(splat_models[model].leaf_area_m2, splat_models[model].wood_area_m2);
+    vec2 area_m2 = vec2(model_float(model, WD_WORD_LEAF_AREA_M2),
+                        model_float(model, WD_WORD_WOOD_AREA_M2));
     vec2 place = gain_place(each * float(WD_SPLAT_STRATA));
-    vec2 gain = vec2(gain_of(model, WD_GAINS_LEAF, place, sine),
-                     gain_of(model, WD_GAINS_WOOD, place, sine));
+    vec2 gain = vec2(gain_of(model, WD_WORD_LEAF_GAINS, place, sine),
+                     gain_of(model, WD_WORD_WOOD_GAINS, place, sine));
     return sqrt(gain * area_m2 / (3.14159265 * each * vec2(WD_LEAF_STRATA, 1.0)));
 }
 
@@ -209,7 +238,7 @@ vec2 disc_radii(uint model, float each, float sine)
 uint leaf_tint(wd_tree tree, uint model, float count, float sine)
 {
     vec3 tint = tree_tint(tree, models[model]);
-    float light = gain_of(model, WD_GAINS_LIGHT, gain_place(count), sine);
+    float light = gain_of(model, WD_WORD_LIGHT_GAINS, gain_place(count), sine);
     return packUnorm4x8(vec4(tint, light) * 0.5);
 }
 
@@ -218,7 +247,7 @@ uint leaf_tint(wd_tree tree, uint model, float count, float sine)
 uint wood_triangles(uint model, float tall_px)
 {
     tall_px *= ORTHOGRAPHIC != 0u ? 0.5 : 1.0;
-    return min(uint(tall_px * tall_px * 0.006 + tall_px), splat_models[model].wood_count);
+    return min(uint(tall_px * tall_px * 0.006 + tall_px), model_word(model, WD_WORD_WOOD_COUNT));
 }
 
 /* Slope of the ground that a tree stands for when it is `wide_m` wide. */
@@ -252,7 +281,7 @@ void select_tree(uint index, float share, uint place)
     vec3 toward = ORTHOGRAPHIC != 0u ? frame.sun_direction : -normalize(middle);
 
     float shown = 1.0;
-    float near_m = wd_near_reach_m(tree, splat_models[model_index].grain, view.near_leaves_m,
+    float near_m = wd_near_reach_m(tree, model_float(model_index, WD_WORD_GRAIN), view.near_leaves_m,
                                    view.near_grains);
     if (ORTHOGRAPHIC == 0u && near_m > 0.0)
         shown = wd_near_splats(wd_near_distance_m(tree, model.crown_base_m / model.height_m, foot),
@@ -279,15 +308,16 @@ void select_tree(uint index, float share, uint place)
     splats.wood_radius = size * radii.y;
     uint triangles = wood ? wood_triangles(model_index, tall_px) : 0u;
     /* Discs stand for the wood that is not there as triangles: few large ones are most of it. */
-    float missing = 1.0 - pow(float(triangles) / float(max(splat_models[model_index].wood_count, 1u)),
-                              splat_models[model_index].wood_spread);
+    float all = max(float(model_word(model_index, WD_WORD_WOOD_COUNT)), 1.0);
+    float missing = 1.0 - pow(float(triangles) / all, model_float(model_index, WD_WORD_WOOD_SPREAD));
     splats.wood_radius *= sqrt(max(missing, 0.0));
     uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
     splats.facing = model_facing(pose, toward);
     splats.sun = wd_sun_mix(model_toward(pose, frame.sun_direction));
     splats.eye = wd_sun_mix(model_toward(pose, toward));
     float close = WD_DISC_CLOSE(tall_px);
-    splats.nearer_m = (1.0 - close) * WD_DISC_NEARER * splat_models[model_index].extent_m.x * pose.across
+    splats.nearer_m = (1.0 - close) * WD_DISC_NEARER * model_float(model_index, WD_WORD_EXTENT_M)
+                    * pose.across
                     * smoothstep(-0.4, -0.1, toward.z); /* nothing is known of the view from below */
     float own_across = pose.across;
     pose.across *= stretch;
@@ -305,14 +335,14 @@ void select_tree(uint index, float share, uint place)
 
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
-    splats.first_wood = splat_models[model_index].wood_first;
+    splats.first_wood = model_word(model_index, WD_WORD_WOOD_FIRST);
     splats.offset = (wd_hash_mix(random) * WD_WINDOW_STEP + frame.sample_index * uint(ceil(each)))
                     & (WD_STRATUM_SPLATS - 1u);
     splats.offset |= wood ? 0x80000000u : 0u;
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
     splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);
-    splats.lower = packUnorm4x8(vec4(splat_models[model_index].lower_over_upper * 0.25, 0.0));
+    splats.lower = packUnorm4x8(vec4(model_vec3(model_index, WD_WORD_LOWER_OVER_UPPER) * 0.25, 0.0));
     vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
                              : vec2(0.0);
     splats.strata = strata | uint(close * 15.0 + 0.5) << 4 | model.look_layer << 8;
@@ -322,7 +352,7 @@ void select_tree(uint index, float share, uint place)
     uint slot = atomicAdd(counts.trees, 1u);
     if (slot >= view.tree_capacity)
         return;
-    splat_trees[slot] = splats;
+    store_tree(slot, splats);
     add_splats(slot, uint(ceil(shown * each * float(strata))));
     if (wood)
         add_wood(slot, uint(ceil(shown * float(triangles))));

@@ -81,11 +81,22 @@ struct wd_splat_model {
     uint32_t wood_first, wood_count;      /* triangles, those that show most first */
 };
 WD_STATIC_ASSERT_SIZE(wd_splat_model, 540);
+/* Its words, to be fetched one by one. */
 #define WD_SPLAT_MODEL_WORDS 135u
-/* Words at which its gains begin. */
-#define WD_GAINS_WOOD 0u
-#define WD_GAINS_LEAF 36u
-#define WD_GAINS_LIGHT 72u
+#define WD_WORD_WOOD_GAINS 0u
+#define WD_WORD_LEAF_GAINS 36u
+#define WD_WORD_LIGHT_GAINS 72u
+#define WD_WORD_MIN_M 108u
+#define WD_WORD_EXTENT_M 111u
+#define WD_WORD_LEAF_AREA_M2 114u
+#define WD_WORD_WOOD_AREA_M2 115u
+#define WD_WORD_STRATA_TOP_M 116u
+#define WD_WORD_LOWER_OVER_UPPER 124u
+#define WD_WORD_WOOD_SPREAD 130u
+#define WD_WORD_GRAIN 131u
+#define WD_WORD_FINER 132u
+#define WD_WORD_WOOD_FIRST 133u
+#define WD_WORD_WOOD_COUNT 134u
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u

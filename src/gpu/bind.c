@@ -14,7 +14,7 @@ static bool add_pool(struct wd_frame_slot *slot, struct wd_gpu *gpu)
         VK_DESCRIPTOR_TYPE_SAMPLER,        VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
         VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,  VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
         VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+        VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER,
     };
     enum { TYPE_COUNT = sizeof types / sizeof types[0] };
     VkDescriptorPoolSize sizes[TYPE_COUNT];
@@ -85,6 +85,12 @@ static bool is_buffer(VkDescriptorType type)
     return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
+static bool is_texels(VkDescriptorType type)
+{
+    return type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER ||
+           type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+}
+
 static bool describe_buffer(struct wd_cmd *cmd, const struct wd_binding *binding,
                             VkDescriptorType type, uint32_t slot, VkDescriptorBufferInfo *info)
 {
@@ -130,8 +136,8 @@ static bool write_set(struct wd_cmd *cmd, VkDescriptorSet set, const struct wd_b
     VkDescriptorImageInfo images[WD_MAX_BINDINGS];
     for (uint32_t i = 0; i < types->count; i++) {
         VkDescriptorType type = types->types[i];
-        assert(type != VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER || bindings[i].buffer->texels);
-        if (type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER)
+        assert(!is_texels(type) || bindings[i].buffer->texels);
+        if (is_texels(type))
             images[i] = (VkDescriptorImageInfo){0};
         else if (!is_buffer(type))
             images[i] = describe_image(&bindings[i], type);

@@ -54,7 +54,9 @@ static bool make_work(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *
                       VkDeviceSize size, VkFormat texels)
 {
     const struct wd_buffer_params params = {
-        name, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+        name, size,
+        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+            (texels ? VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT : 0),
         WD_MEMORY_DEVICE, texels};
     return wd_buffer_init(buffer, gpu, &params);
 }
@@ -257,8 +259,7 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw, 
                                           WD_BIND_IMAGE(&draw->forest->ground.slopes,
                                                         draw->forest->ground.sampler),
                                           WD_BIND_BUFFER(&c->put_off),
-                                          WD_BIND_BUFFER(&draw->forest->fades),
-                                          WD_BIND_BUFFER(&c->forest.models)};
+                                          WD_BIND_BUFFER(&draw->forest->fades)};
     wd_cmd_bind(cmd, pipeline, bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
     record_args(c, cmd, FIRST_ROUND);

@@ -205,7 +205,7 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
               make_buffer(&own->wood, gpu, "splat wood", wood, (triangles + 1) * sizeof *wood,
                           VK_FORMAT_R32G32B32A32_UINT) &&
               make_buffer(&own->models, gpu, "splat models", headers, models * sizeof *headers,
-                          VK_FORMAT_R32_SFLOAT);
+                          VK_FORMAT_R32_UINT);
     free(all);
     free(looks);
     free(lit);

@@ -45,6 +45,7 @@ static const uint32_t resolve_shadow_frag[] =
 #define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
 #define UNIFORM VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
 #define TEXELS VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+#define STORED_TEXELS VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
 
 static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
@@ -135,9 +136,9 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         const uint32_t constants[] = {gpu->software ? 8 : 64, i == WD_PASS_SHADOW, i == 2};
         const struct wd_compute_params choose = {
             .shader = SPIRV(select_comp),
-            .bindings = {16, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, TEXELS, BUFFER, BUFFER,
-                              BUFFER, BUFFER, BUFFER, TEXELS,
-                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER, BUFFER, TEXELS}},
+            .bindings = {15, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, TEXELS, BUFFER, TEXELS,
+                              STORED_TEXELS, BUFFER, BUFFER, TEXELS,
+                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER, BUFFER}},
             .constants = {3, constants}};
         if (!wd_pipeline_init_compute(pipelines[i], gpu, &choose))
             return false;
