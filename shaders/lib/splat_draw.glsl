@@ -110,9 +110,9 @@ void main()
         bool wood = turn.x == WD_LEAF_STRATA;
         vec3 normal = splat_normal(disc);
         float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
-        float radius = (wood ? tree.wood_radius * sqrt(max(facing, 0.0))
-                             : tree.radius * sqrt(2.0 * abs(facing))) * inverse;
-        radius *= sqrt(mix(mix(WD_DISC_HIDDEN, WD_DISC_SEEN, seen), 1.0, WD_TREE_CLOSE(tree)));
+        float open = mix(mix(WD_DISC_HIDDEN, WD_DISC_SEEN, seen), 1.0, WD_TREE_CLOSE(tree));
+        float share = (wood ? max(facing, 0.0) : 2.0 * abs(facing)) * open;
+        float radius = (wood ? tree.wood_radius : tree.radius) * inverse * sqrt(share);
         vec2 at = (clip.xy * inverse * 0.5 + 0.5) * size;
         uint id = index * WD_ITEM_SPLATS + i + 1u;
         bool leaf = ORTHOGRAPHIC == 0u && SMALL == 0u && !wood && radius > LEAF_PX;

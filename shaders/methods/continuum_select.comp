@@ -134,8 +134,9 @@ void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot
     splats.clip_w = vec4(along_x.z, along_y.z, along_z.z, start.z);
 }
 
-/* A disc's radius over a model's: it faces the eye, which sees it. */
-const float LARGEST_DISC = sqrt(2.0 * WD_DISC_SEEN);
+/* A disc's reach over a model's radius: it faces the eye, which sees it, and has a leaf's outline
+ * (lib/splat_draw.glsl). */
+const float LARGEST_DISC = 1.54 * sqrt(2.0 * WD_DISC_SEEN);
 
 /* How many strata, from the top, show anything past what the frame before saw. */
 uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint model, vec3 sway,

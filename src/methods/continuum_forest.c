@@ -1,7 +1,9 @@
 #include "methods/continuum_forest.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdatomic.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +12,23 @@
 #include "base/memory.h"
 #include "forest/looks.h"
 #include "forest/model_bakes.h"
+
+#define WORD_IS(member, word)                                                                      \
+    static_assert(offsetof(struct wd_splat_model, member) == sizeof(uint32_t) * (word), #member)
+WORD_IS(wood, WD_WORD_WOOD_GAINS);
+WORD_IS(leaf, WD_WORD_LEAF_GAINS);
+WORD_IS(light, WD_WORD_LIGHT_GAINS);
+WORD_IS(min_m, WD_WORD_MIN_M);
+WORD_IS(extent_m, WD_WORD_EXTENT_M);
+WORD_IS(leaf_area_m2, WD_WORD_LEAF_AREA_M2);
+WORD_IS(wood_area_m2, WD_WORD_WOOD_AREA_M2);
+WORD_IS(strata_top_m, WD_WORD_STRATA_TOP_M);
+WORD_IS(lower_over_upper, WD_WORD_LOWER_OVER_UPPER);
+WORD_IS(wood_spread, WD_WORD_WOOD_SPREAD);
+WORD_IS(grain, WD_WORD_GRAIN);
+WORD_IS(finer, WD_WORD_FINER);
+WORD_IS(wood_first, WD_WORD_WOOD_FIRST);
+WORD_IS(wood_count, WD_WORD_WOOD_COUNT);
 
 /* --- clusters ---------------------------------------------------------------------------- */
 
