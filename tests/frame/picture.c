@@ -75,7 +75,8 @@ static bool make_forest(struct picture_test *test)
 {
     const struct wd_buffer_params trees = {.name = "no trees",
                                            .size = sizeof(struct wd_packed_tree),
-                                           .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+                                           .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                           .texels = VK_FORMAT_R32G32B32A32_UINT};
     const struct wd_packed_tree none = {0};
     test->forest.scene = &test->scene;
     test->forest.world = &test->world;
