@@ -122,7 +122,6 @@ bool suite_init(struct suite *suite, const char *root)
     const struct wd_renderer_params params = {
         .gpu = "software",
         .validation = WD_VALIDATION_ON,
-        .cache_dir = "",
         .progress = {go_on, suite},
         .log = suite->log,
     };

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 
 void frame_test_init(struct frame_test *test, const char *root, uint32_t disabled)
@@ -20,7 +21,7 @@ void frame_test_init_with(struct frame_test *test, const char *root, uint32_t di
                           const char *const *settings)
 {
     const struct wd_scene_params scene = {.settings = settings};
-    char *path = wd_format("%s/tests/api/small.json", root);
+    char *path = wd_format("%s/tests/api/small.json", root), *cache = wd_cache_directory();
     const struct wd_gpu_params gpu = {.name = "software",
                                       .validation = WD_GPU_VALIDATION_ON,
                                       .disabled_features = disabled};
@@ -30,9 +31,10 @@ void frame_test_init_with(struct frame_test *test, const char *root, uint32_t di
                               &(struct wd_world_params){.log = &test->log}));
     assert_true(wd_gpu_init(&test->gpu, &gpu, &test->log));
     const struct wd_forest_device_params forest = {
-        .scene = &test->scene, .world = &test->world, .log = &test->log};
+        .scene = &test->scene, .world = &test->world, .cache_dir = cache, .log = &test->log};
     assert_true(wd_forest_device_init(&test->forest, &test->gpu, &forest));
     assert_true(wd_frame_init(&test->frame, &test->gpu));
+    free(cache);
     free(path);
 }
 
