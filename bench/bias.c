@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "scene/species.h"
+#include "weald/reference.h"
 
 enum { MAX_TREES = 256, EYE_HEIGHTS = 120 /* away */ };
 
@@ -111,26 +112,69 @@ static struct wd_render_params view_of(const struct bias_stand *stand, int heigh
     return params;
 }
 
+/* Takes what the picture holds, which is finished. */
+static void keep_shown(struct bias_shown *shown, struct wd_picture *picture)
+{
+    size_t pixels = (size_t)picture->width * picture->height;
+    *shown = (struct bias_shown){.width = picture->width, .height = picture->height,
+                            .luminance = wd_alloc_array(pixels, sizeof(float))};
+    for (size_t i = 0; i < pixels; i++) {
+        if (!picture->tree_id[i])
+            continue;
+        const float *c = picture->color + 3 * i;
+        shown->luminance[i] = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+        shown->covered += 1;
+        shown->radiance += (double)shown->luminance[i];
+    }
+    shown->radiance /= shown->covered > 0 ? shown->covered : 1;
+    wd_picture_finish(picture);
+}
+
 static bool show(struct bias_shown *shown, struct wd_renderer *renderer,
                  const struct wd_render_params *params)
 {
     struct wd_picture picture;
     if (wd_renderer_render(renderer, params, &picture) != WD_OK)
         return false;
-    size_t pixels = (size_t)params->width * params->height;
-    *shown = (struct bias_shown){.width = params->width, .height = params->height,
-                            .luminance = wd_alloc_array(pixels, sizeof(float))};
-    for (size_t i = 0; i < pixels; i++) {
-        if (!picture.tree_id[i])
-            continue;
-        const float *c = picture.color + 3 * i;
-        shown->luminance[i] = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
-        shown->covered += 1;
-        shown->radiance += (double)shown->luminance[i];
-    }
-    shown->radiance /= shown->covered > 0 ? shown->covered : 1;
-    wd_picture_finish(&picture);
+    keep_shown(shown, &picture);
     return true;
+}
+
+static bool trace(struct bias_shown *shown, const struct wd_forest *forest,
+                  const struct wd_render_params *params)
+{
+    const struct wd_reference_params reference = {0};
+    const struct wd_reference_picture_params picture_params = {.camera = params->camera,
+                                                               .width = params->width,
+                                                               .height = params->height,
+                                                               .samples = 1,
+                                                               .layers = params->layers};
+    struct wd_reference *tracer = NULL;
+    struct wd_picture picture;
+    bool ok = wd_reference_create(&tracer, forest, &reference) == WD_OK &&
+              wd_reference_render(tracer, &picture_params, &picture) == WD_OK;
+    if (ok)
+        keep_shown(shown, &picture);
+    wd_reference_destroy(&tracer);
+    return ok;
+}
+
+/* Layers of ids are of the middles of pixels, paths begin anywhere in them: pixels are so small
+ * that few hold more than one thing. */
+bool bias_mesh_light(double *over_traced, struct wd_renderer *renderer,
+                     const struct wd_forest *forest, const struct bias_stand *stand, int view)
+{
+    enum { TALLEST = 0, ZOOM = 4 };
+    struct bias_shown drawn, traced;
+    struct wd_render_params params = view_of(stand, TALLEST, view, ZOOM, 0, 0, 0);
+    if (!show(&drawn, renderer, &params))
+        return false;
+    bool ok = trace(&traced, forest, &params);
+    if (ok)
+        *over_traced = drawn.radiance / fmax(traced.radiance, 1e-12);
+    free(drawn.luminance);
+    free(ok ? traced.luminance : NULL);
+    return ok;
 }
 
 /* `pictures`: how many make the one that is kept; 0: this is not of it. */

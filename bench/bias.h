@@ -45,6 +45,10 @@ struct wd_forest *bias_forest(const struct bias_stand *stand, const struct bias_
 bool bias_show_reference(struct bias_shown *sum, struct wd_renderer *renderer,
                          const struct bias_stand *stand, int height, int view);
 
+/* Radiance of the full meshes that `renderer` holds of `forest`, over the path tracer's. */
+bool bias_mesh_light(double *over_traced, struct wd_renderer *renderer,
+                     const struct wd_forest *forest, const struct bias_stand *stand, int view);
+
 /* `renderer` holds the stand in the form that is measured against the reference. */
 bool bias_measure(struct bias *bias, struct wd_renderer *renderer, const struct bias_stand *stand,
                   int height, int view, const struct bias_shown *reference);

@@ -2,9 +2,9 @@
  *
  * Rows of one species, tall enough for each height in pixels, are drawn by the renderer itself in
  * each form, with one light for all and cast shadows, from a low and a high viewpoint. The
- * reference is the full mesh, none of its leaves left out, with 64 samples a pixel. Forms are drawn
- * one sample a pixel, several times with the camera shifted by parts of a pixel, so that the bias is
- * not lost in noise. */
+ * reference is the full mesh, none of its leaves left out, with 64 samples a pixel; how bright that
+ * is the path tracer says. Forms are drawn one sample a pixel, several times with the camera shifted
+ * by parts of a pixel, so that the bias is not lost in noise. */
 #include "lod.h"
 
 #include <dirent.h>
@@ -20,6 +20,7 @@ struct lod_bench {
     const struct lod_choice *choice;
     struct wd_renderer *renderer;
     struct bias_shown reference[BIAS_HEIGHTS][BIAS_VIEWS];
+    double over_traced[BIAS_VIEWS]; /* radiance of the reference, over the path tracer's */
     struct lod_worst worst;
 };
 
@@ -71,6 +72,7 @@ static bool measure_form(struct lod_bench *bench, const struct bias_stand *stand
         }
         if (!bias_measure(&bias, bench->renderer, stand, height, view, reference))
             return false;
+        bias.radiance_pct = 100 * ((1 + bias.radiance_pct / 100) * bench->over_traced[view] - 1);
         note(bench, species, bias_forms[form].name, height, view, &bias,
              bias_forms[form].used[height]);
     }
@@ -81,8 +83,10 @@ static bool run_form(struct lod_bench *bench, const struct bias_stand *stand, co
                      int form)
 {
     struct wd_forest *forest = bias_forest(stand, &bias_forms[form]);
-    bool ok = forest && wd_renderer_set_forest(bench->renderer, forest) == WD_OK &&
-              measure_form(bench, stand, species, form);
+    bool ok = forest && wd_renderer_set_forest(bench->renderer, forest) == WD_OK;
+    for (int view = 0; form == 0 && view < BIAS_VIEWS && ok; view++)
+        ok = bias_mesh_light(&bench->over_traced[view], bench->renderer, forest, stand, view);
+    ok = ok && measure_form(bench, stand, species, form);
     wd_renderer_set_forest(bench->renderer, NULL);
     wd_forest_destroy(&forest);
     return ok;
