@@ -25,12 +25,14 @@ struct shown {
 };
 enum { NOTHING, LEAF, LEAF_BELOW, WOOD };
 
-/* A picture with depth. */
+/* A picture with depth. What it shows is counted while it is drawn: it is looked at some thousand
+ * times, mostly with few discs in it. */
 struct canvas {
     struct wd_silhouette frame;
-    float *nearest; /* along frame.toward */
+    float *nearest; /* along frame.toward, where there is something */
     uint8_t *kind;
     uint8_t *openness;
+    uint32_t counts[WOOD + 1], openness_sum;
 };
 
 struct plan {
@@ -43,25 +45,34 @@ struct plan {
 
 static void clear(struct canvas *canvas)
 {
-    memset(canvas->kind, 0, PIXELS);
-    for (int i = 0; i < PIXELS; i++)
-        canvas->nearest[i] = -1e30f;
+    memset(canvas->kind, NOTHING, PIXELS);
+    memset(canvas->openness, 0, PIXELS);
+    memset(canvas->counts, 0, sizeof canvas->counts);
+    canvas->openness_sum = 0;
+}
+
+static bool hidden(const struct canvas *canvas, int i, float toward)
+{
+    return canvas->kind[i] != NOTHING && toward <= canvas->nearest[i];
+}
+
+static void put(struct canvas *canvas, int i, float toward, uint8_t kind, uint8_t openness)
+{
+    canvas->counts[canvas->kind[i]]--; /* of nothing's count nothing is asked */
+    canvas->counts[kind]++;
+    canvas->openness_sum += openness - (uint32_t)canvas->openness[i];
+    canvas->nearest[i] = toward;
+    canvas->kind[i] = kind;
+    canvas->openness[i] = openness;
 }
 
 static void add_shown(struct shown *shown, const struct canvas *canvas, double weight)
 {
-    uint32_t covered = 0, wood = 0, lower = 0, openness = 0;
-    for (int i = 0; i < PIXELS; i++) {
-        uint8_t kind = canvas->kind[i];
-        covered += kind != NOTHING;
-        wood += kind == WOOD;
-        lower += kind == LEAF_BELOW;
-        openness += kind != NOTHING ? canvas->openness[i] : 0;
-    }
-    shown->covered += weight * (double)covered;
-    shown->wood += weight * (double)wood;
-    shown->lower += weight * (double)lower;
-    shown->openness += weight * (double)openness;
+    const uint32_t *counts = canvas->counts;
+    shown->covered += weight * (double)(counts[LEAF] + counts[LEAF_BELOW] + counts[WOOD]);
+    shown->wood += weight * (double)counts[WOOD];
+    shown->lower += weight * (double)counts[LEAF_BELOW];
+    shown->openness += weight * (double)canvas->openness_sum;
 }
 
 /* --- the mesh ---------------------------------------------------------------------------- */
@@ -114,11 +125,9 @@ static void draw_triangle(struct canvas *canvas, const struct corner *a, const s
             float of_b = 1 - of_a - of_c;
             float toward = of_a * a->toward + of_b * b->toward + of_c * c->toward;
             int i = y * WD_SILHOUETTE + x;
-            if (of_a < 0 || of_b < 0 || of_c < 0 || toward <= canvas->nearest[i])
+            if (of_a < 0 || of_b < 0 || of_c < 0 || hidden(canvas, i, toward))
                 continue;
-            canvas->nearest[i] = toward;
-            canvas->kind[i] = kind;
-            canvas->openness[i] = openness;
+            put(canvas, i, toward, kind, openness);
         }
 }
 
@@ -157,11 +166,8 @@ static void draw_disc(struct canvas *canvas, const struct corner *middle, float 
     int y1 = wd_silhouette_pixel(middle->at[1] + half);
     for (int y = y0; y < y1; y++)
         for (int i = y * WD_SILHOUETTE + x0; i < y * WD_SILHOUETTE + x1; i++)
-            if (middle->toward > canvas->nearest[i]) {
-                canvas->nearest[i] = middle->toward;
-                canvas->kind[i] = kind;
-                canvas->openness[i] = openness;
-            }
+            if (!hidden(canvas, i, middle->toward))
+                put(canvas, i, middle->toward, kind, openness);
 }
 
 /* Over the mean of faces of every direction, for leaves. */

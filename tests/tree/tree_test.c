@@ -54,3 +54,12 @@ double test_leaf_area(const struct wd_tree_mesh *mesh, uint32_t first, uint32_t 
     }
     return area;
 }
+
+struct wd_tree_model test_grow_tree(const struct wd_species *species, uint32_t seed,
+                                    float height_m, float openness)
+{
+    struct wd_tree_model model;
+    struct wd_grow_params params = {.seed = seed, .height_m = height_m, .openness = openness};
+    assert_true(wd_tree_grow(&model, species, &params, NULL));
+    return model;
+}

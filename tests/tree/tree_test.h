@@ -22,6 +22,10 @@ extern const char *const test_species_names[SPECIES_COUNT];
 /* Loads species/NAME.json of the source tree; fails the test when that does not work. */
 struct wd_species test_species(struct wd_arena *arena, const char *name);
 
+/* Fails the test when nothing grows. wd_tree_model_finish it. */
+struct wd_tree_model test_grow_tree(const struct wd_species *species, uint32_t seed,
+                                    float height_m, float openness);
+
 /* A log that keeps the last message. */
 struct test_log {
     struct wd_log log;
