@@ -8,8 +8,9 @@
 #include "../../bench/bias.h"
 #include "suite.h"
 
-/* Bounds lie a little above what was measured (docs/trees.md): with cast shadows, full -0.4 %, reduced -1.4,
- * splats -0.5, cards +4.8: these are lit as the mean of leaves that lie every way, the others leaf by leaf. */
+/* Bounds lie a little above what was measured of light against the full mesh as drawn, with cast shadows:
+ * full -0.4 %, reduced -1.4, splats -0.5, cards +4.8: these are lit as the mean of leaves that lie every
+ * way, the others leaf by leaf. docs/trees.md has the path tracer's light for truth. */
 static const struct bound {
     const char *form;
     double coverage_pct, radiance_pct;
