@@ -22,6 +22,7 @@ bool wd_species_load(struct wd_species *species, const char *path, struct wd_are
     bool model = wd_species_text_has_model(path, text, size);
     const struct wd_keys *keys = model ? &wd_species_model_keys : &wd_species_keys;
     bool ok = wd_keys_read(keys, path, text, size, arena, log, species);
+    species->path = wd_arena_strdup(arena, path);
     species->openness = WD_STAND_OPENNESS;
     free(text);
     return ok;

@@ -72,6 +72,7 @@ struct wd_branch_order {
 
 struct wd_species {
     const char *name;         /* short: "spruce" */
+    const char *path;         /* the file read; NULL where there is none */
     const char *latin;        /* "Picea abies" */
     const char *citation;     /* where form and colours are from */
     int form;                 /* enum wd_species_form */

@@ -79,7 +79,20 @@ static _Noreturn void read_apart(const char *path, int file)
 
 /* --- the process that asked -------------------------------------------------------------- */
 
-static bool check_size(const char *path, const struct wd_log *log)
+/* A GLB file begins with its magic, its version and how long it is. */
+static bool check_glb_length(int file, uint64_t size, const char *path, const struct wd_log *log)
+{
+    uint8_t head[12];
+    if (pread(file, head, sizeof head, 0) != (ssize_t)sizeof head || memcmp(head, "glTF", 4) != 0)
+        return true;
+    uint32_t length = head[8] | (uint32_t)head[9] << 8 | (uint32_t)head[10] << 16 |
+                      (uint32_t)head[11] << 24;
+    return length == size ||
+           wd_error(log, "%s: is malformed: its header says %u bytes, the file has %llu", path,
+                    length, (unsigned long long)size);
+}
+
+static bool check_file(const char *path, const struct wd_log *log)
 {
     struct stat status;
     if (stat(path, &status))
@@ -93,8 +106,9 @@ static bool check_size(const char *path, const struct wd_log *log)
     int file = open(path, O_RDONLY | O_CLOEXEC);
     if (file < 0)
         return wd_error(log, "%s: cannot be opened: %s", path, strerror(errno));
+    bool ok = check_glb_length(file, (uint64_t)status.st_size, path, log);
     close(file);
-    return true;
+    return ok;
 }
 
 static bool wait_for(pid_t child, const char *path, const struct wd_log *log)
@@ -142,6 +156,10 @@ static bool take(struct wd_model_file *model, int file, const char *path, const 
     header->message[sizeof header->message - 1] = '\0';
     if (!header->ready)
         return wd_error(log, "%s: %s", path, header->message);
+    if (header->warning_count == 1)
+        wd_warn(log, "%s: %s", path, header->message);
+    else if (header->warning_count > 1)
+        wd_warn(log, "%s: %s (and %u more)", path, header->message, header->warning_count - 1);
     wd_model_layout(header, offsets);
     if (header->byte_count > max_file_bytes || offsets[6] > model->block_size)
         return wd_error(log, "%s: is malformed: the model importer cut it short", path);
@@ -169,7 +187,7 @@ static bool take(struct wd_model_file *model, int file, const char *path, const 
 bool wd_model_file_read(struct wd_model_file *model, const char *path, const struct wd_log *log)
 {
     *model = (struct wd_model_file){0};
-    if (!check_size(path, log))
+    if (!check_file(path, log))
         return false;
     int file = memfd_create("weald-model", MFD_CLOEXEC);
     if (file < 0)

@@ -70,8 +70,23 @@ static bool is_large(const char *path)
     return stat(path, &status) == 0 && status.st_size > enough;
 }
 
+/* What assimp warns of, as triangles that it drops, is told: the first of it whole. */
+static void keep_warning(const char *line, char *user)
+{
+    static const char mark[] = "Warn,";
+    struct wd_model_header *header = (void *)user;
+    const char *text = strstr(line, ": ");
+    if (strncmp(line, mark, strlen(mark)) != 0 || !text)
+        return;
+    if (header->warning_count++ == 0)
+        snprintf(header->message, sizeof header->message, "%.*s", (int)strcspn(text + 2, "\n"),
+                 text + 2);
+}
+
 static void open_scene(struct parse *parse, const char *path)
 {
+    const struct aiLogStream warnings = {keep_warning, (void *)&parse->header};
+    aiAttachLogStream(&warnings);
     unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_FlipUVs |
                      aiProcess_ValidateDataStructure;
     if (!is_large(path))

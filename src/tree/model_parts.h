@@ -15,6 +15,7 @@ enum {
  * 16 bytes on. */
 struct wd_model_header {
     uint32_t ready; /* 1: whole; 0: `message` says why not */
+    uint32_t warning_count; /* of a whole one: `message` is the first of so many */
     uint32_t vertex_count, index_count, mesh_count, material_count, image_count;
     uint32_t stray_points, stray_lines;
     uint64_t byte_count;

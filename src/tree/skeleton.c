@@ -347,8 +347,9 @@ bool wd_skeleton_grow(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     wd_skeleton_grow_stems(skeleton, form);
     if (!grow_branches(skeleton, form)) {
         wd_skeleton_finish(skeleton);
-        return wd_error(log, "species %s at %g m has more than %d branches; allowed are wider "
+        return wd_error(log, "%s: orders: %s of %g m has more than %d branches; allowed are wider "
                              "spacing_m or fewer orders",
+                        form->species->path ? form->species->path : "species",
                         form->species->name, (double)form->height_m, WD_MAX_BRANCHES);
     }
     wd_skeleton_set_flexibility(skeleton, form);

@@ -393,6 +393,7 @@ static void too_many_branches_are_refused(void **state)
     test_log_init(&log);
     assert_false(wd_tree_grow(&model, &species, &params, &log.log));
     assert_int_equal(log.count, 1);
+    assert_non_null(strstr(log.message, "species/oak.json: orders: "));
     assert_non_null(strstr(log.message, "branches"));
     assert_null(model.full.vertices);
     wd_arena_finish(&arena);

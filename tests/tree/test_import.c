@@ -392,6 +392,58 @@ static void a_position_that_is_no_number_is_an_error(void **state)
 }
 
 /* Their squares are infinite. */
+/* A GLB of one mesh: JSON, then nine 16-bit indices and four positions. */
+static void write_glb(const char *name, uint16_t index, int length_off)
+{
+    static const char json[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":1},\"indices\":0}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"count\":9,\"type\":\"SCALAR\"},"
+        "{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":18},"
+        "{\"buffer\":0,\"byteOffset\":20,\"byteLength\":48}],\"buffers\":[{\"byteLength\":68}]}";
+    const uint16_t indices[10] = {0, 1, 2, 0, 1, index, 1, 2, 3, 0};
+    const float positions[12] = {0, 0, 0, 1, 0, 0, 0, 4, 0, 1, 4, 0};
+    enum { JSON = (sizeof json + 2) / 4 * 4, BINARY = sizeof indices + sizeof positions,
+           WHOLE = 12 + 8 + JSON + 8 + BINARY };
+    const uint32_t head[5] = {0x46546c67, 2, (uint32_t)(WHOLE + length_off), JSON, 0x4e4f534a};
+    const uint32_t binary[2] = {BINARY, 0x004e4942};
+    uint8_t bytes[WHOLE];
+    memset(bytes, ' ', sizeof bytes);
+    memcpy(bytes, head, sizeof head);
+    memcpy(bytes + sizeof head, json, sizeof json - 1);
+    memcpy(bytes + sizeof head + JSON, binary, sizeof binary);
+    memcpy(bytes + WHOLE - BINARY, indices, sizeof indices);
+    memcpy(bytes + WHOLE - sizeof positions, positions, sizeof positions);
+    write_file(name, bytes, sizeof bytes);
+}
+
+static void triangles_left_out_are_told(void **state)
+{
+    (void)state;
+    write_glb("nine.glb", 9, 0);
+    struct result *result = import("nine.glb");
+    assert_true(result->ok);
+    assert_int_equal(result->import.model.full.index_count / 3, 2);
+    expect_message(result, "out-of-range indices");
+    drop(result);
+    write_glb("whole.glb", 3, 0);
+    result = import("whole.glb");
+    assert_true(result->ok);
+    assert_int_equal(result->import.model.full.index_count / 3, 3);
+    assert_null(strstr(result->record.text, "out-of-range"));
+    drop(result);
+}
+
+static void a_length_that_is_not_the_files_is_told(void **state)
+{
+    (void)state;
+    write_glb("longer.glb", 3, 100);
+    expect_refusal("longer.glb", "is malformed: its header says");
+    write_glb("shorter.glb", 3, -40);
+    expect_refusal("shorter.glb", "is malformed: its header says");
+}
+
 static void normals_that_are_no_direction_are_told(void **state)
 {
     (void)state;
@@ -467,6 +519,8 @@ int main(void)
         cmocka_unit_test(webp_textures_are_told),
         cmocka_unit_test(a_species_file_says_height_axis_and_materials),
         cmocka_unit_test(strays_are_dropped_and_told),
+        cmocka_unit_test(triangles_left_out_are_told),
+        cmocka_unit_test(a_length_that_is_not_the_files_is_told),
         cmocka_unit_test(what_cannot_be_is_told),
         cmocka_unit_test(a_missing_texture_is_a_warning),
         cmocka_unit_test(holes_of_textures_reach_the_look),
