@@ -8,11 +8,12 @@ vec3 rel_of_mm(ivec3 mm)
 
 bool box_is_outside(vec3 low, vec3 high)
 {
-    for (uint i = 0u; i < view.plane_count; i++) {
+    bool outside;
+    uint i = 0u;
+    do {
         vec4 plane = view.planes[i];
         vec3 corner = mix(low, high, greaterThan(plane.xyz, vec3(0.0)));
-        if (dot(plane.xyz, corner) + plane.w < 0.0)
-            return true;
-    }
-    return false;
+        outside = dot(plane.xyz, corner) + plane.w < 0.0;
+    } while (!outside && ++i < view.plane_count);
+    return outside;
 }

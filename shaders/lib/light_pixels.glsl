@@ -12,6 +12,8 @@ layout(constant_id = 1) const uint LIST = 0;
 layout(constant_id = 2) const uint MIXED = 0u; /* tiles hold pixels with and without water: one kind is
                                                   shaded, that of PARTS; the other after or before */
 
+layout(constant_id = 3) const uint RUNS = 1u;
+
 layout(scalar, set = 0, binding = 0) FRAME_BLOCK Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1) uniform sampler2D gbuffer_albedo;
 layout(set = 0, binding = 2) uniform sampler2D gbuffer_normal;
@@ -38,6 +40,7 @@ layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #define WATER_AT(index) river_m[index]
 
+#include "lib/dealt.glsl"
 #include "lib/trees.glsl"
 #include "lib/noise.glsl"
 #include "lib/sky.glsl"
@@ -97,6 +100,7 @@ void main()
     uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
     if (index >= lists.count[LIST])
         return;
+    index = dealt(index, lists.count[LIST]);
     uint tile = tiles[LIST * push.tile_columns * push.tile_rows + index];
     uvec2 corner = uvec2(tile & 0xffffu, tile >> 16) * WD_TILE;
     ivec2 at = ivec2(corner + gl_LocalInvocationID.xy);

@@ -32,13 +32,14 @@ float lowest_seen(wd_screen_box box)
 {
     uint level = box_level(box.high.x - box.low.x, 2.0);
     uvec2 low = uvec2(box.low) >> (level + 1u), high = uvec2(box.high) >> (level + 1u);
-    for (uint y = high.y + 1u; y-- > low.y;) {
-        for (uint x = low.x; x <= high.x; x++) {
-            if (pyramid_at(level, uvec2(x, y)) < box.depth)
-                return float((y + 1u) << (level + 1u));
-        }
-    }
-    return -1.0;
+    uvec2 at = uvec2(low.x, high.y);
+    float edge = -1.0;
+    do {
+        if (pyramid_at(level, at) < box.depth)
+            edge = float((at.y + 1u) << (level + 1u));
+        at = at.x < high.x ? uvec2(at.x + 1u, at.y) : uvec2(low.x, at.y - 1u);
+    } while (edge < 0.0 && at.y + 1u > low.y);
+    return edge;
 }
 
 /* Whether other things stood in front of all of a box. */

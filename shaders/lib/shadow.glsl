@@ -37,7 +37,10 @@ float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, floa
                uint places)
 {
     float sum_m = 0.0, count = 0.0;
-    for (uint i = 0u; i < places; i++) {
+    uint i = 0u;
+    if (places == 0u)
+        return 0.0;
+    do {
         vec2 off = spin * (widest * sqrt((float(i) + 0.5) / float(CASTER_PLACES)));
         vec4 depth = textureGather(SHADOW_DEPTH, vec3(at.xy + off, float(cascade)));
         vec4 way_m = (depth - at.z - dot(slope, off)) * range_m;
@@ -45,7 +48,7 @@ float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, floa
         sum_m += dot(casts, way_m);
         count += dot(casts, vec4(1.0));
         spin = vec2(-spin.y, spin.x);
-    }
+    } while (++i < places);
     return sum_m / max(count, 1.0);
 }
 #endif
@@ -79,13 +82,14 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
 #endif
     float radius = max(1.5, penumbra_m / texel_m) * texel;
     float lit = 0.0;
-    for (uint i = 0u; i < frame.shadow_taps; i++) {
+    uint i = 0u;
+    do {
         float r = sqrt((float(i) + 0.5) / float(frame.shadow_taps)) * radius;
         lit += texture(shadow_map, vec4(at.xy + spin * r, float(cascade),
                                         at.z + dot(slope, spin) * r));
         spin = vec2(-0.7373688 * spin.x - 0.6754903 * spin.y,
                     0.6754903 * spin.x - 0.7373688 * spin.y); /* the golden angle on */
-    }
+    } while (++i < frame.shadow_taps);
     return lit / float(frame.shadow_taps);
 }
 

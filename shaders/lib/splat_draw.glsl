@@ -7,6 +7,7 @@
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
 layout(constant_id = 3) const uint SMALL = 0u; /* 1: an item is a thread's work, 0: a group's */
+layout(constant_id = 4) const uint RUNS = 1u;
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
@@ -16,26 +17,22 @@ layout(set = 0, binding = 4) uniform usamplerBuffer splats;      /* wd_splat */
 layout(set = 0, binding = 6) uniform usamplerBuffer lit;         /* ways that are open, of each */
 
 #include "lib/splat.glsl"
+#include "lib/dealt.glsl"
 
-/* All pixels whose middles lie in a square as large as the disc: small ones look alike, and one loop
- * of few steps costs half of what rows of a disc cost where lanes run in step. */
-void draw_disc(vec2 center, float radius, uint depth_bits, uint id)
+const bool LEAVES = ORTHOGRAPHIC == 0u && SMALL == 0u;
+
+/* What a splat covers: pixels whose middles lie within `reach` of its middle each way and, of a leaf, in
+ * its outline. */
+struct wd_outline {
+    vec2 reach; /* in pixels */
+    vec2 along; /* of a leaf: its length's direction, over half its length; else 0 */
+};
+
+/* A square as large as the disc: small ones look alike, and one loop of few steps costs half of what rows
+ * of a disc cost where lanes run in step. */
+wd_outline disc_outline(float radius)
 {
-    float half_side = radius * 0.886227;
-    ivec2 low = max(ivec2(ceil(center - half_side - 0.5)), ivec2(0));
-    ivec2 high = min(ivec2(floor(center + half_side - 0.5)), ivec2(view.width, view.height) - 1);
-    ivec2 size = high - low + 1;
-    if (size.x <= 0)
-        return;
-    uint at = uint(low.y) * view.width + uint(low.x), column = 0u;
-    for (int left = size.x * size.y; left > 0; left--) {
-        SPLAT(at, depth_bits, id);
-        at++;
-        if (++column == uint(size.x)) {
-            column = 0u;
-            at += view.width - uint(size.x);
-        }
-    }
+    return wd_outline(vec2(radius * 0.886227), vec2(0.0));
 }
 
 /* From this radius on, in pixels, a splat has a leaf's outline. */
@@ -45,23 +42,35 @@ const float LEAF_WIDTH = 0.5;
 
 /* A leaf's outline of the disc's area: pointed at both ends, width falling with the square of the
  * distance from the middle, turned by chance. */
-void draw_leaf(vec2 center, float radius, uint depth_bits, uint id, uint random)
+wd_outline leaf_outline(float radius, uint random)
 {
     float long_px = radius * sqrt(0.375 * 3.14159265 / LEAF_WIDTH);
     vec2 along = vec2(random & 0xffu, random >> 8 & 0xffu) - 127.3;
     along *= inversesqrt(dot(along, along));
-    vec2 reach = long_px * max(abs(along), LEAF_WIDTH * abs(along.yx));
-    along /= long_px;
-    ivec2 low = max(ivec2(ceil(center - reach - 0.5)), ivec2(0));
-    ivec2 high = min(ivec2(floor(center + reach - 0.5)), ivec2(view.width, view.height) - 1);
+    return wd_outline(long_px * max(abs(along), LEAF_WIDTH * abs(along.yx)), along / long_px);
+}
+
+bool outline_holds(wd_outline outline, vec2 from)
+{
+    float u = dot(from, outline.along);
+    float v = outline.along.x * from.y - outline.along.y * from.x;
+    return abs(v) <= LEAF_WIDTH * (1.0 - u * u);
+}
+
+/* Asked at its end, the loop spares software devices a last turn with all lanes off. */
+void draw_outline(vec2 center, wd_outline outline, uint depth_bits, uint id)
+{
+    ivec2 low = max(ivec2(ceil(center - outline.reach - 0.5)), ivec2(0));
+    ivec2 high = min(ivec2(floor(center + outline.reach - 0.5)),
+                     ivec2(view.width, view.height) - 1);
     ivec2 size = high - low + 1;
-    if (size.x <= 0)
+    if (size.x <= 0 || size.y <= 0)
         return;
     vec2 first = vec2(low) + 0.5 - center, from = first;
     uint at = uint(low.y) * view.width + uint(low.x), column = 0u;
-    for (int left = size.x * size.y; left > 0; left--) {
-        float u = dot(from, along), v = along.x * from.y - along.y * from.x;
-        if (abs(v) <= LEAF_WIDTH * (1.0 - u * u))
+    int left = size.x * size.y;
+    do {
+        if (!LEAVES || outline_holds(outline, from))
             SPLAT(at, depth_bits, id);
         at++;
         from.x += 1.0;
@@ -70,54 +79,65 @@ void draw_leaf(vec2 center, float radius, uint depth_bits, uint id, uint random)
             from = vec2(first.x, from.y + 1.0);
             at += view.width - uint(size.x);
         }
-    }
+    } while (--left > 0);
+}
+
+/* The tree's splat number `at`. */
+void draw_splat(wd_splat_tree tree, uint at, uint id)
+{
+    uvec2 turn = splat_turn(tree, at);
+    uint at_disc = splat_index(tree, turn);
+    wd_splat disc = splat_at(splats, at_disc);
+    vec3 clip = splat_clip(tree, splat_place(disc));
+    float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
+    uint random = disc.xy * 0x9e3779b9u;
+    uint way = wd_sun_way_by_lot(tree.eye, random >> 8);
+    float seen = wd_sun_way_lit(texelFetch(lit, int(at_disc)).x, way);
+    float depth = ORTHOGRAPHIC != 0u ? clip.z
+                                     : view.near_m / max(w - tree.nearer_m * seen, view.near_m);
+    if (w < view.near_m || depth <= 0.0)
+        return;
+    float inverse = 1.0 / w;
+    bool wood = turn.x == WD_LEAF_STRATA;
+    vec3 normal = splat_normal(disc);
+    float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
+    float open = mix(mix(WD_DISC_HIDDEN, WD_DISC_SEEN, seen), 1.0, WD_TREE_CLOSE(tree));
+    float share = (wood ? max(facing, 0.0) : 2.0 * abs(facing)) * open;
+    float radius = (wood ? tree.wood_radius : tree.radius) * inverse * sqrt(share);
+    vec2 center = (clip.xy * inverse * 0.5 + 0.5) * vec2(view.width, view.height);
+    wd_outline outline = disc_outline(radius);
+    if (LEAVES && !wood && radius > LEAF_PX)
+        outline = leaf_outline(radius, random >> 16);
+    draw_outline(center, outline, floatBitsToUint(depth), id);
 }
 
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    uint index = group, first = gl_LocalInvocationID.x, step_size = gl_WorkGroupSize.x;
+    uint done = SMALL != 0u ? counts.done_small : counts.done_items;
+    uint end = SMALL != 0u ? counts.small_items : counts.items;
+    uint each = SMALL != 0u ? gl_WorkGroupSize.x : 1u, groups = (end - done + each - 1u) / each;
+    if (group >= groups)
+        return;
+    uint index = done + dealt(group, groups) * each;
+    uint first = gl_LocalInvocationID.x, step_size = gl_WorkGroupSize.x;
     if (SMALL != 0u) {
-        index = group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+        index += first;
         first = 0u;
         step_size = 1u;
     }
-    index += SMALL != 0u ? counts.done_small : counts.done_items;
-    if (index >= (SMALL != 0u ? counts.small_items : counts.items))
+    if (index >= end)
         return;
     if (SMALL != 0u)
         index = view.item_capacity - 1u - index;
     wd_splat_item item = splat_item_at(items, index);
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
     uint count = WD_ITEM_COUNT(item), from = WD_ITEM_FIRST(item);
-    vec2 size = vec2(view.width, view.height);
-    for (uint i = first; i < count; i += step_size) {
-        uvec2 turn = splat_turn(tree, from + i);
-        uint at_disc = splat_index(tree, turn);
-        wd_splat disc = splat_at(splats, at_disc);
-        vec3 clip = splat_clip(tree, splat_place(disc));
-        float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
-        if (w < view.near_m)
-            continue;
-        float inverse = 1.0 / w;
-        uint random = disc.xy * 0x9e3779b9u;
-        uint way = wd_sun_way_by_lot(tree.eye, random >> 8);
-        float seen = wd_sun_way_lit(texelFetch(lit, int(at_disc)).x, way);
-        float depth = ORTHOGRAPHIC != 0u ? clip.z
-                                         : view.near_m / max(w - tree.nearer_m * seen, view.near_m);
-        if (depth <= 0.0)
-            continue;
-        bool wood = turn.x == WD_LEAF_STRATA;
-        vec3 normal = splat_normal(disc);
-        float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
-        float open = mix(mix(WD_DISC_HIDDEN, WD_DISC_SEEN, seen), 1.0, WD_TREE_CLOSE(tree));
-        float share = (wood ? max(facing, 0.0) : 2.0 * abs(facing)) * open;
-        float radius = (wood ? tree.wood_radius : tree.radius) * inverse * sqrt(share);
-        vec2 at = (clip.xy * inverse * 0.5 + 0.5) * size;
-        uint id = index * WD_ITEM_SPLATS + i + 1u;
-        bool leaf = ORTHOGRAPHIC == 0u && SMALL == 0u && !wood && radius > LEAF_PX;
-        draw_disc(at, leaf ? 0.0 : radius, floatBitsToUint(depth), id);
-        if (ORTHOGRAPHIC == 0u && SMALL == 0u)
-            draw_leaf(at, leaf ? radius : -1.0, floatBitsToUint(depth), id, random >> 16);
-    }
+    if (first >= count)
+        return;
+    uint i = first;
+    do {
+        draw_splat(tree, from + i, index * WD_ITEM_SPLATS + i + 1u);
+        i += step_size;
+    } while (i < count);
 }

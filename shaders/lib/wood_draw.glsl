@@ -4,6 +4,7 @@
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
+layout(constant_id = 4) const uint RUNS = 1u;
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
@@ -12,6 +13,7 @@ layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_ite
 layout(set = 0, binding = 4) uniform usamplerBuffer wood;        /* wd_splat_wood */
 
 #include "lib/splat.glsl"
+#include "lib/dealt.glsl"
 
 /* Pixels whose middles lie in the triangle, row by row: from which column on, and up to which, all
  * three shares are positive. Shares and depth are linear on screen. */
@@ -32,33 +34,41 @@ void draw_triangle(vec3 a, vec3 b, vec3 c, uint id)
     vec3 depths = vec3(a.z, b.z, c.z);
     vec3 inverse = -1.0 / mix(share_x, vec3(1e-12), equal(share_x, vec3(0.0)));
     bvec3 rises = greaterThan(share_x, vec3(0.0));
-    float last = high.x - low.x;
-    for (float y = low.y; y <= high.y; y += 1.0) {
+    float last = high.x - low.x, y = low.y;
+    do {
         vec3 edges = row * inverse;
         vec3 begins = mix(vec3(0.0), edges, rises), ends = mix(edges, vec3(last), rises);
         float begin = max(ceil(max(max(begins.x, begins.y), begins.z)), 0.0);
         float end = min(floor(min(min(ends.x, ends.y), ends.z)), last);
         float depth = dot(row + share_x * begin, depths), step_x = dot(share_x, depths);
         uint at = uint(y) * view.width + uint(low.x + begin);
-        for (float x = begin; x <= end; x += 1.0) {
-            SPLAT(at, floatBitsToUint(depth), id);
+        do { /* one turn where there is no pixel: lanes run in step */
+            if (begin <= end)
+                SPLAT(at, floatBitsToUint(depth), id);
             depth += step_x;
             at++;
-        }
+            begin += 1.0;
+        } while (begin <= end);
         row += share_y;
-    }
+        y += 1.0;
+    } while (y <= high.y);
 }
 
 void main()
 {
-    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x + counts.done_wood;
-    if (group >= counts.wood_items)
+    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint groups = counts.wood_items - counts.done_wood;
+    if (group >= groups)
         return;
+    group = counts.done_wood + dealt(group, groups);
     wd_splat_item item = splat_item_at(items, group);
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
     uint count = WD_ITEM_COUNT(item), from = tree.first_wood + WD_ITEM_FIRST(item);
     vec2 size = vec2(view.width, view.height);
-    for (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x) {
+    uint i = gl_LocalInvocationID.x;
+    if (i >= count)
+        return;
+    do {
         wd_splat_wood triangle = splat_wood_at(wood, from + i);
         vec3 at[3];
         float nearest = 1e9;
@@ -71,5 +81,6 @@ void main()
         }
         if (nearest > (ORTHOGRAPHIC != 0u ? 0.0 : view.near_m))
             draw_triangle(at[0], at[1], at[2], WD_ID_WOOD | (group * WD_ITEM_SPLATS + i + 1u));
-    }
+        i += gl_WorkGroupSize.x;
+    } while (i < count);
 }

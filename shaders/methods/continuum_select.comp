@@ -10,6 +10,7 @@
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* as view.orthographic */
 layout(constant_id = 2) const uint AGAIN = 0u; /* 1: the second round, of what was put off */
+layout(constant_id = 3) const uint RUNS = 1u;
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) uniform View { wd_splat_view view; };
@@ -30,6 +31,7 @@ layout(scalar, set = 0, binding = 14) readonly buffer Fades { wd_layer_fade fade
 
 #define TREE_TEXELS
 #define PYRAMID_TEXELS
+#include "lib/dealt.glsl"
 #include "lib/trees.glsl"
 #include "lib/frustum.glsl"
 #include "lib/pyramid.glsl"
@@ -402,11 +404,15 @@ void select_trees(uint index, wd_cluster cluster, uvec2 range, uint mask)
     wd_drawn drawn = drawn_of(cluster);
     uint records = (cluster.count & WD_CLUSTER_PAGED) != 0u ? WD_CLUSTER_TREES : cluster.count;
     uint end = min(range.y, drawn.count);
-    for (uint i = range.x + gl_LocalInvocationID.x; i < end; i += gl_WorkGroupSize.x) {
+    uint i = range.x + gl_LocalInvocationID.x;
+    if (i >= end)
+        return;
+    do {
         uint at = bitfieldReverse(i) >> 26;
         if (at < records && (mask >> (i & 31u) & 1u) != 0u)
             select_tree(cluster.first + at, drawn.share, index * WD_CLUSTER_TREES + i);
-    }
+        i += gl_WorkGroupSize.x;
+    } while (i < end);
 }
 
 /* Those of a word of the masks that are seen past what is drawn by now. */
@@ -423,13 +429,14 @@ void select_put_off(uint word)
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint groups = AGAIN != 0u ? counts.put_off : counts.clusters;
+    if (group >= groups)
+        return;
+    group = dealt(group, groups);
     if (AGAIN != 0u) {
-        if (group < counts.put_off)
-            select_put_off(put_off[view.put_off_words + group]);
+        select_put_off(put_off[view.put_off_words + group]);
         return;
     }
-    if (group >= counts.clusters)
-        return;
     uint index = visible[group];
     select_trees(index, clusters[index], uvec2(0u, WD_CLUSTER_TREES), ~0u);
 }

@@ -41,10 +41,11 @@ void main()
     ivec2 corner = ivec2(place) * WD_TILE;
     ivec2 last = min(corner + WD_TILE, ivec2(frame.width, frame.height)) - 1;
     uint parts = 0u;
-    for (int y = corner.y; y <= last.y; y++) {
-        for (int x = corner.x; x <= last.x; x++)
-            parts |= pixel_parts(ivec2(x, y));
-    }
+    ivec2 at = corner;
+    do {
+        parts |= pixel_parts(at);
+        at = at.x < last.x ? ivec2(at.x + 1, at.y) : ivec2(corner.x, at.y + 1);
+    } while (at.y <= last.y);
     uint list = wd_tile_list_of(parts);
     uint slot = atomicAdd(lists.count[list], 1u);
     tiles[list * push.tile_columns * push.tile_rows + slot] = place.y << 16 | place.x;

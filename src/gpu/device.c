@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/jobs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "gpu/device_features.h"
@@ -62,6 +63,7 @@ static void take_candidate(struct wd_gpu *gpu, const struct wd_candidate *candid
     gpu->timestamp_bits = candidate->timestamp_bits;
     gpu->features = candidate->optional;
     gpu->software = candidate->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    gpu->runs = gpu->software ? wd_jobs_default_threads() : 1;
     /* Software devices stamp when a command is queued, not when it has run. */
     if (!gpu->software && gpu->timestamp_bits && gpu->properties.limits.timestampPeriod > 0)
         gpu->features |= WD_GPU_FEATURE_TIMESTAMPS;

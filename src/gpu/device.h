@@ -59,6 +59,7 @@ struct wd_gpu {
     VkPhysicalDeviceMemoryProperties memory;
     uint32_t features; /* wd_gpu_feature bits */
     bool software;     /* a CPU implementation (lavapipe) */
+    uint32_t runs;     /* of workgroups that it deals to its threads at once; 1: none */
     bool owned;        /* instance and device are ours to destroy */
     bool lost;         /* VK_ERROR_DEVICE_LOST was seen; every later call fails fast */
     uint64_t bytes_allocated;  /* device memory held now through memory.h */

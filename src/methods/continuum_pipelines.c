@@ -59,11 +59,11 @@ static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         bool once = wide && pass == WD_PASS_CAMERA;
         /* llvmpipe's subgroups are 8 wide; a wider group only idles on small trees */
         const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW, ids,
-                                      shape == WD_SHAPE_SMALL};
+                                      shape == WD_SHAPE_SMALL, gpu->runs};
         const struct wd_compute_params params = {
             .shader = shaders[shape][once],
             .bindings = {7, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS}},
-            .constants = {4, constants},
+            .constants = {5, constants},
         };
         bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
         if (needed && !wd_pipeline_init_compute(&p->draw[shape][pass][ids], gpu, &params))
@@ -133,13 +133,14 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     struct wd_pipeline *const pipelines[] = {&p->choose[WD_PASS_CAMERA], &p->choose[WD_PASS_SHADOW],
                                              &p->choose_again};
     for (uint32_t i = 0; i < 3; i++) {
-        const uint32_t constants[] = {gpu->software ? 8 : 64, i == WD_PASS_SHADOW, i == 2};
+        const uint32_t constants[] = {gpu->software ? 8 : 64, i == WD_PASS_SHADOW, i == 2,
+                                      gpu->runs};
         const struct wd_compute_params choose = {
             .shader = SPIRV(select_comp),
             .bindings = {15, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, TEXELS, BUFFER, TEXELS,
                               STORED_TEXELS, BUFFER, BUFFER, TEXELS,
                               VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER, BUFFER}},
-            .constants = {3, constants}};
+            .constants = {4, constants}};
         if (!wd_pipeline_init_compute(pipelines[i], gpu, &choose))
             return false;
     }

@@ -48,8 +48,8 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     params.bindings.types[15] = BUFFER;
     for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
         uint32_t parts = wd_tile_list_parts(list), wet = parts & WD_PART_WATER;
-        const uint32_t constants[] = {parts & ~wet, list, wet != 0};
-        params.constants = (struct wd_spec_constants){3, constants};
+        const uint32_t constants[] = {parts & ~wet, list, wet != 0, gpu->runs};
+        params.constants = (struct wd_spec_constants){4, constants};
         params.shader = wet ? (struct wd_spirv)SPIRV(light_water_comp)
                             : (struct wd_spirv)SPIRV(light_comp);
         params.bindings.types[0] = wet ? BUFFER : UNIFORM;
@@ -57,8 +57,8 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     }
     params.shader = (struct wd_spirv)SPIRV(light_water_comp);
     params.bindings.types[0] = BUFFER;
-    const uint32_t water[] = {WD_PART_ALL, WD_TILE_LISTS - 1, 1};
-    params.constants = (struct wd_spec_constants){3, water};
+    const uint32_t water[] = {WD_PART_ALL, WD_TILE_LISTS - 1, 1, gpu->runs};
+    params.constants = (struct wd_spec_constants){4, water};
     return ok && wd_pipeline_init_compute(&pass->water, gpu, &params);
 }
 
