@@ -51,6 +51,12 @@ vec3 nearest_texel(vec3 uv, float lod)
     return vec3((floor(uv.xy * size) + 0.5) / size, uv.z);
 }
 
+/* Opacities are kept as they are to twice the pictures' size: edges are sharpened only beyond. */
+float view_opacity(float alpha)
+{
+    return card_opacity(alpha, in_foot.w + 2.0);
+}
+
 void add_view(inout view_sum sum, uint view, float weight, wd_view_point p, float layer)
 {
     float lod = floor(max(in_foot.w, 0.0) + 0.5);
@@ -58,7 +64,7 @@ void add_view(inout view_sum sum, uint view, float weight, wd_view_point p, floa
     vec3 uv = vec3(at.x, at.y, layer), own = nearest_texel(uv, lod);
     vec4 albedo = textureLod(view_albedo, own, lod), normal = textureLod(view_normal, own, lod);
     uv = own;
-    float share = in_picture(p) ? weight * card_opacity(albedo.a, in_foot.w) : 0.0;
+    float share = in_picture(p) ? weight * view_opacity(albedo.a) : 0.0;
     sum.color += share * albedo.rgb;
     sum.normal += share * (normal.xyz * 2.0 - 1.0);
     sum.openness += share * normal.a;
