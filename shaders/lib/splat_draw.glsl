@@ -15,9 +15,11 @@ layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tre
 layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
 layout(set = 0, binding = 4) uniform usamplerBuffer splats;      /* wd_splat */
 layout(set = 0, binding = 6) uniform usamplerBuffer lit;         /* ways that are open, of each */
+layout(set = 0, binding = 7, rg32ui) uniform readonly uimageBuffer drawn; /* the visibility buffer */
 
 #include "lib/splat.glsl"
 #include "lib/dealt.glsl"
+#include "lib/drawn.glsl"
 
 const bool LEAVES = ORTHOGRAPHIC == 0u && SMALL == 0u;
 
@@ -70,7 +72,8 @@ void draw_outline(vec2 center, wd_outline outline, uint depth_bits, uint id)
     uint at = uint(low.y) * view.width + uint(low.x), column = 0u;
     int left = size.x * size.y;
     do {
-        if (!LEAVES || outline_holds(outline, from))
+        bool holds = !LEAVES || outline_holds(outline, from);
+        if (holds && may_show(at, depth_bits))
             SPLAT(at, depth_bits, id);
         at++;
         from.x += 1.0;

@@ -11,9 +11,11 @@ layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts co
 layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
 layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
 layout(set = 0, binding = 4) uniform usamplerBuffer wood;        /* wd_splat_wood */
+layout(set = 0, binding = 7, rg32ui) uniform readonly uimageBuffer drawn; /* the visibility buffer */
 
 #include "lib/splat.glsl"
 #include "lib/dealt.glsl"
+#include "lib/drawn.glsl"
 
 /* Pixels whose middles lie in the triangle, row by row: from which column on, and up to which, all
  * three shares are positive. Shares and depth are linear on screen. */
@@ -43,7 +45,7 @@ void draw_triangle(vec3 a, vec3 b, vec3 c, uint id)
         float depth = dot(row + share_x * begin, depths), step_x = dot(share_x, depths);
         uint at = uint(y) * view.width + uint(low.x + begin);
         do { /* one turn where there is no pixel: lanes run in step */
-            if (begin <= end)
+            if (begin <= end && may_show(at, floatBitsToUint(depth)))
                 SPLAT(at, floatBitsToUint(depth), id);
             depth += step_x;
             at++;

@@ -301,7 +301,8 @@ static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
                                               WD_BIND_BUFFER(items[kind]),
                                               WD_BIND_BUFFER(shapes[kind]),
                                               WD_BIND_BUFFER(&c->pixels),
-                                              WD_BIND_BUFFER(&c->forest.lit)};
+                                              WD_BIND_BUFFER(&c->forest.lit),
+                                              WD_BIND_BUFFER(&c->pixels)};
         if (!pipeline->pipeline)
             continue;
         wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);

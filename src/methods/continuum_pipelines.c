@@ -62,7 +62,8 @@ static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
                                       shape == WD_SHAPE_SMALL, gpu->runs};
         const struct wd_compute_params params = {
             .shader = shaders[shape][once],
-            .bindings = {7, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS}},
+            .bindings = {8, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS,
+                             STORED_TEXELS}},
             .constants = {5, constants},
         };
         bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
