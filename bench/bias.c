@@ -39,6 +39,9 @@ static const int stretches[BIAS_HEIGHTS] = {1, 2, 2, 4};
 static const int reference_zoom[BIAS_HEIGHTS] = {4, 8, 8, 8};
 static const int reference_shifts[BIAS_HEIGHTS] = {2, 1, 1, 1};
 static const int shifts[BIAS_HEIGHTS] = {1, 2, 4, 4}; /* squared: pictures a form */
+/* What small trees leave to chance is drawn anew in each sample of a picture, while the first samples of
+ * any two pictures draw the same lots: cover is the mean of so many. */
+static const uint32_t cover_samples[BIAS_HEIGHTS] = {1, 1, 16, 64};
 const double bias_elevation_deg[BIAS_VIEWS] = {4, 40};
 
 static bool write_scene(struct bias_stand *stand, const char *species)
@@ -225,6 +228,35 @@ static double picture_error(const struct bias_shown *form, const struct bias_sho
     return sqrt(sum / fmax(pixels, 1)) / fmax(reference->radiance, 1e-12);
 }
 
+/* Pixels that trees cover of a picture: the mean over its samples. */
+static bool show_cover(double *covered, struct wd_renderer *renderer,
+                       const struct wd_render_params *params)
+{
+    struct wd_picture picture;
+    if (wd_renderer_render(renderer, params, &picture) != WD_OK)
+        return false;
+    for (size_t i = 0; i < (size_t)WD_RANKS * picture.width * picture.height; i++)
+        *covered += (double)picture.rank_share[i] * (picture.rank_tree[i] > 0);
+    wd_picture_finish(&picture);
+    return true;
+}
+
+/* Mean of all stretches, each of many samples. */
+static bool measure_cover(double *covered, struct wd_renderer *renderer,
+                          const struct bias_stand *stand, int height, int view)
+{
+    *covered = 0;
+    for (int i = 0; i < stretches[height]; i++) {
+        struct wd_render_params params = view_of(stand, height, view, 1, i, 0, 0);
+        params.samples = cover_samples[height];
+        params.layers = WD_LAYER_CRYPTOMATTE;
+        if (!show_cover(covered, renderer, &params))
+            return false;
+    }
+    *covered /= stretches[height];
+    return true;
+}
+
 bool bias_measure(struct bias *bias, struct wd_renderer *renderer, const struct bias_stand *stand,
                     int height, int view, const struct bias_shown *reference)
 {
@@ -244,7 +276,10 @@ bool bias_measure(struct bias *bias, struct wd_renderer *renderer, const struct 
         free(shown.luminance);
     }
     radiance /= covered > 0 ? covered : 1;
-    bias->coverage_pct = 100 * (covered / count / reference->covered - 1);
+    covered /= count;
+    if (cover_samples[height] > 1 && !measure_cover(&covered, renderer, stand, height, view))
+        return false;
+    bias->coverage_pct = 100 * (covered / reference->covered - 1);
     bias->radiance_pct = 100 * (radiance / reference->radiance - 1);
     bias->error_pct = 100 * error;
     return true;
