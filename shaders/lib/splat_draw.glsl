@@ -20,6 +20,7 @@ layout(set = 0, binding = 7, rg32ui) uniform readonly uimageBuffer drawn; /* the
 #include "lib/splat.glsl"
 #include "lib/dealt.glsl"
 #include "lib/drawn.glsl"
+#include "lib/slice.glsl"
 
 const bool LEAVES = ORTHOGRAPHIC == 0u && SMALL == 0u;
 
@@ -98,7 +99,7 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
     float seen = wd_sun_way_lit(texelFetch(lit, int(at_disc)).x, way);
     float depth = ORTHOGRAPHIC != 0u ? clip.z
                                      : view.near_m / max(w - tree.nearer_m * seen, view.near_m);
-    if (w < view.near_m || depth <= 0.0)
+    if (w < view.near_m || depth <= 0.0 || (ORTHOGRAPHIC != 0u && !may_shade(clip.xy, 0.0)))
         return;
     float inverse = 1.0 / w;
     bool wood = turn.x == WD_LEAF_STRATA;

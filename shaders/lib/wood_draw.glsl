@@ -16,6 +16,7 @@ layout(set = 0, binding = 7, rg32ui) uniform readonly uimageBuffer drawn; /* the
 #include "lib/splat.glsl"
 #include "lib/dealt.glsl"
 #include "lib/drawn.glsl"
+#include "lib/slice.glsl"
 
 /* Pixels whose middles lie in the triangle, row by row: from which column on, and up to which, all
  * three shares are positive. Shares and depth are linear on screen. */
@@ -73,6 +74,7 @@ void main()
     do {
         wd_splat_wood triangle = splat_wood_at(wood, from + i);
         vec3 at[3];
+        vec2 low = vec2(1e9), high = vec2(-1e9);
         float nearest = 1e9;
         for (uint k = 0u; k < 3u; k++) {
             vec3 clip = splat_clip(tree, splat_place(triangle.corners[k]));
@@ -80,8 +82,11 @@ void main()
             float depth = ORTHOGRAPHIC != 0u ? clip.z : view.near_m / w;
             at[k] = vec3((clip.xy / w * 0.5 + 0.5) * size, depth);
             nearest = min(nearest, clip.z);
+            low = min(low, clip.xy);
+            high = max(high, clip.xy);
         }
-        if (nearest > (ORTHOGRAPHIC != 0u ? 0.0 : view.near_m))
+        bool shades = ORTHOGRAPHIC == 0u || may_shade(0.5 * (low + high), length(high - low));
+        if (shades && nearest > (ORTHOGRAPHIC != 0u ? 0.0 : view.near_m))
             draw_triangle(at[0], at[1], at[2], WD_ID_WOOD | (group * WD_ITEM_SPLATS + i + 1u));
         i += gl_WorkGroupSize.x;
     } while (i < count);

@@ -38,6 +38,7 @@ layout(scalar, set = 0, binding = 14) readonly buffer Fades { wd_layer_fade fade
 #include "lib/occlusion.glsl"
 #include "lib/put_off.glsl"
 #include "lib/tree.glsl"
+#include "lib/slice.glsl"
 
 uint model_word(uint model, uint word)
 {
@@ -68,14 +69,24 @@ void store_tree(uint slot, wd_splat_tree tree)
                uvec4(tree.lower, tree.sun, tree.eye, floatBitsToUint(tree.nearer_m)));
 }
 
+/* Whether a cascade's box shades nothing that is seen: its middle's way from the slice, less its reach. */
+bool box_shades_nothing(vec3 low, vec3 high)
+{
+    vec3 half_m = 0.5 * (high - low);
+    vec2 at = (view.clip_from_rel * vec4(low + half_m, 1.0)).xy;
+    float scale = 2.0 * view.pixels / float(view.width); /* clip units a metre */
+    return ORTHOGRAPHIC != 0u && !may_shade(at, length(half_m) * scale);
+}
+
 /* Reach of crowns that lean and sway, as octree's selection has it. */
 bool tree_is_outside(wd_tree tree, vec3 foot, float stretch)
 {
     float height_m = WD_TREE_HEIGHT_M(tree);
     float reach = WD_TREE_CROWN_M(tree) * 0.75 * stretch + 0.1 * height_m + 0.5;
     float below = stretch > 1.0 ? 1.0 + 0.5 * reach : 1.0;
-    return box_is_outside(foot - vec3(reach, reach, below),
-                          foot + vec3(reach, reach, 0.1 * height_m + height_m + below - 1.0));
+    vec3 low = foot - vec3(reach, reach, below);
+    vec3 high = foot + vec3(reach, reach, 0.1 * height_m + height_m + below - 1.0);
+    return box_is_outside(low, high) || box_shades_nothing(low, high);
 }
 
 /* Pixels that a crown covers: half a spheroid's shadow, as crowns taper. */

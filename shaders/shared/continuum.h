@@ -159,6 +159,7 @@ WD_FUNC float wd_near_splats(float distance_m, float near_m)
 #define WD_PYRAMID_LEVELS 7
 
 #define WD_SPLAT_PLANES 12
+#define WD_SPLAT_SIDES 8
 
 /* One view of a frame. */
 struct wd_splat_view {
@@ -192,6 +193,8 @@ struct wd_splat_view {
     uint32_t put_off_words;      /* masks of 32 trees each that are put off, two a cluster; then their
                                     list */
     WD_MAT4(history_from_rel);   /* clip coordinates then of what is at rel now */
+    WD_VEC4(slice[WD_SPLAT_SIDES]); /* of a cascade: a, b, c of sides in clip coordinates, within which lies
+                                       what may shade anything that the camera sees; 0: none */
     uint32_t pyramid_first[WD_PYRAMID_LEVELS];
 };
 

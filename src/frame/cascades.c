@@ -189,6 +189,53 @@ static void add_caster_plane(struct wd_view *cascade, const float plane[4],
     own[3] += fmaxf(away, 0.0f) * shadow_m + CASTER_MARGIN_M;
 }
 
+/* Corner k of the slice [near, far] of the view, in the cascade's clip coordinates. */
+static void slice_corner(const struct wd_cascade_box *box, const struct wd_view *view,
+                         const double ends[2], uint32_t k, double at[2])
+{
+    double half_height = tan(view->camera.fov_rad * 0.5), way_m = ends[k >> 2];
+    double half_width = half_height * view->width / view->height;
+    double right[3], forward[3], up[3];
+    wd_camera_axes(&view->camera, right, forward, up);
+    const double *axes[2] = {box->right, box->up};
+    for (int axis = 0; axis < 2; axis++) {
+        double beside = k & 1 ? half_width : -half_width, above = k & 2 ? half_height : -half_height;
+        double along = dot(forward, axes[axis]) + beside * dot(right, axes[axis]) +
+                       above * dot(up, axes[axis]);
+        at[axis] = (dot(view->eye_m, axes[axis]) + way_m * along - box->center[axis]) / box->radius;
+    }
+}
+
+/* The line from corner i to corner j where all others lie to its left, moved out by `margin`. */
+static bool slice_side(float side[3], double corners[8][2], uint32_t i, uint32_t j, double margin)
+{
+    double x = corners[j][0] - corners[i][0], y = corners[j][1] - corners[i][1], length = hypot(x, y);
+    const double normal[2] = {-y / length, x / length};
+    if (length < 1e-9)
+        return false;
+    for (uint32_t k = 0; k < 8; k++) {
+        double away[2] = {corners[k][0] - corners[i][0], corners[k][1] - corners[i][1]};
+        if (normal[0] * away[0] + normal[1] * away[1] < -1e-9)
+            return false;
+    }
+    side[0] = (float)normal[0];
+    side[1] = (float)normal[1];
+    side[2] = (float)(margin - normal[0] * corners[i][0] - normal[1] * corners[i][1]);
+    return true;
+}
+
+/* Sides of the slice as the sun sees it: its corners' convex hull. */
+static void find_slice(struct wd_cascade_box *box, const struct wd_view *view, double near, double far)
+{
+    const double ends[2] = {near, far};
+    double corners[8][2];
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < 8; k++)
+        slice_corner(box, view, ends, k, corners[k]);
+    for (uint32_t k = 0; k < 64 && count < WD_SLICE_SIDES; k++)
+        count += slice_side(box->slice[count], corners, k / 8, k % 8, CASTER_MARGIN_M / box->radius);
+}
+
 /* Trees whose shadows miss what the camera sees of the slice [near, far] are left out. A shadow is
  * taken to be no longer than on ground that falls away from the sun half as steeply as the sun
  * stands. */
@@ -225,6 +272,8 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
         cascade_view(&cascades[i], params->view, eye_m);
         if (!box->calm)
             keep_to_slice(&cascades[i], params, near, far);
+        if (!box->calm)
+            find_slice(&cascades[i].box, params->view, near, far);
         memcpy(uniforms->shadow_from_rel[i], cascades[i].clip_from_rel,
                sizeof uniforms->shadow_from_rel[i]);
         for (int column = 0; column < 4; column++) {

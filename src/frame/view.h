@@ -6,7 +6,7 @@
 #include "shared/frame.h"
 #include "weald/forest.h"
 
-enum { WD_FRUSTUM_PLANES = 12, WD_FRUSTUM_SIDES = 4 };
+enum { WD_FRUSTUM_PLANES = 12, WD_FRUSTUM_SIDES = 4, WD_SLICE_SIDES = 8 };
 
 /* Half-spaces in rel: a point is inside where dot(plane.xyz, p) + plane.w >= 0. A camera's begin with
  * its four sides. */
@@ -38,6 +38,9 @@ struct wd_view {
         double center[3];       /* along them, metres; the last: where depth begins */
         double radius, depth;   /* along right and up; along toward */
         bool calm;              /* see wd_cascades_params.calm_m */
+        float slice[WD_SLICE_SIDES][3]; /* a x + b y + c >= 0 in clip coordinates, |(a, b)| = 1, where a
+                                           thing may shade what the camera sees of the slice; 0: where
+                                           there are fewer sides, or all of the map is wanted */
     } box;
 };
 

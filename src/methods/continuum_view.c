@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+_Static_assert((int)WD_SPLAT_SIDES == (int)WD_SLICE_SIDES, "sides are copied whole");
 _Static_assert((int)WD_SPLAT_PLANES == (int)WD_FRUSTUM_PLANES, "planes are copied whole");
 
 uint32_t wd_pyramid_offsets(uint32_t first[WD_PYRAMID_LEVELS], uint32_t width, uint32_t height)
@@ -114,6 +115,8 @@ static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw 
     values->width /= values->texels;
     values->height /= values->texels;
     values->pixels = wd_texels_per_m(view) / (float)values->texels;
+    for (int side = 0; side < WD_SPLAT_SIDES; side++)
+        memcpy(values->slice[side], view->box.slice[side], sizeof view->box.slice[side]);
 }
 
 static void set_camera(struct wd_splat_view *values, const struct wd_continuum_view_params *params)
