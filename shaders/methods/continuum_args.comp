@@ -30,5 +30,6 @@ void main()
     groups.select = groups_of(AGAIN != 0u ? counts.put_off : counts.clusters);
     groups.splat = groups_of(counts.items - counts.done_items);
     groups.small = groups_of((counts.small_items - counts.done_small + THREADS - 1u) / THREADS);
+    groups.sort = groups_of((counts.small_items - counts.done_small + WD_SORT_ITEMS - 1u) / WD_SORT_ITEMS);
     groups.wood = groups_of(counts.wood_items - counts.done_wood);
 }

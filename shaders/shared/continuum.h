@@ -31,6 +31,10 @@
 /* Trees of at most so many splats are the work of one thread, so that their data are read once and
  * not by every thread of a group. Their items are stored from the end of the list. */
 #define WD_SMALL_SPLATS 96u
+/* So many of these are sorted by a workgroup, and so many bits hold their splats; trees' indices have
+ * the rest of 32. */
+#define WD_SORT_ITEMS 256u
+#define WD_SORT_BITS 7u
 
 /* A splat: its place in the model's box (unorm 16) and its face (octahedral, snorm 8): of leaves the flat
  * upper side, of wood its normal. */
@@ -205,7 +209,7 @@ struct wd_splat_counts {
 };
 /* Indirect dispatches that follow from them. */
 struct wd_splat_groups {
-    uint32_t select[3], splat[3], small[3], wood[3];
+    uint32_t select[3], splat[3], small[3], wood[3], sort[3];
 };
 
 /* A visible tree, ready to be splatted. Rows give clip coordinates of a place in the model's box,

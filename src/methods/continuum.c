@@ -232,6 +232,16 @@ static void record_cull(struct continuum *c, const struct wd_tree_draw *draw)
     record_args(c, cmd, FIRST_ROUND);
 }
 
+static void record_sort(struct continuum *c, struct wd_cmd *cmd)
+{
+    wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->items, WD_USE_COMPUTE_WRITE);
+    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->counts),
+                                          WD_BIND_BUFFER(&c->items)};
+    wd_cmd_bind(cmd, &c->pipelines.sort, bindings);
+    wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, sort));
+}
+
 static void record_select(struct continuum *c, const struct wd_tree_draw *draw, enum round round)
 {
     struct wd_cmd *cmd = draw->cmd;
@@ -263,6 +273,7 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw, 
     wd_cmd_bind(cmd, pipeline, bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
     record_args(c, cmd, FIRST_ROUND);
+    record_sort(c, cmd);
 }
 
 /* Words of the visibility buffer that a pixel takes: id and depth, or depth alone. */

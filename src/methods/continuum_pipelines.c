@@ -12,6 +12,9 @@ static const uint32_t pyramid_comp[] =
 static const uint32_t select_comp[] =
 #include "continuum_select.comp.inc"
     ;
+static const uint32_t sort_comp[] =
+#include "continuum_sort.comp.inc"
+    ;
 static const uint32_t splat_comp[] =
 #include "continuum_splat.comp.inc"
     ;
@@ -161,13 +164,22 @@ static bool init_args(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     return true;
 }
 
+static bool init_sort(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
+    const uint32_t threads = gpu->software ? 8 : 64;
+    const struct wd_compute_params sort = {.shader = SPIRV(sort_comp),
+                                           .bindings = {3, {UNIFORM, BUFFER, BUFFER}},
+                                           .constants = {1, &threads}};
+    return wd_pipeline_init_compute(&p->sort, gpu, &sort);
+}
+
 bool wd_continuum_pipelines_init(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     const struct wd_compute_params cull = {
         .shader = SPIRV(cull_comp),
         .bindings = {8, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, TEXELS, BUFFER, BUFFER}}};
     return wd_pipeline_init_compute(&p->cull, gpu, &cull) && init_args(p, gpu) &&
-           init_choose(p, gpu) && init_draws(p, gpu) && init_resolve(p, gpu) &&
+           init_choose(p, gpu) && init_sort(p, gpu) && init_draws(p, gpu) && init_resolve(p, gpu) &&
            init_pyramid(p, gpu);
 }
 
@@ -175,6 +187,7 @@ void wd_continuum_pipelines_finish(struct wd_continuum_pipelines *p, struct wd_g
 {
     struct wd_pipeline *pipelines[] = {&p->cull,       &p->args[0],    &p->args[1],
                                        &p->choose[0],  &p->choose[1],  &p->choose_again,
+                                       &p->sort,
                                        &p->depth[0],   &p->depth[1],   &p->resolve[0],
                                        &p->resolve[1], &p->resolve_shadow,
                                        &p->pyramid_of_trees};

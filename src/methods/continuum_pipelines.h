@@ -11,6 +11,7 @@ enum { WD_SHAPE_SPLATS, WD_SHAPE_SMALL, WD_SHAPE_WOOD, WD_SHAPES };
 struct wd_continuum_pipelines {
     struct wd_pipeline cull, args[2]; /* [1]: to begin the second round */
     struct wd_pipeline choose[2], choose_again; /* [WD_PASS_*] */
+    struct wd_pipeline sort;
     struct wd_pipeline draw[WD_SHAPES][2][2]; /* [][WD_PASS_*][1: ids of the second pass] */
     struct wd_pipeline depth[2], resolve[2], resolve_shadow; /* [1: wood] */
     struct wd_pipeline pyramid[WD_PYRAMID_LEVELS - 1], pyramid_of_trees; /* its finest levels */
