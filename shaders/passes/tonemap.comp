@@ -5,6 +5,7 @@
 #include "shared/hash.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint BLOOM = 0u; /* 1: the lens spreads light */
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D radiance_image;
@@ -29,7 +30,7 @@ void main()
     vec4 sum = imageLoad(radiance_image, at);
     vec3 color = sum.rgb / max(sum.a, 1.0);
     if (frame.view_mode == WD_MODE_LIT) {
-        if (push.bloom > 0.0)
+        if (BLOOM != 0u)
             color = mix(color, spread_light(at), push.bloom);
         float exposure = frame.exposure > 0.0 ? frame.exposure : meter.exposure;
         color = wd_tone_map(color * (exposure * push.exposure_scale));

@@ -40,7 +40,7 @@ static bool init_meter(struct wd_post_pass *pass, struct wd_gpu *gpu)
            wd_buffer_init(&pass->histogram, gpu, &histogram);
 }
 
-static bool init_tonemap(struct wd_post_pass *pass, struct wd_gpu *gpu)
+static bool init_tonemap(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t bloom)
 {
     const struct wd_compute_params params = {
         .shader = SPIRV(tonemap_comp),
@@ -49,15 +49,16 @@ static bool init_tonemap(struct wd_post_pass *pass, struct wd_gpu *gpu)
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .push_size = sizeof(struct wd_post_push),
+        .constants = {1, &bloom},
     };
-    return wd_pipeline_init_compute(&pass->tonemap, gpu, &params);
+    return wd_pipeline_init_compute(pipeline, gpu, &params);
 }
 
 bool wd_post_pass_init(struct wd_post_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_post_pass){0};
-    bool ok = init_meter(pass, gpu) && init_tonemap(pass, gpu) &&
-              wd_bloom_pass_init(&pass->bloom, gpu);
+    bool ok = init_meter(pass, gpu) && init_tonemap(&pass->tonemap[0], gpu, 0) &&
+              init_tonemap(&pass->tonemap[1], gpu, 1) && wd_bloom_pass_init(&pass->bloom, gpu);
     if (!ok)
         wd_post_pass_finish(pass, gpu);
     return ok;
@@ -67,7 +68,8 @@ void wd_post_pass_finish(struct wd_post_pass *pass, struct wd_gpu *gpu)
 {
     wd_pipeline_finish(&pass->meter, gpu);
     wd_pipeline_finish(&pass->exposure, gpu);
-    wd_pipeline_finish(&pass->tonemap, gpu);
+    wd_pipeline_finish(&pass->tonemap[0], gpu);
+    wd_pipeline_finish(&pass->tonemap[1], gpu);
     wd_bloom_pass_finish(&pass->bloom, gpu);
     wd_buffer_finish(&pass->histogram, gpu);
     *pass = (struct wd_post_pass){0};
@@ -106,7 +108,8 @@ void wd_post_pass_record(struct wd_post_pass *pass, struct wd_cmd *cmd,
         /* without bloom nobody reads the slot; it is filled all the same */
         WD_BIND_BUFFER(params->bloom > 0.0f ? &pass->bloom.pyramid : &pass->histogram)};
     const struct wd_post_push push = {exp2f(params->exposure_ev), params->bloom};
-    wd_cmd_bind(cmd, &pass->tonemap, bindings);
-    wd_cmd_push(cmd, &pass->tonemap, &push, sizeof push);
+    struct wd_pipeline *tonemap = &pass->tonemap[params->bloom > 0.0f];
+    wd_cmd_bind(cmd, tonemap, bindings);
+    wd_cmd_push(cmd, tonemap, &push, sizeof push);
     wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);
 }

@@ -5,7 +5,7 @@
 #include "frame/passes/bloom.h"
 
 struct wd_post_pass {
-    struct wd_pipeline meter, exposure, tonemap;
+    struct wd_pipeline meter, exposure, tonemap[2]; /* [1: with bloom] */
     struct wd_bloom_pass bloom;
     struct wd_buffer histogram; /* struct wd_meter */
 };
