@@ -312,9 +312,8 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint casca
     float known = mesh ? 0.0 : WD_DISC_CLOSE(tall_px) * (1.0 - smoothstep(0.04, 0.12, texel_m));
     known = cascade == 0u ? known : 0.0;
     float through = mesh ? place.own : pixel.lit;
-    float ahead_m = mesh ? place.ahead_m : min(place.ahead_m, 0.5 + 1.5 * texel_m);
     place.own = pixel.lit <= 0.0 ? 0.0 : mix(through, 1.0, known);
-    place.ahead_m = mix(ahead_m, pixel_m, known);
+    place.ahead_m = mix(place.ahead_m, pixel_m, known);
 }
 
 /* A disc of a leaf is lit as the leaf that it is. */

@@ -36,6 +36,11 @@ wd_splat_tree splat_tree_at(usamplerBuffer table, uint index)
                          light.x, light.y, light.z, uintBitsToFloat(light.w));
 }
 
+float splat_tree_nearer_m(usamplerBuffer table, uint index)
+{
+    return uintBitsToFloat(texelFetch(table, int(index) * WD_SPLAT_TREE_TEXELS + 7).w);
+}
+
 /* Stratum (x) of the tree's splat number `at`, and which of that stratum's window it is (y). */
 uvec2 splat_turn(wd_splat_tree tree, uint at)
 {

@@ -112,7 +112,10 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
     wd_outline outline = disc_outline(radius);
     if (LEAVES && !wood && radius > LEAF_PX)
         outline = leaf_outline(radius, random >> 16);
-    draw_outline(center, outline, floatBitsToUint(depth), id);
+    uint depth_bits = floatBitsToUint(depth);
+    if (ORTHOGRAPHIC == 0u) /* continuum_depth.frag asks that of it */
+        depth_bits = depth_bits & ~1u | uint(seen);
+    draw_outline(center, outline, depth_bits, id);
 }
 
 void main()

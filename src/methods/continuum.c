@@ -406,7 +406,9 @@ static void draw_camera(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_IMAGE(&draw->forest->looks,
                                                         draw->forest->look_sampler),
                                           WD_BIND_BUFFER(&c->forest.lit)};
-    const struct wd_binding depth_bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels)};
+    const struct wd_binding depth_bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
+                                                WD_BIND_BUFFER(&c->trees),
+                                                WD_BIND_BUFFER(&c->items)};
     for (uint32_t wood = 2; wood-- > 0;) {
         wd_cmd_bind(draw->cmd, &c->pipelines.depth[wood], depth_bindings);
         wd_cmd_draw(draw->cmd, 3, 1);

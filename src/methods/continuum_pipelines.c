@@ -90,7 +90,7 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     };
     struct wd_graphics_params depth = params;
     depth.fragment = (struct wd_spirv)SPIRV(depth_frag);
-    depth.bindings.count = 2;
+    depth.bindings.count = 4;
     depth.color_writes = WD_COLORS_KEPT;
     params.depth_compare = VK_COMPARE_OP_LESS; /* the triangle lies behind all that has depth */
     params.depth_read_only = true;
