@@ -307,13 +307,15 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint casca
 {
     float texel_m = frame.cascade_texel_m[min(cascade, 3u)];
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
-    float tall_px = (crown.center_rel.z + crown.radii_m.z - crown.foot_z) / pixel_m;
+    float tall_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
+    float discs = 0.6 * crown.radii_m.x * tall_m / (pixel_m * pixel_m); /* about as many */
     bool mesh = pixel.lit >= 1.0;
-    float known = mesh ? 0.0 : WD_DISC_CLOSE(tall_px) * (1.0 - smoothstep(0.04, 0.12, texel_m));
+    float known = mesh ? 0.0 : wd_disc_close(discs) * (1.0 - smoothstep(0.04, 0.12, texel_m));
     known = cascade == 0u ? known : 0.0;
     float through = mesh ? place.own : pixel.lit;
     place.own = pixel.lit <= 0.0 ? 0.0 : mix(through, 1.0, known);
-    place.ahead_m = mix(place.ahead_m, pixel_m, known);
+    float ahead_m = place.ahead_m + (mesh ? 0.0 : 0.5 + texel_m); /* its own tree is in `lit` */
+    place.ahead_m = mix(ahead_m, pixel_m, known);
 }
 
 /* A disc of a leaf is lit as the leaf that it is. */

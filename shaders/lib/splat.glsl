@@ -77,6 +77,14 @@ vec3 splat_normal(wd_splat splat)
     return octahedral(unpackSnorm4x8(splat.z_normal).zw);
 }
 
+/* The way along a leaf in the model's box, or the one back; not of unit length. */
+vec3 splat_along(wd_splat splat)
+{
+    vec2 e = vec2(splat.z_normal & 15u, (splat.xy & 3u) | (splat.xy >> 14 & 12u)) * 0.125 - 0.9375;
+    vec2 xy = 0.5 * vec2(e.x + e.y, e.x - e.y);
+    return vec3(xy, 1.0 - abs(xy.x) - abs(xy.y));
+}
+
 /* Clip coordinates x, y and w (z of a cascade) of a place in the model's box. */
 vec3 splat_clip(wd_splat_tree tree, vec3 p)
 {

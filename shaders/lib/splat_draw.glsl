@@ -44,12 +44,11 @@ const float LEAF_PX = 1.7;
 const float LEAF_WIDTH = 0.5;
 
 /* A leaf's outline of the disc's area: pointed at both ends, width falling with the square of the
- * distance from the middle, turned by chance. */
-wd_outline leaf_outline(float radius, uint random)
+ * distance from the middle. */
+wd_outline leaf_outline(float radius, vec2 along)
 {
     float long_px = radius * sqrt(0.375 * 3.14159265 / LEAF_WIDTH);
-    vec2 along = vec2(random & 0xffu, random >> 8 & 0xffu) - 127.3;
-    along *= inversesqrt(dot(along, along));
+    along *= inversesqrt(max(dot(along, along), 1e-12));
     return wd_outline(long_px * max(abs(along), LEAF_WIDTH * abs(along.yx)), along / long_px);
 }
 
@@ -86,6 +85,13 @@ void draw_outline(vec2 center, wd_outline outline, uint depth_bits, uint id)
     } while (--left > 0);
 }
 
+/* On screen, of any length. */
+vec2 leaf_along(wd_splat_tree tree, vec3 along, vec3 clip)
+{
+    vec2 moved = vec2(dot(tree.clip_x.xyz, along), dot(tree.clip_y.xyz, along));
+    return (moved * clip.z - clip.xy * dot(tree.clip_w.xyz, along)) * vec2(view.width, view.height);
+}
+
 /* The tree's splat number `at`. */
 void draw_splat(wd_splat_tree tree, uint at, uint id)
 {
@@ -105,13 +111,13 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
     bool wood = turn.x == WD_LEAF_STRATA;
     vec3 normal = splat_normal(disc);
     float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
-    float open = mix(mix(WD_DISC_HIDDEN, WD_DISC_SEEN, seen), 1.0, WD_TREE_CLOSE(tree));
+    float open = wd_disc_open(seen, WD_TREE_CLOSE(tree));
     float share = (wood ? max(facing, 0.0) : 2.0 * abs(facing)) * open;
     float radius = (wood ? tree.wood_radius : tree.radius) * inverse * sqrt(share);
     vec2 center = (clip.xy * inverse * 0.5 + 0.5) * vec2(view.width, view.height);
     wd_outline outline = disc_outline(radius);
     if (LEAVES && !wood && radius > LEAF_PX)
-        outline = leaf_outline(radius, random >> 16);
+        outline = leaf_outline(radius, leaf_along(tree, splat_along(disc), clip));
     uint depth_bits = floatBitsToUint(depth);
     if (ORTHOGRAPHIC == 0u) /* continuum_depth.frag asks that of it */
         depth_bits = depth_bits & ~1u | uint(seen);

@@ -329,7 +329,7 @@ void select_tree(uint index, float share, uint place)
     splats.facing = model_facing(pose, toward);
     splats.sun = wd_sun_mix(model_toward(pose, frame.sun_direction));
     splats.eye = wd_sun_mix(model_toward(pose, toward));
-    float close = WD_DISC_CLOSE(tall_px);
+    float close = wd_disc_close(each * float(WD_SPLAT_STRATA));
     splats.nearer_m = (1.0 - close) * WD_DISC_NEARER * model_float(model_index, WD_WORD_EXTENT_M)
                     * pose.across
                     * smoothstep(-0.4, -0.1, toward.z); /* nothing is known of the view from below */

@@ -37,7 +37,8 @@
 #define WD_SORT_BITS 7u
 
 /* A splat: its place in the model's box (unorm 16) and its face (octahedral, snorm 8): of leaves the flat
- * upper side, of wood its normal. */
+ * upper side, of wood its normal. Of leaves the last two bits of x and y and the last four of z are the
+ * way along the leaf (lib/splat.glsl). */
 struct wd_splat {
     uint32_t xy;       /* x in the low half */
     uint32_t z_normal; /* z in the low half, face above */

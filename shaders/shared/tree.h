@@ -194,12 +194,15 @@ struct wd_tree_point {
     uint32_t face;   /* packed alike: of the flat triangle that the point lies on; a leaf's upper side */
     uint32_t albedo; /* R, G, B: sRGB albedo, look texture and tint included; A: sky openness */
     uint32_t kind;   /* bits 0..7: flexibility; bit 8: leaf; bit 9: one-sided (wood): unseen from
-                        behind; bits 16..31: half float: m^2 of surface that the point stands for
+                        behind; bits 10..15: the way along its leaf, in the plane of its face
+                        (src/tree/points.h); bits 16..31: half float: m^2 of surface that the point stands for
                         among all of its model's points, one side */
 };
 WD_STATIC_ASSERT_SIZE(wd_tree_point, 28);
 #define WD_POINT_LEAF 0x100u
 #define WD_POINT_ONE_SIDED 0x200u
+#define WD_POINT_ALONG_BIT 10
+#define WD_POINT_ALONG 64u /* steps */
 
 /* Points drawn as discs: pi r^2 = gain * facing * (area of all points) / count. Facing is 1 for leaves,
  * whose normals are more the crown's than their own; of wood the cosine between normal and view, 0 for
@@ -212,8 +215,19 @@ WD_STATIC_ASSERT_SIZE(wd_tree_point, 28);
 /* And larger, that the rest shows in gaps alone; areas over the mean face's. */
 #define WD_DISC_SEEN 2.0f
 #define WD_DISC_HIDDEN 0.5f
-/* So where trees are small; 1: so tall, in pixels, that discs are where they are and as large. */
-#define WD_DISC_CLOSE(tall_px) smoothstep(64.0, 128.0, tall_px)
+
+/* So where a tree has few discs; 1: so many that each is sorted where it is and as large as its share. */
+WD_FUNC float wd_disc_close(float discs)
+{
+    return WD_SMOOTH(300.0f, 1200.0f, discs);
+}
+
+/* Factor on a disc's area. `seen`: 1 where nothing of its tree hides it. */
+WD_FUNC float wd_disc_open(float seen, float close)
+{
+    return WD_MIX(WD_MIX(WD_DISC_HIDDEN, WD_DISC_SEEN, seen), 1.0f, close);
+}
+
 #define WD_POINT_GAINS 12
 #define WD_GAIN_SIDES 3
 struct wd_point_gains {

@@ -44,6 +44,22 @@ static struct wd_splat splat_at(const struct wd_splat_model *model, const float 
     return (struct wd_splat){axes[0] | axes[1] << 16, axes[2] | normal8(normal) << 16};
 }
 
+/* A leaf's splat: four bits each of two coordinates of the way along the leaf in the box, which has no
+ * sign: half an octahedron, folded out to a square, in bits that are less than a place needs. */
+static struct wd_splat leaf_at(const struct wd_splat_model *model, const struct wd_tree_point *point)
+{
+    struct wd_splat splat = splat_at(model, point->position_m, point->face);
+    struct wd_vec3 along = wd_point_along(point);
+    float x = along.x / model->extent_m[0], y = along.y / model->extent_m[1];
+    float z = along.z / model->extent_m[2], over = 1 / (fabsf(x) + fabsf(y) + fabsf(z));
+    over = z < 0 ? -over : over;
+    uint32_t a = (uint32_t)fminf(((x + y) * over + 1) * 8, 15);
+    uint32_t b = (uint32_t)fminf(((x - y) * over + 1) * 8, 15);
+    splat.z_normal = (splat.z_normal & ~15u) | a;
+    splat.xy = (splat.xy & ~0x00030003u) | (b & 3u) | (b & 12u) << 14;
+    return splat;
+}
+
 /* Square roots of a linear colour in bytes, openness and kind above. */
 static uint32_t pack_look(const float color[3], float openness, bool wood)
 {
@@ -111,7 +127,7 @@ static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *
             continue;
         drawn->points[used * step + stratum] = *point;
         drawn->lit[used * step + stratum] = lit[used] = points->lit[i];
-        to[used] = splat_at(&splats->model, point->position_m, point->face);
+        to[used] = leaf_at(&splats->model, point);
         looks[used++] = point_look(points, i);
     }
     for (uint32_t i = used; used && i < WD_STRATUM_SPLATS; i++) {

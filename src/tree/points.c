@@ -141,6 +141,48 @@ static uint32_t face_of(const struct wd_tree_mesh *mesh, size_t triangle)
     return wd_pack_normal(normal);
 }
 
+/* Along a leaf, of any length: as v grows on its texture. */
+static struct wd_vec3 along_of(const struct wd_tree_mesh *mesh, size_t triangle)
+{
+    struct wd_vec3 a = corner(mesh, 3 * triangle);
+    struct wd_vec3 b = wd_v3_sub(corner(mesh, 3 * triangle + 1), a);
+    struct wd_vec3 c = wd_v3_sub(corner(mesh, 3 * triangle + 2), a);
+    float uv[3][2];
+    for (size_t k = 0; k < 3; k++)
+        wd_unpack_uv(mesh->vertices[mesh->indices[3 * triangle + k]].uv, uv[k]);
+    return wd_v3_sub(wd_v3_scale(c, uv[1][0] - uv[0][0]), wd_v3_scale(b, uv[2][0] - uv[0][0]));
+}
+
+/* Two axes of the plane across a unit normal (Duff et al. 2017). */
+static void plane_axes(const float n[3], struct wd_vec3 axes[2])
+{
+    float sign = n[2] < 0 ? -1.0f : 1.0f, a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+    axes[0] = WD_V3(1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]);
+    axes[1] = WD_V3(b, sign + n[1] * n[1] * a, -n[1]);
+}
+
+/* In WD_POINT_ALONG's steps of half a turn from one axis of the face's plane to where it points back. */
+static uint32_t pack_along(uint32_t face, struct wd_vec3 along)
+{
+    struct wd_vec3 axes[2];
+    float n[3];
+    wd_unpack_normal(face, n);
+    plane_axes(n, axes);
+    float x = wd_v3_dot(along, axes[0]), y = wd_v3_dot(along, axes[1]);
+    float sum = fabsf(x) + fabsf(y), share = sum > 0 ? (y < 0 ? -x : x) / sum : 0;
+    return (uint32_t)wd_clampf((share + 1) * 0.5f * WD_POINT_ALONG, 0, WD_POINT_ALONG - 1);
+}
+
+struct wd_vec3 wd_point_along(const struct wd_tree_point *point)
+{
+    struct wd_vec3 axes[2];
+    float n[3], step = (float)(point->kind >> WD_POINT_ALONG_BIT & (WD_POINT_ALONG - 1)) + 0.5f;
+    wd_unpack_normal(point->face, n);
+    plane_axes(n, axes);
+    float x = step * (2.0f / WD_POINT_ALONG) - 1;
+    return wd_v3_unit(wd_v3_mad(wd_v3_scale(axes[0], x), axes[1], 1 - fabsf(x)));
+}
+
 static void sample_point(struct wd_tree_point *point, const struct surface *surface,
                          const struct wd_point_look *look, uint32_t index, float area_m2)
 {
@@ -169,6 +211,8 @@ static void sample_point(struct wd_tree_point *point, const struct surface *surf
     point->albedo = pack_albedo(albedo, blend.tint[3]);
     point->kind = (uint32_t)wd_clampf(blend.flexibility + 0.5f, 0, 255) |
                   (wood ? WD_POINT_ONE_SIDED : WD_POINT_LEAF) |
+                  pack_along(point->face, along_of(surface->mesh, surface->order[place]))
+                      << WD_POINT_ALONG_BIT |
                   (wd_pack_uv(0, area_m2) & 0xffff0000u);
 }
 

@@ -9,6 +9,7 @@
 #define WD_TREE_POINTS_H
 
 #include "tree/mesh.h"
+#include "tree/vec.h"
 
 struct wd_tree_points {
     struct wd_tree_point *points;
@@ -29,6 +30,9 @@ struct wd_point_look {
 bool wd_tree_points_build(struct wd_tree_points *points, const struct wd_tree_mesh *mesh,
                           const struct wd_point_look *look, size_t count);
 void wd_tree_points_finish(struct wd_tree_points *points); /* accepts {0} */
+
+/* The way, or the one back, that the leaf points in whose surface this is; unit. */
+struct wd_vec3 wd_point_along(const struct wd_tree_point *point);
 
 /* shares[points->count]: of what a point's side shows around and half above the tree, the share that
  * nothing of the mesh hides. Points need no more than places and normals. */

@@ -198,15 +198,16 @@ static void draw_window(struct canvas *canvas, const struct plan *plan, int clas
     float squared = gain * plan->classes[class]->area_m2 / (float)WD_PI / (float)wanted;
     size_t first = wd_hash2(window, (uint32_t)count) % discs->count;
     uint32_t eye = wd_sun_mix(canvas->frame.toward);
+    float close = wd_disc_close((float)count);
     for (size_t i = 0; i < wanted; i++) {
         size_t at = (first + i) % discs->count;
         const struct wd_tree_point *point = &discs->points[at];
         struct corner middle = corner_of(canvas, point->position_m);
         uint32_t way = wd_sun_way_by_lot(eye, wd_hash2((uint32_t)at, 0x1e5));
-        bool seen = discs->lit[at] >> way & 1;
-        middle.toward += seen ? plan->nearer_m : 0;
+        float seen = (float)(discs->lit[at] >> way & 1);
+        middle.toward += seen * (1 - close) * plan->nearer_m;
         float facing = facing_of(point, canvas->frame.toward);
-        facing *= seen ? WD_DISC_SEEN : WD_DISC_HIDDEN;
+        facing *= wd_disc_open(seen, close);
         draw_disc(canvas, &middle, sqrtf(squared * facing) * canvas->frame.scale,
                   class == 0 ? WOOD : LEAF, (uint8_t)(point->albedo >> 24));
     }

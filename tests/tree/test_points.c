@@ -266,7 +266,7 @@ static void cover(const struct sampled *sampled, size_t first, size_t count, dou
         bool one_sided = points->points[i].kind & WD_POINT_ONE_SIDED;
         float radius = one_sided ? wood * sqrtf(fmaxf(facing, 0)) : leaf * sqrtf(2 * fabsf(facing));
         uint32_t way = wd_sun_way_by_lot(wd_sun_mix(toward), wd_hash2((uint32_t)i, 7));
-        radius *= sqrtf(points->lit[i] >> way & 1 ? WD_DISC_SEEN : WD_DISC_HIDDEN);
+        radius *= sqrtf(wd_disc_open((float)(points->lit[i] >> way & 1), wd_disc_close((float)count)));
         for (int py = (int)fmaxf(y - radius, 0); py < N && (float)py < y + radius; py++)
             for (int px = (int)fmaxf(x - radius, 0); px < N && (float)px < x + radius; px++) {
                 float dx = (float)px + 0.5f - x, dy = (float)py + 0.5f - y;
