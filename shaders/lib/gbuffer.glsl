@@ -19,6 +19,8 @@ wd_pixel gbuffer_pixel(ivec2 at, float depth)
     pixel_set_normal(pixel, disc ? disc_normal(normal) : normal.xyz * 2.0 - 1.0);
     if (disc)
         pixel.material = disc_kind(normal) == DISC_WOOD ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF;
+    else if (ALL_SINGLE)
+        pixel.material = pixel.surface != 0u ? WD_MATERIAL_WOOD : WD_MATERIAL_GROUND;
     pixel.lit = disc ? disc_lit(normal) : -1.0;
     pixel.above = disc_kind(normal) == DISC_LEAF_ABOVE ? 1.0 : 0.0;
     pixel_lay_snow(pixel);

@@ -13,6 +13,7 @@ layout(constant_id = 2) const uint MIXED = 0u; /* tiles hold pixels with and wit
                                                   shaded, that of PARTS; the other after or before */
 
 layout(constant_id = 3) const uint RUNS = 1u;
+layout(constant_id = 4) const uint SINGLE = 0u; /* 1: all leaves are single ones */
 
 layout(scalar, set = 0, binding = 0) FRAME_BLOCK Frame { wd_frame_uniforms frame; };
 layout(set = 0, binding = 1) uniform sampler2D gbuffer_albedo;
@@ -34,6 +35,7 @@ layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #define TREE_TEXELS
 #define SHADOW_DEPTH shadow_depth
+#define ALL_SINGLE (SINGLE != 0u)
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
 #define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)
 #define SKY_MAP sky_map

@@ -2,6 +2,11 @@
 #include "lib/view.glsl"
 #include "shared/snow.h"
 
+/* Whether all leaves are single ones (lib/disc.glsl); then what is known of clouds of them is left out. */
+#ifndef ALL_SINGLE
+#define ALL_SINGLE false
+#endif
+
 struct wd_pixel {
     vec3 ray;         /* rel of a point on the pixel's ray at 1 m along the view axis */
     vec3 direction;   /* unit */

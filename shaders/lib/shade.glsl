@@ -321,7 +321,7 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint casca
 /* A disc of a leaf is lit as the leaf that it is. */
 void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_model model, uint cascade)
 {
-    if (pixel.lit < 0.0)
+    if (!ALL_SINGLE && pixel.lit < 0.0)
         return;
     shade_disc(place, pixel, crown, cascade);
     place.normal = pixel.normal;

@@ -295,7 +295,8 @@ static void record_light(const struct recording *r)
     const struct wd_light_params light = {
         &frame->targets, frame->params.forest,
         &r->view,        &r->values,
-        r->uniforms,     blends(r) ? WD_OVERLAY_OVER : WD_OVERLAY_NONE};
+        r->uniforms,     blends(r) ? WD_OVERLAY_OVER : WD_OVERLAY_NONE,
+        frame->params.method->single_leaves ? WD_LEAVES_SINGLE : WD_LEAVES_ANY};
     if (blends(r))
         record_blend(r, &light);
     wd_cmd_scope_begin(r->cmd, "light");

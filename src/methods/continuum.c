@@ -477,6 +477,7 @@ const struct wd_method wd_method_continuum = {
     .on_demand = true,
     .cascades = WD_CASCADES_KEPT,
     .ground = WD_GROUND_LAST,
+    .single_leaves = true,
     .state_size = sizeof(struct continuum),
     .init = continuum_init,
     .finish = continuum_finish,

@@ -32,6 +32,12 @@ static const VkDescriptorType BUFFER = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 static const VkDescriptorType TEXELS = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 static const VkDescriptorType UNIFORM = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 
+/* Lists of trees and no water, which most of a forest's pixels are in. */
+static bool has_single(uint32_t list)
+{
+    return (wd_tile_list_parts(list) & (WD_PART_TREES | WD_PART_WATER)) == WD_PART_TREES;
+}
+
 static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     struct wd_compute_params params = {
@@ -48,12 +54,15 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     params.bindings.types[15] = BUFFER;
     for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
         uint32_t parts = wd_tile_list_parts(list), wet = parts & WD_PART_WATER;
-        const uint32_t constants[] = {parts & ~wet, list, wet != 0, gpu->runs};
-        params.constants = (struct wd_spec_constants){4, constants};
+        uint32_t constants[] = {parts & ~wet, list, wet != 0, gpu->runs, 0};
+        params.constants = (struct wd_spec_constants){5, constants};
         params.shader = wet ? (struct wd_spirv)SPIRV(light_water_comp)
                             : (struct wd_spirv)SPIRV(light_comp);
         params.bindings.types[0] = wet ? BUFFER : UNIFORM;
         ok = wd_pipeline_init_compute(&pass->light[list], gpu, &params);
+        constants[4] = 1;
+        if (has_single(list))
+            ok = ok && wd_pipeline_init_compute(&pass->single[list], gpu, &params);
     }
     params.shader = (struct wd_spirv)SPIRV(light_water_comp);
     params.bindings.types[0] = BUFFER;
@@ -101,8 +110,10 @@ void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     struct wd_pipeline *others[] = {&pass->tiles, &pass->args, &pass->view, &pass->velocity,
                                     &pass->water};
-    for (uint32_t list = 0; list < WD_TILE_LISTS; list++)
+    for (uint32_t list = 0; list < WD_TILE_LISTS; list++) {
         wd_pipeline_finish(&pass->light[list], gpu);
+        wd_pipeline_finish(&pass->single[list], gpu);
+    }
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         wd_pipeline_finish(others[i], gpu);
     if (pass->nearest)
@@ -201,12 +212,14 @@ static void shade_list(struct wd_light_pass *pass, struct wd_cmd *cmd,
 
 /* Water comes last: it mirrors what the others have been lit to. */
 static void shade_lists(struct wd_light_pass *pass, struct wd_cmd *cmd,
-                        struct wd_image *radiance, const struct wd_binding *bindings,
+                        const struct wd_light_params *params, const struct wd_binding *bindings,
                         const struct wd_light_push *push)
 {
-    for (uint32_t list = 0; list < WD_TILE_LISTS; list++)
-        shade_list(pass, cmd, &pass->light[list], list, bindings, push);
-    wd_cmd_use_image(cmd, radiance, WD_USE_COMPUTE_WRITE);
+    for (uint32_t list = 0; list < WD_TILE_LISTS; list++) {
+        bool single = params->leaves == WD_LEAVES_SINGLE && has_single(list);
+        shade_list(pass, cmd, single ? &pass->single[list] : &pass->light[list], list, bindings, push);
+    }
+    wd_cmd_use_image(cmd, &params->targets->radiance, WD_USE_COMPUTE_WRITE);
     shade_list(pass, cmd, &pass->water, WD_TILE_LISTS - 1, bindings, push);
 }
 
@@ -246,7 +259,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     };
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);
-        shade_lists(pass, cmd, &targets->radiance, bindings, &push);
+        shade_lists(pass, cmd, params, bindings, &push);
         return;
     }
     wd_cmd_bind(cmd, &pass->view, bindings);

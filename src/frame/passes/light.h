@@ -10,7 +10,8 @@
 
 struct wd_light_pass {
     struct wd_pipeline tiles, args;            /* sort tiles by what they show */
-    struct wd_pipeline light[WD_TILE_LISTS];   /* shade one list each: what shows no water */
+    struct wd_pipeline light[WD_TILE_LISTS];   /* shade one list each: what shows no water, */
+    struct wd_pipeline single[WD_TILE_LISTS];  /* the same with single leaves: lists of trees */
     struct wd_pipeline water;                  /* what does */
     struct wd_pipeline view, velocity;
     struct wd_buffer lists;                    /* struct wd_tile_lists and the lists */
@@ -28,6 +29,7 @@ struct wd_light_params {
     const struct wd_frame_uniforms *frame;
     struct wd_binding uniforms;            /* the same, on the device */
     enum wd_overlay { WD_OVERLAY_NONE, WD_OVERLAY_OVER } overlay; /* whether targets->overlay counts */
+    enum wd_leaf_kinds { WD_LEAVES_ANY, WD_LEAVES_SINGLE } leaves; /* as wd_method.single_leaves */
 };
 
 /* What shading needs besides the frame's uniforms: for methods that light trees by themselves. All
