@@ -215,7 +215,8 @@ static void add_reach(float reach_m[SECTORS], struct wd_vec3 p)
     reach_m[sector] = wd_maxf(reach_m[sector], sqrtf(p.x * p.x + p.y * p.y));
 }
 
-/* Mean over sixteen sectors of how far leaves and, where these have fallen, branches reach out. */
+/* Mean, over those of sixteen sectors that they reach into, of how far leaves and, where these have fallen,
+ * branches reach out: a fern's dozen fronds leave sectors empty. */
 static float crown_radius_m(const struct wd_foliage *foliage, const struct wd_skeleton *skeleton)
 {
     float reach_m[SECTORS] = {0}, sum = 0;
@@ -229,9 +230,12 @@ static float crown_radius_m(const struct wd_foliage *foliage, const struct wd_sk
             add_reach(reach_m,
                       skeleton->nodes[branch->first_node + branch->node_count - 1].position_m);
     }
-    for (int i = 0; i < SECTORS; i++)
+    int reached = 0;
+    for (int i = 0; i < SECTORS; i++) {
         sum += reach_m[i];
-    return sum / SECTORS;
+        reached += reach_m[i] > 0;
+    }
+    return sum / (float)(reached ? reached : 1);
 }
 
 /* The twig that a leaf of mean size stands for. */

@@ -63,7 +63,7 @@ static void crowns_follow_the_allometry(void **state)
 {
     (void)state;
     static const char *const names[] = {"oak", "beech", "birch", "spruce", "pine", "maple",
-                                        "larch", "angelique"};
+                                        "larch", "angelique", "fern"};
     struct wd_arena arena = {0};
     for (size_t s = 0; s < sizeof names / sizeof *names; s++) {
         struct wd_species species = test_species(&arena, names[s]);
