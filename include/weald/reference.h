@@ -24,6 +24,10 @@ enum wd_result wd_reference_create(struct wd_reference **reference, const struct
                                    const struct wd_reference_params *params);
 void wd_reference_destroy(struct wd_reference **reference); /* accepts a pointer to NULL */
 
+/* Where paths leave a pixel: from all over it, as the renderer's samples do, or from its middle alone,
+ * where what its layers name lies. */
+enum wd_reference_places { WD_REFERENCE_WHOLE_PIXELS, WD_REFERENCE_MIDDLES };
+
 struct wd_reference_picture_params {
     struct wd_camera camera;
     double time_s;          /* of the wind */
@@ -32,6 +36,7 @@ struct wd_reference_picture_params {
     uint32_t bounces;       /* times that light is scattered; 0: 8 */
     uint32_t layers;        /* wd_layer_bits wanted, all but velocity; 0: display */
     uint32_t stream;        /* pictures of other streams, else alike, have noise of their own */
+    enum wd_reference_places places;
     const char *checkpoint; /* a file that holds an unfinished picture: taken up if it is there,
                                written when stopped and now and then, removed at the end; NULL: none */
 };

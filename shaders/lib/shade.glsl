@@ -52,7 +52,7 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
     float higher = canopy_above(layer_m, top_m);
     float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
     float close = max(crown_is_sward(crown), 0.6 * herb); /* taller ones stand less so */
-    float over = close * crown_per_m(crown) * sward_depth_m(crown, pixel.rel);
+    float over = close * wd_crown_per_m(crown.radii_m) * sward_depth_m(crown, pixel.rel);
     float own = max(pixel.openness, 1e-2);
     float under = mix(higher, 1.0, above);
     vec4 stand = own * exp2(under * log2(shelter.through));
@@ -153,6 +153,35 @@ float sunlit_seen(vec3 eye, wd_crown crown)
     float hot = mix(mix(0.4, 2.2, slender), 2.8, smoothstep(0.2, 1.05, eye.z));
     return wide + hot * exp(-1.9 * apart);
 }
+
+/* Of a model's table (shared/sunlit.h), for this eye: where its eight entries stand, and their shares. */
+struct wd_sunlit_mix {
+    uint place;
+    float eye, sun, turn;
+};
+
+wd_sunlit_mix sunlit_mix(vec3 eye)
+{
+    vec2 a = eye.xy, b = frame.sun_direction.xy;
+    float cosine = dot(a, b) * inversesqrt(max(dot(a, a) * dot(b, b), 1e-12));
+    float steps = angle_of(cosine) * (float(WD_SUNLIT_TURNS - 1u) * PER_PI);
+    uint turn = min(uint(steps), WD_SUNLIT_TURNS - 2u);
+    uint eye_ring = wd_sunlit_ring(eye.z), sun_ring = wd_sunlit_ring(frame.sun_direction.z);
+    wd_sunlit_mix at;
+    at.place = wd_sunlit_place(eye_ring & 255u, sun_ring & 255u, turn);
+    at.eye = float(eye_ring >> 8) * (1.0 / 65535.0);
+    at.sun = float(sun_ring >> 8) * (1.0 / 65535.0);
+    at.turn = steps - float(turn);
+    return at;
+}
+
+#define SUNLIT_TURN(table, at, first)                                                              \
+    mix(unpackHalf2x16(table[(first)]), unpackHalf2x16(table[(first) + 1u]), (at).turn)
+#define SUNLIT_EYE(table, at, first)                                                               \
+    mix(SUNLIT_TURN(table, at, first), SUNLIT_TURN(table, at, (first) + WD_SUNLIT_TURNS), (at).eye)
+#define SUNLIT(table, at)                                                                          \
+    mix(SUNLIT_EYE(table, at, (at).place),                                                         \
+        SUNLIT_EYE(table, at, (at).place + WD_SUN_RINGS * WD_SUNLIT_TURNS), (at).sun)
 
 /* Where normals spread about their mean, how far one lies along some direction varies by this, squared.
  * Of a number with mean m and variance v about (sqrt(m^2 + 2 v / pi) + m) / 2 is the mean of what is
@@ -268,15 +297,39 @@ float through_sward(float openness, uint cascade)
     return pow(min(openness * (1.0 / 0.85), 1.0), cascade == 0u ? 0.5 * beam : beam);
 }
 
-/* What a tree's own leaves leave of the sun: `mapped` of their shade is in the shadow map, the rest
- * follows from depth in the crown, behind which the map is then asked. */
-void shade_by_crown(inout wd_place place, wd_crown crown, float openness, float mapped,
-                    uint cascade)
+/* Share of a leaf's shade that a shadow map of such texels tells: those wider than leaves mix what is lit
+ * with what is not, and the eye sees more of the former. */
+float map_holds_leaves(uint cascade, float free)
+{
+    return cascade == 0u ? 1.0 - free * smoothstep(0.04, 0.12, frame.cascade_texel_m[0]) : 0.0;
+}
+
+/* How far a tree stands free: by the sky over the ground beside its crown, toward the sun. */
+float crown_is_free(wd_crown crown)
+{
+    vec2 beside = crown.center_rel.xy + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
+    vec4 field = CANOPY_LIGHT_AT((beside + push.camera_m) * push.canopy_scale, 0.0);
+    float free = smoothstep(0.2, 0.5, dot(field, field) * 0.25);
+    return free * (1.0 - crown_is_sward(crown));
+}
+
+/* What a tree's own leaves leave of the sun, by depth in the crown, behind which the map is then asked. Of
+ * trees that stand free what is left to places is known (wd_crown_lit), with a factor of the model's
+ * own; in closed stands, where crowns reach into one another, depth alone is right. */
+void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float openness, float free,
+                    float factor, uint cascade)
 {
     float path_m = crown_path_m(crown, place.rel);
-    float through = crown_through(crown, path_m) * min(openness * 1.2, 1.0);
-    place.own = mix(through, 1.0, mapped);
-    place.ahead_m = mapped > 0.0 ? 0.0 : path_m + frame.cascade_texel_m[min(cascade, 3u)];
+    float through = wd_crown_through(crown.radii_m, path_m, openness);
+    place.own = mix(through, wd_crown_lit(through, curve.x, curve.y) * factor, free);
+    place.ahead_m = path_m + frame.cascade_texel_m[min(cascade, 3u)];
+}
+
+/* `mapped` of their shade is in the shadow map, which holds leaves as far as `fine` says. */
+void shade_by_map(inout wd_place place, float mapped, float fine)
+{
+    place.own = mix(place.own, 1.0, mapped * fine);
+    place.ahead_m *= 1.0 - fine;
 }
 
 /* GGX (Walter et al. 2007), with the shadowing of facets by each other. */
@@ -301,20 +354,21 @@ float leaf_coat(vec3 normal, vec3 eye, float roughness)
 
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
  * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
- * Meshes' leaves (lit 1) keep the crown's depth beside the map: by the map alone forests from within are 3 %
+ * Meshes' leaves (lit 1) keep what depth says beside the map: by the map alone forests from within are 3 %
  * brighter in green, and too bright by that. 0: none goes on to the eye. */
 void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint cascade)
 {
-    float texel_m = frame.cascade_texel_m[min(cascade, 3u)];
+    if (pixel.lit <= 0.0 || pixel.lit >= 1.0) {
+        place.own = pixel.lit <= 0.0 ? 0.0 : place.own;
+        return;
+    }
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
     float tall_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
+    float texel_m = frame.cascade_texel_m[min(cascade, 3u)];
     float discs = 0.6 * crown.radii_m.x * tall_m / (pixel_m * pixel_m); /* about as many */
-    bool mesh = pixel.lit >= 1.0;
-    float known = mesh ? 0.0 : wd_disc_close(discs) * (1.0 - smoothstep(0.04, 0.12, texel_m));
-    known = cascade == 0u ? known : 0.0;
-    float through = mesh ? place.own : pixel.lit;
-    place.own = pixel.lit <= 0.0 ? 0.0 : mix(through, 1.0, known);
-    float ahead_m = place.ahead_m + (mesh ? 0.0 : 0.5 + texel_m); /* its own tree is in `lit` */
+    float known = wd_disc_close(discs) * map_holds_leaves(cascade, 1.0);
+    float ahead_m = (cascade == 0u ? 0.0 : place.ahead_m) + 0.5 + texel_m; /* its own tree is in `lit` */
+    place.own = mix(pixel.lit, 1.0, known);
     place.ahead_m = mix(ahead_m, pixel_m, known);
 }
 
@@ -332,11 +386,13 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_model m
 }
 
 /* Wood within a crown is in its shade as leaves are. */
-wd_place wood_place(wd_pixel pixel, wd_crown crown, uint cascade)
+wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float factor, uint cascade)
 {
     wd_place place = ground_place(pixel);
-    shade_by_crown(place, crown, pixel.openness, cascade == 0u ? 1.0 : 0.0, cascade);
+    float free = crown_is_free(crown);
+    shade_by_crown(place, crown, curve, pixel.openness, free, factor, cascade);
     place.own = pixel.lit < 0.0 ? place.own : pixel.lit;
+    shade_by_map(place, pixel.lit < 0.0 ? 1.0 : 0.0, map_holds_leaves(cascade, free));
     return place;
 }
 
@@ -347,36 +403,40 @@ float sward_tufts_lit()
     return mix(0.4, 1.0, smoothstep(0.2, 0.75, frame.sun_direction.z));
 }
 
-/* Near, the maps hold each leaf and the crown's depth adds little; far, they hold crowns only: the
- * crown is left behind before the map is asked, and depth along the sun does the rest. A crown is no
- * even cloud: what sees little of the sky sees little of the sun. Both factors are set so that
- * dense forest from above and from within is as bright as path-traced (docs/reference.md). */
-wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, uint cascade)
+/* Near, the maps hold each leaf and the crown's depth adds little. Far, the crown is left behind before the
+ * map is asked, and depth along the sun says where in it how much of the light is left. Of a tree that stands
+ * free the model's own table says how much of that on all of it goes to this eye: of a cloud of leaves
+ * (cards, and meshes of few that stand for many), or of leaves that are lit one by one. */
+wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, vec2 sunlit, uint cascade)
 {
     bool card = pixel.material == WD_MATERIAL_CARD;
+    bool disc = pixel.lit >= 0.0 && pixel.lit < 1.0;
     vec3 eye = -pixel.direction;
+    float sward = crown_is_sward(crown), free = crown_is_free(crown);
+    float cosine = dot(eye, frame.sun_direction);
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
-    float mapped = cascade == 0u && !card ? 0.75 : 0.0;
+    float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free);
+    float mapped = 0.75 * fine;
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
-    shade_by_crown(place, crown, pixel.openness, mapped * (1.0 - 0.5 * crown_is_sward(crown)),
-                   cascade);
-    place.own *= mix(1.0, card ? sward_tufts_lit() : 1.0, crown_is_sward(crown));
+    shade_by_crown(place, crown, model.sun_curve, pixel.openness, free,
+                   pixel.lit >= 1.0 ? sunlit.x : 1.0, cascade);
+    place.own *= mix(1.0, card ? sward_tufts_lit() : 1.0, sward);
+    shade_by_map(place, 0.75 - 0.375 * sward, fine);
     vec3 outward = crown_normal(crown, place.rel);
-    float cosine = dot(eye, frame.sun_direction);
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
-    place.sides = mix(leaf_cloud(cosine), leaf_blade(pixel.facing, eye, plain), near);
-    place.sides *= mix(sunlit_seen(eye, crown), 1.0, mapped);
+    vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), near);
+    place.sides = mix(mix(blades * sunlit_seen(eye, crown), sunlit, free), blades, mapped);
     place.transmittance = model.transmittance;
-    place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, crown_is_sward(crown)); /* blades bend over */
-    place.sward = crown_is_sward(crown);
-    place.over = crown_per_m(crown) /* of cards, which are flat: in the middle */
+    place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
+    place.sward = sward;
+    place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
     place.gloss = leaf_gloss(pixel, model.roughness, near) + WAX * 0.39;
     place.gloss = (place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
-    place.sheet = mapped > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
+    place.sheet = fine > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
     light_disc(place, pixel, crown, model, cascade);
     return place;
 }
@@ -390,13 +450,17 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     wd_shelter shelter = ground_shelter(pixel);
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u) {
         wd_tree tree = tree_at(pixel.surface - 1u);
-        wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
-                                + WD_TREE_VARIANT(tree) % push.variants];
+        uint model_at = WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
+        wd_model model = models[model_at];
+        wd_sunlit_mix mixed = sunlit_mix(-pixel.direction);
+        bool singly = pixel.lit >= 1.0 || pixel.material < WD_MATERIAL_LEAF;
+        mixed.place += singly ? WD_SUNLIT_PLACES : 0u;
+        vec2 sunlit = SUNLIT(models[model_at].sunlit, mixed);
         wd_crown crown = crown_of(tree, model);
         if (pixel.material >= WD_MATERIAL_LEAF)
-            place = leaf_place(pixel, crown, model, cascade);
+            place = leaf_place(pixel, crown, model, sunlit, cascade);
         else
-            place = wood_place(pixel, crown, cascade);
+            place = wood_place(pixel, crown, model.sun_curve, sunlit.y, cascade);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
     } else {
         place.own = through_sward(pixel.openness, cascade);

@@ -129,7 +129,7 @@ static uint64_t picture_key(const struct work *work)
     const struct wd_trace_models *models = &work->reference->models;
     const double numbers[] = {camera->position_m[0], camera->position_m[1], camera->position_m[2],
                               camera->yaw_rad, camera->pitch_rad, camera->fov_rad,
-                              work->tracer.bounces, work->params->stream,
+                              work->tracer.bounces, work->params->stream, work->params->places,
                               (double)work->job.view.lens_m,
                               (double)work->job.view.focus_m};
     uint64_t key = wd_world_hash(&work->reference->forest->world);
@@ -181,6 +181,7 @@ static bool prepare(struct work *work)
     work->job.tracer = &work->tracer;
     work->job.threads = reference->threads;
     work->job.stream = params->stream;
+    work->job.middles = params->places == WD_REFERENCE_MIDDLES;
     work->job.progress = &work->progress;
     wd_trace_sums_init(&work->sums, params->width, params->height);
     bool ok = wd_trace_scene_init(&work->scene, &reference->models, &forest->scene, &forest->world,

@@ -9,13 +9,16 @@
 #include "tree/clip_mesh.h"
 #include "tree/coverage.h"
 #include "tree/import.h"
+#include "tree/sunlit.h"
 #include "tree/thinning.h"
 
 /* A kept model: words, then the wood of the full mesh and of the reduced one and the twig, each as
  * vertices and indices, then the leaves and the forms of their sets, packed by meshoptimizer's codecs
  * (the sequence codec keeps the order of indices). */
 enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD_LEAF_GROWTHS,
-       FIGURES = 7 + 7 + BOUNDS + GROWTHS + WD_GAIN_SIDES,
+       SUNLIT_AT = 7 + 7 + BOUNDS + GROWTHS + WD_GAIN_SIDES,
+       SUNLIT = (int)(WD_SUNLIT_PLACES * WD_SUNLIT_KINDS),
+       FIGURES = SUNLIT_AT + SUNLIT + 2,
        SETS = 2 * WD_LEAF_SETS, SET_WORDS = 10, SET_AT = FIGURES + MESHES * MESH_WORDS,
        LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
@@ -131,6 +134,10 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
     }
     for (size_t k = 0; k < WD_GAIN_SIDES; k++)
         figures[14 + BOUNDS + GROWTHS + k] = &model->seen_m2[k];
+    figures[SUNLIT_AT + SUNLIT] = &model->sun_curve[0];
+    figures[SUNLIT_AT + SUNLIT + 1] = &model->sun_curve[1];
+    for (size_t k = 0; k < SUNLIT; k++)
+        figures[SUNLIT_AT + k] = &model->sunlit[k / WD_SUNLIT_KINDS][k % WD_SUNLIT_KINDS];
 }
 
 static void meshes_of(struct wd_tree_mesh *meshes[MESHES], struct wd_tree_model *model)
@@ -375,6 +382,7 @@ bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_ca
         return false;
     wd_tree_thinning_fit(model);
     wd_tree_mesh_measure_seen(model->seen_m2, &model->full);
+    wd_tree_sunlit_fit(model);
     wd_tree_model_drop_leaves(model);
     if (species)
         store_model(cache, *key, model);

@@ -109,6 +109,8 @@ static void trace_pixel(struct pass *pass, uint32_t x, uint32_t y, uint32_t from
         struct wd_sampler sampler = wd_sampler_of(x, y, pass->job->stream, i);
         float place[2];
         wd_sampler_next(&sampler, place);
+        if (pass->job->middles)
+            place[0] = place[1] = 0.5f;
         struct wd_vec3 ray = view_ray(view, (float)x + place[0], (float)y + place[1]);
         struct wd_vec3 eye = {0, 0, 0};
         if (view->lens_m > 0) {

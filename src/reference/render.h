@@ -34,6 +34,7 @@ struct wd_trace_job {
     struct wd_trace_view view;
     unsigned threads;
     uint32_t stream; /* of random numbers */
+    bool middles;    /* paths leave pixels from their middles alone */
     const struct wd_progress *progress; /* stage "samples" */
     struct wd_trace_counts counts;      /* added to */
     bool stopped;                       /* the progress asked to stop */

@@ -4,6 +4,7 @@
 
 #include "base/log.h"
 #include "scene/species.h"
+#include "shared/sunlit.h"
 #include "tree/leaf_set.h"
 
 /* What a hedge is cut to, in metres from its foot: a box, or the inside of a closed mesh. The foot
@@ -49,6 +50,8 @@ struct wd_tree_model {
     struct wd_leaf_set sets[2][WD_LEAF_SETS]; /* of the full mesh and of the reduced one */
     struct wd_leaf_growths leaf_growth[2]; /* of either level (tree/thinning.h); 0: not known yet */
     float seen_m2[WD_GAIN_SIDES]; /* that the full mesh covers (tree/coverage.h); 0: not known yet */
+    float sun_curve[2]; /* of wd_crown_lit (tree/sunlit.h); 0: not known yet */
+    float sunlit[WD_SUNLIT_PLACES][WD_SUNLIT_KINDS]; /* tree/sunlit.h; 0: not known yet */
     float spray_reach;           /* of wd_spray_share; 0 without twigs */
     struct wd_tree_mesh spray;   /* the twig that each leaf stands for (tree/leaf_spray.h), or
                                     empty where it is one leaf */

@@ -1,5 +1,6 @@
 /* Which ways over the sky a tree itself leaves open at points of its surface. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "shared/sun_ways.h"
@@ -39,20 +40,31 @@ static bool is_lit(const struct wd_tree_point *point, const struct wd_silhouette
     return front[y * WD_SILHOUETTE + x] <= at[2] + nearer_m(frame, at, face) + CLEAR_M;
 }
 
-void wd_tree_points_light(struct wd_tree_points *points, const struct wd_tree_mesh *mesh)
+void wd_tree_points_open(uint32_t *open, const struct wd_tree_points *points,
+                         const struct wd_tree_mesh *mesh, const struct wd_vec3 *ways, uint32_t count)
 {
-    uint32_t *lit = points->lit = wd_alloc_array(points->count + 1, sizeof *lit);
     struct wd_silhouette frames[TOGETHER];
     float *fronts = wd_alloc_array((size_t)TOGETHER * WD_SILHOUETTE_FRONT, sizeof *fronts);
-    for (uint32_t first = 0; first < WD_SUN_WAYS; first += TOGETHER) {
-        for (uint32_t k = 0; k < TOGETHER; k++)
-            wd_silhouette_init(&frames[k], mesh, wd_sun_way(first + k));
-        wd_silhouette_front(frames, TOGETHER, mesh, fronts);
+    memset(open, 0, points->count * sizeof *open);
+    for (uint32_t first = 0; first < count; first += TOGETHER) {
+        uint32_t some = count - first < TOGETHER ? count - first : TOGETHER;
+        for (uint32_t k = 0; k < some; k++)
+            wd_silhouette_init(&frames[k], mesh, ways[first + k]);
+        wd_silhouette_front(frames, (int)some, mesh, fronts);
         for (size_t i = 0; i < points->count; i++)
-            for (uint32_t k = 0; k < TOGETHER; k++) {
+            for (uint32_t k = 0; k < some; k++) {
                 const float *front = fronts + (size_t)k * WD_SILHOUETTE_FRONT;
-                lit[i] |= (uint32_t)is_lit(&points->points[i], &frames[k], front) << (first + k);
+                open[i] |= (uint32_t)is_lit(&points->points[i], &frames[k], front) << (first + k);
             }
     }
     free(fronts);
+}
+
+void wd_tree_points_light(struct wd_tree_points *points, const struct wd_tree_mesh *mesh)
+{
+    struct wd_vec3 ways[WD_SUN_WAYS];
+    for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
+        ways[way] = wd_sun_way(way);
+    points->lit = wd_alloc_array(points->count + 1, sizeof *points->lit);
+    wd_tree_points_open(points->lit, points, mesh, ways, WD_SUN_WAYS);
 }

@@ -80,4 +80,9 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
     model->full_growth = grown->leaf_growth[0];
     model->reduced_growth = grown->leaf_growth[1];
     memcpy(model->seen_m2, grown->seen_m2, sizeof model->seen_m2);
+    memcpy(model->sun_curve, grown->sun_curve, sizeof model->sun_curve);
+    for (uint32_t k = 0; k < WD_SUNLIT_PLACES; k++) {
+        model->sunlit[k] = wd_pack_uv(grown->sunlit[k][0], grown->sunlit[k][1]);
+        model->sunlit[WD_SUNLIT_PLACES + k] = wd_pack_uv(grown->sunlit[k][2], grown->sunlit[k][3]);
+    }
 }

@@ -1,0 +1,29 @@
+/* sunlit.h: how much of the sun's light a model's own leaves and wood send to an eye, over what the crown's
+ * depth would say (shared/crown.h), by the elevation of the eye and of the sun (rings of shared/sun_ways.h)
+ * and by the angle between both on the ground, half a turn in six steps. */
+#ifndef WD_SHARED_SUNLIT_H
+#define WD_SHARED_SUNLIT_H
+
+#include "shared/sun_ways.h"
+
+#define WD_SUNLIT_TURNS 7u
+#define WD_SUNLIT_PLACES 112u /* WD_SUN_RINGS * WD_SUN_RINGS * WD_SUNLIT_TURNS */
+/* Of leaves as a cloud: reflected and transmitted over a lit wall; of single leaves and of wood: factors on
+ * what of the sun is left to each. */
+#define WD_SUNLIT_KINDS 4u
+
+/* Index of the ring below a sine (bits 0..7) and how near the next one is, in 1/65535 above. */
+WD_FUNC uint32_t wd_sunlit_ring(float sine_of)
+{
+    float sine = WD_CLAMP(sine_of, WD_SUN_RING_SINE(0u), 1.0f);
+    uint32_t ring = sine < WD_SUN_RING_SINE(1u) ? 0u : sine < WD_SUN_RING_SINE(2u) ? 1u : 2u;
+    float low = WD_SUN_RING_SINE(ring), high = WD_SUN_RING_SINE(ring + 1u);
+    return ring | WD_UINT((sine - low) / (high - low) * 65535.0f + 0.5f) << 8;
+}
+
+WD_FUNC uint32_t wd_sunlit_place(uint32_t eye_ring, uint32_t sun_ring, uint32_t turn)
+{
+    return (sun_ring * WD_SUN_RINGS + eye_ring) * WD_SUNLIT_TURNS + turn;
+}
+
+#endif

@@ -1,0 +1,249 @@
+#include "tree/sunlit.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "shared/crown.h"
+#include "tree/points.h"
+
+enum { POINTS = 4096, EYES = 16, STEPS = 16 };
+
+/* Eyes stand on the sun's rings, between its ways: seen through the same picture as lit, all that an eye
+ * saw would be lit. */
+static const uint32_t eyes_on_ring[WD_SUN_RINGS] = {6, 5, 4, 1};
+static const float EYE_OFF = 0.04f, EYE_HIGHEST_SINE = 0.9976f;
+
+struct eye {
+    struct wd_vec3 toward;
+    uint32_t ring;
+    float turn; /* of a whole one */
+};
+
+static void place_eyes(struct eye eyes[EYES])
+{
+    for (uint32_t ring = 0, i = 0; ring < WD_SUN_RINGS; ring++)
+        for (uint32_t k = 0; k < eyes_on_ring[ring]; k++, i++) {
+            float sine = fminf(WD_SUN_RING_SINE(ring), EYE_HIGHEST_SINE);
+            float level = sqrtf(1 - sine * sine);
+            float turn = ((float)k + EYE_OFF) / (float)eyes_on_ring[ring], rad = 6.2831853f * turn;
+            eyes[i] = (struct eye){WD_V3(level * cosf(rad), level * sinf(rad), sine), ring, turn};
+        }
+}
+
+/* What all points send from one way of the sun to one eye. */
+struct sent {
+    float seen;            /* area of leaves toward the eye */
+    float sides[2];        /* reflected and transmitted, */
+    float card, leaf;      /* the same by depth: of the card's place; of the leaf's own place and side */
+    float wood, wood_deep; /* of the wood seen, and the same by depth */
+};
+
+struct fit {
+    struct eye eyes[EYES];
+    struct wd_vec3 suns[WD_SUN_WAYS];
+    struct wd_vec3 middle_m, radii_m; /* of the crown */
+    float curve[2];                   /* of wd_crown_lit */
+    struct sent sent[EYES][WD_SUN_WAYS];
+};
+
+static void set_crown(struct fit *fit, const struct wd_tree_model *model)
+{
+    float deep_m = fmaxf(0.5f * (model->height_m - model->crown_base_m), 0.1f);
+    float radius_m = fmaxf(model->crown_radius_m, 0.1f);
+    fit->middle_m = WD_V3(0, 0, 0.5f * (model->height_m + model->crown_base_m));
+    fit->radii_m = WD_V3(radius_m, radius_m, deep_m);
+}
+
+/* The place a card's texel with the point stands for, seen from far away. */
+static struct wd_vec3 card_place(const struct fit *fit, struct wd_vec3 p, struct wd_vec3 toward)
+{
+    const float far_m = 1000;
+    struct wd_vec3 eye = wd_v3_add(p, wd_v3_scale(toward, far_m));
+    struct wd_vec3 place = wd_crown_card_place(wd_v3_sub(fit->middle_m, eye), fit->radii_m,
+                                               wd_v3_scale(toward, -1));
+    return wd_v3_sub(wd_v3_add(place, eye), fit->middle_m);
+}
+
+/* Turned as the path tracer turns it: out of the side that the eye sees. */
+static void turn_to_eye(struct wd_vec3 *face, struct wd_vec3 *normal, struct wd_vec3 toward)
+{
+    if (wd_v3_dot(*face, toward) < 0)
+        *face = wd_v3_scale(*face, -1);
+    if (wd_v3_dot(*normal, *face) < 0)
+        *normal = wd_v3_scale(*normal, -1);
+    if (wd_v3_dot(*normal, toward) <= 0)
+        *normal = *face;
+}
+
+struct shown {
+    struct wd_vec3 place, face, normal; /* place: from the crown's middle */
+    float openness;
+    float left[WD_SUN_WAYS]; /* of the sun, by depth */
+    uint32_t lit;
+};
+
+static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
+{
+    struct wd_vec3 toward = fit->eyes[eye].toward, face = point->face, normal = point->normal;
+    turn_to_eye(&face, &normal, toward);
+    float area = wd_v3_dot(face, toward);
+    struct wd_vec3 card = card_place(fit, wd_v3_add(point->place, fit->middle_m), toward);
+    for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
+        struct sent *sent = &fit->sent[eye][way];
+        struct wd_vec3 sun = fit->suns[way];
+        float cosine = wd_v3_dot(normal, sun);
+        bool behind = wd_v3_dot(face, sun) < 0, lost = behind != (cosine < 0);
+        float side = lost ? 0 : area * fabsf(cosine);
+        float through = wd_crown_through(
+            fit->radii_m, wd_crown_path_m(card, fit->radii_m, sun), point->openness);
+        sent->seen += area;
+        sent->sides[behind] += side * wd_sun_way_lit(point->lit, way);
+        sent->leaf += side * point->left[way];
+        sent->card += area * wd_crown_lit(through, fit->curve[0], fit->curve[1]);
+    }
+}
+
+static void send_wood(struct fit *fit, const struct shown *point, uint32_t eye)
+{
+    float area = fmaxf(wd_v3_dot(point->face, fit->eyes[eye].toward), 0);
+    for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
+        struct sent *sent = &fit->sent[eye][way];
+        float side = area * fmaxf(wd_v3_dot(point->normal, fit->suns[way]), 0);
+        sent->wood += side * wd_sun_way_lit(point->lit, way);
+        sent->wood_deep += side * point->left[way];
+    }
+}
+
+static struct shown shown_at(const struct fit *fit, const struct wd_tree_points *points, size_t i)
+{
+    const struct wd_tree_point *point = &points->points[i];
+    float face[3], normal[3];
+    wd_unpack_normal(point->face, face);
+    wd_unpack_normal(point->normal, normal);
+    struct shown shown = {wd_v3_sub(wd_v3_of(point->position_m), fit->middle_m), wd_v3_of(face),
+                          wd_v3_of(normal), (float)(point->albedo >> 24) / 255, {0},
+                          points->lit[i]};
+    for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
+        shown.left[way] = wd_crown_through(
+            fit->radii_m, wd_crown_path_m(shown.place, fit->radii_m, fit->suns[way]),
+            shown.openness);
+    return shown;
+}
+
+/* How many places are lit of those where depth leaves as much of the sun: 1 - exp(-a x^b), a line through
+ * logarithms. Whichever way the eye and the sun are, it is nearly the same curve. */
+static void fit_curve(struct fit *fit, const struct wd_tree_points *points)
+{
+    double all[STEPS] = {0}, lit[STEPS] = {0}, n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        if (!(points->points[i].kind & WD_POINT_LEAF))
+            continue;
+        struct shown shown = shown_at(fit, points, i);
+        for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
+            int step = (int)fminf(shown.left[way] * STEPS, STEPS - 1);
+            float side = fabsf(wd_v3_dot(shown.face, fit->suns[way]));
+            all[step] += (double)side;
+            lit[step] += (double)(side * wd_sun_way_lit(shown.lit, way));
+        }
+    }
+    for (int step = 0; step < STEPS; step++) {
+        if (all[step] <= 0 || lit[step] <= 0.002 * all[step] || lit[step] >= 0.998 * all[step])
+            continue;
+        double x = log((step + 0.5) / STEPS), y = log(-log(1 - lit[step] / all[step]));
+        double weight = lit[step];
+        n += weight, sx += weight * x, sy += weight * y;
+        sxx += weight * x * x, sxy += weight * x * y;
+    }
+    double spread = n * sxx - sx * sx;
+    fit->curve[1] = spread > 1e-9 * n * n ? (float)fmin(fmax((n * sxy - sx * sy) / spread, 0.5), 4) : 1;
+    fit->curve[0] = n > 0 ? (float)exp((sy - (double)fit->curve[1] * sx) / n) : 1;
+}
+
+static void send(struct fit *fit, const struct wd_tree_points *points, const uint32_t *seen)
+{
+    for (size_t i = 0; i < points->count; i++) {
+        struct shown shown = shown_at(fit, points, i);
+        for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
+            shown.left[way] = wd_crown_lit(shown.left[way], fit->curve[0], fit->curve[1]);
+        for (uint32_t eye = 0; eye < EYES; eye++)
+            if (seen[i] >> eye & 1 && points->points[i].kind & WD_POINT_LEAF)
+                send_leaf(fit, &shown, eye);
+            else if (seen[i] >> eye & 1)
+                send_wood(fit, &shown, eye);
+    }
+}
+
+static void add_sent(struct sent *sum, const struct sent *sent, float weight)
+{
+    sum->seen += weight * sent->seen;
+    sum->sides[0] += weight * sent->sides[0];
+    sum->sides[1] += weight * sent->sides[1];
+    sum->card += weight * sent->card;
+    sum->leaf += weight * sent->leaf;
+    sum->wood += weight * sent->wood;
+    sum->wood_deep += weight * sent->wood_deep;
+}
+
+/* Steps of half a turn between an eye and a way of the sun. */
+static float steps_apart(const struct eye *eye, uint32_t sun_ring, uint32_t way)
+{
+    float sun = (float)(way - WD_SUN_RING_FIRST(sun_ring)) / (float)WD_SUN_RING_COUNT(sun_ring);
+    float apart = fabsf(eye->turn - sun);
+    return 2 * (WD_SUNLIT_TURNS - 1) * fminf(apart, 1 - apart);
+}
+
+static struct sent sum_near(const struct fit *fit, uint32_t eye_ring, uint32_t sun_ring, uint32_t turn)
+{
+    struct sent sum = {0};
+    uint32_t first = WD_SUN_RING_FIRST(sun_ring), end = first + WD_SUN_RING_COUNT(sun_ring);
+    bool level = eye_ring + 1 < WD_SUN_RINGS && sun_ring + 1 < WD_SUN_RINGS;
+    for (uint32_t eye = 0; eye < EYES; eye++)
+        for (uint32_t way = first; way < end && fit->eyes[eye].ring == eye_ring; way++) {
+            float off = fabsf(steps_apart(&fit->eyes[eye], sun_ring, way) - (float)turn);
+            float weight = level ? fmaxf(1 - off, 0) : 1;
+            add_sent(&sum, &fit->sent[eye][way], weight);
+        }
+    return sum;
+}
+
+/* Where too little is seen to tell: 1. */
+static float ratio(float of, float over, float seen)
+{
+    return over > 1e-4f * seen && over > 0 ? fminf(of / over, 8) : 1;
+}
+
+void wd_tree_sunlit_fit(struct wd_tree_model *model)
+{
+    static const uint8_t any[4 * WD_LOOK_LAYERS] = {0};
+    const struct wd_point_look look = {any, 1};
+    struct wd_tree_points points;
+    struct fit *fit = wd_alloc(sizeof *fit);
+    struct wd_vec3 ways[EYES];
+    memset(fit, 0, sizeof *fit);
+    place_eyes(fit->eyes);
+    set_crown(fit, model);
+    for (uint32_t i = 0; i < WD_SUN_WAYS; i++)
+        fit->suns[i] = wd_sun_way(i);
+    for (uint32_t i = 0; i < EYES; i++)
+        ways[i] = fit->eyes[i].toward;
+    if (wd_tree_points_build(&points, &model->full, &look, POINTS)) {
+        uint32_t *seen = wd_alloc_array(points.count, sizeof *seen);
+        wd_tree_points_light(&points, &model->full);
+        wd_tree_points_open(seen, &points, &model->full, ways, EYES);
+        fit_curve(fit, &points);
+        send(fit, &points, seen);
+        free(seen);
+    }
+    memcpy(model->sun_curve, fit->curve, sizeof fit->curve);
+    wd_tree_points_finish(&points);
+    for (uint32_t k = 0; k < WD_SUNLIT_PLACES; k++) {
+        uint32_t turn = k % WD_SUNLIT_TURNS, rings = k / WD_SUNLIT_TURNS;
+        struct sent sum = sum_near(fit, rings % WD_SUN_RINGS, rings / WD_SUN_RINGS, turn);
+        model->sunlit[k][0] = ratio(sum.sides[0], sum.card, sum.seen);
+        model->sunlit[k][1] = ratio(sum.sides[1], sum.card, sum.seen);
+        model->sunlit[k][2] = ratio(sum.sides[0] + sum.sides[1], sum.leaf, sum.seen);
+        model->sunlit[k][3] = ratio(sum.wood, sum.wood_deep, sum.seen);
+    }
+    free(fit);
+}

@@ -1,0 +1,11 @@
+/* sunlit.h: the sun's light that a tree standing free sends to the eye. */
+#ifndef WD_TREE_SUNLIT_H
+#define WD_TREE_SUNLIT_H
+
+#include "tree/grow.h"
+
+/* Fills model->sunlit from what of the full mesh, which has its leaves, the eye and the sun see from 16 and
+ * from 32 sides: each leaf reflects or transmits by its own face and normal, as the path tracer's does. */
+void wd_tree_sunlit_fit(struct wd_tree_model *model);
+
+#endif
