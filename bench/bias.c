@@ -8,7 +8,6 @@
 
 #include "base/memory.h"
 #include "scene/species.h"
-#include "weald/reference.h"
 
 enum { MAX_TREES = 256, EYE_HEIGHTS = 120 /* away */ };
 
@@ -37,6 +36,8 @@ static const int tree_counts[BIAS_HEIGHTS] = {1, 4, 24, 64}; /* in a picture */
 static const int stretches[BIAS_HEIGHTS] = {1, 2, 2, 4};
 /* 64 samples a pixel of the reference: squares of pictures that are so many times as fine. */
 static const int reference_zoom[BIAS_HEIGHTS] = {4, 8, 8, 8};
+/* Path-traced with one path through the middle of each pixel, so that few leave noise. */
+static const int traced_zoom[BIAS_HEIGHTS] = {2, 4, 8, 16};
 static const int reference_shifts[BIAS_HEIGHTS] = {2, 1, 1, 1};
 static const int shifts[BIAS_HEIGHTS] = {1, 2, 4, 4}; /* squared: pictures a form */
 /* What small trees leave to chance is drawn anew in each sample of a picture, while the first samples of
@@ -143,41 +144,38 @@ static bool show(struct bias_shown *shown, struct wd_renderer *renderer,
     return true;
 }
 
-static bool trace(struct bias_shown *shown, const struct wd_forest *forest,
+static bool trace(struct bias_shown *shown, struct wd_reference *tracer,
                   const struct wd_render_params *params)
 {
-    const struct wd_reference_params reference = {0};
     const struct wd_reference_picture_params picture_params = {.camera = params->camera,
                                                                .width = params->width,
                                                                .height = params->height,
                                                                .samples = 1,
-                                                               .layers = params->layers};
-    struct wd_reference *tracer = NULL;
+                                                               .layers = params->layers,
+                                                               .places = WD_REFERENCE_MIDDLES};
     struct wd_picture picture;
-    bool ok = wd_reference_create(&tracer, forest, &reference) == WD_OK &&
-              wd_reference_render(tracer, &picture_params, &picture) == WD_OK;
-    if (ok)
-        keep_shown(shown, &picture);
-    wd_reference_destroy(&tracer);
-    return ok;
+    if (wd_reference_render(tracer, &picture_params, &picture) != WD_OK)
+        return false;
+    keep_shown(shown, &picture);
+    return true;
 }
 
-/* Layers of ids are of the middles of pixels, paths begin anywhere in them: pixels are so small
- * that few hold more than one thing. */
-bool bias_mesh_light(double *over_traced, struct wd_renderer *renderer,
-                     const struct wd_forest *forest, const struct bias_stand *stand, int view)
+bool bias_trace_radiance(double *radiance, struct wd_reference *tracer,
+                         const struct bias_stand *stand, int height, int view)
 {
-    enum { TALLEST = 0, ZOOM = 4 };
-    struct bias_shown drawn, traced;
-    struct wd_render_params params = view_of(stand, TALLEST, view, ZOOM, 0, 0, 0);
-    if (!show(&drawn, renderer, &params))
-        return false;
-    bool ok = trace(&traced, forest, &params);
-    if (ok)
-        *over_traced = drawn.radiance / fmax(traced.radiance, 1e-12);
-    free(drawn.luminance);
-    free(ok ? traced.luminance : NULL);
-    return ok;
+    double sum = 0, covered = 0;
+    for (int i = 0; i < stretches[height]; i++) {
+        struct bias_shown part;
+        struct wd_render_params params =
+            view_of(stand, height, view, traced_zoom[height], i, 0, 0);
+        if (!trace(&part, tracer, &params))
+            return false;
+        sum += part.radiance * part.covered;
+        covered += part.covered;
+        free(part.luminance);
+    }
+    *radiance = sum / fmax(covered, 1);
+    return true;
 }
 
 /* `pictures`: how many make the one that is kept; 0: this is not of it. */

@@ -1,7 +1,8 @@
-/* bias.h: how far a reduced form of trees is from their full mesh, both drawn by the renderer. */
+/* bias.h: how far a reduced form of trees is from their full mesh, both drawn by the renderer, and from the truth. */
 #ifndef WD_BENCH_BIAS_H
 #define WD_BENCH_BIAS_H
 
+#include "weald/reference.h"
 #include "weald/renderer.h"
 
 enum { BIAS_HEIGHTS = 4, BIAS_VIEWS = 2, BIAS_FORMS = 9 };
@@ -45,9 +46,9 @@ struct wd_forest *bias_forest(const struct bias_stand *stand, const struct bias_
 bool bias_show_reference(struct bias_shown *sum, struct wd_renderer *renderer,
                          const struct bias_stand *stand, int height, int view);
 
-/* Radiance of the full meshes that `renderer` holds of `forest`, over the path tracer's. */
-bool bias_mesh_light(double *over_traced, struct wd_renderer *renderer,
-                     const struct wd_forest *forest, const struct bias_stand *stand, int view);
+/* Mean radiance of the same trees by the path tracer, of a forest of full meshes. */
+bool bias_trace_radiance(double *radiance, struct wd_reference *tracer,
+                         const struct bias_stand *stand, int height, int view);
 
 /* `renderer` holds the stand in the form that is measured against the reference. */
 bool bias_measure(struct bias *bias, struct wd_renderer *renderer, const struct bias_stand *stand,

@@ -20,7 +20,6 @@ struct lod_bench {
     const struct lod_choice *choice;
     struct wd_renderer *renderer;
     struct bias_shown reference[BIAS_HEIGHTS][BIAS_VIEWS];
-    double over_traced[BIAS_VIEWS]; /* radiance of the reference, over the path tracer's */
     struct lod_worst worst;
 };
 
@@ -56,23 +55,35 @@ static bool is_measured(const struct lod_bench *bench, int form, int height)
            (form == 0 || !bench->choice->used || bias_forms[form].used[height]);
 }
 
+/* The reference's radiance is the path tracer's. */
+static bool measure_reference(struct lod_bench *bench, struct wd_forest *forest,
+                              const struct bias_stand *stand)
+{
+    const struct wd_reference_params params = {0};
+    struct wd_reference *tracer = NULL;
+    bool ok = wd_reference_create(&tracer, forest, &params) == WD_OK;
+    for (int i = 0; i < BIAS_HEIGHTS * BIAS_VIEWS && ok; i++) {
+        int height = i / BIAS_VIEWS, view = i % BIAS_VIEWS;
+        struct bias_shown *reference = &bench->reference[height][view];
+        if (is_measured(bench, 0, height))
+            ok = bias_show_reference(reference, bench->renderer, stand, height, view) &&
+                 bias_trace_radiance(&reference->radiance, tracer, stand, height, view);
+    }
+    wd_reference_destroy(&tracer);
+    return ok;
+}
+
 static bool measure_form(struct lod_bench *bench, const struct bias_stand *stand,
                          const char *species, int form)
 {
     for (int i = 0; i < BIAS_HEIGHTS * BIAS_VIEWS; i++) {
         int height = i / BIAS_VIEWS, view = i % BIAS_VIEWS;
-        struct bias_shown *reference = &bench->reference[height][view];
         struct bias bias;
         if (!is_measured(bench, form, height))
             continue;
-        if (form == 0) {
-            if (!bias_show_reference(reference, bench->renderer, stand, height, view))
-                return false;
-            continue;
-        }
-        if (!bias_measure(&bias, bench->renderer, stand, height, view, reference))
+        if (!bias_measure(&bias, bench->renderer, stand, height, view,
+                          &bench->reference[height][view]))
             return false;
-        bias.radiance_pct = 100 * ((1 + bias.radiance_pct / 100) * bench->over_traced[view] - 1);
         note(bench, species, bias_forms[form].name, height, view, &bias,
              bias_forms[form].used[height]);
     }
@@ -83,10 +94,9 @@ static bool run_form(struct lod_bench *bench, const struct bias_stand *stand, co
                      int form)
 {
     struct wd_forest *forest = bias_forest(stand, &bias_forms[form]);
-    bool ok = forest && wd_renderer_set_forest(bench->renderer, forest) == WD_OK;
-    for (int view = 0; form == 0 && view < BIAS_VIEWS && ok; view++)
-        ok = bias_mesh_light(&bench->over_traced[view], bench->renderer, forest, stand, view);
-    ok = ok && measure_form(bench, stand, species, form);
+    bool ok = forest && wd_renderer_set_forest(bench->renderer, forest) == WD_OK &&
+              (form == 0 ? measure_reference(bench, forest, stand)
+                         : measure_form(bench, stand, species, form));
     wd_renderer_set_forest(bench->renderer, NULL);
     wd_forest_destroy(&forest);
     return ok;
