@@ -452,13 +452,10 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         wd_tree tree = tree_at(pixel.surface - 1u);
         uint model_at = WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
         wd_model model = models[model_at];
-        vec2 sunlit = vec2(1.0); /* discs know more, and meshes beside them are near */
-        if (!ALL_SINGLE) {
-            wd_sunlit_mix mixed = sunlit_mix(-pixel.direction);
-            bool singly = pixel.lit >= 1.0 || pixel.material < WD_MATERIAL_LEAF;
-            mixed.place += singly ? WD_SUNLIT_PLACES : 0u;
-            sunlit = SUNLIT(models[model_at].sunlit, mixed);
-        }
+        wd_sunlit_mix mixed = sunlit_mix(-pixel.direction);
+        bool singly = pixel.lit >= 1.0 || pixel.material < WD_MATERIAL_LEAF;
+        mixed.place += singly ? WD_SUNLIT_PLACES : 0u;
+        vec2 sunlit = SUNLIT(models[model_at].sunlit, mixed);
         wd_crown crown = crown_of(tree, model);
         if (pixel.material >= WD_MATERIAL_LEAF)
             place = leaf_place(pixel, crown, model, sunlit, cascade);
