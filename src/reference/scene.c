@@ -58,24 +58,40 @@ static bool is_shown(const struct wd_trace_scene *scene, size_t index, const flo
     return wd_hash_unit(random) < wd_layer_show(fade, distance_m);
 }
 
+static void add_instance(struct wd_trace_scene *scene, size_t index, RTCScene model,
+                         const float m[12])
+{
+    RTCGeometry instance = rtcNewGeometry(scene->models->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, model);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+    rtcSetGeometryMask(instance, UINT32_MAX);
+    rtcCommitGeometry(instance);
+    rtcAttachGeometryByID(scene->top, instance, (unsigned)index);
+    rtcReleaseGeometry(instance);
+}
+
 static void place_tree(struct wd_trace_scene *scene, size_t index)
 {
     const struct wd_tree *tree = &scene->world->trees[index];
     const struct wd_trace_model *model = wd_trace_model_of(scene->models, tree);
     float m[12];
     tree_transform(scene, tree, &model->model, m);
-    if (!is_shown(scene, index, m + 9))
+    if (!is_shown(scene, index, m + 9) ||
+        wd_trace_near_add(&scene->near, model, tree, (uint32_t)index, m))
         return;
-    RTCGeometry instance = rtcNewGeometry(scene->models->device, RTC_GEOMETRY_TYPE_INSTANCE);
     RTCScene own = wd_trace_falls(model, m + 9) ? wd_trace_fall_scene(scene, tree) : NULL;
-    rtcSetGeometryInstancedScene(instance, own ? own : model->scene);
+    add_instance(scene, index, own ? own : model->scene, m);
     if (own)
         rtcReleaseScene(own); /* the instance keeps it */
-    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
-    rtcSetGeometryMask(instance, UINT32_MAX);
-    rtcCommitGeometry(instance);
-    rtcAttachGeometryByID(scene->top, instance, (unsigned)index);
-    rtcReleaseGeometry(instance);
+}
+
+static void place_near_trees(struct wd_trace_scene *scene)
+{
+    wd_trace_near_build(&scene->near, scene->models, scene->world->trees);
+    for (size_t i = 0; i < scene->near.count; i++) {
+        const struct wd_trace_near_tree *at = &scene->near.trees[i];
+        add_instance(scene, at->tree, at->model->scene, at->transform);
+    }
 }
 
 bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_models *models,
@@ -97,6 +113,7 @@ bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_mod
     rtcAttachGeometryByID(scene->top, scene->ground.geometry, (unsigned)world->tree_count);
     for (size_t i = 0; i < world->tree_count; i++)
         place_tree(scene, i);
+    place_near_trees(scene);
     rtcCommitScene(scene->top);
     enum RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_NONE)
@@ -111,7 +128,14 @@ void wd_trace_scene_finish(struct wd_trace_scene *scene)
     if (scene->top)
         rtcReleaseScene(scene->top);
     wd_trace_ground_finish(&scene->ground);
+    wd_trace_near_finish(&scene->near);
     *scene = (struct wd_trace_scene){0};
+}
+
+const struct wd_trace_model *wd_trace_scene_model(const struct wd_trace_scene *scene, uint32_t tree)
+{
+    const struct wd_trace_model *own = wd_trace_near_model(&scene->near, tree);
+    return own ? own : wd_trace_model_of(scene->models, &scene->world->trees[tree]);
 }
 
 /* --- rays ---------------------------------------------------------------------------------- */

@@ -5,6 +5,7 @@
 
 #include "reference/ground.h"
 #include "reference/models.h"
+#include "reference/near.h"
 #include "world/world.h"
 
 struct wd_trace_scene {
@@ -13,6 +14,7 @@ struct wd_trace_scene {
     const struct wd_trace_models *models;
     const struct wd_frame_uniforms *frame; /* camera, light, wind and ground colours */
     struct wd_trace_ground ground;
+    struct wd_trace_near near; /* trees in arm's reach */
     RTCScene top; /* ids: the tree's index; the ground's is world->tree_count */
 };
 
@@ -26,13 +28,16 @@ struct wd_trace_hit {
 };
 
 /* Places every tree as it stands at frame->time_s: leaning in the wind, without flutter; leaves that
- * fall are where they have come to. Layers
+ * fall are where they have come to; leaves next to the eye are the twigs that they stand for. Layers
  * that show only in part at the tree's distance show that share of their trees. All arguments must
  * outlive the result and must not move. */
 bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_models *models,
                          const struct wd_scene *description, const struct wd_world *world,
                          const struct wd_frame_uniforms *frame, const struct wd_log *log);
 void wd_trace_scene_finish(struct wd_trace_scene *scene); /* accepts {0} */
+
+/* The model that rays meet of a tree: its variant's, or its own where it is near. Thread-safe. */
+const struct wd_trace_model *wd_trace_scene_model(const struct wd_trace_scene *scene, uint32_t tree);
 
 struct wd_trace_ray {
     struct wd_vec3 from, direction; /* unit */

@@ -1,0 +1,173 @@
+#include "reference/near.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "shared/hash.h"
+#include "tree/vec.h"
+
+/* Of twigs in all. */
+enum { MOST_TRIANGLES = 1500000 };
+
+/* --- which leaves ---------------------------------------------------------------------------- */
+
+bool wd_trace_near_add(struct wd_trace_near *near, const struct wd_trace_model *model,
+                       const struct wd_tree *tree, uint32_t index, const float transform[12])
+{
+    float reach_m = WD_TREE_CROWN_M(*tree) + WD_SPRAY_NONE_M * model->grown.spray_reach;
+    const float *foot_m = transform + 9;
+    if (model->grown.spray.index_count == 0 || model->model.fall_mps > 0 ||
+        foot_m[0] * foot_m[0] + foot_m[1] * foot_m[1] > reach_m * reach_m)
+        return false;
+    struct wd_trace_near_tree *added = wd_push(near->trees, near->count, near->capacity);
+    added->tree = index;
+    memcpy(added->transform, transform, sizeof added->transform);
+    return true;
+}
+
+static struct wd_vec3 placed(const float m[12], struct wd_vec3 p)
+{
+    return WD_V3(m[0] * p.x + m[3] * p.y + m[6] * p.z + m[9],
+                 m[1] * p.x + m[4] * p.y + m[7] * p.z + m[10],
+                 m[2] * p.x + m[5] * p.y + m[8] * p.z + m[11]);
+}
+
+/* `scale`: factor on the distance up to which leaves are twigs. */
+static bool is_twig(const struct wd_trace_near_tree *at, const struct wd_tree_model *grown,
+                    uint32_t random, uint32_t leaf, float scale)
+{
+    struct wd_vec3 foot = placed(at->transform, wd_leaf_foot(grown->leaves[leaf], grown->leaf_box));
+    return wd_hash_unit(wd_hash2(leaf, random)) <
+           wd_spray_share(wd_v3_length(foot), scale * grown->spray_reach);
+}
+
+static uint64_t count_triangles(const struct wd_trace_near *near,
+                                const struct wd_trace_models *models, const struct wd_tree *trees,
+                                float scale)
+{
+    uint64_t sum = 0;
+    for (size_t i = 0; i < near->count; i++) {
+        const struct wd_trace_near_tree *at = &near->trees[i];
+        const struct wd_tree *tree = &trees[at->tree];
+        const struct wd_tree_model *grown = &wd_trace_model_of(models, tree)->grown;
+        for (uint32_t leaf = 0; leaf < grown->sets[0][WD_SET_LEAVES].leaf_count; leaf++)
+            if (is_twig(at, grown, wd_tree_random(*tree), leaf, scale))
+                sum += grown->spray.index_count / 3;
+    }
+    return sum;
+}
+
+/* --- meshes ---------------------------------------------------------------------------------- */
+
+static uint32_t tinted(uint32_t tint, uint32_t leaf)
+{
+    uint32_t product = leaf & 0xff000000u; /* openness */
+    for (int shift = 0; shift < 24; shift += 8)
+        product |= ((tint >> shift & 255u) * (leaf >> shift & 255u) + 127u) / 255u << shift;
+    return product;
+}
+
+static void add_twig(struct wd_tree_mesh *mesh, const struct wd_tree_model *grown, uint32_t leaf)
+{
+    const struct wd_tree_leaf *from = &grown->leaves[leaf];
+    const struct wd_tree_mesh *twig = &grown->spray;
+    struct wd_vec3 foot = wd_leaf_foot(*from, grown->leaf_box);
+    struct wd_vec3 shading = wd_leaf_shading(from->shading);
+    struct wd_leaf_axes axes = wd_leaf_axes_of(from->turn);
+    float size_m = wd_leaf_size_m(*from, grown->leaf_box);
+    uint32_t first = mesh->vertex_count;
+    for (uint32_t i = 0; i < twig->vertex_count; i++) {
+        struct wd_tree_vertex vertex = twig->vertices[i];
+        float n[3];
+        wd_unpack_normal(vertex.normal, n);
+        struct wd_vec3 own = wd_v3_scale(axes.across, n[0]);
+        own = wd_v3_mad(wd_v3_mad(own, axes.along, n[1]), axes.above, n[2]);
+        own = wd_v3_mix(shading, wd_v3_dot(own, shading) < 0 ? wd_v3_scale(own, -1) : own, 0.5f);
+        struct wd_vec3 place = wd_v3_mad(foot, axes.across, size_m * vertex.position_m[0]);
+        place = wd_v3_mad(place, axes.along, size_m * vertex.position_m[1]);
+        place = wd_v3_mad(place, axes.above, size_m * vertex.position_m[2]);
+        bool blade = (vertex.kind & WD_VERTEX_LEAF) != 0;
+        vertex.position_m[0] = place.x;
+        vertex.position_m[1] = place.y;
+        vertex.position_m[2] = place.z;
+        vertex.normal = wd_pack_normal((const float[3]){own.x, own.y, own.z});
+        vertex.tint = tinted(vertex.tint, blade ? from->tint : from->tint | 0xffffffu);
+        wd_tree_mesh_add_vertex(mesh, &vertex);
+    }
+    for (uint32_t i = 0; i < twig->index_count; i += 3)
+        wd_tree_mesh_add_triangle(mesh, first + twig->indices[i], first + twig->indices[i + 1],
+                                  first + twig->indices[i + 2]);
+}
+
+static void add_triangles(struct wd_tree_mesh *mesh, const uint32_t *indices, uint32_t count)
+{
+    wd_tree_mesh_reserve(mesh, 0, count);
+    memcpy(mesh->indices + mesh->index_count, indices, count * sizeof *indices);
+    mesh->index_count += count;
+}
+
+/* Leaves stand after wood in the full mesh, one after another; flowers after them. */
+static void make_mesh(struct wd_tree_mesh *mesh, const struct wd_trace_near_tree *at,
+                      const struct wd_tree_model *grown, uint32_t random, float scale)
+{
+    const struct wd_tree_mesh *full = &grown->full;
+    const struct wd_leaf_set *set = &grown->sets[0][WD_SET_LEAVES];
+    wd_tree_mesh_reserve(mesh, full->vertex_count, 0);
+    memcpy(mesh->vertices, full->vertices, full->vertex_count * sizeof *full->vertices);
+    mesh->vertex_count = full->vertex_count;
+    mesh->wood_index_count = full->wood_index_count;
+    add_triangles(mesh, full->indices, full->wood_index_count);
+    uint32_t next = full->wood_index_count;
+    for (uint32_t leaf = 0; leaf < set->leaf_count; leaf++, next += set->index_count) {
+        if (is_twig(at, grown, random, leaf, scale))
+            add_twig(mesh, grown, leaf);
+        else
+            add_triangles(mesh, full->indices + next, set->index_count);
+    }
+    add_triangles(mesh, full->indices + next, full->index_count - next);
+}
+
+void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_models *models,
+                         const struct wd_tree *trees)
+{
+    float scale = 1;
+    while (count_triangles(near, models, trees, scale) > MOST_TRIANGLES)
+        scale *= 0.9f;
+    for (size_t i = 0; i < near->count; i++) {
+        struct wd_trace_near_tree *at = &near->trees[i];
+        const struct wd_tree *tree = &trees[at->tree];
+        const struct wd_trace_model *model = wd_trace_model_of(models, tree);
+        at->model = wd_alloc(sizeof *at->model);
+        *at->model = (struct wd_trace_model){.model = model->model, .look = model->look};
+        make_mesh(&at->model->grown.full, at, &model->grown, wd_tree_random(*tree), scale);
+        wd_trace_model_build(at->model, models->device);
+    }
+}
+
+void wd_trace_near_finish(struct wd_trace_near *near)
+{
+    for (size_t i = 0; i < near->count; i++) {
+        struct wd_trace_model *model = near->trees[i].model;
+        if (model && model->scene)
+            rtcReleaseScene(model->scene);
+        if (model)
+            wd_tree_mesh_finish(&model->grown.full);
+        free(model);
+    }
+    free(near->trees);
+    *near = (struct wd_trace_near){0};
+}
+
+const struct wd_trace_model *wd_trace_near_model(const struct wd_trace_near *near, uint32_t tree)
+{
+    size_t low = 0, high = near->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (near->trees[middle].tree < tree)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < near->count && near->trees[low].tree == tree ? near->trees[low].model : NULL;
+}

@@ -1,0 +1,77 @@
+/* Leaves next to the eye are the twigs that they stand for, others are as the model has them. */
+#include "made_scene.h"
+
+#include "reference/surface.h"
+#include "tree/vec.h"
+
+static const float LEAF_M = 0.5f, TWIG_M = 0.6f, EDGE_M = 0.08f; /* heights; within the leaf's rim */
+
+/* A leaf 0.2 m wide, level, which stands for a smaller one a little higher. */
+static void make_model(struct made_scene *made, struct wd_tree_leaf *leaf)
+{
+    const struct wd_leaf_stand stand = {.position_m = {0, 0, LEAF_M},
+                                        .axis = {0, 1, 0},
+                                        .normal = {0, 0, 1},
+                                        .shading = {0, 0, 1},
+                                        .size_m = 0.2f,
+                                        .tint = 0x80ffffffu};
+    struct wd_tree_model *grown = &made->model.grown;
+    made_scene_init(made);
+    made_scene_set_look(made, 128, 128);
+    grown->leaf_box = wd_leaf_box_of(&stand, 1);
+    *leaf = wd_leaf_pack(&stand, &grown->leaf_box);
+    grown->leaves = leaf;
+    grown->leaf_count = 1;
+    grown->spray_reach = 1;
+    grown->sets[0][WD_SET_LEAVES] =
+        (struct wd_leaf_set){.corner_count = 4, .index_count = 6, .leaf_count = 1};
+    made_scene_add_quad(made, WD_V3(-0.25f, -0.25f, 0.5f), WD_V3(0.5f, 0, 0), WD_V3(0, 0.5f, 0),
+                        WD_VERTEX_LEAF);
+    grown->spray = grown->full;
+    grown->full = (struct wd_tree_mesh){0};
+    made_scene_add_quad(made, WD_V3(-0.1f, -0.1f, LEAF_M), WD_V3(0.2f, 0, 0), WD_V3(0, 0.2f, 0),
+                        WD_VERTEX_LEAF);
+}
+
+/* How high over the foot of a tree a ray from above meets it. */
+static float height_at(const struct made_scene *made, const struct wd_tree *tree, float beside_m)
+{
+    const struct wd_vec3 from = {0.001f * (float)tree->x_mm + beside_m, 0.001f * (float)tree->y_mm,
+                                 0.001f * (float)tree->z_mm + 2};
+    const struct wd_trace_ray ray = {from, {0, 0, -1}, 9};
+    struct wd_trace_hit hit = wd_trace_nearest(&made->traced, &ray);
+    if (hit.at_m >= INFINITY)
+        return 0;
+    struct wd_surface surface;
+    wd_surface_at(&surface, &made->traced, &ray, &hit, 0);
+    assert_float_equal(surface.flat.z, 1, 1e-3);
+    assert_float_equal(surface.outward.z, 1, 1e-2);
+    assert_true(surface.albedo.x > 0.2f && surface.transmittance.x == 0);
+    return 2 - hit.at_m;
+}
+
+static void leaves_by_the_eye_are_twigs(void **state)
+{
+    (void)state;
+    struct made_scene made;
+    struct wd_tree_leaf leaf;
+    make_model(&made, &leaf);
+    made_scene_add_tree(&made, 30, 0, -1);
+    made_scene_add_tree(&made, 1, 2, -1);
+    made_scene_add_tree(&made, -30, 0, -1);
+    made_scene_build(&made);
+    assert_int_equal(made.traced.near.count, 1);
+    assert_float_equal(height_at(&made, &made.trees[0], 0), LEAF_M, 1e-3);
+    assert_float_equal(height_at(&made, &made.trees[0], EDGE_M), LEAF_M, 1e-3);
+    assert_float_equal(height_at(&made, &made.trees[1], 0), TWIG_M, 1e-3);
+    assert_float_equal(height_at(&made, &made.trees[1], EDGE_M), 0, 0);
+    assert_float_equal(height_at(&made, &made.trees[2], 0), LEAF_M, 1e-3);
+    wd_tree_mesh_finish(&made.model.grown.spray);
+    made_scene_finish(&made);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(leaves_by_the_eye_are_twigs)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
