@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "shared/hash.h"
 #include "tree/density.h"
 #include "tree/import_parts.h"
 
@@ -65,8 +66,21 @@ static void add_triangle(struct wd_import_work *work, const struct wd_file_mesh 
     work->wood_corners += material->leaf ? 0 : 3;
 }
 
+/* One triangle, by lot, of each of so many equal parts of the list. */
+static size_t sample(const uint32_t *indices, size_t count, size_t target, uint32_t *kept)
+{
+    size_t all = count / 3, wanted = target / 3;
+    for (size_t i = 0; i < wanted; i++) {
+        size_t first = i * all / wanted, end = (i + 1) * all / wanted;
+        size_t pick = first + wd_hash1((uint32_t)i) % (end - first);
+        memcpy(kept + 3 * i, indices + 3 * pick, 3 * sizeof *kept);
+    }
+    return 3 * wanted;
+}
+
 /* A mesh's share of the triangles that are allowed, by shape where that suffices, by count where
- * not: loose leaves cannot be simplified. */
+ * not: loose leaves cannot be simplified. Of triangles that cross the whole model, which no grid of
+ * cells holds apart, some are left out. */
 static size_t simplify(const struct wd_import_work *work, const struct wd_file_mesh *mesh,
                        size_t most_triangles, uint32_t *kept)
 {
@@ -80,6 +94,8 @@ static size_t simplify(const struct wd_import_work *work, const struct wd_file_m
     if (count > target + target / 2)
         count = meshopt_simplifySloppy(kept, indices, mesh->index_count, positions,
                                        file->vertex_count, stride, target, 1, NULL);
+    if (count < target / 4 && target < mesh->index_count)
+        count = sample(indices, mesh->index_count, target, kept);
     return count;
 }
 

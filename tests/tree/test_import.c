@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "shared/hash.h"
 #include "tree/export.h"
 #include "tree/import.h"
 
@@ -391,7 +392,6 @@ static void a_position_that_is_no_number_is_an_error(void **state)
     free(bytes);
 }
 
-/* Their squares are infinite. */
 /* A GLB of one mesh: JSON, then nine 16-bit indices and four positions. */
 static void write_glb(const char *name, uint16_t index, int length_off)
 {
@@ -435,6 +435,34 @@ static void triangles_left_out_are_told(void **state)
     drop(result);
 }
 
+/* More triangles than are kept, each across the whole model: no two can be joined. */
+static void a_soup_of_triangles_is_thinned_out(void **state)
+{
+    (void)state;
+    enum { VERTICES = 3000, TRIANGLES = 1000000, MOST = 600000 };
+    static struct {
+        float positions[3 * VERTICES];
+        uint32_t indices[3 * TRIANGLES];
+    } soup;
+    for (uint32_t i = 0; i < 3 * VERTICES; i++)
+        soup.positions[i] = (float)(wd_hash1(i) % 10000) * 1e-3f;
+    for (uint32_t i = 0; i < 3 * TRIANGLES; i++)
+        soup.indices[i] = wd_hash1(~i) % VERTICES;
+    write_file("soup.bin", &soup, sizeof soup);
+    write_text("soup.gltf",
+               "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+               "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
+               "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3000,\"type\":\"VEC3\"},"
+               "{\"bufferView\":1,\"componentType\":5125,\"count\":3000000,\"type\":\"SCALAR\"}],"
+               "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36000},"
+               "{\"buffer\":0,\"byteOffset\":36000,\"byteLength\":12000000}],"
+               "\"buffers\":[{\"uri\":\"soup.bin\",\"byteLength\":12036000}]}");
+    struct result *result = import("soup.gltf");
+    assert_true(result->ok);
+    assert_in_range(result->import.model.full.index_count / 3, MOST * 9 / 10, MOST);
+    drop(result);
+}
+
 static void a_length_that_is_not_the_files_is_told(void **state)
 {
     (void)state;
@@ -444,6 +472,7 @@ static void a_length_that_is_not_the_files_is_told(void **state)
     expect_refusal("shorter.glb", "is malformed: its header says");
 }
 
+/* Their squares are infinite. */
 static void normals_that_are_no_direction_are_told(void **state)
 {
     (void)state;
@@ -520,6 +549,7 @@ int main(void)
         cmocka_unit_test(a_species_file_says_height_axis_and_materials),
         cmocka_unit_test(strays_are_dropped_and_told),
         cmocka_unit_test(triangles_left_out_are_told),
+        cmocka_unit_test(a_soup_of_triangles_is_thinned_out),
         cmocka_unit_test(a_length_that_is_not_the_files_is_told),
         cmocka_unit_test(what_cannot_be_is_told),
         cmocka_unit_test(a_missing_texture_is_a_warning),
