@@ -11,7 +11,7 @@ bool box_is_outside(vec3 low, vec3 high)
     bool outside;
     uint i = 0u;
     do {
-        vec4 plane = view.planes[i];
+        vec4 plane = view_block.planes[i];
         vec3 corner = mix(low, high, greaterThan(plane.xyz, vec3(0.0)));
         outside = dot(plane.xyz, corner) + plane.w < 0.0;
     } while (!outside && ++i < view.plane_count);

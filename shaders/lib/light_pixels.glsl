@@ -15,7 +15,7 @@ layout(constant_id = 2) const uint MIXED = 0u; /* tiles hold pixels with and wit
 layout(constant_id = 3) const uint RUNS = 1u;
 layout(constant_id = 4) const uint SINGLE = 0u; /* 1: all leaves are single ones */
 
-layout(scalar, set = 0, binding = 0) FRAME_BLOCK Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) FRAME_BLOCK Frame { wd_frame_uniforms frame_block; };
 layout(set = 0, binding = 1) uniform sampler2D gbuffer_albedo;
 layout(set = 0, binding = 2) uniform sampler2D gbuffer_normal;
 layout(set = 0, binding = 3) uniform usampler2D gbuffer_surface;
@@ -31,7 +31,13 @@ layout(set = 0, binding = 12) uniform sampler2D overlay;
 layout(set = 0, binding = 13) uniform sampler2DArray canopy_light;
 layout(set = 0, binding = 14) uniform sampler2D sky_map;
 layout(scalar, set = 0, binding = 15) readonly buffer Waters { float river_m[]; };
-layout(scalar, push_constant) uniform Push { wd_light_push push; };
+layout(scalar, push_constant) uniform Push { wd_light_push push_block; };
+
+/* llvmpipe reads a block once for all lanes only where all of them run, which is before any branch; within
+ * one it gathers what it reads lane by lane. */
+wd_frame_uniforms frame = frame_block;
+wd_light_push push = push_block;
+#define CASCADE_OF(member, cascade) frame_block.member[cascade] /* by lane: no copy */
 
 #define TREE_TEXELS
 #define SHADOW_DEPTH shadow_depth
@@ -97,17 +103,15 @@ vec3 pixel_radiance(ivec2 at, float water_m)
     return seen(uvec2(at), radiance, direction, distance_m, water_m, sun_share, ground_share);
 }
 
+/* No return before the end: what follows it would be within a branch. */
 void main()
 {
-    uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (index >= lists.count[LIST])
-        return;
-    index = dealt(index, lists.count[LIST]);
-    uint tile = tiles[LIST * push.tile_columns * push.tile_rows + index];
+    uint count = lists.count[LIST], index = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint tile = tiles[LIST * push.tile_columns * push.tile_rows + dealt(min(index, count - 1u), count)];
     uvec2 corner = uvec2(tile & 0xffffu, tile >> 16) * WD_TILE;
     ivec2 at = ivec2(corner + gl_LocalInvocationID.xy);
-    if (at.x >= int(frame.width) || at.y >= int(frame.height))
-        return;
+    bool mine = index < count && at.x < int(frame.width) && at.y < int(frame.height);
+    at = min(at, ivec2(frame.width, frame.height) - 1);
     float water_m = MIXED != 0u ? pixel_water_m(at) : -1.0;
     if (MIXED != 0u && (water_m > 0.0) != ((PARTS & WD_PART_WATER) != 0u))
         return;
@@ -116,6 +120,8 @@ void main()
         vec4 over = texelFetch(overlay, at, 0);
         radiance.rgb = radiance.rgb * (1.0 - over.a) + over.rgb;
     }
+    if (!mine)
+        return;
     if (frame.adds != 0u)
         radiance += imageLoad(radiance_image, at);
     imageStore(radiance_image, at, radiance);

@@ -9,7 +9,7 @@ uvec2 pyramid_size(uint level)
 
 float pyramid_at(uint level, uvec2 at)
 {
-    uint index = view.pyramid_first[level] + at.y * pyramid_size(level).x + at.x;
+    uint index = view_block.pyramid_first[level] + at.y * pyramid_size(level).x + at.x;
 #ifdef PYRAMID_TEXELS
     return texelFetch(pyramid, int(index)).x;
 #else

@@ -3,6 +3,10 @@
  * SUN_HEIGHT_AT(index). Where SHADOW_DEPTH names the same maps without comparison, penumbras widen with
  * the way from the caster. */
 
+#ifndef CASCADE_OF
+#define CASCADE_OF(member, cascade) frame.member[cascade]
+#endif
+
 /* The cascade for a distance along the view axis; WD_CASCADES beyond the last. Slices overlap by a
  * tenth, and noise picks one of both, so that no seam shows. */
 uint shadow_cascade(float axis_m, float noise)
@@ -15,7 +19,7 @@ uint shadow_cascade(float axis_m, float noise)
  * that, the tilted sheet shadows itself in stripes. */
 vec2 sheet_slope(vec3 sheet, uint cascade)
 {
-    mat4 m = frame.shadow_from_rel[cascade];
+    mat4 m = CASCADE_OF(shadow_from_rel, cascade);
     vec3 right = vec3(m[0].x, m[1].x, m[2].x), up = vec3(m[0].y, m[1].y, m[2].y);
     vec3 toward = vec3(m[0].z, m[1].z, m[2].z);
     float facing = max(dot(sheet, toward) * inversesqrt(dot(toward, toward)), 0.25);
@@ -60,11 +64,11 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
 {
     if (cascade >= WD_CASCADES || frame.shadow_taps == 0u)
         return 1.0;
-    float w = (frame.shadow_from_rel[cascade] * vec4(rel, 1.0)).w;
-    float texel_m = frame.cascade_texel_m[cascade] * w;
+    float w = (CASCADE_OF(shadow_from_rel, cascade) * vec4(rel, 1.0)).w;
+    float texel_m = CASCADE_OF(cascade_texel_m, cascade) * w;
     vec3 off = mix(normal, sheet, dot(sheet, sheet));
     vec3 from = rel + off * texel_m * 1.2 + frame.sun_direction * texel_m * 0.8;
-    vec4 clip = frame.shadow_from_rel[cascade] * vec4(from, 1.0);
+    vec4 clip = CASCADE_OF(shadow_from_rel, cascade) * vec4(from, 1.0);
     vec3 at = clip.xyz / clip.w;
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0))))
         return 1.0;
@@ -76,7 +80,7 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
 #ifdef SHADOW_DEPTH
     float sun_tan = sqrt(max(1.0 / (frame.sun_cos_radius * frame.sun_cos_radius) - 1.0, 0.0));
     bool fine = texel_m < CASTER_TEXEL_M; /* by no branch: software devices leave loops alone early */
-    float way_m = caster_m(at, cascade, frame.cascade_depth_m[cascade] * w, slope, spin,
+    float way_m = caster_m(at, cascade, CASCADE_OF(cascade_depth_m, cascade) * w, slope, spin,
                            sun_tan * CASTER_FAR_M / texel_m * texel, fine ? CASTER_PLACES : 0u);
     penumbra_m = fine ? sun_tan * way_m : penumbra_m;
 #endif

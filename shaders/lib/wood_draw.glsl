@@ -6,12 +6,15 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
 layout(constant_id = 4) const uint RUNS = 1u;
 
-layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view_block; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
 layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
 layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
 layout(set = 0, binding = 4) uniform usamplerBuffer wood;        /* wd_splat_wood */
 layout(set = 0, binding = 7, rg32ui) uniform readonly uimageBuffer drawn; /* the visibility buffer */
+
+/* Read before any branch: lib/light_pixels.glsl tells why. */
+wd_splat_view view = view_block;
 
 #include "lib/splat.glsl"
 #include "lib/dealt.glsl"

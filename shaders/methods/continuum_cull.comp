@@ -5,8 +5,8 @@
 
 layout(local_size_x = 64) in;
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) uniform View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame_block; };
+layout(scalar, set = 0, binding = 1) uniform View { wd_splat_view view_block; };
 layout(scalar, set = 0, binding = 2) readonly buffer Clusters { wd_cluster clusters[]; };
 layout(scalar, set = 0, binding = 3) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 4) writeonly buffer Visible { uint visible[]; };
@@ -14,6 +14,10 @@ layout(scalar, set = 0, binding = 4) writeonly buffer Visible { uint visible[]; 
 layout(set = 0, binding = 5) uniform samplerBuffer pyramid;
 layout(scalar, set = 0, binding = 6) readonly buffer Pages { uint pages[]; }; /* slots */
 layout(scalar, set = 0, binding = 7) buffer PutOff { uint put_off[]; };
+
+/* Read before any branch: lib/light_pixels.glsl tells why. */
+wd_frame_uniforms frame = frame_block;
+wd_splat_view view = view_block;
 
 #define PYRAMID_TEXELS
 #include "lib/frustum.glsl"

@@ -7,10 +7,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint LEVEL = 0u;
 layout(constant_id = 1) const uint TREES_ALONE = 0u; /* 1: the ground is not there yet */
 
-layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view_block; };
 layout(scalar, set = 0, binding = 1) readonly buffer Pixels { uvec2 pixels[]; };
 layout(set = 0, binding = 2) uniform sampler2D terrain_depth;
 layout(scalar, set = 0, binding = 3) buffer Pyramid { float pyramid[]; };
+
+/* Read before any branch: lib/light_pixels.glsl tells why. */
+wd_splat_view view = view_block;
 
 #include "lib/pyramid.glsl"
 
@@ -33,7 +36,7 @@ void store(uint level, uvec2 at, float depth)
 {
     uvec2 size = pyramid_size(level);
     if (at.x < size.x && at.y < size.y)
-        pyramid[view.pyramid_first[level] + at.y * size.x + at.x] = depth;
+        pyramid[view_block.pyramid_first[level] + at.y * size.x + at.x] = depth;
 }
 
 void from_pixels(uvec2 at)

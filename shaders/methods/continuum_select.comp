@@ -12,8 +12,8 @@ layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* as view.orthographic */
 layout(constant_id = 2) const uint AGAIN = 0u; /* 1: the second round, of what was put off */
 layout(constant_id = 3) const uint RUNS = 1u;
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
-layout(scalar, set = 0, binding = 1) uniform View { wd_splat_view view; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame_block; };
+layout(scalar, set = 0, binding = 1) uniform View { wd_splat_view view_block; };
 layout(scalar, set = 0, binding = 2) readonly buffer Clusters { wd_cluster clusters[]; };
 layout(scalar, set = 0, binding = 3) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 4) readonly buffer Visible { uint visible[]; };
@@ -28,6 +28,10 @@ layout(set = 0, binding = 11) uniform samplerBuffer pyramid;
 layout(set = 0, binding = 12) uniform sampler2D slopes;
 layout(scalar, set = 0, binding = 13) buffer PutOff { uint put_off[]; };
 layout(scalar, set = 0, binding = 14) readonly buffer Fades { wd_layer_fade fades[]; };
+
+/* Read before any branch: lib/light_pixels.glsl tells why. */
+wd_frame_uniforms frame = frame_block;
+wd_splat_view view = view_block;
 
 #define TREE_TEXELS
 #define PYRAMID_TEXELS

@@ -7,11 +7,15 @@
 
 layout(local_size_x = WD_TILE_THREADS) in;
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame_block; };
 layout(set = 0, binding = 1) uniform usampler2D gbuffer_surface;
 layout(set = 0, binding = 2) uniform sampler2D gbuffer_depth;
 layout(scalar, set = 0, binding = 3) buffer Tiles { wd_tile_lists lists; uint tiles[]; };
-layout(scalar, push_constant) uniform Push { wd_light_push push; };
+layout(scalar, push_constant) uniform Push { wd_light_push push_block; };
+
+/* Read before any branch: lib/light_pixels.glsl tells why. */
+wd_frame_uniforms frame = frame_block;
+wd_light_push push = push_block;
 
 #include "lib/view.glsl"
 

@@ -7,12 +7,17 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint BLOOM = 0u; /* 1: the lens spreads light */
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame_block; };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 2, rgba8) uniform writeonly image2D display_image;
 layout(scalar, set = 0, binding = 3) readonly buffer Meter { wd_meter meter; };
 layout(scalar, set = 0, binding = 4) readonly buffer Bloom { vec4 bloom[]; };
-layout(scalar, push_constant) uniform Push { wd_post_push push; };
+layout(scalar, push_constant) uniform Push { wd_post_push push_block; };
+
+/* Read before any branch: lib/light_pixels.glsl tells why. */
+wd_frame_uniforms frame = frame_block;
+wd_post_push push = push_block;
+float metered = meter.exposure;
 
 #include "lib/bloom.glsl"
 
@@ -32,7 +37,7 @@ void main()
     if (frame.view_mode == WD_MODE_LIT) {
         if (BLOOM != 0u)
             color = mix(color, spread_light(at), push.bloom);
-        float exposure = frame.exposure > 0.0 ? frame.exposure : meter.exposure;
+        float exposure = frame.exposure > 0.0 ? frame.exposure : metered;
         color = wd_tone_map(color * (exposure * push.exposure_scale));
     }
     color = clamp(color, 0.0, 1.0);
