@@ -32,23 +32,23 @@ static const struct bench_effort FULL = {
 static const struct bench_suite suites[] = {
     {"seeds", "the scenes of the seed documents, every method: time, memory, image error",
      {"guerrero", "rpi", "3dworld", "osg", "intel", "bruneton"},
-     {NULL}, BENCH_FIRST_CAMERA, BENCH_TIME | BENCH_ERROR},
-    {"scale", "a view over 10 thousand to a billion trees, and over shrubs: continuum's time and memory",
+     {NULL}, BENCH_FIRST_CAMERA, {{0}}, BENCH_TIME | BENCH_ERROR},
+    {"scale", "10 thousand to a billion trees, and a road through trees and shrubs: continuum's time and memory",
      {"scale", "road"},
      {"terrain.size_m=[485,485]", "terrain.size_m=[1530,1530]", "terrain.size_m=[4850,4850]",
       "terrain.size_m=[15300,15300]", "terrain.size_m=[48500,48500]",
       "terrain.size_m=[153000,153000]"},
-     BENCH_FIRST_CAMERA, BENCH_TIME, "continuum"},
+     BENCH_FIRST_CAMERA, {{"road", 1920, 1080}, {"9 km", 1920, 1080}}, BENCH_TIME, "continuum"},
     {"density", "one square kilometre with more and more trees: time and memory",
      {"bench75k"},
      {"layers.0.spacing_m=10", "layers.0.spacing_m=3.65", "layers.0.spacing_m=1.8"},
-     BENCH_FIRST_CAMERA, BENCH_TIME},
+     BENCH_FIRST_CAMERA, {{0}}, BENCH_TIME},
     {"quality", "every camera of two forests: image error",
      {"bench75k", "valley"},
-     {NULL}, BENCH_EVERY_CAMERA, BENCH_TIME | BENCH_ERROR, METHODS_BY_PICTURE, 2},
+     {NULL}, BENCH_EVERY_CAMERA, {{0}}, BENCH_TIME | BENCH_ERROR, METHODS_BY_PICTURE, 2},
     {"popping", "slow camera paths: how much more frames change than the truth does",
      {"bench75k", "osg"},
-     {NULL}, BENCH_EVERY_CAMERA, BENCH_TIME | BENCH_POPPING, METHODS_BY_PICTURE, 1},
+     {NULL}, BENCH_EVERY_CAMERA, {{0}}, BENCH_TIME | BENCH_POPPING, METHODS_BY_PICTURE, 1},
 };
 enum { SUITES = sizeof suites / sizeof *suites };
 
@@ -203,6 +203,19 @@ static enum wd_result measure_row(struct bench_stage *stage, const struct wd_cam
     return result;
 }
 
+const struct bench_view *bench_find_view(const struct bench_suite *suite, const char *camera)
+{
+    for (const struct bench_view *view = suite->views; view->camera; view++)
+        if (strcmp(view->camera, camera) == 0)
+            return view;
+    return NULL;
+}
+
+static bool is_measured(const struct bench_suite *suite, uint32_t index, const char *camera)
+{
+    return index == 0 || suite->cameras == BENCH_EVERY_CAMERA || bench_find_view(suite, camera);
+}
+
 static enum wd_result measure_cameras(struct bench_stage *stage)
 {
     struct bench *bench = stage->bench;
@@ -210,8 +223,8 @@ static enum wd_result measure_cameras(struct bench_stage *stage)
     const char *name;
     for (uint32_t i = 0; result == WD_OK && (name = wd_forest_camera_name(stage->forest, i)); i++) {
         struct wd_camera camera;
-        if (i > 0 && bench->suite->cameras == BENCH_FIRST_CAMERA)
-            break;
+        if (!is_measured(bench->suite, i, name))
+            continue;
         result = wd_forest_get_camera(stage->forest, name, &camera);
         for (size_t m = 0; result == WD_OK && bench->methods[m]; m++) {
             if (cli_session_interrupted(bench->session))
@@ -230,10 +243,8 @@ static bool everything_known(const struct bench *bench, const struct wd_forest *
 {
     const char *name;
     for (uint32_t i = 0; (name = wd_forest_camera_name(forest, i)); i++) {
-        if (row_missing(bench, scene, name))
+        if (is_measured(bench->suite, i, name) && row_missing(bench, scene, name))
             return false;
-        if (bench->suite->cameras == BENCH_FIRST_CAMERA)
-            break;
     }
     return true;
 }

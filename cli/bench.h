@@ -63,6 +63,8 @@ struct bench_suite {
     const char *scenes[8];   /* in scenes/, without .json */
     const char *settings[8]; /* the first scene is measured with each; none: as it is */
     enum bench_cameras { BENCH_FIRST_CAMERA, BENCH_EVERY_CAMERA } cameras;
+    /* measured beside the first camera, in scenes that have them; in full as large as this */
+    struct bench_view { const char *camera; uint32_t width, height; } views[3];
     enum bench_measures { BENCH_TIME = 1, BENCH_ERROR = 2, BENCH_POPPING = 4 } measures;
     const char *methods; /* "A,B": those measured unless others are named; NULL: all */
     double budget_s;     /* of frames, where that is less than the effort's; 0: the effort's */
@@ -96,6 +98,9 @@ bool bench_results_load(struct bench *bench);
 bool bench_results_add(struct bench *bench, const struct bench_row *row);
 const struct bench_row *bench_results_find(const struct bench *bench, const char *scene,
                                            const char *camera, const char *method);
+
+/* The view of the suite that the camera's name stands for; NULL: none. */
+const struct bench_view *bench_find_view(const struct bench_suite *suite, const char *camera);
 
 /* Measures into `*row`. WD_ERROR_INTERRUPTED when asked to stop. */
 enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_camera *camera,

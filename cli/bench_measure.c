@@ -25,8 +25,7 @@ double bench_percentile(double *values, size_t count, double share)
     return values[low] + (at - (double)low) * (values[high] - values[low]);
 }
 
-/* --- time ----------------------------------------------------------------------------------------
- */
+/* --- time --------------------------------------------------------------------------------- */
 
 static void describe_passes(const struct wd_frame_stats *stats, struct bench_row *row)
 {
@@ -77,10 +76,13 @@ enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_cam
                                   struct bench_row *row)
 {
     const struct bench_effort *effort = &stage->bench->effort;
+    const struct bench_view *view = bench_find_view(stage->bench->suite, row->camera);
+    const struct cli_options *options = stage->bench->session->options;
+    bool own_size = view && !options->quick && !options->size_px[0];
     struct wd_render_params params = {
         .camera = *camera,
-        .width = effort->width,
-        .height = effort->height,
+        .width = own_size ? view->width : effort->width,
+        .height = own_size ? view->height : effort->height,
         .samples = 1,
         .method = row->method,
     };
@@ -107,8 +109,7 @@ enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_cam
     return WD_OK;
 }
 
-/* --- truth ---------------------------------------------------------------------------------------
- */
+/* --- truth -------------------------------------------------------------------------------- */
 
 static enum wd_result open_reference(struct bench_stage *stage)
 {
@@ -158,8 +159,7 @@ enum wd_result bench_truth(struct bench_stage *stage, const char *name,
     return result;
 }
 
-/* --- image error
- * ---------------------------------------------------------------------------------- */
+/* --- image error ------------------------------------------------------------------------ */
 
 static enum wd_result compare_pictures(struct bench_stage *stage, struct wd_picture *truth,
                                        struct wd_picture *picture, struct bench_row *row)

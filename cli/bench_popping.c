@@ -34,8 +34,7 @@ struct popping {
     double step[BENCH_BOUNDARIES]; /* NaN where no tree crossed that boundary */
 };
 
-/* --- blocks
- * --------------------------------------------------------------------------------------- */
+/* --- blocks ----------------------------------------------------------------------------- */
 
 static void add_luma(const struct wd_picture *picture, const struct popping *popping, double *means)
 {
@@ -120,8 +119,7 @@ static void see_blocks(const struct wd_picture *levels, const struct popping *po
     }
 }
 
-/* --- steps
- * ---------------------------------------------------------------------------------------- */
+/* --- steps ------------------------------------------------------------------------------ */
 
 static bool popping_init(struct popping *popping, const struct bench_effort *effort)
 {
