@@ -5,7 +5,7 @@
 #include "shared/forest.h"
 #include "shared/light.h"
 
-layout(local_size_x = WD_TILE, local_size_y = WD_TILE) in;
+layout(local_size_x = WD_TILE, local_size_y_id = 5) in; /* rows at once; a thread takes every so manieth */
 
 layout(constant_id = 0) const uint PARTS = WD_PART_ALL;
 layout(constant_id = 1) const uint LIST = 0;
@@ -22,7 +22,7 @@ layout(set = 0, binding = 3) uniform usampler2D gbuffer_surface;
 layout(set = 0, binding = 4) uniform sampler2D gbuffer_depth;
 layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_map;
 layout(set = 0, binding = 6) uniform sampler2DArray shadow_depth;
-layout(scalar, set = 0, binding = 7) readonly buffer SunHeights { float sun_height_m[]; };
+layout(set = 0, binding = 7) uniform samplerBuffer sun_height_m;
 layout(set = 0, binding = 8) uniform usamplerBuffer trees; /* wd_packed_tree */
 layout(scalar, set = 0, binding = 9) readonly buffer Models { wd_model models[]; };
 layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
@@ -42,7 +42,7 @@ wd_light_push push = push_block;
 #define TREE_TEXELS
 #define SHADOW_DEPTH shadow_depth
 #define ALL_SINGLE (SINGLE != 0u)
-#define SUN_HEIGHT_AT(index) sun_height_m[index]
+#define SUN_HEIGHT_AT(index) texelFetch(sun_height_m, int(index)).x
 #define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)
 #define SKY_MAP sky_map
 
@@ -103,15 +103,10 @@ vec3 pixel_radiance(ivec2 at, float water_m)
     return seen(uvec2(at), radiance, direction, distance_m, water_m, sun_share, ground_share);
 }
 
-/* No return before the end: what follows it would be within a branch. */
-void main()
+void light_pixel(ivec2 at)
 {
-    uint count = lists.count[LIST], index = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    uint tile = tiles[LIST * push.tile_columns * push.tile_rows + dealt(min(index, count - 1u), count)];
-    uvec2 corner = uvec2(tile & 0xffffu, tile >> 16) * WD_TILE;
-    ivec2 at = ivec2(corner + gl_LocalInvocationID.xy);
-    bool mine = index < count && at.x < int(frame.width) && at.y < int(frame.height);
-    at = min(at, ivec2(frame.width, frame.height) - 1);
+    if (at.x >= int(frame.width) || at.y >= int(frame.height))
+        return;
     float water_m = MIXED != 0u ? pixel_water_m(at) : -1.0;
     if (MIXED != 0u && (water_m > 0.0) != ((PARTS & WD_PART_WATER) != 0u))
         return;
@@ -120,9 +115,23 @@ void main()
         vec4 over = texelFetch(overlay, at, 0);
         radiance.rgb = radiance.rgb * (1.0 - over.a) + over.rgb;
     }
-    if (!mine)
-        return;
     if (frame.adds != 0u)
         radiance += imageLoad(radiance_image, at);
     imageStore(radiance_image, at, radiance);
+}
+
+/* Software devices take a tile's rows one by one: what is the same for all of them is found once. */
+void main()
+{
+    uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (index >= lists.count[LIST])
+        return;
+    index = dealt(index, lists.count[LIST]);
+    uint tile = tiles[LIST * push.tile_columns * push.tile_rows + index];
+    ivec2 corner = ivec2(tile & 0xffffu, tile >> 16) * WD_TILE + ivec2(gl_LocalInvocationID.xy);
+    uint row = 0u;
+    do {
+        light_pixel(corner + ivec2(0, row));
+        row += gl_WorkGroupSize.y;
+    } while (row < WD_TILE);
 }

@@ -78,6 +78,7 @@ static bool resize(struct wd_sun_field *field, struct wd_cmd *cmd, uint32_t widt
         .name = "sun field",
         .size = (VkDeviceSize)width * height * sizeof(float),
         .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+        .texels = VK_FORMAT_R32_SFLOAT,
     };
     field->width = width;
     field->height = height;

@@ -47,15 +47,17 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
+    const uint32_t rows = gpu->software ? 1 : WD_TILE; /* of a tile at once */
     bool ok = wd_pipeline_init_compute(&pass->view, gpu, &params);
     params.bindings.count = 16;
     for (uint32_t binding = 12; binding < 15; binding++)
         params.bindings.types[binding] = IMAGE;
+    params.bindings.types[7] = TEXELS;
     params.bindings.types[15] = BUFFER;
     for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
         uint32_t parts = wd_tile_list_parts(list), wet = parts & WD_PART_WATER;
-        uint32_t constants[] = {parts & ~wet, list, wet != 0, gpu->runs, 0};
-        params.constants = (struct wd_spec_constants){5, constants};
+        uint32_t constants[] = {parts & ~wet, list, wet != 0, gpu->runs, 0, rows};
+        params.constants = (struct wd_spec_constants){6, constants};
         params.shader = wet ? (struct wd_spirv)SPIRV(light_water_comp)
                             : (struct wd_spirv)SPIRV(light_comp);
         params.bindings.types[0] = wet ? BUFFER : UNIFORM;
@@ -66,8 +68,8 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     }
     params.shader = (struct wd_spirv)SPIRV(light_water_comp);
     params.bindings.types[0] = BUFFER;
-    const uint32_t water[] = {WD_PART_ALL, WD_TILE_LISTS - 1, 1, gpu->runs};
-    params.constants = (struct wd_spec_constants){4, water};
+    const uint32_t water[] = {WD_PART_ALL, WD_TILE_LISTS - 1, 1, gpu->runs, 0, rows};
+    params.constants = (struct wd_spec_constants){6, water};
     return ok && wd_pipeline_init_compute(&pass->water, gpu, &params);
 }
 
