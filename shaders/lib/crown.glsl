@@ -9,7 +9,7 @@ struct wd_crown {
     float foot_z; /* rel */
 };
 
-wd_crown crown_of(wd_tree tree, wd_model model)
+wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
 {
     float height_m = WD_TREE_HEIGHT_M(tree), radius_m = WD_TREE_CROWN_M(tree) * 0.5;
     float base_m = model.crown_base_m * height_m / model.height_m;

@@ -24,7 +24,7 @@ layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_map;
 layout(set = 0, binding = 6) uniform sampler2DArray shadow_depth;
 layout(set = 0, binding = 7) uniform samplerBuffer sun_height_m;
 layout(set = 0, binding = 8) uniform usamplerBuffer trees; /* wd_packed_tree */
-layout(scalar, set = 0, binding = 9) readonly buffer Models { wd_model models[]; };
+layout(set = 0, binding = 9) uniform usamplerBuffer lit_models; /* wd_lit_model */
 layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
 layout(scalar, set = 0, binding = 11) readonly buffer Tiles { wd_tile_lists lists; uint tiles[]; };
 layout(set = 0, binding = 12) uniform sampler2D overlay;

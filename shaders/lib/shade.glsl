@@ -1,6 +1,6 @@
 /* Light on ground, wood and leaves. Every costly step stands here once, whatever the material:
  * software devices run both sides of a branch.
- * Expects `frame`, `push` (wd_light_push), `trees`, `models`, PARTS and the libraries of noise,
+ * Expects `frame`, `push` (wd_light_push), `trees`, `lit_models`, PARTS and the libraries of noise,
  * shadow, gbuffer, tree and crown. */
 
 const float PER_PI = 0.318309886;
@@ -175,13 +175,25 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
     return at;
 }
 
-#define SUNLIT_TURN(table, at, first)                                                              \
-    mix(unpackHalf2x16(table[(first)]), unpackHalf2x16(table[(first) + 1u]), (at).turn)
-#define SUNLIT_EYE(table, at, first)                                                               \
-    mix(SUNLIT_TURN(table, at, first), SUNLIT_TURN(table, at, (first) + WD_SUNLIT_TURNS), (at).eye)
-#define SUNLIT(table, at)                                                                          \
-    mix(SUNLIT_EYE(table, at, (at).place),                                                         \
-        SUNLIT_EYE(table, at, (at).place + WD_SUN_RINGS * WD_SUNLIT_TURNS), (at).sun)
+wd_lit_leaves lit_leaves(int model)
+{
+    vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
+    return wd_lit_leaves(a.x, a.y, a.zw, b.xyz, b.w);
+}
+
+vec2 sunlit_of_ring(uvec4 texel, wd_sunlit_mix at)
+{
+    vec2 here = mix(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y), at.turn);
+    return mix(here, mix(unpackHalf2x16(texel.z), unpackHalf2x16(texel.w), at.turn), at.eye);
+}
+
+vec2 sunlit_of(int model, wd_sunlit_mix at)
+{
+    int first = model + int(WD_LIT_LEAVES_TEXELS + at.place);
+    uvec4 low = texelFetch(lit_models, first);
+    uvec4 high = texelFetch(lit_models, first + int(WD_SUN_RINGS * WD_SUNLIT_TURNS));
+    return mix(sunlit_of_ring(low, at), sunlit_of_ring(high, at), at.sun);
+}
 
 /* Where normals spread about their mean, how far one lies along some direction varies by this, squared.
  * Of a number with mean m and variance v about (sqrt(m^2 + 2 v / pi) + m) / 2 is the mean of what is
@@ -373,7 +385,7 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint casca
 }
 
 /* A disc of a leaf is lit as the leaf that it is. */
-void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_model model, uint cascade)
+void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_leaves model, uint cascade)
 {
     if (!ALL_SINGLE && pixel.lit < 0.0)
         return;
@@ -407,7 +419,7 @@ float sward_tufts_lit()
  * map is asked, and depth along the sun says where in it how much of the light is left. Of a tree that stands
  * free the model's own table says how much of that on all of it goes to this eye: of a cloud of leaves
  * (cards, and meshes of few that stand for many), or of leaves that are lit one by one. */
-wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_model model, vec2 sunlit, uint cascade)
+wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, vec2 sunlit, uint cascade)
 {
     bool card = pixel.material == WD_MATERIAL_CARD;
     bool disc = pixel.lit >= 0.0 && pixel.lit < 1.0;
@@ -450,12 +462,13 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     wd_shelter shelter = ground_shelter(pixel);
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u) {
         wd_tree tree = tree_at(pixel.surface - 1u);
-        uint model_at = WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
-        wd_model model = models[model_at];
+        uint index = WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
+        int model_at = int(index * WD_LIT_MODEL_TEXELS);
+        wd_lit_leaves model = lit_leaves(model_at);
         wd_sunlit_mix mixed = sunlit_mix(-pixel.direction);
         bool singly = pixel.lit >= 1.0 || pixel.material < WD_MATERIAL_LEAF;
         mixed.place += singly ? WD_SUNLIT_PLACES : 0u;
-        vec2 sunlit = SUNLIT(models[model_at].sunlit, mixed);
+        vec2 sunlit = sunlit_of(model_at, mixed);
         wd_crown crown = crown_of(tree, model);
         if (pixel.material >= WD_MATERIAL_LEAF)
             place = leaf_place(pixel, crown, model, sunlit, cascade);

@@ -14,6 +14,7 @@ layout(set = 0, binding = 7) uniform sampler2DArray card_leaf;
 layout(set = 0, binding = 8) uniform sampler2DArrayShadow shadow_map;
 layout(scalar, set = 0, binding = 9) readonly buffer SunHeights { float sun_height_m[]; };
 layout(set = 0, binding = 11) uniform sampler2DArray canopy_light;
+layout(set = 0, binding = 12) uniform usamplerBuffer lit_models; /* wd_lit_model */
 layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 
 #define PARTS (WD_PART_GROUND | WD_PART_TREES)

@@ -15,7 +15,7 @@ layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_map;
 layout(set = 0, binding = 6) uniform sampler2DArray shadow_depth;
 layout(scalar, set = 0, binding = 7) readonly buffer SunHeights { float sun_height_m[]; };
 layout(set = 0, binding = 8) uniform usamplerBuffer trees; /* wd_packed_tree */
-layout(scalar, set = 0, binding = 9) readonly buffer Models { wd_model models[]; };
+layout(set = 0, binding = 9) uniform usamplerBuffer lit_models; /* wd_lit_model */
 layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 

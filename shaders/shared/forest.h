@@ -60,9 +60,6 @@ struct wd_model {
     WD_VEC3(ahead);         /* or early */
     WD_GROWTHS_STRUCT full_growth;    /* of the full mesh's leaves */
     WD_GROWTHS_STRUCT reduced_growth; /* and of the reduced one's */
-    /* Two half floats each (shared/sunlit.h): reflected and transmitted, then of single leaves and wood. */
-    uint32_t sunlit[2 * WD_SUNLIT_PLACES];
-    WD_VEC2(sun_curve); /* of wd_crown_lit */
     WD_VEC3(seen_m2); /* that the whole tree covers, seen from the sides of wd_seen_m2 */
 };
 

@@ -26,4 +26,29 @@ WD_FUNC uint32_t wd_sunlit_place(uint32_t eye_ring, uint32_t sun_ring, uint32_t 
     return (sun_ring * WD_SUN_RINGS + eye_ring) * WD_SUNLIT_TURNS + turn;
 }
 
+/* What light asks of a model, fetched as texels of four words: software devices do that for all lanes at
+ * once. */
+struct wd_lit_leaves {
+    float crown_base_m, height_m; /* as of struct wd_model */
+    WD_VEC2(sun_curve);           /* of wd_crown_lit */
+    WD_VEC3(transmittance);       /* of a leaf over its albedo, linear */
+    float roughness;              /* of leaves, the root of GGX's alpha */
+};
+
+#ifdef __STDC_VERSION__
+#define WD_LIT_LEAVES_STRUCT struct wd_lit_leaves
+#else
+#define WD_LIT_LEAVES_STRUCT wd_lit_leaves
+#endif
+
+struct wd_lit_model {
+    WD_LIT_LEAVES_STRUCT leaves;
+    /* A texel for each wd_sunlit_place, of light reflected and transmitted, then as many of single leaves and
+     * wood: two half floats of that place, of a turn on, of a ring of the eye on, and of both on. */
+    uint32_t sunlit[2 * WD_SUNLIT_PLACES * 4];
+};
+WD_STATIC_ASSERT_SIZE(wd_lit_model, 3616);
+#define WD_LIT_LEAVES_TEXELS 2u
+#define WD_LIT_MODEL_TEXELS 226u
+
 #endif

@@ -239,6 +239,23 @@ static bool make_canopy_light(struct preparation *work, struct wd_gpu *gpu)
     return ok;
 }
 
+static bool make_lit_models(struct preparation *work, struct wd_gpu *gpu)
+{
+    struct wd_forest_device *forest = work->forest;
+    size_t size = forest->model_count * sizeof(struct wd_lit_model);
+    struct wd_lit_model *lit = wd_alloc_array(forest->model_count, sizeof *lit);
+    for (uint32_t i = 0; i < forest->model_count; i++)
+        wd_variant_describe_light(&lit[i], &forest->host_models[i], &work->grown[i]);
+    const struct wd_buffer_params params = {.name = "light of models",
+                                            .size = size,
+                                            .memory = WD_MEMORY_DEVICE,
+                                            .texels = VK_FORMAT_R32G32B32A32_UINT};
+    bool ok = wd_buffer_init(&forest->lit_models, gpu, &params) &&
+              wd_buffer_upload(gpu, &forest->lit_models, 0, lit, size);
+    free(lit);
+    return ok;
+}
+
 static bool prepare(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
@@ -258,6 +275,7 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     bool ok = wd_forest_meshes_init(&forest->meshes, gpu, work->grown, forest->model_count) &&
               make_table(&forest->models, gpu, "tree models", forest->host_models,
                          forest->model_count * sizeof *forest->host_models) &&
+              make_lit_models(work, gpu) &&
               wd_looks_upload(&forest->looks, gpu, work->looks,
                               (uint32_t)params->scene->species_file_count) &&
               wd_look_details_upload(&forest->look_details, gpu, work->looks,
@@ -313,7 +331,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
 
 void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu)
 {
-    struct wd_buffer *buffers[] = {&forest->trees, &forest->models, &forest->fades,
+    struct wd_buffer *buffers[] = {&forest->trees, &forest->models, &forest->lit_models, &forest->fades,
                                    &forest->card_indices};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
                                  &forest->card_normal, &forest->card_leaf,
@@ -340,7 +358,8 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
 
 void wd_forest_device_use(struct wd_forest_device *forest, struct wd_cmd *cmd)
 {
-    struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->fades};
+    struct wd_buffer *tables[] = {&forest->trees, &forest->models, &forest->lit_models,
+                                  &forest->fades};
     struct wd_image *images[] = {&forest->looks, &forest->look_details, &forest->card_albedo,
                                  &forest->card_normal, &forest->card_leaf,
                                  &forest->canopy_light, &forest->sky};

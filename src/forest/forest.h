@@ -17,6 +17,7 @@ struct wd_forest_device {
     struct wd_buffer trees;    /* struct wd_packed_tree[], octree order, then pages; never empty */
     struct wd_pages pages;     /* of layers on demand */
     struct wd_buffer models;   /* struct wd_model[species * variants] */
+    struct wd_buffer lit_models; /* struct wd_lit_model of each */
     struct wd_buffer card_indices; /* two triangles a quad */
     uint32_t quads_a_draw;         /* of those: enough for all trees, or for WD_CARD_BATCH of them */
     struct wd_buffer fades;    /* struct wd_layer_fade[1 + layers]; [0] is that of inventories */

@@ -31,7 +31,7 @@ static const uint32_t tree_card_frag[] =
         words, sizeof words, #words                                                                \
     }
 
-enum { BINDINGS = 12 };
+enum { BINDINGS = 13 };
 
 /* A patch on the device. */
 struct resident {
@@ -69,7 +69,7 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
     params->bindings = (struct wd_bindings){
         BINDINGS,
         {uniform, buffer, buffer, buffer, image, image, buffer, image, image, buffer, buffer,
-         image}};
+         image, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
     params->push_size = sizeof(struct wd_patch_push);
     params->depth_format = WD_DEPTH_FORMAT;
     params->topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
@@ -385,6 +385,7 @@ static void draw_quads(const struct drawing *d, struct wd_binding table, uint32_
         d->light ? d->light->sun_heights : WD_BIND_BUFFER(&forest->fades),
         WD_BIND_BUFFER(&d->patch->near),
         d->light ? d->light->canopy_light : card,
+        WD_BIND_BUFFER(&forest->lit_models),
     };
     struct wd_cmd *cmd = d->draw->cmd;
     wd_cmd_bind(cmd, d->pipeline, bindings);

@@ -80,9 +80,33 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
     model->full_growth = grown->leaf_growth[0];
     model->reduced_growth = grown->leaf_growth[1];
     memcpy(model->seen_m2, grown->seen_m2, sizeof model->seen_m2);
-    memcpy(model->sun_curve, grown->sun_curve, sizeof model->sun_curve);
-    for (uint32_t k = 0; k < WD_SUNLIT_PLACES; k++) {
-        model->sunlit[k] = wd_pack_uv(grown->sunlit[k][0], grown->sunlit[k][1]);
-        model->sunlit[WD_SUNLIT_PLACES + k] = wd_pack_uv(grown->sunlit[k][2], grown->sunlit[k][3]);
+}
+
+/* The texels of two of the table's kinds. */
+static void pack_sunlit(uint32_t *texels, const struct wd_tree_model *grown, uint32_t kind)
+{
+    for (uint32_t place = 0; place < WD_SUNLIT_PLACES; place++) {
+        uint32_t turn = place % WD_SUNLIT_TURNS, ring = place / WD_SUNLIT_TURNS % WD_SUN_RINGS;
+        uint32_t turn_on = turn + 1 < WD_SUNLIT_TURNS ? 1 : 0;
+        uint32_t ring_on = ring + 1 < WD_SUN_RINGS ? WD_SUNLIT_TURNS : 0;
+        const uint32_t of[4] = {place, place + turn_on, place + ring_on, place + ring_on + turn_on};
+        for (int k = 0; k < 4; k++) {
+            const float *sunlit = &grown->sunlit[of[k]][kind];
+            texels[4 * place + k] = wd_pack_uv(sunlit[0], sunlit[1]);
+        }
     }
+}
+
+void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_model *model,
+                               const struct wd_tree_model *grown)
+{
+    lit->leaves = (struct wd_lit_leaves){
+        .crown_base_m = model->crown_base_m,
+        .height_m = model->height_m,
+        .sun_curve = {grown->sun_curve[0], grown->sun_curve[1]},
+        .transmittance = {model->transmittance[0], model->transmittance[1], model->transmittance[2]},
+        .roughness = model->roughness,
+    };
+    pack_sunlit(lit->sunlit, grown, 0);
+    pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES, grown, 2);
 }

@@ -37,7 +37,7 @@ static const struct member members[] = {
     M(wd_model, crown_base_m), M(wd_model, roughness), M(wd_model, moss),
     M(wd_model, fall_mps), M(wd_model, phase), M(wd_model, behind), M(wd_model, ahead),
     M(wd_leaf_growths, of), M(wd_model, full_growth), M(wd_model, reduced_growth),
-    M(wd_model, seen_m2), M(wd_model, sunlit), M(wd_model, sun_curve),
+    M(wd_model, seen_m2),
     M(wd_layer_fade, near_begin_m), M(wd_layer_fade, near_end_m), M(wd_layer_fade, far_begin_m),
     M(wd_layer_fade, far_end_m),
     M(wd_instance, tree), M(wd_instance, show),

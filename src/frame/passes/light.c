@@ -43,7 +43,7 @@ static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
     struct wd_compute_params params = {
         .shader = SPIRV(light_view_comp),
         .bindings = {11,
-                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, TEXELS, BUFFER,
+                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, TEXELS, TEXELS,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
@@ -167,7 +167,7 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
 /* A forest without species has no models; the slot must be filled all the same. */
 static struct wd_binding models_of(const struct wd_forest_device *forest)
 {
-    return WD_BIND_BUFFER(forest->models.buffer ? &forest->models : &forest->trees);
+    return WD_BIND_BUFFER(forest->lit_models.buffer ? &forest->lit_models : &forest->trees);
 }
 
 static bool fit_lists(struct wd_light_pass *pass, struct wd_cmd *cmd, uint64_t tiles)
