@@ -37,7 +37,6 @@ layout(scalar, push_constant) uniform Push { wd_light_push push_block; };
  * one it gathers what it reads lane by lane. */
 wd_frame_uniforms frame = frame_block;
 wd_light_push push = push_block;
-#define CASCADE_OF(member, cascade) frame_block.member[cascade] /* by lane: no copy */
 
 #define TREE_TEXELS
 #define SHADOW_DEPTH shadow_depth

@@ -334,7 +334,7 @@ void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float open
     float path_m = crown_path_m(crown, place.rel);
     float through = wd_crown_through(crown.radii_m, path_m, openness);
     place.own = mix(through, wd_crown_lit(through, curve.x, curve.y) * factor, free);
-    place.ahead_m = path_m + CASCADE_OF(cascade_texel_m, min(cascade, 3u));
+    place.ahead_m = path_m + of_cascade(frame.cascade_texel_m, min(cascade, 3u));
 }
 
 /* `mapped` of their shade is in the shadow map, which holds leaves as far as `fine` says. */
@@ -376,7 +376,7 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint casca
     }
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
     float tall_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
-    float texel_m = CASCADE_OF(cascade_texel_m, min(cascade, 3u));
+    float texel_m = of_cascade(frame.cascade_texel_m, min(cascade, 3u));
     float discs = 0.6 * crown.radii_m.x * tall_m / (pixel_m * pixel_m); /* about as many */
     float known = wd_disc_close(discs) * map_holds_leaves(cascade, 1.0);
     float ahead_m = (cascade == 0u ? 0.0 : place.ahead_m) + 0.5 + texel_m; /* its own tree is in `lit` */

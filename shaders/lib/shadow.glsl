@@ -3,9 +3,30 @@
  * SUN_HEIGHT_AT(index). Where SHADOW_DEPTH names the same maps without comparison, penumbras widen with
  * the way from the caster. */
 
-#ifndef CASCADE_OF
-#define CASCADE_OF(member, cascade) frame.member[cascade]
-#endif
+/* Of four values that of a cascade, chosen: software devices index a block lane by lane. */
+vec4 of_cascade(vec4 first, vec4 second, vec4 third, vec4 fourth, uint cascade)
+{
+    bvec4 odd = bvec4((cascade & 1u) != 0u);
+    return mix(mix(first, second, odd), mix(third, fourth, odd), bvec4(cascade > 1u));
+}
+
+float of_cascade(vec4 values, uint cascade)
+{
+    bool odd = (cascade & 1u) != 0u;
+    return mix(mix(values.x, values.y, odd), mix(values.z, values.w, odd), cascade > 1u);
+}
+
+vec4 shadow_column(uint column, uint cascade)
+{
+    return of_cascade(frame.shadow_from_rel[0][column], frame.shadow_from_rel[1][column],
+                      frame.shadow_from_rel[2][column], frame.shadow_from_rel[3][column], cascade);
+}
+
+mat4 shadow_from_rel(uint cascade)
+{
+    return mat4(shadow_column(0u, cascade), shadow_column(1u, cascade), shadow_column(2u, cascade),
+                shadow_column(3u, cascade));
+}
 
 /* The cascade for a distance along the view axis; WD_CASCADES beyond the last. Slices overlap by a
  * tenth, and noise picks one of both, so that no seam shows. */
@@ -17,9 +38,8 @@ uint shadow_cascade(float axis_m, float noise)
 
 /* How much nearer the sun a sheet is a texture coordinate to the right and up of a place on it: without
  * that, the tilted sheet shadows itself in stripes. */
-vec2 sheet_slope(vec3 sheet, uint cascade)
+vec2 sheet_slope(vec3 sheet, mat4 m)
 {
-    mat4 m = CASCADE_OF(shadow_from_rel, cascade);
     vec3 right = vec3(m[0].x, m[1].x, m[2].x), up = vec3(m[0].y, m[1].y, m[2].y);
     vec3 toward = vec3(m[0].z, m[1].z, m[2].z);
     float facing = max(dot(sheet, toward) * inversesqrt(dot(toward, toward)), 0.25);
@@ -64,23 +84,24 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
 {
     if (cascade >= WD_CASCADES || frame.shadow_taps == 0u)
         return 1.0;
-    float w = (CASCADE_OF(shadow_from_rel, cascade) * vec4(rel, 1.0)).w;
-    float texel_m = CASCADE_OF(cascade_texel_m, cascade) * w;
+    mat4 m = shadow_from_rel(cascade);
+    float w = (m * vec4(rel, 1.0)).w;
+    float texel_m = of_cascade(frame.cascade_texel_m, cascade) * w;
     vec3 off = mix(normal, sheet, dot(sheet, sheet));
     vec3 from = rel + off * texel_m * 1.2 + frame.sun_direction * texel_m * 0.8;
-    vec4 clip = CASCADE_OF(shadow_from_rel, cascade) * vec4(from, 1.0);
+    vec4 clip = m * vec4(from, 1.0);
     vec3 at = clip.xyz / clip.w;
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0))))
         return 1.0;
     float texel = 1.0 / float(textureSize(shadow_map, 0).x);
     float turn = noise * 6.2831853;
     vec2 spin = vec2(cos(turn), sin(turn));
-    vec2 slope = sheet_slope(sheet, cascade);
+    vec2 slope = sheet_slope(sheet, m);
     float penumbra_m = 0.05; /* of a caster some 10 m off */
 #ifdef SHADOW_DEPTH
     float sun_tan = sqrt(max(1.0 / (frame.sun_cos_radius * frame.sun_cos_radius) - 1.0, 0.0));
     bool fine = texel_m < CASTER_TEXEL_M; /* by no branch: software devices leave loops alone early */
-    float way_m = caster_m(at, cascade, CASCADE_OF(cascade_depth_m, cascade) * w, slope, spin,
+    float way_m = caster_m(at, cascade, of_cascade(frame.cascade_depth_m, cascade) * w, slope, spin,
                            sun_tan * CASTER_FAR_M / texel_m * texel, fine ? CASTER_PLACES : 0u);
     penumbra_m = fine ? sun_tan * way_m : penumbra_m;
 #endif
