@@ -14,9 +14,9 @@ struct mesh_corner {
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_uv; /* z: layer of the look */
 layout(location = 2) out vec4 out_tint;
-layout(location = 3) flat out uvec3 out_flat; /* surface, material (+ 4: mirrored), random of the
-                                                 triangle */
-layout(location = 4) flat out float out_show;
+layout(location = 3) flat out uvec3 out_flat; /* surface, material (+ 4: mirrored, + 8: levels are shown),
+                                                 random of the triangle */
+layout(location = 4) flat out vec4 out_sun_show; /* toward the sun; a: share of triangles that show */
 layout(location = 5) out vec4 out_place; /* camera-relative; a: share that moss covers */
 
 /* Moss keeps to the foot of the stem, to the side away from the midday sun and to what faces up. */
@@ -44,9 +44,10 @@ void tree_mesh_vertex(wd_instance instance, wd_tree tree, wd_model model, mesh_c
     out_tint = v.tint;
     out_tint.rgb *= leaf ? tree_tint(tree, model) : vec3(1.0);
     out_flat = uvec3(instance.tree + 1u, (leaf ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
-                         | (pose.mirror.x < 0.0 ? 4u : 0u),
+                         | (pose.mirror.x < 0.0 ? 4u : 0u)
+                         | (frame.view_mode == WD_MODE_LOD ? 8u : 0u),
                      wd_hash2(v.name, wd_tree_random(tree)));
-    out_show = instance.show;
+    out_sun_show = vec4(frame.sun_direction, instance.show);
     out_place = vec4(rel, leaf ? 0.0 : model.moss * moss_share(normal, offset.z));
     gl_Position = SHADOW != 0u ? shadow_clip(push.cascade, rel)
                                : frame.clip_from_rel * vec4(rel, 1.0);

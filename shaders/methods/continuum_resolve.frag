@@ -9,7 +9,7 @@
 
 layout(constant_id = 0) const uint WOOD = 0u; /* splats and wood apart */
 
-layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
+wd_frame_uniforms frame; /* what of it continuum_resolve.vert tells; no other member has a value */
 layout(set = 0, binding = 1) uniform usamplerBuffer pixels;      /* id, depth */
 layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
 layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
@@ -24,6 +24,11 @@ layout(set = 0, binding = 9) uniform usamplerBuffer lit;         /* ways that ar
 #include "lib/splat.glsl"
 #include "lib/view.glsl"
 #include "lib/disc.glsl"
+
+layout(location = 0) flat in vec4 in_right;
+layout(location = 1) flat in vec4 in_up;
+layout(location = 2) flat in vec4 in_middle;
+layout(location = 3) flat in vec3 in_sun;
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
@@ -116,8 +121,19 @@ vec4 pack_splat(wd_seen seen, vec3 normal, vec3 face, bool below, vec3 eye)
                           clamp(seen.lit, DISC_LIT_LEAST, DISC_LIT_MOST));
 }
 
+void know_frame()
+{
+    frame.rel_from_clip =
+        mat4(vec4(in_right.xyz, 0.0), vec4(in_up.xyz, 0.0), vec4(0.0), vec4(in_middle.xyz, 0.0));
+    frame.width = uint(in_right.w);
+    frame.height = uint(in_up.w);
+    frame.view_mode = uint(in_middle.w);
+    frame.sun_direction = in_sun;
+}
+
 void main()
 {
+    know_frame();
     uvec2 at = uvec2(gl_FragCoord.xy);
     uvec2 pixel = texelFetch(pixels, int(at.y * frame.width + at.x)).xy;
     if (((pixel.x & WD_ID_WOOD) != 0u) != (WOOD != 0u))

@@ -1,5 +1,6 @@
 #version 460
-/* DETAIL: full meshes near the camera, with the relief of their looks, backs of leaves, moss. */
+/* DETAIL: full meshes near the camera, with the relief of their looks, backs of leaves, moss. What of the
+ * frame is asked comes from the vertices: fragments of software devices read blocks lane by lane. */
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/hash.h"
@@ -19,7 +20,7 @@ layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_uv;
 layout(location = 2) in vec4 in_tint;
 layout(location = 3) flat in uvec3 in_flat;
-layout(location = 4) flat in float in_show;
+layout(location = 4) flat in vec4 in_sun_show;
 layout(location = 5) in vec4 in_place;
 
 layout(location = 0) out vec4 out_albedo;
@@ -52,7 +53,7 @@ void detail_leaf(inout wd_surface leaf, float near)
     vec3 face = look_face(in_place.xyz);
     wd_relief relief =
         look_relief(look_details, look_frame(face, in_place.xyz, in_uv.xy), seen_side());
-    float lit = dot(face, frame.sun_direction);
+    float lit = dot(face, in_sun_show.xyz);
     float through = mix(1.0, 2.0 * relief.rest, near * smoothstep(0.05, -0.05, lit));
     leaf.albedo *= through;
     vec3 own = dot(relief.normal, in_normal) < 0.0 ? -relief.normal : relief.normal;
@@ -75,7 +76,7 @@ vec4 pack_leaf(vec3 normal)
 {
     bool above = is_blade() && look_upper(in_uv.xy, (in_flat.y & 4u) != 0u);
     return disc_pack_seen(normal, look_face(in_place.xyz), -normalize(in_place.xyz),
-                          frame.sun_direction, above ? DISC_LEAF_ABOVE : DISC_LEAF_BELOW,
+                          in_sun_show.xyz, above ? DISC_LEAF_ABOVE : DISC_LEAF_BELOW,
                           DISC_LIT_MESH);
 }
 
@@ -83,7 +84,7 @@ void main()
 {
     /* G7: leaf by leaf: whole triangles come and go. */
     float noise = wd_hash_unit(in_flat.z);
-    if (noise >= in_show)
+    if (noise >= in_sun_show.a)
         discard;
     vec4 look = texture(looks, seen_side());
     if (look.a < WD_LOOK_CUT)
@@ -97,7 +98,7 @@ void main()
         else
             detail_wood(surface, near);
     }
-    if (frame.view_mode == WD_MODE_LOD)
+    if ((in_flat.y & 8u) != 0u)
         surface.albedo = level_color(push.level) * (0.3 + 0.7 * in_tint.a);
     out_albedo = vec4(surface.albedo, surface.openness);
     out_normal = vec4(surface.normal * 0.5 + 0.5, float(material) / 3.0);

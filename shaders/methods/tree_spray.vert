@@ -21,7 +21,7 @@ layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_uv;
 layout(location = 2) out vec4 out_tint;
 layout(location = 3) flat out uvec3 out_flat;
-layout(location = 4) flat out float out_show;
+layout(location = 4) flat out vec4 out_sun_show;
 layout(location = 5) out vec4 out_place;
 
 void main()
@@ -55,8 +55,9 @@ void main()
     out_tint = vec4(blade ? tint.rgb * leaf_tint.rgb * tree_tint(tree, model) : tint.rgb,
                     leaf_tint.a);
     out_flat = uvec3(instance.tree + 1u, (blade ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
-                                             | (pose.mirror.x < 0.0 ? 4u : 0u), 0u);
-    out_show = 1.0;
+                                             | (pose.mirror.x < 0.0 ? 4u : 0u)
+                                             | (frame.view_mode == WD_MODE_LOD ? 8u : 0u), 0u);
+    out_sun_show = vec4(frame.sun_direction, 1.0);
     out_place = vec4(tree_foot_rel(tree) + at, 0.0);
     gl_Position = frame.clip_from_rel * vec4(out_place.xyz, 1.0);
 }

@@ -27,8 +27,11 @@ static const uint32_t wood_comp[] =
 static const uint32_t wood_twice_comp[] =
 #include "continuum_wood_twice.comp.inc"
     ;
-static const uint32_t resolve_vert[] =
+static const uint32_t whole_target_vert[] =
 #include "whole_target.vert.inc"
+    ;
+static const uint32_t resolve_vert[] =
+#include "continuum_resolve.vert.inc"
     ;
 static const uint32_t depth_frag[] =
 #include "continuum_depth.frag.inc"
@@ -89,6 +92,7 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
     struct wd_graphics_params depth = params;
+    depth.vertex = (struct wd_spirv)SPIRV(whole_target_vert);
     depth.fragment = (struct wd_spirv)SPIRV(depth_frag);
     depth.bindings.count = 4;
     depth.color_writes = WD_COLORS_KEPT;
@@ -102,6 +106,7 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     }
     params.depth_compare = VK_COMPARE_OP_NEVER;
     params.depth_read_only = false;
+    params.vertex = depth.vertex;
     params.fragment = (struct wd_spirv)SPIRV(resolve_shadow_frag);
     params.constants.count = 0;
     params.bindings.count = 2;
