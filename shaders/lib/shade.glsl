@@ -84,13 +84,25 @@ struct wd_around {
     vec3 front, back;
 };
 
-wd_around light_around(vec3 normal, wd_shelter shelter, float ground_share)
+/* Of a tree that stands free: low light comes in by its sides. What its own crown leaves is a table of its
+ * model's (shared/sunlit.h). */
+struct wd_alone {
+    float share;  /* how far it stands free */
+    float beside; /* share of the sky that the ground beside its crown has */
+    vec4 lets;    /* of light from above to the side that is seen and to the other, then from below */
+};
+
+const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0));
+
+/* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. */
+wd_around light_around(vec4 facing, wd_shelter shelter, float ground_share, wd_alone alone)
 {
-    vec3 n = normal, s = frame.leaf_scatter;
+    vec3 n = facing.xyz, s = frame.leaf_scatter;
     /* Slanting rays meet more of the stand's leaves, and of the tree's own (below). */
-    float deep = min(shelter.under * UNDER_PER_LOG2, 1.0);
+    float deep = min(shelter.under * UNDER_PER_LOG2, 1.0) * (1.0 - alone.share);
     vec3 odd = mix(SKY_ODD(frame.sky_form, n), SKY_ODD(frame.sky_under, n), deep);
-    vec3 even = mix(SKY_EVEN(frame.sky_form, n), SKY_EVEN(frame.sky_under, n), deep);
+    vec3 even = mix(SKY_EVEN(frame.sky_form, n), SKY_EVEN(frame.sky_under, n), deep)
+                + frame.sky_form[6] * facing.w;
     vec4 through = exp2(frame.sky_slant * log2(shelter.through));
     vec3 level = frame.sky_quarters[0] * through.x + frame.sky_quarters[1] * through.y
                  + frame.sky_quarters[2] * through.z + frame.sky_quarters[3] * through.w;
@@ -100,7 +112,11 @@ wd_around light_around(vec3 normal, wd_shelter shelter, float ground_share)
     /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer. */
     float own = min(mean * exp2(-shelter.under), 1.0), own4 = own * own * own * own;
     float upright = 0.40 + 0.45 * own + 0.15 * own4;
-    vec3 sky = reach * exp2((s - 1.0) * log2(mean)) * mix(upright, 1.0, abs(n.z));
+    vec3 gain = exp2((s - 1.0) * log2(mean)), sky = reach * gain * mix(upright, 1.0, abs(n.z));
+    /* Half of what would reach it by being scattered has left by the crown's sides. */
+    vec3 own_gain = (0.5 + 0.5 * gain) * alone.beside;
+    vec3 sky_front = mix(sky, own_gain * alone.lets.x, alone.share);
+    vec3 sky_back = mix(sky, own_gain * alone.lets.y, alone.share);
     float rise = max(frame.sun_direction.z, 0.0);
     float longer = 0.67 / max(rise, 0.05);
     float beam = exp2(longer * log2(dot(frame.sunward, shelter.through)));
@@ -114,10 +130,15 @@ wd_around light_around(vec3 normal, wd_shelter shelter, float ground_share)
     vec3 below = mix((1.0 - s) / (1.0 + s), floor_albedo,
                      exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
     vec3 upward = below * (frame.sky_irradiance * sky + with_scattered);
+    vec3 beside = floor_albedo * (frame.sky_irradiance + sun) * alone.beside;
+    vec3 upward_front = mix(upward, beside * alone.lets.z, alone.share);
+    vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
     float up = 0.5 + 0.5 * n.z;
     wd_around around;
-    around.front = max(even + odd, vec3(0.0)) * sky + scattered * up + upward * (1.0 - up);
-    around.back = max(even - odd, vec3(0.0)) * sky + scattered * (1.0 - up) + upward * up;
+    around.front = max(even + odd, vec3(0.0)) * sky_front + scattered * up;
+    around.back = max(even - odd, vec3(0.0)) * sky_back + scattered * (1.0 - up);
+    around.front += upward_front * (1.0 - up);
+    around.back += upward_back * up;
     return around;
 }
 
@@ -156,7 +177,7 @@ float sunlit_seen(vec3 eye, wd_crown crown)
 
 /* Of a model's table (shared/sunlit.h), for this eye: where its eight entries stand, and their shares. */
 struct wd_sunlit_mix {
-    uint place;
+    uint place, eye_ring;
     float eye, sun, turn;
 };
 
@@ -168,6 +189,7 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
     uint turn = min(uint(steps), WD_SUNLIT_TURNS - 2u);
     uint eye_ring = wd_sunlit_ring(eye.z), sun_ring = wd_sunlit_ring(frame.sun_direction.z);
     wd_sunlit_mix at;
+    at.eye_ring = eye_ring & 255u;
     at.place = wd_sunlit_place(eye_ring & 255u, sun_ring & 255u, turn);
     at.eye = float(eye_ring >> 8) * (1.0 / 65535.0);
     at.sun = float(sun_ring >> 8) * (1.0 / 65535.0);
@@ -193,6 +215,15 @@ vec2 sunlit_of(int model, wd_sunlit_mix at)
     uvec4 low = texelFetch(lit_models, first);
     uvec4 high = texelFetch(lit_models, first + int(WD_SUN_RINGS * WD_SUNLIT_TURNS));
     return mix(sunlit_of_ring(low, at), sunlit_of_ring(high, at), at.sun);
+}
+
+/* `first`: of leaves or of wood. */
+vec4 skylit_of(int model, wd_sunlit_mix at, uint first)
+{
+    int place = model + int(WD_LIT_SKYLIT_TEXEL + first + at.eye_ring);
+    uvec4 texel = texelFetch(lit_models, place);
+    return mix(vec4(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y)),
+               vec4(unpackHalf2x16(texel.z), unpackHalf2x16(texel.w)), at.eye);
 }
 
 /* Where normals spread about their mean, how far one lies along some direction varies by this, squared.
@@ -273,6 +304,7 @@ vec3 sward_sheen(vec3 direction, float over, float open)
 struct wd_place {
     vec3 rel;           /* where it is taken to be */
     vec3 normal;        /* for skylight and for the shadow maps */
+    float cloud;        /* 1: that is the crown's, and the pixel shows many leaves */
     vec3 sheet;         /* normal of a leaf's side that is to the sun, where maps hold leaves; or none */
     float own;          /* share of the sun left after the tree's own leaves */
     float ahead_m;      /* how far toward the sun to go before asking the maps */
@@ -289,6 +321,7 @@ wd_place ground_place(wd_pixel pixel)
     wd_place place;
     place.rel = pixel.rel;
     place.normal = pixel.normal;
+    place.cloud = 0.0;
     place.sheet = vec3(0.0);
     place.own = 1.0;
     place.ahead_m = 0.0;
@@ -316,13 +349,26 @@ float map_holds_leaves(uint cascade, float free)
     return cascade == 0u ? 1.0 - free * smoothstep(0.04, 0.12, frame.cascade_texel_m[0]) : 0.0;
 }
 
-/* How far a tree stands free: by the sky over the ground beside its crown, toward the sun. */
-float crown_is_free(wd_crown crown)
+/* By the sky over the ground beside the crown, toward the sun. Low plants close over the ground, of which
+ * that knows nothing. */
+wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit)
 {
     vec2 beside = crown.center_rel.xy + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
     vec4 field = CANOPY_LIGHT_AT((beside + push.camera_m) * push.canopy_scale, 0.0);
-    float free = smoothstep(0.2, 0.5, dot(field, field) * 0.25);
-    return free * (1.0 - crown_is_sward(crown));
+    wd_alone alone;
+    alone.beside = dot(field, field) * 0.25;
+    alone.share = smoothstep(0.2, 0.5, alone.beside) * smoothstep(0.25, 0.35, crown.radii_m.z);
+    alone.lets.xy = skylit.xy * wd_skylit_above(openness);
+    alone.lets.zw = skylit.zw * wd_skylit_below(openness);
+    return alone;
+}
+
+/* Mean normal of the sides that leaves which lie flat rather than upright show to the eye, as models of six
+ * species have it, much the same about any crown; and how far their z spread, squared. */
+vec4 leaves_seen(vec3 eye)
+{
+    float z = 1.6 * eye.z / (1.0 + 1.3 * abs(eye.z));
+    return vec4(0.6 * eye.xy, z, max(0.45 - z * z, 0.0));
 }
 
 /* What a tree's own leaves leave of the sun, by depth in the crown, behind which the map is then asked. Of
@@ -391,6 +437,7 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
         return;
     shade_disc(place, pixel, crown, cascade);
     place.normal = pixel.normal;
+    place.cloud = 0.0;
     float cosine = dot(pixel.normal, frame.sun_direction);
     place.sides = vec2(max(cosine, 0.0), max(-cosine, 0.0));
     place.waxed = pixel.above;
@@ -398,10 +445,10 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
 }
 
 /* Wood within a crown is in its shade as leaves are. */
-wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float factor, uint cascade)
+wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, float factor,
+                    uint cascade)
 {
     wd_place place = ground_place(pixel);
-    float free = crown_is_free(crown);
     shade_by_crown(place, crown, curve, pixel.openness, free, factor, cascade);
     place.own = pixel.lit < 0.0 ? place.own : pixel.lit;
     shade_by_map(place, pixel.lit < 0.0 ? 1.0 : 0.0, map_holds_leaves(cascade, free));
@@ -419,12 +466,13 @@ float sward_tufts_lit()
  * map is asked, and depth along the sun says where in it how much of the light is left. Of a tree that stands
  * free the model's own table says how much of that on all of it goes to this eye: of a cloud of leaves
  * (cards, and meshes of few that stand for many), or of leaves that are lit one by one. */
-wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, vec2 sunlit, uint cascade)
+wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float free, vec2 sunlit,
+                    uint cascade)
 {
     bool card = pixel.material == WD_MATERIAL_CARD;
     bool disc = pixel.lit >= 0.0 && pixel.lit < 1.0;
     vec3 eye = -pixel.direction;
-    float sward = crown_is_sward(crown), free = crown_is_free(crown);
+    float sward = crown_is_sward(crown);
     float cosine = dot(eye, frame.sun_direction);
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
     float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free);
@@ -447,6 +495,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, vec2 su
     place.gloss = leaf_gloss(pixel, model.roughness, near) + WAX * 0.39;
     place.gloss = (place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
+    place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
     place.sheet = fine > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
     light_disc(place, pixel, crown, model, cascade);
@@ -460,6 +509,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     uint cascade = shadow_cascade(pixel.axis_m, noise);
     wd_place place = ground_place(pixel);
     wd_shelter shelter = ground_shelter(pixel);
+    wd_alone alone = NOT_ALONE;
+    vec4 facing = vec4(pixel.normal, 0.0);
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u) {
         wd_tree tree = tree_at(pixel.surface - 1u);
         uint index = WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
@@ -469,11 +520,16 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         bool singly = pixel.lit >= 1.0 || pixel.material < WD_MATERIAL_LEAF;
         mixed.place += singly ? WD_SUNLIT_PLACES : 0u;
         vec2 sunlit = sunlit_of(model_at, mixed);
+        vec4 skylit = skylit_of(model_at, mixed,
+                                pixel.material >= WD_MATERIAL_LEAF ? 0u : WD_SUN_RINGS);
         wd_crown crown = crown_of(tree, model);
+        alone = crown_alone(crown, pixel.openness, skylit);
         if (pixel.material >= WD_MATERIAL_LEAF)
-            place = leaf_place(pixel, crown, model, sunlit, cascade);
+            place = leaf_place(pixel, crown, model, alone.share, sunlit, cascade);
         else
-            place = wood_place(pixel, crown, model.sun_curve, sunlit.y, cascade);
+            place = wood_place(pixel, crown, model.sun_curve, alone.share, sunlit.y, cascade);
+        facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction),
+                     alone.share * place.cloud);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
     } else {
         place.own = through_sward(pixel.openness, cascade);
@@ -497,7 +553,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 transmitted = pixel.albedo * place.transmittance;
     vec3 within = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
     vec3 sunlit = within * place.sides.x + transmitted * place.sides.y + place.gloss;
-    wd_around around = light_around(place.normal, shelter, ground_share);
+    wd_around around = light_around(facing, shelter, ground_share, alone);
     /* Upright ground is where the world is cut off: before it lies bright haze, as the path tracer has it. */
     if (pixel.surface == 0u && abs(pixel.normal.z) < 0.01)
         around.front += 0.5 * frame.sky_irradiance;

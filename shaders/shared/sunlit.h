@@ -6,6 +6,23 @@
 
 #include "shared/sun_ways.h"
 
+/* How much of an even sky's light and of even ground's a model's own crown leaves to what an eye sees, by the
+ * eye's elevation (the same rings), of leaves and of wood: from above to the side that is seen and to the
+ * other, then from below. Factors on what they would have by how far they look up and by openness: */
+#define WD_SKYLIT_KINDS 4u
+#define WD_SKYLIT_PLACES 8u /* WD_SUN_RINGS of leaves, then of wood */
+
+/* What has little of the sky overhead has more of it to its sides, and more of the ground. */
+WD_FUNC float wd_skylit_above(float openness)
+{
+    return openness + 0.1f;
+}
+
+WD_FUNC float wd_skylit_below(float openness)
+{
+    return openness + 0.4f;
+}
+
 #define WD_SUNLIT_TURNS 7u
 #define WD_SUNLIT_PLACES 112u /* WD_SUN_RINGS * WD_SUN_RINGS * WD_SUNLIT_TURNS */
 /* Of leaves as a cloud: reflected and transmitted over a lit wall; of single leaves and of wood: factors on
@@ -46,9 +63,11 @@ struct wd_lit_model {
     /* A texel for each wd_sunlit_place, of light reflected and transmitted, then as many of single leaves and
      * wood: two half floats of that place, of a turn on, of a ring of the eye on, and of both on. */
     uint32_t sunlit[2 * WD_SUNLIT_PLACES * 4];
+    uint32_t skylit[WD_SKYLIT_PLACES * 4]; /* two half floats each: of a place, and of a ring on */
 };
-WD_STATIC_ASSERT_SIZE(wd_lit_model, 3616);
+WD_STATIC_ASSERT_SIZE(wd_lit_model, 3744);
 #define WD_LIT_LEAVES_TEXELS 2u
-#define WD_LIT_MODEL_TEXELS 226u
+#define WD_LIT_SKYLIT_TEXEL 226u
+#define WD_LIT_MODEL_TEXELS 234u
 
 #endif

@@ -52,6 +52,7 @@ struct wd_tree_model {
     float seen_m2[WD_GAIN_SIDES]; /* that the full mesh covers (tree/coverage.h); 0: not known yet */
     float sun_curve[2]; /* of wd_crown_lit (tree/sunlit.h); 0: not known yet */
     float sunlit[WD_SUNLIT_PLACES][WD_SUNLIT_KINDS]; /* tree/sunlit.h; 0: not known yet */
+    float skylit[WD_SKYLIT_PLACES][WD_SKYLIT_KINDS]; /* likewise */
     float spray_reach;           /* of wd_spray_share; 0 without twigs */
     struct wd_tree_mesh spray;   /* the twig that each leaf stands for (tree/leaf_spray.h), or
                                     empty where it is one leaf */

@@ -7,7 +7,7 @@
 #include "shared/crown.h"
 #include "tree/points.h"
 
-enum { POINTS = 4096, EYES = 16, STEPS = 16 };
+enum { POINTS = 4096, EYES = 16, STEPS = 16, LOW_WAYS = 8 };
 
 /* Eyes stand on the sun's rings, between its ways: seen through the same picture as lit, all that an eye
  * saw would be lit. */
@@ -31,6 +31,43 @@ static void place_eyes(struct eye eyes[EYES])
         }
 }
 
+/* From the ground, on the sun's rings but upside down: few, for they count little. */
+static const uint32_t low_on_ring[] = {3, 3, 2};
+static const float LOW_OFF = 0.11f;
+
+/* Of all ways up or down those that a ring stands for. */
+static const float ring_share[WD_SUN_RINGS] = {0.374f, 0.354f, 0.213f, 0.059f};
+static const float low_ring_share[] = {0.374f, 0.354f, 0.272f};
+
+/* A way of an even sky or even ground, and what it brings to what faces it, over what all bring to level
+ * ground. */
+struct sky_way {
+    struct wd_vec3 toward;
+    float brings;
+};
+
+static void place_sky_ways(struct sky_way ways[WD_SUN_WAYS + LOW_WAYS])
+{
+    uint32_t i = 0;
+    for (uint32_t ring = 0; ring < WD_SUN_RINGS; ring++)
+        for (uint32_t k = 0; k < WD_SUN_RING_COUNT(ring); k++, i++)
+            ways[i] = (struct sky_way){wd_sun_way(i),
+                                       2 * ring_share[ring] / (float)WD_SUN_RING_COUNT(ring)};
+    for (uint32_t ring = 0; ring < sizeof low_on_ring / sizeof low_on_ring[0]; ring++)
+        for (uint32_t k = 0; k < low_on_ring[ring]; k++, i++) {
+            float rad = 6.2831853f * ((float)k + LOW_OFF * (float)(1 + ring)) / (float)low_on_ring[ring];
+            float sine = WD_SUN_RING_SINE(ring), level = sqrtf(1 - sine * sine);
+            ways[i] = (struct sky_way){WD_V3(level * cosf(rad), level * sinf(rad), -sine),
+                                       2 * low_ring_share[ring] / (float)low_on_ring[ring]};
+        }
+}
+
+/* Light from above and from below, of a side of leaves or wood, then of the other: what comes to it, and
+ * what shared/sunlit.h would say without its table. */
+struct skylit {
+    float comes[WD_SKYLIT_KINDS], told[WD_SKYLIT_KINDS];
+};
+
 /* What all points send from one way of the sun to one eye. */
 struct sent {
     float seen;            /* area of leaves toward the eye */
@@ -44,7 +81,10 @@ struct fit {
     struct wd_vec3 suns[WD_SUN_WAYS];
     struct wd_vec3 middle_m, radii_m; /* of the crown */
     float curve[2];                   /* of wd_crown_lit */
+    struct sky_way sky[WD_SUN_WAYS + LOW_WAYS];
+    const uint32_t *low;              /* of each point, the open ways of those from below */
     struct sent sent[EYES][WD_SUN_WAYS];
+    struct skylit skylit[WD_SKYLIT_PLACES];
 };
 
 static void set_crown(struct fit *fit, const struct wd_tree_model *model)
@@ -80,7 +120,7 @@ struct shown {
     struct wd_vec3 place, face, normal; /* place: from the crown's middle */
     float openness;
     float left[WD_SUN_WAYS]; /* of the sun, by depth */
-    uint32_t lit;
+    uint32_t lit, low;
 };
 
 static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
@@ -123,12 +163,53 @@ static struct shown shown_at(const struct fit *fit, const struct wd_tree_points 
     wd_unpack_normal(point->normal, normal);
     struct shown shown = {wd_v3_sub(wd_v3_of(point->position_m), fit->middle_m), wd_v3_of(face),
                           wd_v3_of(normal), (float)(point->albedo >> 24) / 255, {0},
-                          points->lit[i]};
+                          points->lit[i], fit->low[i]};
     for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
         shown.left[way] = wd_crown_through(
             fit->radii_m, wd_crown_path_m(shown.place, fit->radii_m, fit->suns[way]),
             shown.openness);
     return shown;
+}
+
+/* Of the point's face and of its other side, as the path tracer's scatter light: about the normal, and what
+ * of that lies beyond the surface is mirrored back. */
+static struct skylit skylit_at(const struct fit *fit, const struct shown *point)
+{
+    struct skylit of = {0};
+    struct wd_vec3 n = point->normal;
+    n = wd_v3_dot(n, point->face) < 0 ? wd_v3_scale(n, -1) : n;
+    for (uint32_t i = 0; i < WD_SUN_WAYS + LOW_WAYS; i++) {
+        bool low = i >= WD_SUN_WAYS;
+        if (!(low ? point->low >> (i - WD_SUN_WAYS) & 1 : point->lit >> i & 1))
+            continue;
+        struct wd_vec3 toward = fit->sky[i].toward;
+        float rise = wd_v3_dot(point->face, toward), side = rise < 0 ? -1 : 1;
+        float along = side * wd_v3_dot(n, toward);
+        float mirrored = along - 2 * fabsf(rise) * wd_v3_dot(n, point->face);
+        of.comes[2 * low + (rise < 0)] +=
+            fit->sky[i].brings * (fmaxf(along, 0) + fmaxf(mirrored, 0));
+    }
+    float up = 0.5f + 0.5f * n.z, above = wd_skylit_above(point->openness);
+    float below = wd_skylit_below(point->openness);
+    memcpy(of.told, (float[]){up * above, (1 - up) * above, (1 - up) * below, up * below},
+           sizeof of.told);
+    return of;
+}
+
+static void send_skylight(struct fit *fit, const struct shown *point, uint32_t seen, bool wood)
+{
+    struct skylit of = skylit_at(fit, point);
+    for (uint32_t eye = 0; eye < EYES; eye++) {
+        float area = wd_v3_dot(point->face, fit->eyes[eye].toward);
+        if (!(seen >> eye & 1) || (wood && area <= 0))
+            continue;
+        struct skylit *sum = &fit->skylit[(wood ? WD_SUN_RINGS : 0) + fit->eyes[eye].ring];
+        for (uint32_t k = 0; k < WD_SKYLIT_KINDS; k++) {
+            uint32_t from = area < 0 ? k ^ 1 : k;
+            sum->comes[k] += fabsf(area) * of.comes[from];
+            sum->told[k] += fabsf(area) * of.told[from];
+        }
+    }
 }
 
 /* How many places are lit of those where depth leaves as much of the sun: 1 - exp(-a x^b), a line through
@@ -166,6 +247,7 @@ static void send(struct fit *fit, const struct wd_tree_points *points, const uin
         struct shown shown = shown_at(fit, points, i);
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
             shown.left[way] = wd_crown_lit(shown.left[way], fit->curve[0], fit->curve[1]);
+        send_skylight(fit, &shown, seen[i], !(points->points[i].kind & WD_POINT_LEAF));
         for (uint32_t eye = 0; eye < EYES; eye++)
             if (seen[i] >> eye & 1 && points->points[i].kind & WD_POINT_LEAF)
                 send_leaf(fit, &shown, eye);
@@ -219,21 +301,28 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
     const struct wd_point_look look = {any, 1};
     struct wd_tree_points points;
     struct fit *fit = wd_alloc(sizeof *fit);
-    struct wd_vec3 ways[EYES];
+    struct wd_vec3 ways[EYES], low_ways[LOW_WAYS];
     memset(fit, 0, sizeof *fit);
     place_eyes(fit->eyes);
+    place_sky_ways(fit->sky);
     set_crown(fit, model);
     for (uint32_t i = 0; i < WD_SUN_WAYS; i++)
         fit->suns[i] = wd_sun_way(i);
     for (uint32_t i = 0; i < EYES; i++)
         ways[i] = fit->eyes[i].toward;
+    for (uint32_t i = 0; i < LOW_WAYS; i++)
+        low_ways[i] = fit->sky[WD_SUN_WAYS + i].toward;
     if (wd_tree_points_build(&points, &model->full, &look, POINTS)) {
         uint32_t *seen = wd_alloc_array(points.count, sizeof *seen);
+        uint32_t *low = wd_alloc_array(points.count, sizeof *low);
+        fit->low = low;
         wd_tree_points_light(&points, &model->full);
         wd_tree_points_open(seen, &points, &model->full, ways, EYES);
+        wd_tree_points_open(low, &points, &model->full, low_ways, LOW_WAYS);
         fit_curve(fit, &points);
         send(fit, &points, seen);
         free(seen);
+        free(low);
     }
     memcpy(model->sun_curve, fit->curve, sizeof fit->curve);
     wd_tree_points_finish(&points);
@@ -244,6 +333,11 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
         model->sunlit[k][1] = ratio(sum.sides[1], sum.card, sum.seen);
         model->sunlit[k][2] = ratio(sum.sides[0] + sum.sides[1], sum.leaf, sum.seen);
         model->sunlit[k][3] = ratio(sum.wood, sum.wood_deep, sum.seen);
+    }
+    for (uint32_t k = 0; k < WD_SKYLIT_PLACES * WD_SKYLIT_KINDS; k++) {
+        uint32_t place = k / WD_SKYLIT_KINDS, kind = k % WD_SKYLIT_KINDS;
+        const struct skylit *sum = &fit->skylit[place];
+        model->skylit[place][kind] = ratio(sum->comes[kind], sum->told[kind], 0);
     }
     free(fit);
 }

@@ -97,6 +97,17 @@ static void pack_sunlit(uint32_t *texels, const struct wd_tree_model *grown, uin
     }
 }
 
+static void pack_skylit(uint32_t *texels, const struct wd_tree_model *grown)
+{
+    for (uint32_t place = 0; place < WD_SKYLIT_PLACES; place++) {
+        uint32_t ring_on = place % WD_SUN_RINGS + 1 < WD_SUN_RINGS ? 1 : 0;
+        for (uint32_t k = 0; k < 4; k++) {
+            const float *skylit = &grown->skylit[place + k / 2 * ring_on][k % 2 * 2];
+            texels[4 * place + k] = wd_pack_uv(skylit[0], skylit[1]);
+        }
+    }
+}
+
 void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_model *model,
                                const struct wd_tree_model *grown)
 {
@@ -109,4 +120,5 @@ void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_model *
     };
     pack_sunlit(lit->sunlit, grown, 0);
     pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES, grown, 2);
+    pack_skylit(lit->skylit, grown);
 }
