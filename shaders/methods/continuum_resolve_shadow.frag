@@ -1,12 +1,14 @@
 #version 460
-/* Depth of a cascade from the visibility buffer. */
-#include "shared/continuum.h"
+/* Depth of a cascade from the visibility buffer, a word a texel. */
 
-layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
-layout(scalar, set = 0, binding = 1) readonly buffer Pixels { uint depth_bits[]; };
+layout(set = 0, binding = 1) uniform usamplerBuffer pixels; /* of two words */
+
+layout(location = 0) flat in uvec2 in_row;
 
 void main()
 {
-    uvec2 at = uvec2(gl_FragCoord.xy) / view.texels;
-    gl_FragDepth = uintBitsToFloat(depth_bits[at.y * view.width + at.x]);
+    uvec2 at = uvec2(gl_FragCoord.xy) >> in_row.y;
+    uint word = at.y * in_row.x + at.x;
+    uvec2 pair = texelFetch(pixels, int(word >> 1)).xy;
+    gl_FragDepth = uintBitsToFloat((word & 1u) != 0u ? pair.y : pair.x);
 }

@@ -27,8 +27,8 @@ static const uint32_t wood_comp[] =
 static const uint32_t wood_twice_comp[] =
 #include "continuum_wood_twice.comp.inc"
     ;
-static const uint32_t whole_target_vert[] =
-#include "whole_target.vert.inc"
+static const uint32_t depth_vert[] =
+#include "continuum_depth.vert.inc"
     ;
 static const uint32_t resolve_vert[] =
 #include "continuum_resolve.vert.inc"
@@ -92,7 +92,7 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
     struct wd_graphics_params depth = params;
-    depth.vertex = (struct wd_spirv)SPIRV(whole_target_vert);
+    depth.vertex = (struct wd_spirv)SPIRV(depth_vert);
     depth.fragment = (struct wd_spirv)SPIRV(depth_frag);
     depth.bindings.count = 4;
     depth.color_writes = WD_COLORS_KEPT;
@@ -110,7 +110,6 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     params.fragment = (struct wd_spirv)SPIRV(resolve_shadow_frag);
     params.constants.count = 0;
     params.bindings.count = 2;
-    params.bindings.types[1] = BUFFER;
     params.color_count = 0;
     return wd_pipeline_init_graphics(&p->resolve_shadow, gpu, &params);
 }
