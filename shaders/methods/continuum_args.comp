@@ -11,17 +11,33 @@ layout(constant_id = 1) const uint AGAIN = 0u;
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 2) writeonly buffer Groups { wd_splat_groups groups; };
+layout(scalar, set = 0, binding = 3) buffer Lost { wd_splat_lost lost; };
 
 uint[3] groups_of(uint count)
 {
     return uint[3](min(count, 32768u), (count + 32767u) / 32768u, 1u);
 }
 
-void main()
+uint above(uint count, uint capacity)
 {
+    return count - min(count, capacity);
+}
+
+void keep_to_capacity()
+{
+    uint items = above(counts.items + counts.small_items, view.item_capacity)
+                 + above(counts.wood_items, view.item_capacity);
+    lost.trees = max(lost.trees, above(counts.trees, view.tree_capacity));
+    lost.items = max(lost.items, items);
+    counts.trees = min(counts.trees, view.tree_capacity);
     counts.items = min(counts.items, view.item_capacity);
     counts.small_items = min(counts.small_items, view.item_capacity - counts.items);
     counts.wood_items = min(counts.wood_items, view.item_capacity);
+}
+
+void main()
+{
+    keep_to_capacity();
     if (AGAIN != 0u) {
         counts.done_items = counts.items;
         counts.done_small = counts.small_items;

@@ -392,8 +392,10 @@ wd_drawn drawn_of(wd_cluster cluster)
 {
     bool paged = (cluster.count & WD_CLUSTER_PAGED) != 0u;
     float held = exp2(-2.0 * float(WD_CLUSTER_LEVEL(cluster))); /* share of trees that have records */
-    if (ORTHOGRAPHIC != 0u)
-        return wd_drawn(WD_CLUSTER_TREES, held);
+    if (ORTHOGRAPHIC != 0u) {
+        uint records = paged ? WD_CLUSTER_TREES : view.cascade_records;
+        return wd_drawn(records, held * float(records) / float(WD_CLUSTER_TREES));
+    }
     ivec3 low = ivec3(cluster.min_mm[0], cluster.min_mm[1], cluster.min_mm[2]);
     ivec3 high = ivec3(cluster.max_mm[0], cluster.max_mm[1], cluster.max_mm[2]);
     vec3 middle = rel_of_mm(low + (high - low) / 2), size_m = vec3(high - low) * 0.001;

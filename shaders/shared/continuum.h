@@ -200,6 +200,8 @@ struct wd_splat_view {
     WD_MAT4(history_from_rel);   /* clip coordinates then of what is at rel now */
     WD_VEC4(slice[WD_SPLAT_SIDES]); /* of a cascade: a, b, c of sides in clip coordinates, within which lies
                                        what may shade anything that the camera sees; 0: none */
+    uint32_t cascade_records;    /* of a cluster of stored trees, that cascades draw: all, unless the world has
+                                    more trees than a view can hold */
     uint32_t pyramid_first[WD_PYRAMID_LEVELS];
 };
 
@@ -207,6 +209,10 @@ struct wd_splat_counts {
     uint32_t clusters, trees, items, small_items, wood_items;
     uint32_t put_off;                             /* words of masks */
     uint32_t done_items, done_small, done_wood;   /* that are in the visibility buffer already */
+};
+/* What found no room there, of the view in which that was most. */
+struct wd_splat_lost {
+    uint32_t trees, items;
 };
 /* Indirect dispatches that follow from them. */
 struct wd_splat_groups {

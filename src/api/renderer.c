@@ -251,6 +251,8 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
     if (!wd_frames_wait(&frame->ring))
         return WD_ERROR_DEVICE;
     renderer->frame_ms = (wd_clock_s() - start) * 1e3 / samples;
+    if (frame->params.method->check)
+        frame->params.method->check(frame->method_state, &renderer->gpu);
     renderer->discs = 0;
     if (frame->ring.timing == WD_TIMING_ON && frame->params.method->discs)
         renderer->discs = frame->params.method->discs(frame->method_state, &renderer->gpu);

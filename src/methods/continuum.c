@@ -13,16 +13,21 @@
 
 #include "base/memory.h"
 
-/* Visible trees and items of one view: hard caps, whatever the world holds. */
-enum { MAX_TREES = 1 << 19, MAX_ITEMS = 1 << 20 };
+/* Visible trees and items of one view: hard caps, whatever the world holds. A tree for so many pixels, as far
+ * as the device can bind and ids of items reach, which have 22 bits. */
+enum { LEAST_TREES = 1 << 20, PIXELS_A_TREE = 8, ITEMS_A_TREE = 2, LEAST_ITEMS = 1 << 20,
+       MOST_TREES = (1 << 22) / ITEMS_A_TREE - 1 };
 
 struct continuum {
     struct wd_gpu *gpu;
     struct wd_continuum_pipelines pipelines;
     struct wd_continuum_forest forest;
     struct wd_buffer visible, counts, groups, trees, items, wood_items, pixels;
+    struct wd_buffer lost;    /* struct wd_splat_lost, since the forest is in use */
+    bool told_lost;
     struct wd_buffer put_off; /* uint32_t[]: see shaders/lib/put_off.glsl */
     uint32_t tree_capacity, item_capacity, cluster_capacity;
+    uint32_t most_trees; /* that any view can hold */
     struct wd_buffer pyramid; /* float[], of the camera's newest frame */
     struct wd_continuum_history history;
     struct wd_splat_view values; /* of the view being drawn */
@@ -61,6 +66,30 @@ static bool make_work(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *
     return wd_buffer_init(buffer, gpu, &params);
 }
 
+static bool make_lists(struct continuum *c, struct wd_gpu *gpu, uint32_t trees)
+{
+    uint32_t items = trees > LEAST_ITEMS / ITEMS_A_TREE ? trees * ITEMS_A_TREE : LEAST_ITEMS;
+    c->tree_capacity = trees;
+    c->item_capacity = items;
+    return make_work(&c->trees, gpu, "splat trees", trees * sizeof(struct wd_splat_tree),
+                     VK_FORMAT_R32G32B32A32_UINT) &&
+           make_work(&c->items, gpu, "splat items", items * sizeof(struct wd_splat_item),
+                     VK_FORMAT_R32G32_UINT) &&
+           make_work(&c->wood_items, gpu, "wood items", items * sizeof(struct wd_splat_item),
+                     VK_FORMAT_R32G32_UINT);
+}
+
+/* All of the world, or what the device can bind. */
+static uint32_t most_trees(const struct wd_gpu *gpu, size_t trees)
+{
+    const VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
+    uint32_t bound = limits->maxStorageBufferRange / (uint32_t)sizeof(struct wd_splat_tree);
+    uint32_t texels = limits->maxTexelBufferElements / WD_SPLAT_TREE_TEXELS;
+    uint32_t most = bound < texels ? bound : texels;
+    most = most < MOST_TREES ? most : MOST_TREES;
+    return trees < most ? (uint32_t)trees : most;
+}
+
 static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_forest_device *forest)
 {
     struct continuum *c = state;
@@ -68,10 +97,11 @@ static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_fore
     size_t trees = forest->world->tree_count + paged;
     if (!trees)
         return true;
+    const struct wd_splat_lost none = {0};
     c->device = forest;
+    c->told_lost = false;
     wd_pages_forget(&forest->pages);
-    c->tree_capacity = trees < MAX_TREES ? (uint32_t)trees : MAX_TREES;
-    c->item_capacity = MAX_ITEMS;
+    c->most_trees = most_trees(gpu, trees);
     bool ok = wd_continuum_forest_init(&c->forest, gpu, forest);
     c->cluster_capacity = c->forest.cluster_count + (uint32_t)(paged / WD_PAGE_CLUSTER);
     return ok &&
@@ -81,21 +111,18 @@ static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_fore
                      (VkDeviceSize)c->cluster_capacity * 4 * sizeof(uint32_t), VK_FORMAT_UNDEFINED) &&
            make_work(&c->counts, gpu, "splat counts", sizeof(struct wd_splat_counts),
                      VK_FORMAT_UNDEFINED) &&
+           make_work(&c->lost, gpu, "splats without room", sizeof none, VK_FORMAT_UNDEFINED) &&
+           wd_buffer_upload(gpu, &c->lost, 0, &none, sizeof none) &&
            make_work(&c->groups, gpu, "splat groups", sizeof(struct wd_splat_groups),
                      VK_FORMAT_UNDEFINED) &&
-           make_work(&c->trees, gpu, "splat trees",
-                     c->tree_capacity * sizeof(struct wd_splat_tree), VK_FORMAT_R32G32B32A32_UINT) &&
-           make_work(&c->items, gpu, "splat items",
-                     c->item_capacity * sizeof(struct wd_splat_item), VK_FORMAT_R32G32_UINT) &&
-           make_work(&c->wood_items, gpu, "wood items",
-                     c->item_capacity * sizeof(struct wd_splat_item), VK_FORMAT_R32G32_UINT);
+           make_lists(c, gpu, c->most_trees < LEAST_TREES ? c->most_trees : LEAST_TREES);
 }
 
 static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
-    struct wd_buffer *buffers[] = {&c->visible, &c->counts, &c->groups, &c->put_off,
-                                   &c->trees,   &c->items,  &c->wood_items};
+    struct wd_buffer *buffers[] = {&c->visible, &c->counts, &c->groups, &c->lost,
+                                   &c->put_off, &c->trees,  &c->items,  &c->wood_items};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
     wd_continuum_forest_finish(&c->forest, gpu);
@@ -113,6 +140,18 @@ static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_
         return true;
     wd_cmd_defer_buffer(cmd, &c->pixels);
     return make_work(&c->pixels, cmd->gpu, "visibility", size, VK_FORMAT_R32G32_UINT);
+}
+
+static bool fit_lists(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
+{
+    uint32_t trees = (uint32_t)((uint64_t)view->width * view->height / PIXELS_A_TREE);
+    trees = trees < c->most_trees ? trees : c->most_trees;
+    if (c->tree_capacity >= trees)
+        return true;
+    wd_cmd_defer_buffer(cmd, &c->trees);
+    wd_cmd_defer_buffer(cmd, &c->items);
+    wd_cmd_defer_buffer(cmd, &c->wood_items);
+    return make_lists(c, cmd->gpu, trees);
 }
 
 static bool fit_pyramid(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
@@ -204,8 +243,9 @@ static void record_args(struct continuum *c, struct wd_cmd *cmd, enum round begi
 {
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_buffer(cmd, &c->lost, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->counts),
-                                          WD_BIND_BUFFER(&c->groups)};
+                                          WD_BIND_BUFFER(&c->groups), WD_BIND_BUFFER(&c->lost)};
     wd_cmd_bind(cmd, &c->pipelines.args[begins], bindings);
     wd_cmd_dispatch(cmd, 1, 1, 1);
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_INDIRECT);
@@ -381,9 +421,10 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     wd_cmd_scope_end(cmd);
     if (draw->pass == WD_PASS_CAMERA)
         wd_near_trees_select(&c->near, draw, &near);
-    fill_view(c, draw);
-    if (!fit_pixels(c, cmd, draw->view) || !fit_pyramid(c, cmd, draw->view))
+    if (!fit_lists(c, cmd, draw->view) || !fit_pixels(c, cmd, draw->view) ||
+        !fit_pyramid(c, cmd, draw->view))
         cmd->failed = true;
+    fill_view(c, draw);
     if (cmd->failed)
         return;
     record_rounds(c, draw);
@@ -472,6 +513,21 @@ static uint64_t continuum_discs(void *state, struct wd_gpu *gpu)
     return count_splats(c, gpu, 0, many) + count_splats(c, gpu, c->item_capacity - few, few);
 }
 
+/* Once a forest: what is missing is missing from pictures like this one. */
+static void continuum_check(void *state, struct wd_gpu *gpu)
+{
+    struct continuum *c = state;
+    struct wd_splat_lost lost;
+    if (c->told_lost || !c->lost.buffer || !wd_buffer_read(gpu, &c->lost, 0, &lost, sizeof lost))
+        return;
+    c->told_lost = lost.trees || lost.items;
+    if (c->told_lost)
+        wd_warn(gpu->log,
+                "continuum: a view holds more than %u trees or %u parts of trees: %u and %u are not "
+                "drawn; a larger error bound needs fewer",
+                c->tree_capacity, c->item_capacity, lost.trees, lost.items);
+}
+
 const struct wd_method wd_method_continuum = {
     .name = "continuum",
     .on_demand = true,
@@ -487,4 +543,5 @@ const struct wd_method wd_method_continuum = {
     .draw = continuum_draw,
     .keep = continuum_keep,
     .discs = continuum_discs,
+    .check = continuum_check,
 };

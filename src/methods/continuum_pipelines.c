@@ -160,7 +160,7 @@ static bool init_args(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     for (uint32_t again = 0; again < 2; again++) {
         const uint32_t constants[] = {gpu->software ? 8 : 64, again};
         const struct wd_compute_params args = {.shader = SPIRV(args_comp),
-                                               .bindings = {3, {UNIFORM, BUFFER, BUFFER}},
+                                               .bindings = {4, {UNIFORM, BUFFER, BUFFER, BUFFER}},
                                                .constants = {2, constants}};
         if (!wd_pipeline_init_compute(&p->args[again], gpu, &args))
             return false;

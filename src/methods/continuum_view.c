@@ -103,6 +103,13 @@ struct wd_near_rule wd_continuum_near_rule(const struct wd_tree_draw *draw,
     return rule;
 }
 
+/* A cascade may hold the whole world. */
+static uint32_t cascade_records(uint32_t capacity, size_t trees)
+{
+    uint64_t records = trees ? (uint64_t)capacity * WD_CLUSTER_TREES / trees : WD_CLUSTER_TREES;
+    return records < 1 ? 1 : records < WD_CLUSTER_TREES ? (uint32_t)records : WD_CLUSTER_TREES;
+}
+
 static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw *draw)
 {
     const struct wd_view *view = draw->view;
@@ -110,6 +117,7 @@ static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw 
     values->density =
         (float)draw->forest->scene->methods.continuum.shadow_density * detail * detail;
     values->min_splats = WD_SPLAT_STRATA;
+    values->cascade_records = cascade_records(values->tree_capacity, draw->forest->world->tree_count);
     if (view->cascade > 0 && view->width % 2 == 0)
         values->texels = 2; /* these cascades hold crowns, not leaves: shaders/lib/shade.glsl */
     values->width /= values->texels;

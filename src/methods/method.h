@@ -34,6 +34,8 @@ struct wd_method {
     void (*keep)(void *state, const struct wd_tree_draw *draw);
     /* With no frame in flight: discs that the newest view of the camera was drawn with. */
     uint64_t (*discs)(void *state, struct wd_gpu *gpu);
+    /* With no frame in flight: warns of what newest frames could not hold. */
+    void (*check)(void *state, struct wd_gpu *gpu);
     /* Of methods that blend, and only when pixels show light: outside of any rendering, with the
      * camera's G-buffer complete: draws lit trees into targets->overlay, all of it. */
     void (*blend)(void *state, const struct wd_tree_draw *draw,
