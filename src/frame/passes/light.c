@@ -165,9 +165,10 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
 }
 
 /* A forest without species has no models; the slot must be filled all the same. */
-static struct wd_binding models_of(const struct wd_forest_device *forest)
+static struct wd_binding models_or_trees(const struct wd_buffer *models,
+                                         const struct wd_forest_device *forest)
 {
-    return WD_BIND_BUFFER(forest->lit_models.buffer ? &forest->lit_models : &forest->trees);
+    return WD_BIND_BUFFER(models->buffer ? models : &forest->trees);
 }
 
 static bool fit_lists(struct wd_light_pass *pass, struct wd_cmd *cmd, uint64_t tiles)
@@ -251,7 +252,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(&targets->shadow, pass->nearest),
         WD_BIND_BUFFER(&pass->sun_field.heights),
         WD_BIND_BUFFER(&params->forest->trees),
-        models_of(params->forest),
+        models_or_trees(&params->forest->lit_models, params->forest),
         WD_BIND_STORAGE_IMAGE(&targets->radiance),
         WD_BIND_BUFFER(&pass->lists),
         WD_BIND_IMAGE(push.has_overlay ? &targets->overlay : &targets->albedo, pass->nearest),
@@ -301,7 +302,7 @@ void wd_light_pass_record_velocity(struct wd_light_pass *pass, struct wd_cmd *cm
         WD_BIND_IMAGE(&targets->surface, pass->nearest),
         WD_BIND_IMAGE(&targets->depth, pass->nearest),
         WD_BIND_BUFFER(&params->forest->trees),
-        models_of(params->forest),
+        models_or_trees(&params->forest->models, params->forest),
         WD_BIND_BUFFER(velocity_px),
     };
     const struct wd_light_push push = push_of(pass, params);
