@@ -8,7 +8,7 @@
 #include "tree/vec.h"
 
 /* Of twigs in all. */
-enum { MOST_TRIANGLES = 1500000 };
+enum { MOST_TRIANGLES = 600000 };
 
 /* --- which leaves ---------------------------------------------------------------------------- */
 
@@ -42,6 +42,15 @@ static bool is_twig(const struct wd_trace_near_tree *at, const struct wd_tree_mo
            wd_spray_share(wd_v3_length(foot), scale * grown->spray_reach);
 }
 
+static uint64_t count_of(const struct wd_trace_near_tree *at, const struct wd_tree_model *grown,
+                         uint32_t random, float scale)
+{
+    uint64_t twigs = 0;
+    for (uint32_t leaf = 0; leaf < grown->sets[0][WD_SET_LEAVES].leaf_count; leaf++)
+        twigs += is_twig(at, grown, random, leaf, scale);
+    return twigs * (grown->spray.index_count / 3);
+}
+
 static uint64_t count_triangles(const struct wd_trace_near *near,
                                 const struct wd_trace_models *models, const struct wd_tree *trees,
                                 float scale)
@@ -50,10 +59,7 @@ static uint64_t count_triangles(const struct wd_trace_near *near,
     for (size_t i = 0; i < near->count; i++) {
         const struct wd_trace_near_tree *at = &near->trees[i];
         const struct wd_tree *tree = &trees[at->tree];
-        const struct wd_tree_model *grown = &wd_trace_model_of(models, tree)->grown;
-        for (uint32_t leaf = 0; leaf < grown->sets[0][WD_SET_LEAVES].leaf_count; leaf++)
-            if (is_twig(at, grown, wd_tree_random(*tree), leaf, scale))
-                sum += grown->spray.index_count / 3;
+        sum += count_of(at, &wd_trace_model_of(models, tree)->grown, wd_tree_random(*tree), scale);
     }
     return sum;
 }
@@ -138,6 +144,8 @@ void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_model
         struct wd_trace_near_tree *at = &near->trees[i];
         const struct wd_tree *tree = &trees[at->tree];
         const struct wd_trace_model *model = wd_trace_model_of(models, tree);
+        if (count_of(at, &model->grown, wd_tree_random(*tree), scale) == 0)
+            continue;
         at->model = wd_alloc(sizeof *at->model);
         *at->model = (struct wd_trace_model){.model = model->model, .look = model->look};
         make_mesh(&at->model->grown.full, at, &model->grown, wd_tree_random(*tree), scale);

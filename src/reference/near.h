@@ -8,7 +8,7 @@
 struct wd_trace_near_tree {
     uint32_t tree;                 /* index */
     float transform[12];           /* of the model into the frame of rays: columns x, y, z, translation */
-    struct wd_trace_model *model;  /* its own */
+    struct wd_trace_model *model;  /* its own; NULL where none of its leaves is near after all */
 };
 
 struct wd_trace_near {
@@ -26,7 +26,7 @@ void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_model
                          const struct wd_tree *trees);
 void wd_trace_near_finish(struct wd_trace_near *near); /* accepts {0} */
 
-/* NULL where the tree is not among them. Thread-safe. */
+/* A tree's own model, or NULL. Thread-safe. */
 const struct wd_trace_model *wd_trace_near_model(const struct wd_trace_near *near, uint32_t tree);
 
 #endif

@@ -85,12 +85,18 @@ static void place_tree(struct wd_trace_scene *scene, size_t index)
         rtcReleaseScene(own); /* the instance keeps it */
 }
 
+const struct wd_trace_model *wd_trace_scene_model(const struct wd_trace_scene *scene, uint32_t tree)
+{
+    const struct wd_trace_model *own = wd_trace_near_model(&scene->near, tree);
+    return own ? own : wd_trace_model_of(scene->models, &scene->world->trees[tree]);
+}
+
 static void place_near_trees(struct wd_trace_scene *scene)
 {
     wd_trace_near_build(&scene->near, scene->models, scene->world->trees);
     for (size_t i = 0; i < scene->near.count; i++) {
         const struct wd_trace_near_tree *at = &scene->near.trees[i];
-        add_instance(scene, at->tree, at->model->scene, at->transform);
+        add_instance(scene, at->tree, wd_trace_scene_model(scene, at->tree)->scene, at->transform);
     }
 }
 
@@ -130,12 +136,6 @@ void wd_trace_scene_finish(struct wd_trace_scene *scene)
     wd_trace_ground_finish(&scene->ground);
     wd_trace_near_finish(&scene->near);
     *scene = (struct wd_trace_scene){0};
-}
-
-const struct wd_trace_model *wd_trace_scene_model(const struct wd_trace_scene *scene, uint32_t tree)
-{
-    const struct wd_trace_model *own = wd_trace_near_model(&scene->near, tree);
-    return own ? own : wd_trace_model_of(scene->models, &scene->world->trees[tree]);
 }
 
 /* --- rays ---------------------------------------------------------------------------------- */
