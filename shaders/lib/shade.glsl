@@ -84,15 +84,37 @@ struct wd_around {
     vec3 front, back;
 };
 
+/* Irradiance of level ground that has these shares of the sky's quarters. */
+vec3 sky_level(vec4 through)
+{
+    return frame.sky_quarters[0] * through.x + frame.sky_quarters[1] * through.y
+           + frame.sky_quarters[2] * through.z + frame.sky_quarters[3] * through.w;
+}
+
+/* How much of the light of each quarter (east, north, west, south) a face has that looks this way. */
+vec4 faced_quarters(vec2 n)
+{
+    return 0.5 + 0.5 * vec4(n, -n);
+}
+
+/* Share of its sky's light that a face has where level ground has such shares of the quarters. What
+ * stands before a quarter leaves its high part: of a horizon at angle h ground keeps cos^2 h, an upright face
+ * 1 - (2 h + sin 2h) / pi, which is this within 0.03. `flat_on`: how level the face is. */
+vec3 sky_faced(vec4 through, vec4 faced, float flat_on)
+{
+    vec4 upright = through * (1.0 - sqrt(max(1.0 - through, 0.0)));
+    return sky_level(mix(upright, through, flat_on) * faced) / max(sky_level(faced), vec3(1e-12));
+}
+
 /* Of a tree that stands free: low light comes in by its sides. What its own crown leaves is a table of its
  * model's (shared/sunlit.h). */
 struct wd_alone {
     float share;  /* how far it stands free */
-    float beside; /* share of the sky that the ground beside its crown has */
+    vec4 beside;  /* shares of the sky's quarters that the ground beside its crown has */
     vec4 lets;    /* of light from above to the side that is seen and to the other, then from below */
 };
 
-const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0));
+const wd_alone NOT_ALONE = wd_alone(0.0, vec4(0.0), vec4(0.0));
 
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. */
 wd_around light_around(vec4 facing, wd_shelter shelter, float ground_share, wd_alone alone)
@@ -104,9 +126,7 @@ wd_around light_around(vec4 facing, wd_shelter shelter, float ground_share, wd_a
     vec3 even = mix(SKY_EVEN(frame.sky_form, n), SKY_EVEN(frame.sky_under, n), deep)
                 + frame.sky_form[6] * facing.w;
     vec4 through = exp2(frame.sky_slant * log2(shelter.through));
-    vec3 level = frame.sky_quarters[0] * through.x + frame.sky_quarters[1] * through.y
-                 + frame.sky_quarters[2] * through.z + frame.sky_quarters[3] * through.w;
-    vec3 reach = level / max(frame.sky_irradiance, vec3(1e-12))
+    vec3 reach = sky_level(through) / max(frame.sky_irradiance, vec3(1e-12))
                  * mix(vec3(1.0), frame.sky_under_tint, deep);
     float mean = dot(shelter.through, vec4(0.25));
     /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer. */
@@ -114,9 +134,13 @@ wd_around light_around(vec4 facing, wd_shelter shelter, float ground_share, wd_a
     float upright = 0.40 + 0.45 * own + 0.15 * own4;
     vec3 gain = exp2((s - 1.0) * log2(mean)), sky = reach * gain * mix(upright, 1.0, abs(n.z));
     /* Half of what would reach it by being scattered has left by the crown's sides. */
-    vec3 own_gain = (0.5 + 0.5 * gain) * alone.beside;
-    vec3 sky_front = mix(sky, own_gain * alone.lets.x, alone.share);
-    vec3 sky_back = mix(sky, own_gain * alone.lets.y, alone.share);
+    vec3 own_gain = 0.5 + 0.5 * gain;
+    vec4 faced = faced_quarters(n.xy);
+    float flat_on = min(sqrt(n.z * n.z + facing.w), 1.0);
+    vec3 beside_front = own_gain * sky_faced(alone.beside, faced, flat_on);
+    vec3 beside_back = own_gain * sky_faced(alone.beside, 1.0 - faced, flat_on);
+    vec3 sky_front = mix(sky, beside_front * alone.lets.x, alone.share);
+    vec3 sky_back = mix(sky, beside_back * alone.lets.y, alone.share);
     float rise = max(frame.sun_direction.z, 0.0);
     float longer = 0.67 / max(rise, 0.05);
     float beam = exp2(longer * log2(dot(frame.sunward, shelter.through)));
@@ -130,7 +154,7 @@ wd_around light_around(vec4 facing, wd_shelter shelter, float ground_share, wd_a
     vec3 below = mix((1.0 - s) / (1.0 + s), floor_albedo,
                      exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
     vec3 upward = below * (frame.sky_irradiance * sky + with_scattered);
-    vec3 beside = floor_albedo * (frame.sky_irradiance + sun) * alone.beside;
+    vec3 beside = floor_albedo * (sky_level(alone.beside) + sun);
     vec3 upward_front = mix(upward, beside * alone.lets.z, alone.share);
     vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
     float up = 0.5 + 0.5 * n.z;
@@ -349,15 +373,17 @@ float map_holds_leaves(uint cascade, float free)
     return cascade == 0u ? 1.0 - free * smoothstep(0.04, 0.12, frame.cascade_texel_m[0]) : 0.0;
 }
 
-/* By the sky over the ground beside the crown, toward the sun. Low plants close over the ground, of which
- * that knows nothing. */
+/* By the sky over the ground beside the crown: each quarter where the crown is not before it. Low plants
+ * close over the ground, of which that knows nothing. */
 wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit)
 {
-    vec2 beside = crown.center_rel.xy + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
-    vec4 field = CANOPY_LIGHT_AT((beside + push.camera_m) * push.canopy_scale, 0.0);
+    vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(1.1 * crown.radii_m.x);
+    vec4 field = vec4(CANOPY_LIGHT_AT((center + corner) * push.canopy_scale, 0.0).xy,
+                      CANOPY_LIGHT_AT((center - corner) * push.canopy_scale, 0.0).zw);
     wd_alone alone;
-    alone.beside = dot(field, field) * 0.25;
-    alone.share = smoothstep(0.2, 0.5, alone.beside) * smoothstep(0.25, 0.35, crown.radii_m.z);
+    alone.beside = field * field;
+    alone.share = smoothstep(0.2, 0.5, dot(frame.sunward, alone.beside))
+                  * smoothstep(0.25, 0.35, crown.radii_m.z);
     alone.lets.xy = skylit.xy * wd_skylit_above(openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(openness);
     return alone;
