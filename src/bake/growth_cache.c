@@ -47,7 +47,7 @@ uint64_t wd_species_key(const struct wd_species *species)
     if (species->model.file || species->imported)
         return 0;
     memcpy(&values, species, sizeof values);
-    values.name = values.latin = values.citation = NULL;
+    values.name = values.path = values.latin = values.citation = NULL;
     values.allometry.source = values.growth.source = NULL;
     values.habitat.region = NULL;
     values.orders = NULL;

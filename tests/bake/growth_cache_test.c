@@ -153,6 +153,20 @@ static void keys_follow_what_growth_sees(void **state)
     assert_true(wd_species_key(&other) == 0);
 }
 
+/* What is kept is found by the next process, in which everything lies elsewhere. */
+static void keys_hold_no_addresses(void **state)
+{
+    struct fixture *f = *state;
+    const struct wd_scene_params params = {0};
+    struct wd_scene again;
+    assert_true(wd_scene_load_with(&again, "tests/api/small.json", &params, NULL));
+    for (size_t i = 0; i < again.species_file_count; i++) {
+        assert_ptr_not_equal(again.species[i].path, f->scene.species[i].path);
+        assert_true(wd_species_key(&again.species[i]) == wd_species_key(&f->scene.species[i]));
+    }
+    wd_scene_finish(&again);
+}
+
 static void imported_trees_are_named_by_mesh_and_pictures(void **state)
 {
     struct fixture *f = *state;
@@ -240,6 +254,7 @@ int main(void)
         TEST(a_kept_tree_is_the_grown_tree),
         TEST(a_damaged_file_grows_the_tree_again),
         TEST(keys_follow_what_growth_sees),
+        TEST(keys_hold_no_addresses),
         TEST(imported_trees_are_named_by_mesh_and_pictures),
         TEST(splats_are_kept_by_model),
         TEST(looks_are_kept_by_species),
