@@ -12,6 +12,7 @@ const float PER_PI = 0.318309886;
  * Where the shader does not say, all light does. */
 #ifndef CANOPY_LIGHT_AT
 #define CANOPY_LIGHT_AT(at, layer) vec4(1.0)
+#define CANOPY_LIGHT_BY(at) vec4(1.0) /* of layer 0, the nearest texel */
 #endif
 
 /* What comes down to a place among leaves. */
@@ -67,6 +68,9 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
     (form[0] + form[4] * (n.x * n.y) + form[5] * (n.y * n.z) + form[6] * (n.z * n.z)               \
      + form[7] * (n.x * n.z) + form[8] * (n.x * n.x - n.y * n.y))
 
+/* The same, of level skies: without what differs between quarters beyond toward and away. */
+#define SKY_LEVELS(form, n) (form[0] + form[6] * (n.z * n.z) + SKY_ODD(form, n))
+
 /* Where a stand lets down 0.115 of an even sky's light, its rays come from as steep as in sky_under: one
  * over the log2. Path-traced stems in a closed forest under clouds get 0.24 of what the ground does. */
 const float UNDER_PER_LOG2 = -0.32;
@@ -82,6 +86,7 @@ const float UNDER_PER_LOG2 = -0.32;
  * the ray would bring along its own way, is next to nothing there. */
 struct wd_around {
     vec3 front, back;
+    vec3 mirrored; /* of a surface that looks along `mirror` */
 };
 
 /* Irradiance of level ground that has these shares of the sky's quarters. */
@@ -91,19 +96,25 @@ vec3 sky_level(vec4 through)
            + frame.sky_quarters[2] * through.z + frame.sky_quarters[3] * through.w;
 }
 
+vec4 quarters_bright()
+{
+    return vec4(frame.sky_quarters[0].y, frame.sky_quarters[1].y, frame.sky_quarters[2].y,
+                frame.sky_quarters[3].y);
+}
+
 /* How much of the light of each quarter (east, north, west, south) a face has that looks this way. */
 vec4 faced_quarters(vec2 n)
 {
     return 0.5 + 0.5 * vec4(n, -n);
 }
 
-/* Share of its sky's light that a face has where level ground has such shares of the quarters. What
- * stands before a quarter leaves its high part: of a horizon at angle h ground keeps cos^2 h, an upright face
- * 1 - (2 h + sin 2h) / pi, which is this within 0.03. `flat_on`: how level the face is. */
-vec3 sky_faced(vec4 through, vec4 faced, float flat_on)
+/* Share of its sky's light that a face has where level ground has such shares of the quarters, all of one
+ * colour. What stands before a quarter leaves its high part: of a horizon at angle h ground keeps cos^2 h, an
+ * upright face 1 - (2 h + sin 2h) / pi, which is this within 0.03. `flat_on`: how level the face is. */
+float sky_faced(vec4 through, vec4 faced, float flat_on)
 {
     vec4 upright = through * (1.0 - sqrt(max(1.0 - through, 0.0)));
-    return sky_level(mix(upright, through, flat_on) * faced) / max(sky_level(faced), vec3(1e-12));
+    return dot(mix(upright, through, flat_on), faced) / max(dot(faced, vec4(1.0)), 1e-12);
 }
 
 /* Of a tree that stands free: low light comes in by its sides. What its own crown leaves is a table of its
@@ -116,8 +127,9 @@ struct wd_alone {
 
 const wd_alone NOT_ALONE = wd_alone(0.0, vec4(0.0), vec4(0.0));
 
-/* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. */
-wd_around light_around(vec4 facing, wd_shelter shelter, float ground_share, wd_alone alone)
+/* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
+ * unit, where a ray of the eye goes on to from one leaf. */
+wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float ground_share, wd_alone alone)
 {
     vec3 n = facing.xyz, s = frame.leaf_scatter;
     /* Slanting rays meet more of the stand's leaves, and of the tree's own (below). */
@@ -135,10 +147,10 @@ wd_around light_around(vec4 facing, wd_shelter shelter, float ground_share, wd_a
     vec3 gain = exp2((s - 1.0) * log2(mean)), sky = reach * gain * mix(upright, 1.0, abs(n.z));
     /* Half of what would reach it by being scattered has left by the crown's sides. */
     vec3 own_gain = 0.5 + 0.5 * gain;
-    vec4 faced = faced_quarters(n.xy);
+    vec4 bright = quarters_bright(), faced = faced_quarters(n.xy);
     float flat_on = min(sqrt(n.z * n.z + facing.w), 1.0);
-    vec3 beside_front = own_gain * sky_faced(alone.beside, faced, flat_on);
-    vec3 beside_back = own_gain * sky_faced(alone.beside, 1.0 - faced, flat_on);
+    vec3 beside_front = own_gain * sky_faced(alone.beside, bright * faced, flat_on);
+    vec3 beside_back = own_gain * sky_faced(alone.beside, bright - bright * faced, flat_on);
     vec3 sky_front = mix(sky, beside_front * alone.lets.x, alone.share);
     vec3 sky_back = mix(sky, beside_back * alone.lets.y, alone.share);
     float rise = max(frame.sun_direction.z, 0.0);
@@ -163,6 +175,10 @@ wd_around light_around(vec4 facing, wd_shelter shelter, float ground_share, wd_a
     around.back = max(even - odd, vec3(0.0)) * sky_back + scattered * (1.0 - up);
     around.front += upward_front * (1.0 - up);
     around.back += upward_back * up;
+    float up_mirror = 0.5 + 0.5 * mirror.z;
+    vec3 ahead = mix(SKY_LEVELS(frame.sky_form, mirror), SKY_LEVELS(frame.sky_under, mirror), deep);
+    around.mirrored = max(ahead, vec3(0.0)) * sky_front
+                      + mix(upward_front, scattered, up_mirror);
     return around;
 }
 
@@ -335,6 +351,8 @@ struct wd_place {
     vec2 sides;         /* share of the sun reflected and transmitted toward the eye */
     vec3 transmittance; /* over albedo */
     float gloss;
+    float coat;         /* share of light from everywhere that wax mirrors: of one leaf, light about the
+                           mirrored ray; of many, light that falls on them */
     float waxed;        /* share of upper sides among leaves seen */
     float sward;        /* 1: a blade in a sward, */
     float over;         /* under so many layers of others */
@@ -352,6 +370,7 @@ wd_place ground_place(wd_pixel pixel)
     place.sides = vec2(facing_lit(pixel.facing), 0.0);
     place.transmittance = vec3(0.0);
     place.gloss = 0.0;
+    place.coat = 0.0;
     place.waxed = 0.0;
     place.sward = 0.0;
     place.over = 0.0;
@@ -378,11 +397,11 @@ float map_holds_leaves(uint cascade, float free)
 wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit)
 {
     vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(1.1 * crown.radii_m.x);
-    vec4 field = vec4(CANOPY_LIGHT_AT((center + corner) * push.canopy_scale, 0.0).xy,
-                      CANOPY_LIGHT_AT((center - corner) * push.canopy_scale, 0.0).zw);
+    vec4 field = vec4(CANOPY_LIGHT_BY((center + corner) * push.canopy_scale).xy,
+                      CANOPY_LIGHT_BY((center - corner) * push.canopy_scale).zw);
     wd_alone alone;
     alone.beside = field * field;
-    alone.share = smoothstep(0.2, 0.5, dot(frame.sunward, alone.beside))
+    alone.share = smoothstep(0.3, 0.6, dot(frame.sunward, alone.beside))
                   * smoothstep(0.25, 0.35, crown.radii_m.z);
     alone.lets.xy = skylit.xy * wd_skylit_above(openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(openness);
@@ -436,14 +455,27 @@ float leaf_coat(vec3 normal, vec3 eye, float roughness)
     return lit <= 0.0 ? 0.0 : mirrored * alpha2 / (spread * spread * open * 4.0 * toward_eye);
 }
 
+/* What the wax of one leaf mirrors of even light about the mirrored ray: GGX's facets, and the more the
+ * flatter they are seen; a fit of two numbers (Lazarov 2013). */
+float leaf_coat_around(float toward_eye, float roughness)
+{
+    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float flat_on = min(r.x * r.x, exp2(-9.28 * toward_eye)) * r.x + r.y;
+    return WAX * (r.z - 1.04 * flat_on) + max(1.04 * flat_on + r.w, 0.0);
+}
+
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
  * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
  * Meshes' leaves (lit 1) keep what depth says beside the map: by the map alone forests from within are 3 %
- * brighter in green, and too bright by that. 0: none goes on to the eye. */
+ * brighter in green, and too bright by that; but not where the map's texels are as fine as leaves, which is
+ * where the eye is within a crown's reach. 0: none goes on to the eye. */
 void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint cascade)
 {
     if (pixel.lit <= 0.0 || pixel.lit >= 1.0) {
-        place.own = pixel.lit <= 0.0 ? 0.0 : place.own;
+        float texel_m = frame.cascade_texel_m[0];
+        float by_map = ALL_SINGLE && cascade == 0u ? 1.0 - smoothstep(0.02, 0.04, texel_m) : 0.0;
+        place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, 1.0, by_map);
+        place.ahead_m = max(place.ahead_m, by_map * (0.12 - 2.0 * texel_m));
         return;
     }
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
@@ -468,6 +500,7 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.sides = vec2(max(cosine, 0.0), max(-cosine, 0.0));
     place.waxed = pixel.above;
     place.gloss = leaf_coat(pixel.normal, -pixel.direction, model.roughness) * pixel.above;
+    place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), model.roughness);
 }
 
 /* Wood within a crown is in its shade as leaves are. */
@@ -519,6 +552,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
     place.gloss = leaf_gloss(pixel, model.roughness, near) + WAX * 0.39;
+    place.coat = 1.6 * WAX;
     place.gloss = (place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
@@ -579,11 +613,13 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 transmitted = pixel.albedo * place.transmittance;
     vec3 within = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
     vec3 sunlit = within * place.sides.x + transmitted * place.sides.y + place.gloss;
-    wd_around around = light_around(facing, shelter, ground_share, alone);
+    vec3 mirror = reflect(pixel.direction, pixel.normal);
+    wd_around around = light_around(facing, mirror, shelter, ground_share, alone);
     /* Upright ground is where the world is cut off: before it lies bright haze, as the path tracer has it. */
     if (pixel.surface == 0u && abs(pixel.normal.z) < 0.01)
         around.front += 0.5 * frame.sky_irradiance;
-    vec3 sheen = mix(1.6 * WAX * around.front,
+    bool one_leaf = ALL_SINGLE || pixel.lit >= 0.0;
+    vec3 sheen = mix(place.coat * (one_leaf ? around.mirrored : around.front),
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
     vec3 skylit = around.front * within + sheen * place.waxed + around.back * transmitted;
     vec3 light = frame.sun_irradiance * sun_share * sunlit + skylit;
