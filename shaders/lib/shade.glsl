@@ -82,7 +82,8 @@ const float UNDER_PER_LOG2 = -0.32;
  * meets b times as many leaves as that of the mean of the sky's, cos(48 degrees). What leaves scatter
  * of it downward, 1 - s, comes from where the ray met them as light from everywhere: of a depth that
  * lets t through, (1 - s) b ln(1 / t) times the mean over its way of t^s below and t^b above, their
- * logarithmic mean, within some percent (Carlson 1972). A low sun lights but the tops so; t^(s b), what
+ * logarithmic mean, within some percent (Carlson 1972); of that 0.6, because leaves stand in clumps that
+ * take up much of what they scatter (by traced forests from within). A low sun lights but the tops so; t^(s b), what
  * the ray would bring along its own way, is next to nothing there. */
 struct wd_around {
     vec3 front, back;
@@ -159,7 +160,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 sun = frame.sun_irradiance * (rise * ground_share);
     vec3 diffuse = exp2(s * log2(mean));
     vec3 between = (sqrt(diffuse * beam) * 2.0 + 0.5 * (diffuse + beam)) * (1.0 / 3.0);
-    vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
+    vec3 scattered = 0.6 * sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
     vec3 with_scattered = sun * beam + scattered;
     float covered = 1.0 - shelter.floor_mean;
     vec3 floor_albedo = mix(frame.grass, frame.litter, covered);
@@ -467,15 +468,11 @@ float leaf_coat_around(float toward_eye, float roughness)
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
  * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
  * Meshes' leaves (lit 1) keep what depth says beside the map: by the map alone forests from within are 3 %
- * brighter in green, and too bright by that; but not where the map's texels are as fine as leaves, which is
- * where the eye is within a crown's reach. 0: none goes on to the eye. */
+ * brighter in green, and too bright by that, and leaves near a lens 7 %. 0: none goes on to the eye. */
 void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint cascade)
 {
     if (pixel.lit <= 0.0 || pixel.lit >= 1.0) {
-        float texel_m = frame.cascade_texel_m[0];
-        float by_map = ALL_SINGLE && cascade == 0u ? 1.0 - smoothstep(0.02, 0.04, texel_m) : 0.0;
-        place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, 1.0, by_map);
-        place.ahead_m = max(place.ahead_m, by_map * (0.12 - 2.0 * texel_m));
+        place.own = pixel.lit <= 0.0 ? 0.0 : place.own;
         return;
     }
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
