@@ -82,8 +82,7 @@ const float UNDER_PER_LOG2 = -0.32;
  * meets b times as many leaves as that of the mean of the sky's, cos(48 degrees). What leaves scatter
  * of it downward, 1 - s, comes from where the ray met them as light from everywhere: of a depth that
  * lets t through, (1 - s) b ln(1 / t) times the mean over its way of t^s below and t^b above, their
- * logarithmic mean, within some percent (Carlson 1972); of that 0.6, because leaves stand in clumps that
- * take up much of what they scatter (by traced forests from within). A low sun lights but the tops so; t^(s b), what
+ * logarithmic mean, within some percent (Carlson 1972). A low sun lights but the tops so; t^(s b), what
  * the ray would bring along its own way, is next to nothing there. */
 struct wd_around {
     vec3 front, back;
@@ -160,7 +159,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 sun = frame.sun_irradiance * (rise * ground_share);
     vec3 diffuse = exp2(s * log2(mean));
     vec3 between = (sqrt(diffuse * beam) * 2.0 + 0.5 * (diffuse + beam)) * (1.0 / 3.0);
-    vec3 scattered = 0.6 * sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
+    vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
     vec3 with_scattered = sun * beam + scattered;
     float covered = 1.0 - shelter.floor_mean;
     vec3 floor_albedo = mix(frame.grass, frame.litter, covered);
@@ -178,7 +177,8 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     around.back += upward_back * up;
     float up_mirror = 0.5 + 0.5 * mirror.z;
     vec3 ahead = mix(SKY_LEVELS(frame.sky_form, mirror), SKY_LEVELS(frame.sky_under, mirror), deep);
-    around.mirrored = max(ahead, vec3(0.0)) * sky_front
+    vec3 along = exp2(s * (log2(mean) * 0.67 / max(mirror.z, 0.05))); /* past the stand, that way */
+    around.mirrored = max(ahead, vec3(0.0)) * mix(min(along, sky_front), sky_front, alone.share)
                       + mix(upward_front, scattered, up_mirror);
     return around;
 }
@@ -393,16 +393,18 @@ float map_holds_leaves(uint cascade, float free)
     return cascade == 0u ? 1.0 - free * smoothstep(0.04, 0.12, frame.cascade_texel_m[0]) : 0.0;
 }
 
-/* By the sky over the ground beside the crown: each quarter where the crown is not before it. Low plants
- * close over the ground, of which that knows nothing. */
+/* By the sky over the ground beside the crown, toward the sun: whether it stands free; and each quarter of its
+ * sky where the crown is not before it. Low plants close over the ground, of which that knows nothing. */
 wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit)
 {
     vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(1.1 * crown.radii_m.x);
+    vec2 sunward = center + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
+    vec4 open = CANOPY_LIGHT_BY(sunward * push.canopy_scale);
     vec4 field = vec4(CANOPY_LIGHT_BY((center + corner) * push.canopy_scale).xy,
                       CANOPY_LIGHT_BY((center - corner) * push.canopy_scale).zw);
     wd_alone alone;
     alone.beside = field * field;
-    alone.share = smoothstep(0.3, 0.6, dot(frame.sunward, alone.beside))
+    alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open))
                   * smoothstep(0.25, 0.35, crown.radii_m.z);
     alone.lets.xy = skylit.xy * wd_skylit_above(openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(openness);
