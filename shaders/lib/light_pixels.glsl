@@ -43,8 +43,7 @@ wd_light_push push = push_block;
 #define ALL_SINGLE (SINGLE != 0u)
 #define SUN_HEIGHT_AT(index) texelFetch(sun_height_m, int(index)).x
 #define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)
-#define CANOPY_LIGHT_BY(at)                                                                        \
-    texelFetch(canopy_light, ivec3(clamp(at, 0.0, 0.9999) * vec2(textureSize(canopy_light, 0)), 0), 0)
+#define CANOPY_LIGHT canopy_light
 #define SKY_MAP sky_map
 
 #define WATER_AT(index) river_m[index]

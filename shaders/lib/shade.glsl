@@ -12,7 +12,6 @@ const float PER_PI = 0.318309886;
  * Where the shader does not say, all light does. */
 #ifndef CANOPY_LIGHT_AT
 #define CANOPY_LIGHT_AT(at, layer) vec4(1.0)
-#define CANOPY_LIGHT_BY(at) vec4(1.0) /* of layer 0, the nearest texel */
 #endif
 
 /* What comes down to a place among leaves. */
@@ -110,7 +109,7 @@ vec4 faced_quarters(vec2 n)
 
 /* Share of its sky's light that a face has where level ground has such shares of the quarters, all of one
  * colour. What stands before a quarter leaves its high part: of a horizon at angle h ground keeps cos^2 h, an
- * upright face 1 - (2 h + sin 2h) / pi, which is this within 0.03. `flat_on`: how level the face is. */
+ * upright face 1 - (2 h + sin 2h) / pi, which is this within 0.04. `flat_on`: how level the face is. */
 float sky_faced(vec4 through, vec4 faced, float flat_on)
 {
     vec4 upright = through * (1.0 - sqrt(max(1.0 - through, 0.0)));
@@ -393,15 +392,25 @@ float map_holds_leaves(uint cascade, float free)
     return cascade == 0u ? 1.0 - free * smoothstep(0.04, 0.12, frame.cascade_texel_m[0]) : 0.0;
 }
 
+/* Of the nearest texel of layer 0: one fetch instead of four. */
+vec4 canopy_light_near(vec2 place_m)
+{
+#ifdef CANOPY_LIGHT
+    vec2 at = clamp(place_m * push.canopy_scale, 0.0, 0.9999);
+    return texelFetch(CANOPY_LIGHT, ivec3(at * vec2(textureSize(CANOPY_LIGHT, 0)), 0), 0);
+#else
+    return vec4(1.0);
+#endif
+}
+
 /* By the sky over the ground beside the crown, toward the sun: whether it stands free; and each quarter of its
  * sky where the crown is not before it. Low plants close over the ground, of which that knows nothing. */
 wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit)
 {
     vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(1.1 * crown.radii_m.x);
     vec2 sunward = center + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
-    vec4 open = CANOPY_LIGHT_BY(sunward * push.canopy_scale);
-    vec4 field = vec4(CANOPY_LIGHT_BY((center + corner) * push.canopy_scale).xy,
-                      CANOPY_LIGHT_BY((center - corner) * push.canopy_scale).zw);
+    vec4 open = canopy_light_near(sunward);
+    vec4 field = vec4(canopy_light_near(center + corner).xy, canopy_light_near(center - corner).zw);
     wd_alone alone;
     alone.beside = field * field;
     alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open))

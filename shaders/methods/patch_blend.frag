@@ -20,8 +20,7 @@ layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 #define PARTS (WD_PART_GROUND | WD_PART_TREES)
 #define SUN_HEIGHT_AT(index) sun_height_m[index]
 #define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)
-#define CANOPY_LIGHT_BY(at)                                                                        \
-    texelFetch(canopy_light, ivec3(clamp(at, 0.0, 0.9999) * vec2(textureSize(canopy_light, 0)), 0), 0)
+#define CANOPY_LIGHT canopy_light
 
 #include "lib/trees.glsl"
 #include "lib/tree.glsl"
