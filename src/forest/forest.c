@@ -6,13 +6,11 @@
 #include <string.h>
 
 #include "bake/growth_cache.h"
-#include "base/clock.h"
 #include "base/jobs.h"
 #include "base/memory.h"
 #include "forest/canopy_light.h"
 #include "forest/looks.h"
 #include "forest/sky.h"
-#include "forest/model_bakes.h"
 #include "tree/variant.h"
 #include "world/cover.h"
 #include "world/packed_trees.h"
@@ -36,6 +34,8 @@ static void grow_model(void *user, size_t index)
 {
     struct preparation *work = user;
     struct wd_forest_device *forest = work->forest;
+    if (atomic_load(&work->failed))
+        return;
     if (!wd_growth_get(&work->grown[index], &forest->model_keys[index], &forest->cache,
                        work->params->scene, (uint32_t)index, work->params->log))
         atomic_store(&work->failed, true);
@@ -260,30 +260,23 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
     const struct wd_forest_device_params *params = work->params;
-    double start = wd_clock_s();
     wd_jobs_run(params->threads, params->scene->species_file_count, make_look, work);
-    wd_jobs_run(params->threads, forest->model_count, grow_model, work);
-    if (atomic_load(&work->failed))
+    if (!wd_jobs_run_told(params->threads, forest->model_count, grow_model, work, params->progress,
+                          "growing trees") ||
+        atomic_load(&work->failed))
         return false;
     for (uint32_t i = 0; i < forest->model_count; i++) {
         wd_variant_describe(&forest->host_models[i], params->scene, i, &work->grown[i]);
         describe_content(work, i);
     }
-    double grown = wd_clock_s();
-    forest->grown_us = (uint64_t)((grown - start) * 1e6);
-    struct wd_image *cards[WD_PLANES] = {&forest->card_albedo, &forest->card_normal, &forest->card_leaf};
-    bool ok = wd_forest_meshes_init(&forest->meshes, gpu, work->grown, forest->model_count) &&
-              make_table(&forest->models, gpu, "tree models", forest->host_models,
-                         forest->model_count * sizeof *forest->host_models) &&
-              make_lit_models(work, gpu) &&
-              wd_looks_upload(&forest->looks, gpu, work->looks,
-                              (uint32_t)params->scene->species_file_count) &&
-              wd_look_details_upload(&forest->look_details, gpu, work->looks,
-                                     (uint32_t)params->scene->species_file_count) &&
-              wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, cards, WD_CARD_DEPTH_LEAVES,
-                                   params->progress, &forest->baked_from_cache);
-    forest->baked_us = (uint64_t)((wd_clock_s() - grown) * 1e6);
-    return ok;
+    return wd_forest_meshes_init(&forest->meshes, gpu, work->grown, forest->model_count) &&
+           make_table(&forest->models, gpu, "tree models", forest->host_models,
+                      forest->model_count * sizeof *forest->host_models) &&
+           make_lit_models(work, gpu) &&
+           wd_looks_upload(&forest->looks, gpu, work->looks,
+                           (uint32_t)params->scene->species_file_count) &&
+           wd_look_details_upload(&forest->look_details, gpu, work->looks,
+                                  (uint32_t)params->scene->species_file_count);
 }
 
 bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
@@ -308,7 +301,6 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
         .grown = wd_alloc_array(slots, sizeof *work.grown),
         .looks = wd_alloc_array(scene->species_file_count, WD_LOOK_BYTES),
     };
-    forest->grown = work.grown;
     bool ok = wd_ground_init(&forest->ground, gpu, params->world, params->log) &&
               upload_trees(forest, gpu) && upload_fades(forest, gpu) &&
               make_card_pattern(forest, gpu) &&
@@ -323,7 +315,6 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
     wd_transfer_drop_staging(gpu);
     free(work.grown);
     free(work.looks);
-    forest->grown = NULL;
     if (!ok)
         wd_forest_device_finish(forest, gpu);
     return ok;

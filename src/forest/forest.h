@@ -23,6 +23,7 @@ struct wd_forest_device {
     struct wd_buffer fades;    /* struct wd_layer_fade[1 + layers]; [0] is that of inventories */
     struct wd_image looks;     /* WD_LOOK_LAYERS of each species, sRGB */
     struct wd_image look_details; /* the same layers: normal, roughness, height (tree/look_map.h) */
+    /* Cards of models, for methods that draw them (wd_forest_make_cards, forest/model_bakes.h): */
     struct wd_image card_albedo, card_normal; /* WD_CARDS layers a model */
     struct wd_image card_leaf;                /* share of leaves; mips as those of normals */
     struct wd_image canopy_light;   /* see forest/canopy_light.h */
@@ -31,7 +32,6 @@ struct wd_forest_device {
     float leaf_scatter[3];          /* root of what leaves absorb: wd_frame_uniforms */
     VkSampler look_sampler, card_sampler, point_sampler; /* point: normals and shadows of cards */
     struct wd_forest_meshes meshes;
-    struct wd_tree_model *grown; /* while the forest is made, then NULL */
     struct wd_model *host_models;
     uint64_t *model_keys;      /* what names each model's content in the cache */
     struct wd_bake_cache cache;
@@ -39,8 +39,6 @@ struct wd_forest_device {
     struct wd_progress progress; /* told while a method bakes what it needs; {0}: nobody is */
     uint32_t model_count, variants;
     float max_tree_height_m;
-    uint64_t grown_us, baked_us; /* what preparing cost */
-    uint32_t baked_from_cache;   /* models whose cards came from the cache */
 };
 
 struct wd_forest_device_params {
@@ -52,8 +50,8 @@ struct wd_forest_device_params {
     const struct wd_log *log;
 };
 
-/* Grows every model, bakes (or loads) its cards and uploads it all with the world's trees. `scene`
- * and `world` must outlive the result. */
+/* Grows every model (or loads it) and uploads it all with the world's trees. `scene` and `world` must
+ * outlive the result. */
 bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
                            const struct wd_forest_device_params *params);
 void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu);

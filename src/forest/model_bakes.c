@@ -51,16 +51,12 @@ static bool upload_mesh(struct wd_model_mesh *mesh, struct wd_gpu *gpu,
 bool wd_model_mesh_init(struct wd_model_mesh *mesh, struct wd_gpu *gpu,
                         struct wd_forest_device *forest, uint32_t model)
 {
-    struct wd_tree_model own, *grown = forest->grown ? &forest->grown[model] : &own;
+    struct wd_tree_model grown;
     *mesh = (struct wd_model_mesh){0};
-    if (!forest->grown && !wd_forest_grow_model(&own, forest, model, gpu->log))
+    if (!wd_forest_grow_model(&grown, forest, model, gpu->log))
         return false;
-    wd_tree_model_add_leaves(grown);
-    bool ok = upload_mesh(mesh, gpu, forest, model, &grown->full);
-    if (forest->grown)
-        wd_tree_model_drop_leaves(grown);
-    else
-        wd_tree_model_finish(&own);
+    bool ok = upload_mesh(mesh, gpu, forest, model, &grown.full);
+    wd_tree_model_finish(&grown);
     if (!ok)
         wd_model_mesh_finish(mesh, gpu);
     return ok;
@@ -135,15 +131,12 @@ static bool make_card_plane(struct wd_image *image, struct wd_gpu *gpu,
 
 /* The baker is made when the first model is not in the cache. */
 static bool get_cards(struct wd_cards *cards, struct wd_forest_device *forest, struct wd_gpu *gpu,
-                      struct wd_baker *baker, uint32_t index, const struct wd_card_form *form,
-                      uint32_t *from_cache)
+                      struct wd_baker *baker, uint32_t index, const struct wd_card_form *form)
 {
     const struct wd_model *model = &forest->host_models[index];
     uint64_t key = forest->model_keys[index];
-    if (wd_cards_load(cards, &forest->cache, key, form)) {
-        ++*from_cache;
+    if (wd_cards_load(cards, &forest->cache, key, form))
         return true;
-    }
     const struct wd_card_extent extent = {model->half_width_m, model->half_depth_m,
                                           model->bottom_m, model->top_m};
     struct wd_model_mesh mesh = {0};
@@ -158,25 +151,36 @@ static bool get_cards(struct wd_cards *cards, struct wd_forest_device *forest, s
 
 bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
                           enum wd_bake_parts parts, struct wd_image *images[WD_PLANES],
-                          enum wd_card_depth depth, const struct wd_progress *progress,
-                          uint32_t *from_cache)
+                          enum wd_card_depth depth)
 {
     const struct wd_card_form form = card_form(gpu, parts, images, depth);
     struct wd_baker baker = {0};
     bool ok = true;
-    *from_cache = 0;
     for (int k = 0; k < WD_PLANES && ok; k++)
         ok = !images[k] || make_card_plane(images[k], gpu, &form, k, forest->model_count);
     for (uint32_t i = 0; i < forest->model_count && ok; i++) {
         struct wd_cards cards = {0};
-        ok = wd_progress_report(progress, "baking trees", i, forest->model_count) &&
-             get_cards(&cards, forest, gpu, &baker, i, &form, from_cache);
+        ok = wd_progress_report(&forest->progress, "baking trees", i, forest->model_count) &&
+             get_cards(&cards, forest, gpu, &baker, i, &form);
         for (int k = 0; k < WD_PLANES && ok; k++)
             ok = !images[k] ||
                  wd_image_upload_layers(gpu, images[k], i * WD_CARDS, WD_CARDS, cards.planes[k]);
         wd_cards_finish(&cards);
     }
     wd_baker_finish(&baker);
+    return ok;
+}
+
+bool wd_forest_make_cards(struct wd_forest_device *forest, struct wd_gpu *gpu)
+{
+    struct wd_image *images[WD_PLANES] = {&forest->card_albedo, &forest->card_normal,
+                                          &forest->card_leaf};
+    if (forest->card_albedo.image || !forest->model_count)
+        return true;
+    bool ok = wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, images, WD_CARD_DEPTH_LEAVES);
+    for (int k = 0; k < WD_PLANES && !ok; k++)
+        wd_image_finish(images[k], gpu);
+    wd_transfer_drop_staging(gpu);
     return ok;
 }
 

@@ -28,8 +28,10 @@ enum wd_card_depth { WD_CARD_DEPTH_ALL, WD_CARD_DEPTH_LEAVES };
  * caller's to finish, also after a failure. */
 bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
                           enum wd_bake_parts parts, struct wd_image *images[WD_PLANES],
-                          enum wd_card_depth depth, const struct wd_progress *progress,
-                          uint32_t *from_cache);
+                          enum wd_card_depth depth);
+
+/* Makes the forest's own cards, of whole trees, unless they are there. No frame is being recorded. */
+bool wd_forest_make_cards(struct wd_forest_device *forest, struct wd_gpu *gpu);
 
 /* View sets of all models, or of the first variants of each species. */
 struct wd_view_sets {

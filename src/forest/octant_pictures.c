@@ -120,7 +120,6 @@ bool wd_octant_pictures_init(struct wd_octant_pictures *p, struct wd_gpu *gpu,
                              struct wd_forest_device *forest)
 {
     struct wd_image *planes[WD_PLANES] = {[WD_PLANE_DEPTH] = &p->card_depth};
-    uint32_t from_cache;
     p->gpu = gpu;
     p->forest = forest;
     p->columns = ATLAS_PIXELS / (p->cells * p->pixels);
@@ -129,9 +128,8 @@ bool wd_octant_pictures_init(struct wd_octant_pictures *p, struct wd_gpu *gpu,
     for (int i = 0; i < 256; i++)
         p->linear[i] = wd_srgb_decode((uint8_t)i);
     bool ok = wd_frames_init(&p->frames, gpu) && init_pipeline(&p->pipeline, gpu) &&
-              init_atlas(p) &&
-              wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, planes, WD_CARD_DEPTH_ALL, NULL,
-                                   &from_cache);
+              init_atlas(p) && wd_forest_make_cards(forest, gpu) &&
+              wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, planes, WD_CARD_DEPTH_ALL);
     if (!ok)
         wd_octant_pictures_finish(p);
     return ok;

@@ -261,8 +261,9 @@ static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
     };
     wd_jobs_run(0, forest->model_count, load_splats, &work);
     wd_jobs_run(0, species, make_look, &work);
-    wd_jobs_run(0, forest->model_count, sample_model, &work);
-    bool ok = !atomic_load(&work.failed);
+    bool ok = wd_jobs_run_told(0, forest->model_count, sample_model, &work, &forest->progress,
+                               "making discs") &&
+              !atomic_load(&work.failed);
     if (ok)
         measure_grains(own, forest, work.splats);
     ok = ok && upload_splats(own, gpu, work.splats, forest->model_count);

@@ -120,9 +120,7 @@ static bool bake(struct wd_image planes[PART_PLANES], struct wd_gpu *gpu,
                  struct wd_forest_device *forest, enum wd_bake_parts parts)
 {
     struct wd_image *images[WD_PLANES] = {&planes[WD_PLANE_ALBEDO], &planes[WD_PLANE_NORMAL]};
-    uint32_t from_cache;
-    return wd_forest_bake_cards(forest, gpu, parts, images, WD_CARD_DEPTH_ALL, &forest->progress,
-                                &from_cache);
+    return wd_forest_bake_cards(forest, gpu, parts, images, WD_CARD_DEPTH_ALL);
 }
 
 static bool dissolve_use_forest(void *state, struct wd_gpu *gpu, struct wd_forest_device *forest)
@@ -370,6 +368,7 @@ static void dissolve_draw(void *state, const struct wd_tree_draw *draw)
 
 const struct wd_method wd_method_dissolve = {
     .name = "dissolve",
+    .cards = true,
     .state_size = sizeof(struct dissolve),
     .init = dissolve_init,
     .finish = dissolve_finish,

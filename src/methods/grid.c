@@ -79,6 +79,7 @@ static void grid_draw(void *state, const struct wd_tree_draw *draw)
 
 const struct wd_method wd_method_grid = {
     .name = "grid",
+    .cards = true,
     .state_size = sizeof(struct grid),
     .use_forest = grid_use_forest,
     .drop_forest = grid_drop_forest,

@@ -69,6 +69,7 @@ static void lod_draw(void *state, const struct wd_tree_draw *draw)
 
 const struct wd_method wd_method_lod = {
     .name = "lod",
+    .cards = true,
     .state_size = sizeof(struct lod),
     .use_forest = lod_use_forest,
     .drop_forest = lod_drop_forest,

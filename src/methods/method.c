@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "forest/model_bakes.h"
 #include "weald/renderer.h"
 
 static const struct wd_method *const methods[] = {
@@ -101,7 +102,8 @@ void *wd_methods_open(struct wd_methods *open, struct wd_gpu *gpu, const struct 
         return slot->state;
     drop_forest(slot, gpu);
     slot->forest = forest;
-    if (method->use_forest && !method->use_forest(slot->state, gpu, forest)) {
+    bool ok = !method->cards || wd_forest_make_cards(forest, gpu);
+    if (!ok || (method->use_forest && !method->use_forest(slot->state, gpu, forest))) {
         drop_forest(slot, gpu);
         return NULL;
     }

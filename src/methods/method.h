@@ -10,6 +10,7 @@
 struct wd_method {
     const char *name;
     bool on_demand;    /* draws worlds whose trees are planted on demand */
+    bool cards;        /* draws trees as the forest's cards, in some view at least */
     /* Cascades that are calm (struct wd_cascade_box) are drawn without wind but its mean, as a function
      * of their box alone, and kept for later frames. */
     enum wd_cascade_use { WD_CASCADES_DRAWN, WD_CASCADES_KEPT } cascades;

@@ -154,6 +154,7 @@ static void octree_draw(void *state, const struct wd_tree_draw *draw)
 
 const struct wd_method wd_method_octree = {
     .name = "octree",
+    .cards = true,
     .ground = WD_GROUND_LAST,
     .state_size = sizeof(struct octree_state),
     .init = octree_init,

@@ -522,6 +522,7 @@ static void patch_draw_layers(void *state, const struct wd_tree_draw *draw)
 
 const struct wd_method wd_method_patch = {
     .name = "patch",
+    .cards = true,
     .state_size = sizeof(struct patch_state),
     .init = patch_init,
     .finish = patch_finish,

@@ -25,6 +25,7 @@ static void separate_draw(void *state, const struct wd_tree_draw *draw)
 
 const struct wd_method wd_method_separate = {
     .name = "separate",
+    .cards = true,
     .state_size = sizeof(struct wd_selection),
     .finish = separate_finish,
     .select = separate_select,

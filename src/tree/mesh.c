@@ -86,19 +86,6 @@ struct wd_packed_vertex wd_vertex_pack(const struct wd_tree_vertex *vertex,
     };
 }
 
-void wd_unpack_normal(uint32_t packed, float normal[3])
-{
-    float x = fmaxf((float)(int16_t)(packed & 0xffffu) / 32767, -1);
-    float y = fmaxf((float)(int16_t)(packed >> 16) / 32767, -1);
-    float z = 1 - fabsf(x) - fabsf(y), fold = fmaxf(-z, 0);
-    x += x >= 0 ? -fold : fold;
-    y += y >= 0 ? -fold : fold;
-    float length = sqrtf(x * x + y * y + z * z);
-    normal[0] = x / length;
-    normal[1] = y / length;
-    normal[2] = z / length;
-}
-
 /* Round to nearest half float; magnitudes beyond 65504 clamp, below 2^-14 flush to zero. */
 static uint32_t pack_half(float value)
 {
@@ -119,8 +106,10 @@ uint32_t wd_pack_uv(float u, float v)
 static float unpack_half(uint32_t half)
 {
     uint32_t exponent = half >> 10 & 31, mantissa = half & 1023;
-    float value = exponent ? ldexpf(1 + (float)mantissa / 1024, (int)exponent - 15)
-                           : ldexpf((float)mantissa / 1024, -14);
+    uint32_t bits = (exponent + 112) << 23 | mantissa << 13;
+    float value = (float)mantissa / (1 << 24);
+    if (exponent)
+        memcpy(&value, &bits, sizeof value);
     return half & 0x8000 ? -value : value;
 }
 

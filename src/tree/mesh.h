@@ -72,7 +72,20 @@ static inline uint32_t wd_pack_normal(const float normal[3])
     }
     return wd_pack_snorm16(x) | wd_pack_snorm16(y) << 16;
 }
-void wd_unpack_normal(uint32_t packed, float normal[3]);
+
+static inline void wd_unpack_normal(uint32_t packed, float normal[3])
+{
+    float x = fmaxf((float)(int16_t)(packed & 0xffffu) / 32767, -1);
+    float y = fmaxf((float)(int16_t)(packed >> 16) / 32767, -1);
+    float z = 1 - fabsf(x) - fabsf(y), fold = fmaxf(-z, 0);
+    x += x >= 0 ? -fold : fold;
+    y += y >= 0 ? -fold : fold;
+    float length = sqrtf(x * x + y * y + z * z);
+    normal[0] = x / length;
+    normal[1] = y / length;
+    normal[2] = z / length;
+}
+
 uint32_t wd_pack_uv(float u, float v);
 void wd_unpack_uv(uint32_t packed, float uv[2]);
 

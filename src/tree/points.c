@@ -12,8 +12,10 @@ struct surface {
     const struct wd_tree_mesh *mesh;
     uint32_t *order; /* triangle */
     double *below;   /* [count + 1] m^2 */
+    uint32_t *guide; /* [GUIDES + 1]: place in the order of what holds each part of the area */
     size_t count, wood_count;
 };
+enum { GUIDES = 1 << 14 };
 
 static struct wd_vec3 corner(const struct wd_tree_mesh *mesh, size_t index)
 {
@@ -48,6 +50,18 @@ static void order_part(struct surface *surface, size_t first, size_t count)
     free(centers);
 }
 
+static void make_guide(struct surface *surface)
+{
+    surface->guide = wd_alloc_array(GUIDES + 1, sizeof *surface->guide);
+    size_t place = 0;
+    for (size_t i = 0; i <= GUIDES; i++) {
+        double area = surface->below[surface->count] * (double)i / GUIDES;
+        while (place + 1 < surface->count && surface->below[place + 1] <= area)
+            place++;
+        surface->guide[i] = (uint32_t)place;
+    }
+}
+
 static void surface_init(struct surface *surface, const struct wd_tree_mesh *mesh)
 {
     size_t count = mesh->index_count / 3, wood = mesh->wood_index_count / 3;
@@ -60,18 +74,23 @@ static void surface_init(struct surface *surface, const struct wd_tree_mesh *mes
     };
     order_part(surface, 0, surface->wood_count);
     order_part(surface, surface->wood_count, count - surface->wood_count);
+    make_guide(surface);
 }
 
 static void surface_finish(struct surface *surface)
 {
     free(surface->order);
     free(surface->below);
+    free(surface->guide);
 }
 
 /* Place in the order of the triangle that holds `area`. */
 static size_t find_triangle(const struct surface *surface, double area)
 {
-    size_t low = 0, high = surface->count;
+    size_t part = (size_t)(area / surface->below[surface->count] * GUIDES);
+    size_t low = part > 0 ? surface->guide[part - 1] : 0, high = surface->count;
+    if (part + 2 <= GUIDES)
+        high = (size_t)surface->guide[part + 2] + 1;
     while (high - low > 1) {
         size_t middle = low + (high - low) / 2;
         if (surface->below[middle] <= area)

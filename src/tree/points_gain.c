@@ -35,9 +35,16 @@ struct canvas {
     uint32_t counts[WOOD + 1], openness_sum;
 };
 
+/* A disc as a view sees it. */
+struct facet {
+    float at[2], toward, facing;
+    uint8_t seen, openness; /* seen: 1 where nothing of the tree lies before it */
+};
+
 struct plan {
     const struct wd_disc_class *classes[2]; /* wood, leaves */
     struct canvas views[MOST_VIEWS];
+    struct facet *facets[MOST_VIEWS][2]; /* [view][class]; a facet a disc */
     int view_count;
     float nearer_m;    /* what nothing of the tree hides */
     struct shown mesh; /* over all views */
@@ -156,18 +163,18 @@ static void draw_mesh(struct canvas *canvas, const struct wd_tree_mesh *mesh)
 /* --- discs ------------------------------------------------------------------------------- */
 
 /* Drawn as the squares of equal area that shaders/lib/splat_draw.glsl draws. */
-static void draw_disc(struct canvas *canvas, const struct corner *middle, float radius,
-                      uint8_t kind, uint8_t openness)
+static void draw_disc(struct canvas *canvas, const struct facet *facet, float toward, float radius,
+                      uint8_t kind)
 {
     float half = radius * 0.886227f;
-    int x0 = wd_silhouette_pixel(middle->at[0] - half);
-    int x1 = wd_silhouette_pixel(middle->at[0] + half);
-    int y0 = wd_silhouette_pixel(middle->at[1] - half);
-    int y1 = wd_silhouette_pixel(middle->at[1] + half);
+    int x0 = wd_silhouette_pixel(facet->at[0] - half);
+    int x1 = wd_silhouette_pixel(facet->at[0] + half);
+    int y0 = wd_silhouette_pixel(facet->at[1] - half);
+    int y1 = wd_silhouette_pixel(facet->at[1] + half);
     for (int y = y0; y < y1; y++)
         for (int i = y * WD_SILHOUETTE + x0; i < y * WD_SILHOUETTE + x1; i++)
-            if (!hidden(canvas, i, middle->toward))
-                put(canvas, i, middle->toward, kind, openness);
+            if (!hidden(canvas, i, toward))
+                put(canvas, i, toward, kind, facet->openness);
 }
 
 /* Over the mean of faces of every direction, for leaves. */
@@ -179,6 +186,21 @@ static float facing_of(const struct wd_tree_point *point, struct wd_vec3 toward)
     return point->kind & WD_POINT_ONE_SIDED ? fmaxf(cosine, 0) : 2 * fabsf(cosine);
 }
 
+static struct facet *facets_of(const struct canvas *canvas, const struct wd_tree_points *discs)
+{
+    struct facet *facets = wd_alloc_array(discs->count + 1, sizeof *facets);
+    uint32_t eye = wd_sun_mix(canvas->frame.toward);
+    for (size_t i = 0; i < discs->count; i++) {
+        const struct wd_tree_point *point = &discs->points[i];
+        struct corner middle = corner_of(canvas, point->position_m);
+        uint32_t way = wd_sun_way_by_lot(eye, wd_hash2((uint32_t)i, 0x1e5));
+        facets[i] = (struct facet){{middle.at[0], middle.at[1]}, middle.toward,
+                                   facing_of(point, canvas->frame.toward),
+                                   discs->lit[i] >> way & 1, (uint8_t)(point->albedo >> 24)};
+    }
+    return facets;
+}
+
 static size_t disc_count(const struct plan *plan, int class, size_t count)
 {
     const struct wd_disc_class *discs = plan->classes[class];
@@ -188,28 +210,22 @@ static size_t disc_count(const struct plan *plan, int class, size_t count)
 }
 
 /* A window of one class that begins anywhere. */
-static void draw_window(struct canvas *canvas, const struct plan *plan, int class, size_t count,
-                        float gain, uint32_t window)
+static void draw_window(struct plan *plan, int view, int class, size_t count, float gain,
+                        uint32_t window)
 {
-    const struct wd_tree_points *discs = plan->classes[class]->discs;
+    struct canvas *canvas = &plan->views[view];
+    const size_t all = plan->classes[class]->discs->count;
     size_t wanted = disc_count(plan, class, count);
     if (!wanted)
         return;
     float squared = gain * plan->classes[class]->area_m2 / (float)WD_PI / (float)wanted;
-    size_t first = wd_hash2(window, (uint32_t)count) % discs->count;
-    uint32_t eye = wd_sun_mix(canvas->frame.toward);
-    float close = wd_disc_close((float)count);
-    for (size_t i = 0; i < wanted; i++) {
-        size_t at = (first + i) % discs->count;
-        const struct wd_tree_point *point = &discs->points[at];
-        struct corner middle = corner_of(canvas, point->position_m);
-        uint32_t way = wd_sun_way_by_lot(eye, wd_hash2((uint32_t)at, 0x1e5));
-        float seen = (float)(discs->lit[at] >> way & 1);
-        middle.toward += seen * (1 - close) * plan->nearer_m;
-        float facing = facing_of(point, canvas->frame.toward);
-        facing *= wd_disc_open(seen, close);
-        draw_disc(canvas, &middle, sqrtf(squared * facing) * canvas->frame.scale,
-                  class == 0 ? WOOD : LEAF, (uint8_t)(point->albedo >> 24));
+    size_t at = wd_hash2(window, (uint32_t)count) % all;
+    float close = wd_disc_close((float)count), nearer_m = (1 - close) * plan->nearer_m;
+    for (size_t i = 0; i < wanted; i++, at = at + 1 < all ? at + 1 : 0) {
+        const struct facet *facet = &plan->facets[view][class][at];
+        float seen = facet->seen, facing = facet->facing * wd_disc_open(seen, close);
+        draw_disc(canvas, facet, facet->toward + seen * nearer_m,
+                  sqrtf(squared * facing) * canvas->frame.scale, class == 0 ? WOOD : LEAF);
     }
 }
 
@@ -226,12 +242,11 @@ static struct shown show_discs(struct plan *plan, size_t count, const float gain
     uint32_t windows = window_count(count);
     for (int view = 0; view < plan->view_count; view++)
         for (uint32_t i = 0; i < windows; i++) {
-            struct canvas *canvas = &plan->views[view];
-            clear(canvas);
+            clear(&plan->views[view]);
             for (int class = 0; class < 2; class++)
-                draw_window(canvas, plan, class, count, gains[class],
+                draw_window(plan, view, class, count, gains[class],
                             i * MOST_VIEWS + (uint32_t)view);
-            add_shown(&shown, canvas, 1.0 / windows);
+            add_shown(&shown, &plan->views[view], 1.0 / windows);
         }
     return shown;
 }
@@ -297,6 +312,8 @@ static void plan_init(struct plan *plan, const struct wd_tree_mesh *mesh, float 
         clear(canvas);
         draw_mesh(canvas, mesh);
         add_shown(&plan->mesh, canvas, 1);
+        for (int class = 0; class < 2; class++)
+            plan->facets[i][class] = facets_of(canvas, plan->classes[class]->discs);
     }
 }
 
@@ -306,6 +323,8 @@ static void plan_finish(struct plan *plan)
         free(plan->views[i].nearest);
         free(plan->views[i].kind);
         free(plan->views[i].openness);
+        free(plan->facets[i][0]);
+        free(plan->facets[i][1]);
     }
 }
 

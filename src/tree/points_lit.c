@@ -25,11 +25,10 @@ static float nearer_m(const struct wd_silhouette *frame, const float at[3], cons
     return wd_clampf(rise, -most, most) / frame->scale;
 }
 
-static bool is_lit(const struct wd_tree_point *point, const struct wd_silhouette *frame,
-                   const float *front)
+static bool is_lit(const struct wd_tree_point *point, const float face[3],
+                   const struct wd_silhouette *frame, const float *front)
 {
-    float face[3], at[3];
-    wd_unpack_normal(point->face, face);
+    float at[3];
     if ((point->kind & WD_POINT_ONE_SIDED) && wd_v3_dot(wd_v3_of(face), frame->toward) <= 0)
         return false;
     wd_silhouette_place(frame, point->position_m, at);
@@ -51,11 +50,15 @@ void wd_tree_points_open(uint32_t *open, const struct wd_tree_points *points,
         for (uint32_t k = 0; k < some; k++)
             wd_silhouette_init(&frames[k], mesh, ways[first + k]);
         wd_silhouette_front(frames, (int)some, mesh, fronts);
-        for (size_t i = 0; i < points->count; i++)
+        for (size_t i = 0; i < points->count; i++) {
+            const struct wd_tree_point *point = &points->points[i];
+            float face[3];
+            wd_unpack_normal(point->face, face);
             for (uint32_t k = 0; k < some; k++) {
                 const float *front = fronts + (size_t)k * WD_SILHOUETTE_FRONT;
-                open[i] |= (uint32_t)is_lit(&points->points[i], &frames[k], front) << (first + k);
+                open[i] |= (uint32_t)is_lit(point, face, &frames[k], front) << (first + k);
             }
+        }
     }
     free(fronts);
 }
