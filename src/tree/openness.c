@@ -26,11 +26,12 @@ struct band {
 static void ask(struct tally *tally, const struct wd_silhouette *view, const float *front,
                 const struct wd_tree_mesh *mesh, float near_m)
 {
+    const struct wd_silhouette_axes axes = wd_silhouette_axes_of(view);
     uint64_t leaves = mesh->index_count - mesh->wood_index_count;
     for (uint64_t i = 0; i < PLACES; i++) {
         uint32_t vertex = mesh->indices[mesh->wood_index_count + leaves * i / PLACES];
         float at[3];
-        wd_silhouette_place(view, mesh->vertices[vertex].position_m, at);
+        wd_silhouette_place(&axes, mesh->vertices[vertex].position_m, at);
         int x = (int)wd_clampf(at[0], 0, WD_SILHOUETTE - 1);
         int y = (int)wd_clampf(at[1], 0, WD_SILHOUETTE - 1);
         uint32_t step = mesh->vertices[vertex].tint >> 24;

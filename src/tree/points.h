@@ -34,8 +34,8 @@ void wd_tree_points_finish(struct wd_tree_points *points); /* accepts {0} */
 /* The way, or the one back, that the leaf points in whose surface this is; unit. */
 struct wd_vec3 wd_point_along(const struct wd_tree_point *point);
 
-/* shares[points->count]: of what a point's side shows around and half above the tree, the share that
- * nothing of the mesh hides. Points need no more than places and normals. */
+/* shares[points->count]: of what a point of wood's side shows around and half above the tree, the share
+ * that nothing of the mesh hides; 0 of leaves. Points need no more than places, normals and kinds. */
 void wd_tree_points_seen(float *shares, const struct wd_tree_points *points,
                          const struct wd_tree_mesh *mesh);
 

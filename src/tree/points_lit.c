@@ -26,12 +26,13 @@ static float nearer_m(const struct wd_silhouette *frame, const float at[3], cons
 }
 
 static bool is_lit(const struct wd_tree_point *point, const float face[3],
-                   const struct wd_silhouette *frame, const float *front)
+                   const struct wd_silhouette *frame, const struct wd_silhouette_axes *axes,
+                   const float *front)
 {
     float at[3];
     if ((point->kind & WD_POINT_ONE_SIDED) && wd_v3_dot(wd_v3_of(face), frame->toward) <= 0)
         return false;
-    wd_silhouette_place(frame, point->position_m, at);
+    wd_silhouette_place(axes, point->position_m, at);
     bool framed = at[0] >= 0 && at[0] < WD_SILHOUETTE && at[1] >= 0 && at[1] < WD_SILHOUETTE;
     if (!framed) /* corners of a box, where crowns have little */
         return true;
@@ -43,12 +44,15 @@ void wd_tree_points_open(uint32_t *open, const struct wd_tree_points *points,
                          const struct wd_tree_mesh *mesh, const struct wd_vec3 *ways, uint32_t count)
 {
     struct wd_silhouette frames[TOGETHER];
+    struct wd_silhouette_axes axes[TOGETHER];
     float *fronts = wd_alloc_array((size_t)TOGETHER * WD_SILHOUETTE_FRONT, sizeof *fronts);
     memset(open, 0, points->count * sizeof *open);
     for (uint32_t first = 0; first < count; first += TOGETHER) {
         uint32_t some = count - first < TOGETHER ? count - first : TOGETHER;
-        for (uint32_t k = 0; k < some; k++)
+        for (uint32_t k = 0; k < some; k++) {
             wd_silhouette_init(&frames[k], mesh, ways[first + k]);
+            axes[k] = wd_silhouette_axes_of(&frames[k]);
+        }
         wd_silhouette_front(frames, (int)some, mesh, fronts);
         for (size_t i = 0; i < points->count; i++) {
             const struct wd_tree_point *point = &points->points[i];
@@ -56,7 +60,8 @@ void wd_tree_points_open(uint32_t *open, const struct wd_tree_points *points,
             wd_unpack_normal(point->face, face);
             for (uint32_t k = 0; k < some; k++) {
                 const float *front = fronts + (size_t)k * WD_SILHOUETTE_FRONT;
-                open[i] |= (uint32_t)is_lit(point, face, &frames[k], front) << (first + k);
+                open[i] |= (uint32_t)is_lit(point, face, &frames[k], &axes[k], front)
+                           << (first + k);
             }
         }
     }

@@ -22,12 +22,15 @@ static float rise_px(float facing)
 static void look_at(struct shows *shows, const struct wd_tree_points *points,
                     const struct wd_silhouette *frame, const float *front)
 {
+    const struct wd_silhouette_axes axes = wd_silhouette_axes_of(frame);
     for (size_t i = 0; i < points->count; i++) {
         const struct wd_tree_point *point = &points->points[i];
         float n[3], at[3];
+        if (point->kind & WD_POINT_LEAF)
+            continue;
         wd_unpack_normal(point->normal, n);
         float facing = fmaxf(wd_v3_dot(WD_V3(n[0], n[1], n[2]), frame->toward), 0);
-        wd_silhouette_place(frame, point->position_m, at);
+        wd_silhouette_place(&axes, point->position_m, at);
         int x = (int)wd_clampf(at[0], 0, WD_SILHOUETTE - 1);
         int y = (int)wd_clampf(at[1], 0, WD_SILHOUETTE - 1);
         shows[i].all += facing;

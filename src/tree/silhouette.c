@@ -28,26 +28,13 @@ void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p
     at[1] = (wd_v3_dot(v, silhouette->up) - silhouette->low[1]) * silhouette->scale;
 }
 
-/* Pixels and distance of a point p are dot(p, axis) - low of these. */
-struct axes {
-    struct wd_vec3 axis[3];
-    float low[3];
-};
-
-static struct axes axes_of(const struct wd_silhouette *silhouette)
+struct wd_silhouette_axes wd_silhouette_axes_of(const struct wd_silhouette *silhouette)
 {
-    return (struct axes){
+    return (struct wd_silhouette_axes){
         {wd_v3_scale(silhouette->right, silhouette->scale),
          wd_v3_scale(silhouette->up, silhouette->scale), silhouette->toward},
         {silhouette->low[0] * silhouette->scale, silhouette->low[1] * silhouette->scale, 0},
     };
-}
-
-void wd_silhouette_place(const struct wd_silhouette *silhouette, const float p[3], float at[3])
-{
-    struct axes axes = axes_of(silhouette);
-    for (int i = 0; i < 3; i++)
-        at[i] = wd_v3_dot(wd_v3_of(p), axes.axis[i]) - axes.low[i];
 }
 
 /* --- triangles, a batch at a time, each number of all of them together -------------------- */
@@ -83,7 +70,7 @@ static void gather(struct batch *batch, const struct wd_tree_mesh *mesh, const u
 }
 
 static void place_corners(float at[3][BATCH], const float places_m[3][BATCH],
-                          const struct axes *axes)
+                          const struct wd_silhouette_axes *axes)
 {
     for (int axis = 0; axis < 3; axis++) {
         struct wd_vec3 a = axes->axis[axis];
@@ -292,7 +279,7 @@ static inline void draw_triangle(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *f
     }
 }
 
-static void prepare(struct batch *batch, const struct axes *axes, bool depth)
+static void prepare(struct batch *batch, const struct wd_silhouette_axes *axes, bool depth)
 {
     for (int corner = 0; corner < 3; corner++)
         place_corners(batch->at[corner], (const float(*)[BATCH])batch->places_m[corner], axes);
@@ -338,7 +325,7 @@ void wd_silhouette_cover(struct wd_silhouette *views, int view_count,
     for (uint32_t i = first; i + 2 < end; i += 3 * BATCH) {
         int count = next_batch(&batch, mesh, i, end);
         for (int view = 0; view < view_count; view++) {
-            const struct axes axes = axes_of(&views[view]);
+            const struct wd_silhouette_axes axes = wd_silhouette_axes_of(&views[view]);
             prepare(&batch, &axes, false);
             draw_batch(views[view].covered, NULL, &batch, count);
         }
@@ -355,7 +342,7 @@ void wd_silhouette_front(const struct wd_silhouette *views, int view_count,
     for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3 * BATCH) {
         int count = next_batch(&batch, mesh, i, mesh->index_count);
         for (int view = 0; view < view_count; view++) {
-            const struct axes axes = axes_of(&views[view]);
+            const struct wd_silhouette_axes axes = wd_silhouette_axes_of(&views[view]);
             prepare(&batch, &axes, true);
             draw_batch(NULL, fronts + view * WD_SILHOUETTE_FRONT, &batch, count);
         }

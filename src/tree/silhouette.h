@@ -34,8 +34,18 @@ void wd_silhouette_front(const struct wd_silhouette *views, int view_count,
 
 size_t wd_silhouette_count(const struct wd_silhouette *silhouette);
 
-/* Third is the distance toward the picture's side, in metres. */
-void wd_silhouette_place(const struct wd_silhouette *silhouette, const float p[3], float at[3]);
+/* Pixels and distance of a point p, in metres toward the picture's side, are dot(p, axis) - low of these. */
+struct wd_silhouette_axes {
+    struct wd_vec3 axis[3];
+    float low[3];
+};
+struct wd_silhouette_axes wd_silhouette_axes_of(const struct wd_silhouette *silhouette);
+static inline void wd_silhouette_place(const struct wd_silhouette_axes *axes, const float p[3],
+                                       float at[3])
+{
+    for (int i = 0; i < 3; i++)
+        at[i] = wd_v3_dot(wd_v3_of(p), axes->axis[i]) - axes->low[i];
+}
 void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p[3], float at[2]);
 
 /* First pixel whose middle is at x or beyond, within the picture; 0 for NaN. */
