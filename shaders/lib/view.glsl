@@ -12,11 +12,14 @@ bool pixel_is_sky(float depth)
     return depth <= 0.0;
 }
 
+/* A world without water has its level deeper than this. */
+const float WATER_NONE_M = 1e8;
+
 /* How often the ray fits between the eye and the water's surface, or a negative number. No branch
  * hangs on the eye's height alone: llvmpipe makes a shader anew for each such value. */
 float water_distance(vec3 ray)
 {
     float drop = frame.water_level_m - float(frame.camera_mm[2]) * 0.001 - frame.camera_frac_m.z;
     float at = drop / ray.z;
-    return ray.z < -1e-6 && at > 0.0 ? at : -1.0;
+    return ray.z < -1e-6 && at > 0.0 && at < WATER_NONE_M ? at : -1.0;
 }

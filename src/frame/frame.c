@@ -66,6 +66,22 @@ static void prepare_gathering(struct wd_frame *frame)
     params->previous_time_s = gathered->frames ? gathered->time_s : params->time_s;
 }
 
+static enum wd_leaf_kinds leaves_of(const struct wd_method *method)
+{
+    return method->single_leaves ? WD_LEAVES_SINGLE : WD_LEAVES_ANY;
+}
+
+static bool prepare_pipelines(struct wd_frame *frame)
+{
+    const struct wd_frame_params *params = &frame->params;
+    const struct wd_light_needs needs = {params->forest, params->view_mode,
+                                         leaves_of(params->method)};
+    return wd_tree_pipelines_prepare(&frame->trees, frame->gpu, params->forest,
+                                     params->method->cards) &&
+           wd_terrain_pass_prepare(&frame->terrain, frame->gpu, &params->forest->ground) &&
+           wd_light_pass_prepare(&frame->light, frame->gpu, &needs);
+}
+
 bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *params)
 {
     struct wd_targets *targets = &frame->targets;
@@ -83,7 +99,7 @@ bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *para
     }
     frame->method_state = wd_methods_open(&frame->methods, frame->gpu, params->method,
                                           params->forest);
-    return frame->method_state && prepare_velocity(frame);
+    return frame->method_state && prepare_pipelines(frame) && prepare_velocity(frame);
 }
 
 void wd_frame_drop_forest(struct wd_frame *frame)
@@ -296,7 +312,7 @@ static void record_light(const struct recording *r)
         &frame->targets, frame->params.forest,
         &r->view,        &r->values,
         r->uniforms,     blends(r) ? WD_OVERLAY_OVER : WD_OVERLAY_NONE,
-        frame->params.method->single_leaves ? WD_LEAVES_SINGLE : WD_LEAVES_ANY};
+        leaves_of(frame->params.method)};
     if (blends(r))
         record_blend(r, &light);
     wd_cmd_scope_begin(r->cmd, "light");

@@ -111,15 +111,32 @@ bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *
     const struct wd_spirv wood = SPIRV(tree_mesh_vert);
     *pipelines = (struct wd_tree_pipelines){0};
     bool ok = init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, wood, 1, 0) &&
-              init_leaves(pipelines, gpu, 0) && init_leaves(pipelines, gpu, 1) &&
-              wd_spray_pipeline_init(&pipelines->spray, gpu);
-    for (int pass = WD_PASS_CAMERA; ok && pass <= WD_PASS_SHADOW; pass++) {
-        ok = init_mesh(&pipelines->mesh[pass], gpu, pass, wood, 0, 0) &&
-             init_card(&pipelines->card_range[pass], gpu, pass, 0) &&
-             init_card(&pipelines->card_listed[pass], gpu, pass, 1);
-    }
+              init_leaves(pipelines, gpu, 0) && wd_spray_pipeline_init(&pipelines->spray, gpu);
+    for (int pass = WD_PASS_CAMERA; ok && pass <= WD_PASS_SHADOW; pass++)
+        ok = init_mesh(&pipelines->mesh[pass], gpu, pass, wood, 0, 0);
     if (!ok)
         wd_tree_pipelines_finish(pipelines, gpu);
+    return ok;
+}
+
+static bool has_falling(const struct wd_forest_device *forest)
+{
+    for (uint32_t i = 0; i < forest->model_count; i++)
+        if (forest->host_models[i].fall_mps > 0.0f)
+            return true;
+    return false;
+}
+
+bool wd_tree_pipelines_prepare(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu,
+                               const struct wd_forest_device *forest, bool cards)
+{
+    bool ok = true;
+    if (!pipelines->leaf_detail[1].pipeline && has_falling(forest))
+        ok = init_leaves(pipelines, gpu, 1);
+    for (int pass = WD_PASS_CAMERA; ok && cards && pass <= WD_PASS_SHADOW; pass++)
+        if (!pipelines->card_listed[pass].pipeline)
+            ok = init_card(&pipelines->card_range[pass], gpu, pass, 0) &&
+                 init_card(&pipelines->card_listed[pass], gpu, pass, 1);
     return ok;
 }
 

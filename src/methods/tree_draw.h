@@ -19,6 +19,9 @@ struct wd_tree_pipelines {
     struct wd_pipeline card_range[2], card_listed[2];
 };
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu);
+/* Adds those that such a forest needs, and methods that draw cards. No frame is being recorded. */
+bool wd_tree_pipelines_prepare(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu,
+                               const struct wd_forest_device *forest, bool cards);
 void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu);
 
 /* One view to be drawn. */

@@ -2,9 +2,7 @@
 # Films: whole, stopped, and impossible ones.
 set -u
 . "$(dirname "$0")/lib.sh"
-mkdir "$scratch/cache" "$scratch/out"
-XDG_CACHE_HOME=$scratch/cache
-export XDG_CACHE_HOME
+mkdir "$scratch/out"
 out=$scratch/out
 size="--size 64x48 --gpu software"
 

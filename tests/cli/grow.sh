@@ -2,9 +2,7 @@
 # Single trees and scenes as pictures and as files for other programs.
 set -u
 . "$(dirname "$0")/lib.sh"
-mkdir "$scratch/cache" "$scratch/out"
-XDG_CACHE_HOME=$scratch/cache
-export XDG_CACHE_HOME
+mkdir "$scratch/out"
 out=$scratch/out
 cd "$root" || exit 1
 small="--size 96x96 --samples 1 --gpu software"

@@ -2,9 +2,7 @@
 # Pictures on software Vulkan, and outputs that cannot be.
 set -u
 . "$(dirname "$0")/lib.sh"
-mkdir "$scratch/cache" "$scratch/out"
-XDG_CACHE_HOME=$scratch/cache
-export XDG_CACHE_HOME
+mkdir "$scratch/out"
 soft="--gpu software"
 out=$scratch/out
 

@@ -8,8 +8,6 @@ build=$3
 compiler=$4
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-export XDG_CACHE_HOME="$scratch/cache"
-mkdir "$scratch/cache"
 
 "$embed" "$root/tests/viewer/tiny.json" "$scratch/built.ppm"
 [ "$(head -c 14 "$scratch/built.ppm")" = 'P6 640 360 255' ]

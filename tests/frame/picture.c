@@ -198,7 +198,9 @@ static bool draw_sample(struct picture_test *test, const struct wd_camera *camer
 
 bool picture_draw(struct picture_test *test, const struct wd_camera *camera)
 {
-    bool ok = true;
+    const struct wd_light_needs needs = {&test->forest, test->view_mode, WD_LEAVES_ANY};
+    bool ok = wd_terrain_pass_prepare(&test->terrain, &test->gpu, &test->forest.ground) &&
+              wd_light_pass_prepare(&test->light, &test->gpu, &needs);
     for (uint32_t i = 0; ok && i < (test->samples ? test->samples : 1); i++)
         ok = draw_sample(test, camera, i);
     return ok;

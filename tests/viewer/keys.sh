@@ -14,10 +14,8 @@ for need in Xvfb xdotool jq ffmpeg; do
 done
 scratch=$(mktemp -d)
 report=$scratch/report
-mkdir "$scratch/shots" "$scratch/cache"
+mkdir "$scratch/shots"
 sed "s,\.\./\.\./,$root/,g" "$root/tests/viewer/tiny.json" >"$scratch/tiny.json"
-XDG_CACHE_HOME=$scratch/cache
-export XDG_CACHE_HOME
 viewer=
 server=
 cleanup() {

@@ -32,45 +32,80 @@ static const VkDescriptorType BUFFER = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 static const VkDescriptorType TEXELS = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 static const VkDescriptorType UNIFORM = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 
+enum { WET_LIST = WD_TILE_LISTS - 1 };
+
 /* Lists of trees and no water, which most of a forest's pixels are in. */
 static bool has_single(uint32_t list)
 {
     return (wd_tile_list_parts(list) & (WD_PART_TREES | WD_PART_WATER)) == WD_PART_TREES;
 }
 
-static bool init_shading(struct wd_light_pass *pass, struct wd_gpu *gpu)
+static struct wd_compute_params shading_params(uint32_t first_binding_type)
 {
     struct wd_compute_params params = {
-        .shader = SPIRV(light_view_comp),
-        .bindings = {11,
-                     {BUFFER, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, TEXELS, TEXELS,
-                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER}},
+        .shader = SPIRV(light_comp),
+        .bindings = {16,
+                     {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, TEXELS, TEXELS, TEXELS,
+                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER, IMAGE, IMAGE, IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
+    params.bindings.types[0] = first_binding_type;
+    return params;
+}
+
+/* Of the parts that tiles of a list may have. Where there is water too, pixels that show
+ * none are shaded. */
+static bool init_list(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t list, uint32_t single)
+{
+    uint32_t parts = wd_tile_list_parts(list), wet = parts & WD_PART_WATER;
     const uint32_t rows = gpu->software ? 1 : WD_TILE; /* of a tile at once */
-    bool ok = wd_pipeline_init_compute(&pass->view, gpu, &params);
-    params.bindings.count = 16;
-    for (uint32_t binding = 12; binding < 15; binding++)
-        params.bindings.types[binding] = IMAGE;
-    params.bindings.types[7] = TEXELS;
-    params.bindings.types[15] = BUFFER;
-    for (uint32_t list = 0; ok && list < WD_TILE_LISTS; list++) {
-        uint32_t parts = wd_tile_list_parts(list), wet = parts & WD_PART_WATER;
-        uint32_t constants[] = {parts & ~wet, list, wet != 0, gpu->runs, 0, rows};
-        params.constants = (struct wd_spec_constants){6, constants};
-        params.shader = wet ? (struct wd_spirv)SPIRV(light_water_comp)
-                            : (struct wd_spirv)SPIRV(light_comp);
-        params.bindings.types[0] = wet ? BUFFER : UNIFORM;
-        ok = wd_pipeline_init_compute(&pass->light[list], gpu, &params);
-        constants[4] = 1;
-        if (has_single(list))
-            ok = ok && wd_pipeline_init_compute(&pass->single[list], gpu, &params);
-    }
+    const uint32_t constants[] = {parts & ~wet, list, wet != 0, gpu->runs, single, rows};
+    struct wd_compute_params params = shading_params(wet ? BUFFER : UNIFORM);
+    if (wet)
+        params.shader = (struct wd_spirv)SPIRV(light_water_comp);
+    params.constants = (struct wd_spec_constants){6, constants};
+    return wd_pipeline_init_compute(pipeline, gpu, &params);
+}
+
+static bool init_water(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+{
+    const uint32_t rows = gpu->software ? 1 : WD_TILE;
+    const uint32_t constants[] = {WD_PART_ALL, WET_LIST, 1, gpu->runs, 0, rows};
+    struct wd_compute_params params = shading_params(BUFFER);
     params.shader = (struct wd_spirv)SPIRV(light_water_comp);
-    params.bindings.types[0] = BUFFER;
-    const uint32_t water[] = {WD_PART_ALL, WD_TILE_LISTS - 1, 1, gpu->runs, 0, rows};
-    params.constants = (struct wd_spec_constants){6, water};
-    return ok && wd_pipeline_init_compute(&pass->water, gpu, &params);
+    params.constants = (struct wd_spec_constants){6, constants};
+    return wd_pipeline_init_compute(pipeline, gpu, &params);
+}
+
+static bool init_view(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+{
+    struct wd_compute_params params = shading_params(BUFFER);
+    params.shader = (struct wd_spirv)SPIRV(light_view_comp);
+    params.bindings.count = 11;
+    params.bindings.types[7] = BUFFER;
+    return wd_pipeline_init_compute(pipeline, gpu, &params);
+}
+
+static bool has_water(const struct wd_forest_device *forest)
+{
+    return forest->scene->water.enabled || forest->ground.terrain->water_m;
+}
+
+bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
+                           const struct wd_light_needs *needs)
+{
+    bool ok = true;
+    if (needs->view_mode != WD_MODE_LIT)
+        return pass->view.pipeline || init_view(&pass->view, gpu);
+    for (uint32_t list = 0; list < WD_TILE_LISTS && ok; list++) {
+        bool single = needs->leaves == WD_LEAVES_SINGLE && has_single(list);
+        struct wd_pipeline *pipeline = single ? &pass->single[list] : &pass->light[list];
+        if (!pipeline->pipeline && (list != WET_LIST || has_water(needs->forest)))
+            ok = init_list(pipeline, gpu, list, single);
+    }
+    if (!pass->water.pipeline && has_water(needs->forest))
+        ok = ok && init_water(&pass->water, gpu);
+    return ok;
 }
 
 static bool init_sorting(struct wd_light_pass *pass, struct wd_gpu *gpu)
@@ -99,8 +134,7 @@ static bool init_velocity(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_light_pass){0};
-    bool ok = init_shading(pass, gpu) && init_sorting(pass, gpu) &&
-              init_velocity(&pass->velocity, gpu) &&
+    bool ok = init_sorting(pass, gpu) && init_velocity(&pass->velocity, gpu) &&
               wd_sampler_init(&pass->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
               wd_sampler_init(&pass->shadow, gpu, WD_SAMPLER_SHADOW);
     if (!ok)
@@ -218,12 +252,15 @@ static void shade_lists(struct wd_light_pass *pass, struct wd_cmd *cmd,
                         const struct wd_light_params *params, const struct wd_binding *bindings,
                         const struct wd_light_push *push)
 {
-    for (uint32_t list = 0; list < WD_TILE_LISTS; list++) {
+    for (uint32_t list = 0; list < WET_LIST; list++) {
         bool single = params->leaves == WD_LEAVES_SINGLE && has_single(list);
         shade_list(pass, cmd, single ? &pass->single[list] : &pass->light[list], list, bindings, push);
     }
+    if (!has_water(params->forest))
+        return;
+    shade_list(pass, cmd, &pass->light[WET_LIST], WET_LIST, bindings, push);
     wd_cmd_use_image(cmd, &params->targets->radiance, WD_USE_COMPUTE_WRITE);
-    shade_list(pass, cmd, &pass->water, WD_TILE_LISTS - 1, bindings, push);
+    shade_list(pass, cmd, &pass->water, WET_LIST, bindings, push);
 }
 
 void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,

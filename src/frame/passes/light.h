@@ -22,6 +22,17 @@ struct wd_light_pass {
 bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu);
 void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu);
 
+enum wd_leaf_kinds { WD_LEAVES_ANY, WD_LEAVES_SINGLE }; /* as wd_method.single_leaves */
+
+/* Makes the pipelines that such pictures need and that are not there yet. No frame is being recorded. */
+struct wd_light_needs {
+    const struct wd_forest_device *forest;
+    uint32_t view_mode; /* WD_MODE_* */
+    enum wd_leaf_kinds leaves;
+};
+bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
+                           const struct wd_light_needs *needs);
+
 struct wd_light_params {
     struct wd_targets *targets;
     const struct wd_forest_device *forest; /* wd_forest_device_use has been called */
@@ -29,7 +40,7 @@ struct wd_light_params {
     const struct wd_frame_uniforms *frame;
     struct wd_binding uniforms;            /* the same, on the device */
     enum wd_overlay { WD_OVERLAY_NONE, WD_OVERLAY_OVER } overlay; /* whether targets->overlay counts */
-    enum wd_leaf_kinds { WD_LEAVES_ANY, WD_LEAVES_SINGLE } leaves; /* as wd_method.single_leaves */
+    enum wd_leaf_kinds leaves;
 };
 
 /* What shading needs besides the frame's uniforms: for methods that light trees by themselves. All

@@ -63,10 +63,20 @@ bool wd_terrain_pass_init(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_terrain_pass){0};
     bool ok = init_indices(&pass->indices, gpu);
-    for (uint32_t i = 0; i < 4 && ok; i++)
-        ok = init_pipeline(&pass->pipelines[i >> 1][i & 1], gpu, i >> 1, i & 1);
+    for (uint32_t near = 0; near < 2 && ok; near++)
+        ok = init_pipeline(&pass->pipelines[0][near], gpu, 0, near);
     if (!ok)
         wd_terrain_pass_finish(pass, gpu);
+    return ok;
+}
+
+bool wd_terrain_pass_prepare(struct wd_terrain_pass *pass, struct wd_gpu *gpu,
+                             const struct wd_ground *ground)
+{
+    bool ok = true;
+    for (uint32_t near = 0; near < 2 && ok && ground->terrain->hole; near++)
+        ok = pass->pipelines[1][near].pipeline ||
+             init_pipeline(&pass->pipelines[1][near], gpu, 1, near);
     return ok;
 }
 

@@ -15,6 +15,9 @@ struct wd_terrain_pass {
 };
 
 bool wd_terrain_pass_init(struct wd_terrain_pass *pass, struct wd_gpu *gpu);
+/* Adds the pipelines that such ground needs. No frame is being recorded. */
+bool wd_terrain_pass_prepare(struct wd_terrain_pass *pass, struct wd_gpu *gpu,
+                             const struct wd_ground *ground);
 void wd_terrain_pass_finish(struct wd_terrain_pass *pass, struct wd_gpu *gpu);
 
 struct wd_terrain_params {
