@@ -7,6 +7,8 @@ struct wd_crown {
     vec3 center_rel;
     vec3 radii_m;
     float foot_z; /* rel */
+    float sward;  /* 1 where the plant is one of low grasses that close over the ground, and have no sides
+                     that light could come in by */
 };
 
 wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
@@ -18,14 +20,8 @@ wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
     crown.foot_z = foot_rel.z;
     crown.center_rel = foot_rel + vec3(0.0, 0.0, 0.5 * (height_m + base_m));
     crown.radii_m = max(vec3(radius_m, radius_m, 0.5 * (height_m - base_m)), vec3(0.1));
+    crown.sward = model.roughness < 0.0 ? 1.0 - smoothstep(0.22, 0.35, crown.radii_m.z) : 0.0;
     return crown;
-}
-
-/* Grasses close over the ground: 1 where a plant is one of such a layer, which has no sides that light
- * could come in by. */
-float crown_is_sward(wd_crown crown)
-{
-    return 1.0 - smoothstep(0.22, 0.35, crown.radii_m.z);
 }
 
 /* Metres of leaves over a place in a sward. */
@@ -39,7 +35,7 @@ float crown_path_m(wd_crown crown, vec3 rel)
 {
     float path_m = wd_crown_path_m(rel - crown.center_rel, crown.radii_m, frame.sun_direction);
     float level_m = sward_depth_m(crown, rel) / max(frame.sun_direction.z, 0.05);
-    return mix(path_m, level_m, crown_is_sward(crown));
+    return mix(path_m, level_m, crown.sward);
 }
 
 /* The same for a sward, whose leaves the eye meets by a, the sun by b a metre of depth: of those seen
@@ -55,7 +51,7 @@ float sward_card_height_m(wd_crown crown, vec3 direction)
 vec3 crown_card_place(wd_crown crown, vec3 direction)
 {
     vec3 within = wd_crown_card_place(crown.center_rel, crown.radii_m, direction);
-    within.z = mix(within.z, sward_card_height_m(crown, direction), crown_is_sward(crown));
+    within.z = mix(within.z, sward_card_height_m(crown, direction), crown.sward);
     return within;
 }
 

@@ -8,27 +8,47 @@ const float PER_PI = 0.318309886;
 /* --- light from everywhere ------------------------------------------------------------------ */
 
 /* Of the canopy here (forest/canopy_light.h), in layer 0 the roots of the shares of the sky's light from
- * each quarter that reach level ground, past crowns and hills; in layer 1 those of its base and top.
- * Where the shader does not say, all light does. */
+ * each quarter that reach the ground's herbs, past crowns and hills; in layer 1 those of its base and top,
+ * and of the herbs. Where the shader does not say, all light does. */
 #ifndef CANOPY_LIGHT_AT
-#define CANOPY_LIGHT_AT(at, layer) vec4(1.0)
+#define CANOPY_LIGHT_AT(at, layer) vec4(1.0 - layer)
 #endif
+
+/* Light from everywhere meets so many times the layers that a steep ray does. */
+const float HERBS_SLANT = 1.0;
 
 /* What comes down to a place among leaves. */
 struct wd_shelter {
     vec4 through;     /* the share of the sky's quarters that no leaf stops */
     float floor_mean; /* the mean of that on the ground */
     float under;      /* log2 of the share that leaves of the stand over the place let down */
+    vec2 layer_m;     /* base and top of the stand's leaves over the ground */
+    float herbs;      /* layers of herbs on the ground, */
+    float herbs_m;    /* so high */
+    float low;        /* 1: on the ground, whose light comes from right beside the place; 0: far over it */
+    float floor_open; /* share of the sky's and the sun's light that herbs leave to that */
 };
+
+/* Skylight past herbs that have so many layers over a place. */
+float through_herbs(float layers)
+{
+    return exp(-HERBS_SLANT * layers);
+}
 
 wd_shelter ground_shelter(wd_pixel pixel)
 {
     vec4 field = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 0.0);
+    vec4 layers = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 1.0);
     wd_shelter shelter;
+    shelter.layer_m = WD_CANOPY_MOST_M * layers.xy * layers.xy;
+    shelter.herbs = WD_HERBS_MOST * layers.z * layers.z;
+    shelter.herbs_m = WD_HERB_M * layers.w * layers.w;
+    shelter.low = 0.0;
+    shelter.floor_open = 1.0;
     shelter.through = max(field * field, vec4(1e-3));
     shelter.floor_mean = dot(shelter.through, vec4(0.25));
     shelter.under = log2(shelter.floor_mean);
-    shelter.through *= pixel.surface == 0u ? pixel.openness : 1.0;
+    shelter.through *= pixel.surface == 0u ? pixel.openness * through_herbs(shelter.herbs) : 1.0;
     return shelter;
 }
 
@@ -39,24 +59,30 @@ float canopy_above(vec2 layer_m, float height_m)
     return above * above;
 }
 
+/* Layers of herbs over a height: their leaves are spread evenly over theirs. */
+float herbs_above(wd_shelter shelter, float height_m)
+{
+    return shelter.herbs * clamp(1.0 - height_m / max(shelter.herbs_m, 0.01), 0.0, 1.0);
+}
+
 /* On a tree: what its own leaves let through, and of what the stand lets down to the ground as much as
  * there are leaves of it higher up: what of it is above the whole tree, and neighbours beside it. The
  * ground's own share is that of gaps between crowns, in which no leaf is. Herbs get what the ground
  * gets, less what their own take. */
 wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter shelter)
 {
-    vec4 field = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 1.0);
-    vec2 layer_m = WD_CANOPY_MOST_M * field.xy * field.xy;
     float top_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
-    float above = canopy_above(layer_m, rel.z - crown.foot_z);
-    float higher = canopy_above(layer_m, top_m);
+    float above = canopy_above(shelter.layer_m, rel.z - crown.foot_z);
+    float higher = canopy_above(shelter.layer_m, top_m);
     float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
-    float close = max(crown_is_sward(crown), 0.6 * herb); /* taller ones stand less so */
-    float over = close * wd_crown_per_m(crown.radii_m) * sward_depth_m(crown, pixel.rel);
+    float over = crown.sward * wd_crown_per_m(crown.radii_m) * sward_depth_m(crown, pixel.rel);
     float own = max(pixel.openness, 1e-2);
     float under = mix(higher, 1.0, above);
     vec4 stand = own * exp2(under * log2(shelter.through));
     shelter.through = mix(stand, shelter.through * own * exp(-0.7 * over), herb);
+    shelter.through *= through_herbs(herbs_above(shelter, rel.z - crown.foot_z));
+    shelter.low = exp2(min(crown.foot_z - pixel.rel.z, 0.0));
+    shelter.floor_open = mix(1.0, through_herbs(shelter.herbs), herb);
     shelter.under *= mix(under, 1.0, herb);
     return shelter;
 }
@@ -126,9 +152,10 @@ struct wd_alone {
 
 const wd_alone NOT_ALONE = wd_alone(0.0, vec4(0.0), vec4(0.0));
 
-/* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
+/* `past_trees`: the sun's share at the place. `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
  * unit, where a ray of the eye goes on to from one leaf. */
-wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float ground_share, wd_alone alone)
+wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float ground_share, float past_trees,
+                       wd_alone alone)
 {
     vec3 n = facing.xyz, s = frame.leaf_scatter;
     /* Slanting rays meet more of the stand's leaves, and of the tree's own (below). */
@@ -159,13 +186,13 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 diffuse = exp2(s * log2(mean));
     vec3 between = (sqrt(diffuse * beam) * 2.0 + 0.5 * (diffuse + beam)) * (1.0 / 3.0);
     vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
-    vec3 with_scattered = sun * beam + scattered;
+    vec3 with_scattered = sun * mix(beam, past_trees, shelter.low) + scattered;
     float covered = 1.0 - shelter.floor_mean;
     vec3 floor_albedo = mix(frame.grass, frame.litter, covered);
     vec3 below = mix((1.0 - s) / (1.0 + s), floor_albedo,
                      exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
-    vec3 upward = below * (frame.sky_irradiance * sky + with_scattered);
-    vec3 beside = floor_albedo * (sky_level(alone.beside) + sun);
+    vec3 upward = below * (frame.sky_irradiance * sky + with_scattered) * shelter.floor_open;
+    vec3 beside = floor_albedo * (sky_level(alone.beside) + sun) * shelter.floor_open;
     vec3 upward_front = mix(upward, beside * alone.lets.z, alone.share);
     vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
     float up = 0.5 + 0.5 * n.z;
@@ -405,14 +432,14 @@ vec4 canopy_light_near(vec2 place_m)
 
 /* By the sky over the ground beside the crown, toward the sun: whether it stands free; and each quarter of its
  * sky where the crown is not before it. Low plants close over the ground, of which that knows nothing. */
-wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit)
+wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter shelter, float height_m)
 {
     vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(1.1 * crown.radii_m.x);
     vec2 sunward = center + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
     vec4 open = canopy_light_near(sunward);
     vec4 field = vec4(canopy_light_near(center + corner).xy, canopy_light_near(center - corner).zw);
     wd_alone alone;
-    alone.beside = field * field;
+    alone.beside = field * field * through_herbs(herbs_above(shelter, height_m));
     alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open))
                   * smoothstep(0.25, 0.35, crown.radii_m.z);
     alone.lets.xy = skylit.xy * wd_skylit_above(openness);
@@ -507,8 +534,8 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     float cosine = dot(pixel.normal, frame.sun_direction);
     place.sides = vec2(max(cosine, 0.0), max(-cosine, 0.0));
     place.waxed = pixel.above;
-    place.gloss = leaf_coat(pixel.normal, -pixel.direction, model.roughness) * pixel.above;
-    place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), model.roughness);
+    place.gloss = leaf_coat(pixel.normal, -pixel.direction, abs(model.roughness)) * pixel.above;
+    place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), abs(model.roughness));
 }
 
 /* Wood within a crown is in its shade as leaves are. */
@@ -539,7 +566,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     bool card = pixel.material == WD_MATERIAL_CARD;
     bool disc = pixel.lit >= 0.0 && pixel.lit < 1.0;
     vec3 eye = -pixel.direction;
-    float sward = crown_is_sward(crown);
+    float sward = crown.sward;
     float cosine = dot(eye, frame.sun_direction);
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
     float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free);
@@ -559,7 +586,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.sward = sward;
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
-    place.gloss = leaf_gloss(pixel, model.roughness, near) + WAX * 0.39;
+    place.gloss = leaf_gloss(pixel, abs(model.roughness), near) + WAX * 0.39;
     place.coat = 1.6 * WAX;
     place.gloss = (place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
@@ -591,7 +618,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         vec4 skylit = skylit_of(model_at, mixed,
                                 pixel.material >= WD_MATERIAL_LEAF ? 0u : WD_SUN_RINGS);
         wd_crown crown = crown_of(tree, model);
-        alone = crown_alone(crown, pixel.openness, skylit);
+        alone = crown_alone(crown, pixel.openness, skylit, shelter, pixel.rel.z - crown.foot_z);
         if (pixel.material >= WD_MATERIAL_LEAF)
             place = leaf_place(pixel, crown, model, alone.share, sunlit, cascade);
         else
@@ -622,7 +649,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 within = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
     vec3 sunlit = within * place.sides.x + transmitted * place.sides.y + place.gloss;
     vec3 mirror = reflect(pixel.direction, pixel.normal);
-    wd_around around = light_around(facing, mirror, shelter, ground_share, alone);
+    wd_around around = light_around(facing, mirror, shelter, ground_share, past_trees, alone);
     /* Upright ground is where the world is cut off: before it lies bright haze, as the path tracer has it. */
     if (pixel.surface == 0u && abs(pixel.normal.z) < 0.01)
         around.front += 0.5 * frame.sky_irradiance;

@@ -52,7 +52,7 @@ struct wd_model {
     uint32_t card_layer;    /* of the first upright card; the level one is layer + 3 */
     WD_VEC3(transmittance); /* of a leaf over its albedo, linear */
     float crown_base_m;     /* height of the lowest living branch */
-    float roughness;        /* of leaves, the root of GGX's alpha */
+    float roughness;        /* of leaves, the root of GGX's alpha; minus that of a sward's blades */
     float moss;             /* share of the stem's foot that moss covers */
     float fall_mps;         /* speed of leaves on their way down; 0: they hang */
     float phase;            /* how far the individual is ahead in the season: -1..1 */

@@ -21,6 +21,10 @@ struct wd_light_push {
 /* Greatest height of a canopy that the image of its light can tell. */
 #define WD_CANOPY_MOST_M 128.0f
 
+/* Lower plants are herbs; so many layers of them the image can tell. */
+#define WD_HERB_M 1.5f
+#define WD_HERBS_MOST 4.0f
+
 /* What a tile of pixels shows; each list of tiles is shaded by a pipeline with these parts. */
 #define WD_TILE 8
 #define WD_TILE_THREADS 64 /* of a workgroup that sorts tiles, a tile each */

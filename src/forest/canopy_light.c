@@ -12,6 +12,7 @@ static const float PI = 3.14159265f;
 /* --- crowns -------------------------------------------------------------------------------- */
 
 enum { CROWN_SIDE = 64 }; /* texels across: leaves that share a twig share a texel */
+static const float FROND_TEXELS = 16;
 
 /* Area across rays along one axis, in texels' areas, on a square about the stem. */
 struct outline {
@@ -90,8 +91,7 @@ static void crown_add(struct crown *crown, const float middle[3], const float ar
 static void add_triangles(struct crown *crown, const struct wd_tree_model *model)
 {
     const struct wd_tree_mesh *mesh = &model->full;
-    uint32_t end = model->leaves ? mesh->wood_index_count : mesh->index_count;
-    for (uint32_t first = 0; first < end; first += 3) {
+    for (uint32_t first = 0; first + 2 < mesh->index_count; first += 3) {
         float middle[3], areas[3];
         triangle_areas(mesh, first, middle, areas);
         for (int k = 0; k < 3 && first < mesh->wood_index_count; k++)
@@ -123,14 +123,26 @@ static void add_leaves(struct crown *crown, const struct wd_tree_model *model)
     }
 }
 
-struct wd_crown_shade wd_crown_shade_of(const struct wd_tree_model *model)
+/* Fronds reach over many texels: those take the light of their parts. */
+static bool has_fronds(const struct crown *crown, const struct wd_tree_model *model)
+{
+    float texel_m = crown->above.texel_m, leaves = (float)model->leaf_count;
+    return model->leaf_area_m2 > FROND_TEXELS * texel_m * texel_m * leaves;
+}
+
+struct wd_crown_shade wd_crown_shade_of(struct wd_tree_model *model)
 {
     struct crown *crown = wd_alloc(sizeof *crown);
     *crown = (struct crown){.base_m = model->crown_base_m};
     outline_init(&crown->above, &model->full, 0, 1);
     outline_init(&crown->side, &model->full, 0, 2);
+    bool fronds = model->leaves && has_fronds(crown, model);
+    if (fronds)
+        wd_tree_model_add_leaves(model);
     add_triangles(crown, model);
-    if (model->leaves)
+    if (fronds)
+        wd_tree_model_drop_leaves(model);
+    else if (model->leaves)
         add_leaves(crown, model);
     float radius_m = fmaxf(model->crown_radius_m, 0.05f);
     float deep_m = fmaxf(model->height_m - model->crown_base_m, 0.1f);
@@ -169,21 +181,18 @@ struct work {
 };
 
 /* Of a cell's trees, by its share of the ground: the area of crowns' outlines from above; what crowns
- * and stems hide from above and from the side; base and top, weighted by the first. Of trees that are
- * no herbs: what they hide from above; by that, first and second moments of its heights. */
+ * and stems hide from above and from the side; base and top, weighted by the first.
+ * What they hide from above; by that, first and second moments of its heights. Herbs are apart. */
 struct sums {
     float outline, above, side, stem, base_m, top_m;
     float woody, woody_m, woody_m2;
+    float herbs, herbs_m; /* layers of herbs, by them the mean of their tops */
 };
-
-static const float HERB_M = 1.5f;
 
 /* An ellipsoid's variance of height is a twentieth of its squared depth. */
 static void add_heights(struct sums *sums, float above, float base_m, float top_m)
 {
     float middle_m = 0.5f * (base_m + top_m), deep_m = top_m - base_m;
-    if (top_m < HERB_M)
-        return;
     sums->woody += above;
     sums->woody_m += above * middle_m;
     sums->woody_m2 += above * (middle_m * middle_m + deep_m * deep_m / 20);
@@ -210,6 +219,12 @@ static void add_tree(struct sums *sums, const struct wd_canopy_field *field,
         if (i < 0 || j < 0 || i >= field->width || j >= field->height)
             continue;
         struct sums *to = &sums[(size_t)j * field->width + (size_t)i];
+        if (height_m < WD_HERB_M) {
+            bool sward = model->roughness < 0; /* the ground's own openness holds those */
+            to->herbs += sward ? 0 : part * above;
+            to->herbs_m += sward ? 0 : part * above * height_m;
+            continue;
+        }
         to->outline += part * outline;
         to->above += part * above;
         to->side += part * side;
@@ -279,6 +294,8 @@ static void settle_stand(struct work *work, size_t cell, struct sums sums)
     float cover = fminf(cover_at(work->world, x_m, y_m, field->cell_m), 0.98f);
     if (sums.outline <= 0 && work->world->demand.count)
         sums = sums_on_demand(work, cover);
+    field->herbs[cell][0] = sums.herbs;
+    field->herbs[cell][1] = sums.herbs > 0 ? sums.herbs_m / sums.herbs : 0;
     settle_layer(work->field, cell, &sums);
     if (sums.outline <= 0)
         return;
@@ -416,6 +433,7 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
     size_t count = (size_t)field->width * field->height;
     field->quarters = wd_alloc_array(count, sizeof *field->quarters);
     field->layer_m = wd_alloc_array(count, sizeof *field->layer_m);
+    field->herbs = wd_alloc_array(count, sizeof *field->herbs);
     struct work work = {.field = field, .world = world, .params = params};
     work.stands = wd_alloc_array(count, sizeof *work.stands);
     settle_stands(&work);
@@ -427,6 +445,7 @@ void wd_canopy_field_finish(struct wd_canopy_field *field)
 {
     free(field->quarters);
     free(field->layer_m);
+    free(field->herbs);
     *field = (struct wd_canopy_field){0};
 }
 
@@ -454,6 +473,8 @@ bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
             texels[i][k] = root_byte(field->quarters[i][k]);
         for (int k = 0; k < 2; k++)
             texels[count + i][k] = root_byte(field->layer_m[i][k] / WD_CANOPY_MOST_M);
+        texels[count + i][2] = root_byte(field->herbs[i][0] / WD_HERBS_MOST);
+        texels[count + i][3] = root_byte(field->herbs[i][1] / WD_HERB_M);
     }
     bool ok = wd_image_init(image, gpu, &params) &&
               wd_image_upload(gpu, image, 0, 0, texels, count * sizeof *texels) &&

@@ -15,14 +15,16 @@ struct wd_crown_shade {
     float clumped; /* share of the ground that leaves hide over what they would if none lay behind
                       another */
 };
-struct wd_crown_shade wd_crown_shade_of(const struct wd_tree_model *model);
+/* The model has no leaves as triangles, before or after, unless it was imported. */
+struct wd_crown_shade wd_crown_shade_of(struct wd_tree_model *model);
 
 /* The field on the CPU: for each cell, of the light that an even sky sends to level ground from the
  * east, north, west and south, the share that arrives; and between which heights over the ground the
- * leaves are that stop the rest. */
+ * leaves are that stop the rest. Herbs stop nothing of that: they are told apart. */
 struct wd_canopy_field {
     float (*quarters)[4]; /* width * height, rows from the south */
     float (*layer_m)[2];  /* parallel: base and top; both 0 where no trees are */
+    float (*herbs)[2];    /* parallel: layers of plants below WD_HERB_M, no swards, and their height */
     uint32_t width, height;
     double cell_m;
 };
@@ -41,7 +43,8 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
 void wd_canopy_field_finish(struct wd_canopy_field *field);
 
 /* Two layers of R8G8B8A8_UNORM; x runs east, y north over the field's cells. The first holds square
- * roots of the shares; the second, in red and green, those of base and top over WD_CANOPY_MOST_M. */
+ * roots of the shares; the second those of base and top over WD_CANOPY_MOST_M, of herbs' layers over
+ * WD_HERBS_MOST and of their height over WD_HERB_M. */
 bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
                             const struct wd_canopy_field *field);
 

@@ -65,7 +65,8 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         .flexibility = species->flexibility,
         .look_layer = WD_LOOK_LAYERS * species_index,
         .crown_base_m = grown->crown_base_m,
-        .roughness = wd_leaf_roughness(species),
+        .roughness = species->form == WD_FORM_GRASS ? -wd_leaf_roughness(species)
+                                                    : wd_leaf_roughness(species),
         .moss = species->bark.moss,
         .fall_mps = species->form == WD_FORM_FALLING ? 1.0f : 0,
         .phase = variant_phase(scene, index),
