@@ -62,6 +62,44 @@ static void every_index_is_worked_once(void **state)
     wd_jobs_run(4, 0, count_call, NULL);
 }
 
+struct told {
+    uint64_t last, stop_at;
+    int calls[1000];
+};
+
+static void count_told(void *user, size_t index)
+{
+    count_call(((struct told *)user)->calls, index);
+}
+
+static bool hear_progress(void *user, const char *stage, uint64_t done, uint64_t total)
+{
+    struct told *told = user;
+    assert_string_equal(stage, "counting");
+    assert_true(done > told->last && done <= total && total == 1000);
+    told->last = done;
+    return done < told->stop_at;
+}
+
+static void loops_tell_how_far_they_are(void **state)
+{
+    (void)state;
+    for (unsigned threads = 1; threads < 5; threads++) {
+        struct told all = {.stop_at = 2000}, some = {.stop_at = 10};
+        const struct wd_progress to_all = {hear_progress, &all}, to_some = {hear_progress, &some};
+        assert_true(wd_jobs_run_told(threads, 1000, count_told, &all, &to_all, "counting"));
+        for (int i = 0; i < 1000; i++)
+            assert_int_equal(all.calls[i], 1);
+        assert_true(threads > 1 || all.last == 1000);
+        bool whole = wd_jobs_run_told(threads, 1000, count_told, &some, &to_some, "counting");
+        int calls = 0;
+        for (int i = 0; i < 1000; i++)
+            calls += some.calls[i];
+        assert_true(whole ? calls == 1000 : some.last >= 10);
+        assert_true(threads > 1 || calls == 10);
+    }
+}
+
 struct heard {
     int errors;
     char last[512];
@@ -148,6 +186,7 @@ int main(void)
         cmocka_unit_test(elementary_functions_are_accurate),
         cmocka_unit_test(srgb_round_trips),
         cmocka_unit_test(every_index_is_worked_once),
+        cmocka_unit_test(loops_tell_how_far_they_are),
         cmocka_unit_test(an_output_appears_whole_or_not_at_all),
         cmocka_unit_test(a_full_disk_leaves_nothing),
         cmocka_unit_test(names_are_seen_from_their_file),

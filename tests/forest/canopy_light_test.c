@@ -6,11 +6,12 @@
 
 #include "base/memory.h"
 #include "forest/canopy_light.h"
+#include "scene/species.h"
 #include "world/cover.h"
 
 enum { SIDE_M = 240, SPACING_M = 5 };
 
-static struct wd_tree trees[SIDE_M * SIDE_M];
+static struct wd_tree trees[2 * SIDE_M * SIDE_M];
 static float heights_m[4];
 
 /* Flat ground of SIDE_M with trees of 20 m and crowns of 6 m, where x_m >= from_m. */
@@ -29,9 +30,10 @@ static struct wd_world stand_from(int from_m)
     return world;
 }
 
+static struct wd_model model = {.height_m = 20, .crown_base_m = 8, .roughness = 0.4f};
+
 static struct wd_canopy_field field_of(const struct wd_world *world, unsigned threads)
 {
-    static const struct wd_model model = {.height_m = 20, .crown_base_m = 8};
     static const struct wd_crown_shade shade = {0.8f, 0.8f, 0.2f, 0.5f};
     struct wd_canopy_field field;
     wd_canopy_field_init(&field, &(struct wd_canopy_field_params){
@@ -139,28 +141,76 @@ static void hills_hide_their_side(void **state)
     free(world.cover);
 }
 
+/* Herbs below a stand take nothing of what comes to them, and are told with their height; a sward, which
+ * the ground's own openness knows, is not. */
+static void herbs_are_apart(void **state)
+{
+    (void)state;
+    struct wd_world world = stand_from(0);
+    struct wd_canopy_field stand = field_of(&world, 1);
+    size_t cells = (size_t)stand.width * stand.height, middle = cells / 2 + stand.width / 2;
+    for (int y = 0; y < SIDE_M; y++)
+        for (int x = 0; x < SIDE_M; x++)
+            trees[world.tree_count++] = (struct wd_tree){
+                .x_mm = x * 1000 + 500, .y_mm = y * 1000 + 500, .size = 60u | 100u << 16};
+    struct wd_canopy_field herbs = field_of(&world, 1);
+    model.roughness = -0.4f;
+    struct wd_canopy_field sward = field_of(&world, 1);
+    model.roughness = 0.4f;
+    assert_memory_equal(stand.quarters, herbs.quarters, cells * sizeof *stand.quarters);
+    assert_memory_equal(stand.layer_m, herbs.layer_m, cells * sizeof *stand.layer_m);
+    assert_float_equal(stand.herbs[middle][0], 0, 1e-6);
+    assert_float_equal(sward.herbs[middle][0], 0, 1e-6);
+    /* one of 1 m across a square metre, of whose outline leaves hide 0.8 */
+    assert_float_equal(herbs.herbs[middle][0], 0.8 * 3.14159 / 4, 0.02);
+    assert_float_equal(herbs.herbs[middle][1], 0.6, 0.01);
+    wd_canopy_field_finish(&stand);
+    wd_canopy_field_finish(&herbs);
+    wd_canopy_field_finish(&sward);
+    free(world.cover);
+}
+
+/* A fern is a dozen fronds, each of which spans half of it. */
+static void fronds_hide_what_they_span(void **state)
+{
+    (void)state;
+    const struct wd_grow_params params = {.seed = 3, .height_m = 0.8f};
+    struct wd_arena arena = {0};
+    struct wd_species fern;
+    struct wd_tree_model grown;
+    assert_true(wd_species_load(&fern, "species/fern.json", &arena, NULL));
+    assert_true(wd_tree_grow(&grown, &fern, &params, NULL));
+    wd_tree_model_drop_leaves(&grown);
+    struct wd_crown_shade shade = wd_crown_shade_of(&grown);
+    print_message("a fern hides %.2f of its outline\n", (double)shade.above);
+    assert_true(shade.above > 0.3f && shade.above < 1.2f);
+    assert_int_equal(grown.full.index_count, grown.full.wood_index_count);
+    wd_tree_model_finish(&grown);
+    wd_arena_finish(&arena);
+}
+
 /* A single level leaf of 2 x 2 m over 20 m: what it hides from above is its area, from the side
  * nothing. */
 static void crowns_hide_their_leaves(void **state)
 {
     (void)state;
-    struct wd_tree_model model = {.height_m = 20, .crown_base_m = 10, .crown_radius_m = 2};
+    struct wd_tree_model leaf = {.height_m = 20, .crown_base_m = 10, .crown_radius_m = 2};
     for (int k = 0; k < 4; k++) {
         const struct wd_tree_vertex vertex = {
             .position_m = {k == 1 || k == 2 ? 1 : -1, k >= 2 ? 1 : -1, 15}};
-        wd_tree_mesh_add_vertex(&model.full, &vertex);
+        wd_tree_mesh_add_vertex(&leaf.full, &vertex);
     }
-    wd_tree_mesh_add_triangle(&model.full, 0, 1, 2);
-    wd_tree_mesh_add_triangle(&model.full, 0, 2, 3);
-    model.full.min_m[0] = model.full.min_m[1] = -1;
-    model.full.max_m[0] = model.full.max_m[1] = 1;
-    model.full.min_m[2] = model.full.max_m[2] = 15;
-    struct wd_crown_shade shade = wd_crown_shade_of(&model);
+    wd_tree_mesh_add_triangle(&leaf.full, 0, 1, 2);
+    wd_tree_mesh_add_triangle(&leaf.full, 0, 2, 3);
+    leaf.full.min_m[0] = leaf.full.min_m[1] = -1;
+    leaf.full.max_m[0] = leaf.full.max_m[1] = 1;
+    leaf.full.min_m[2] = leaf.full.max_m[2] = 15;
+    struct wd_crown_shade shade = wd_crown_shade_of(&leaf);
     assert_true(shade.above > 0 && shade.above * 3.14159f * 4 <= 4.0f);
     assert_float_equal(shade.side, 0, 1e-6);
     assert_float_equal(shade.stem, 0, 1e-6);
     assert_true(shade.clumped > 0 && shade.clumped <= 1);
-    wd_tree_mesh_finish(&model.full);
+    wd_tree_mesh_finish(&leaf.full);
 }
 
 int main(void)
@@ -171,6 +221,8 @@ int main(void)
         cmocka_unit_test(layers_are_as_high_as_their_trees),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(hills_hide_their_side),
+        cmocka_unit_test(herbs_are_apart),
+        cmocka_unit_test(fronds_hide_what_they_span),
         cmocka_unit_test(crowns_hide_their_leaves),
     };
     return cmocka_run_group_tests_name("canopy light", tests, NULL, NULL);
