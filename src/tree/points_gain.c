@@ -14,7 +14,7 @@
 #include "tree/points.h"
 #include "tree/silhouette.h"
 
-enum { PIXELS = WD_SILHOUETTE * WD_SILHOUETTE, ROUNDS = 4, MOST_VIEWS = 3 };
+enum { PIXELS = WD_SILHOUETTE * WD_SILHOUETTE, FIRST_ROUNDS = 4, ROUNDS = 2, MOST_VIEWS = 3 };
 /* Discs much larger than their share of the surface would be a tree's only look. */
 static const float LEAST_GAIN = 0.02f, MOST_GAIN = 4;
 
@@ -260,10 +260,10 @@ static float nearer(float gain, double wanted, double found, float power)
 }
 
 /* Coverage grows with about the root of a gain. Without leaves wood has to cover all. */
-static void fit(struct plan *plan, size_t count, float gains[2])
+static void fit(struct plan *plan, size_t count, int rounds, float gains[2])
 {
     bool leaves = plan->classes[1]->area_m2 > 0;
-    for (int round = 0; round < ROUNDS; round++) {
+    for (int round = 0; round < rounds; round++) {
         struct shown discs = show_discs(plan, count, gains);
         gains[0] = nearer(gains[0], plan->mesh.wood, discs.wood, 1.2f);
         if (leaves)
@@ -286,7 +286,7 @@ static void fit_side(struct plan *plan, struct wd_disc_fit *fits, int side)
     double leaves = plan->mesh.covered - plan->mesh.wood;
     for (int k = WD_POINT_GAINS - 1; k >= 0; k--) {
         size_t count = (size_t)WD_POINT_LEAST << k;
-        fit(plan, count, gains);
+        fit(plan, count, k == WD_POINT_GAINS - 1 ? FIRST_ROUNDS : ROUNDS, gains);
         fits->wood.gains[side][k] = gains[0];
         fits->leaf.gains[side][k] = gains[1];
         fits->light.gains[side][k] = light_gain(plan, count, gains);
