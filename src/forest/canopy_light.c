@@ -354,39 +354,35 @@ struct ray {
     float level;             /* how level it runs: squared sine of the angle from the zenith */
 };
 
-static const struct stand *stand_at(const struct work *work, double x, double y)
-{
-    const struct wd_canopy_field *field = work->field;
-    if (x < 0 || y < 0 || x >= field->width || y >= field->height)
-        return NULL;
-    return &work->stands[(size_t)y * field->width + (size_t)x];
-}
-
 /* Share of the light along a ray to a place half a metre over the ground; through crowns by Beer's
  * law, stopped by hills. */
 static float ray_through(const struct work *work, size_t cell, const struct ray *ray)
 {
     const struct wd_canopy_field *field = work->field;
-    double x = (double)(cell % field->width) + 0.5, y = (double)(cell / field->width) + 0.5;
+    const float width = (float)field->width, height = (float)field->height;
+    const float cells_a_m = (float)(1 / field->cell_m), aslant = sqrtf(ray->level);
+    const float free_m = wd_maxf(work->highest_m, work->world->terrain.max_m);
+    float x = (float)(cell % field->width) + 0.5f, y = (float)(cell / field->width) + 0.5f;
     float z = work->stands[cell].ground_m + 0.5f, depth = 0, gone_m = 0;
     float step_m = STEP_M / ray->rise;
     while (depth < DARK && gone_m < FARTHEST_M) {
-        step_m = fmaxf(step_m, 0.08f * gone_m);
-        double half = 0.5 * (double)step_m / field->cell_m;
-        const struct stand *stand =
-            stand_at(work, x + half * (double)ray->east, y + half * (double)ray->north);
+        step_m = wd_maxf(step_m, 0.08f * gone_m);
+        float half = 0.5f * step_m * cells_a_m;
+        float at_x = x + half * ray->east, at_y = y + half * ray->north;
         float low = z, high = z + step_m * ray->rise;
-        if (!stand || (low > work->highest_m && low > work->world->terrain.max_m))
+        if (!(at_x >= 0 && at_y >= 0 && at_x < width && at_y < height) || low > free_m)
             break;
+        const struct stand *stand =
+            &work->stands[(size_t)(int32_t)at_y * field->width + (size_t)(int32_t)at_x];
         if (0.5f * (low + high) < stand->ground_m - 2)
             return 0;
-        float within = fminf(high, stand->top_m) - fmaxf(low, stand->base_m);
+        float within = wd_minf(high, stand->top_m) - wd_maxf(low, stand->base_m);
         float per_m = wd_mixf(stand->steep_per_m, stand->level_per_m, ray->level);
-        float below = fminf(high, stand->base_m) - fmaxf(low, stand->ground_m);
-        depth += (fmaxf(within, 0) * per_m +
-                  fmaxf(below, 0) * stand->stems_per_m * sqrtf(ray->level)) / ray->rise;
-        x += 2 * half * (double)ray->east;
-        y += 2 * half * (double)ray->north;
+        float below = wd_minf(high, stand->base_m) - wd_maxf(low, stand->ground_m);
+        depth += (wd_maxf(within, 0) * per_m +
+                  wd_maxf(below, 0) * stand->stems_per_m * aslant) / ray->rise;
+        x += 2 * half * ray->east;
+        y += 2 * half * ray->north;
         z = high;
         gone_m += step_m;
     }
