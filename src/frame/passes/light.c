@@ -1,7 +1,9 @@
 #include "frame/passes/light.h"
 
+#include <stdatomic.h>
 #include <stddef.h>
 
+#include "base/jobs.h"
 #include "world/surroundings.h"
 
 static const uint32_t light_comp[] =
@@ -91,21 +93,49 @@ static bool has_water(const struct wd_forest_device *forest)
     return forest->scene->water.enabled || forest->ground.terrain->water_m;
 }
 
+/* Asked each frame. */
+static bool is_prepared(const struct wd_light_pass *pass, const struct wd_light_needs *needs)
+{
+    bool single = needs->leaves == WD_LEAVES_SINGLE;
+    const struct wd_pipeline *last = single ? &pass->single[WET_LIST - 1] : &pass->light[WET_LIST - 1];
+    return last->pipeline && (!has_water(needs->forest) || pass->water.pipeline);
+}
+
+struct preparation {
+    struct wd_light_pass *pass;
+    struct wd_gpu *gpu;
+    const struct wd_light_needs *needs;
+    atomic_bool failed;
+};
+
+/* The pipeline of a list or, the last one, that of water. */
+static void prepare_list(void *user, size_t index)
+{
+    struct preparation *work = user;
+    struct wd_light_pass *pass = work->pass;
+    uint32_t list = (uint32_t)index;
+    bool is_water = list == WD_TILE_LISTS;
+    bool single = work->needs->leaves == WD_LEAVES_SINGLE && !is_water && has_single(list);
+    struct wd_pipeline *pipeline = is_water ? &pass->water
+                                   : single ? &pass->single[list]
+                                            : &pass->light[list];
+    if (pipeline->pipeline || (list >= WET_LIST && !has_water(work->needs->forest)))
+        return;
+    if (is_water ? !init_water(pipeline, work->gpu) : !init_list(pipeline, work->gpu, list, single))
+        atomic_store(&work->failed, true);
+}
+
+/* These are the largest shaders of a frame: drivers take as long for them as for all others. */
 bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
                            const struct wd_light_needs *needs)
 {
-    bool ok = true;
+    struct preparation work = {pass, gpu, needs, false};
     if (needs->view_mode != WD_MODE_LIT)
         return pass->view.pipeline || init_view(&pass->view, gpu);
-    for (uint32_t list = 0; list < WD_TILE_LISTS && ok; list++) {
-        bool single = needs->leaves == WD_LEAVES_SINGLE && has_single(list);
-        struct wd_pipeline *pipeline = single ? &pass->single[list] : &pass->light[list];
-        if (!pipeline->pipeline && (list != WET_LIST || has_water(needs->forest)))
-            ok = init_list(pipeline, gpu, list, single);
-    }
-    if (!pass->water.pipeline && has_water(needs->forest))
-        ok = ok && init_water(&pass->water, gpu);
-    return ok;
+    if (is_prepared(pass, needs))
+        return true;
+    wd_jobs_run(0, WD_TILE_LISTS + 1, prepare_list, &work);
+    return !atomic_load(&work.failed);
 }
 
 static bool init_sorting(struct wd_light_pass *pass, struct wd_gpu *gpu)
