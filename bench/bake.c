@@ -31,8 +31,8 @@ static bool warm_up(struct wd_renderer *renderer)
 }
 
 /* Seconds for growing and baking with one picture by `continuum` (meshes, leaves, discs) and one by
- * `octree` (cards), and the device memory that is then in use. */
-static bool bake(const char *gpu, const char *cache_dir, double *seconds, double *megabytes)
+ * `octree` (cards). */
+static bool bake(const char *gpu, const char *cache_dir, double *seconds)
 {
     static const char *const methods[] = {"continuum", "octree"};
     const struct wd_forest_params forest_params = {.scene_path = "bench/trees100.json"};
@@ -48,10 +48,9 @@ static bool bake(const char *gpu, const char *cache_dir, double *seconds, double
         ok = draw_once(renderer, forest, methods[i]);
         wd_renderer_get_stats(renderer, &stats);
         *seconds = bench_now_s() - start;
-        *megabytes = (double)stats.device_bytes / 1e6;
         printf("%s: 100 trees ready for %s%s in %.2f s, %.0f MB of device memory\n",
                wd_renderer_device_name(renderer), i ? "this and " : "", methods[i], *seconds,
-               *megabytes);
+               (double)stats.device_bytes / 1e6);
     }
     wd_renderer_destroy(&renderer);
     wd_forest_destroy(&forest);
@@ -69,10 +68,10 @@ static bool make_cache(char *path)
 bool bench_bake_cold(const char *gpu)
 {
     char cache[] = "/tmp/weald-bench-XXXXXX";
-    double seconds, megabytes;
+    double seconds;
     if (!make_cache(cache))
         return false;
-    bool ok = bake(gpu, cache, &seconds, &megabytes);
+    bool ok = bake(gpu, cache, &seconds);
     bench_remove_directory(cache);
     if (ok)
         printf("bake-100-cold-s %.2f s\n", seconds);
@@ -82,12 +81,12 @@ bool bench_bake_cold(const char *gpu)
 bool bench_bake_warm(const char *gpu)
 {
     char cache[] = "/tmp/weald-bench-XXXXXX";
-    double seconds[3], megabytes;
+    double seconds[3];
     if (!make_cache(cache))
         return false;
-    bool ok = bake(gpu, cache, &seconds[0], &megabytes); /* fills the cache */
+    bool ok = bake(gpu, cache, &seconds[0]); /* fills the cache */
     for (int i = 0; i < 3 && ok; i++)
-        ok = bake(gpu, cache, &seconds[i], &megabytes);
+        ok = bake(gpu, cache, &seconds[i]);
     bench_remove_directory(cache);
     if (ok)
         printf("bake-100-warm-s %.2f s\n", bench_median(seconds, 3));

@@ -11,11 +11,8 @@ const float PER_PI = 0.318309886;
  * each quarter that reach the ground's herbs, past crowns and hills; in layer 1 those of its base and top,
  * and of the herbs. Where the shader does not say, all light does. */
 #ifndef CANOPY_LIGHT_AT
-#define CANOPY_LIGHT_AT(at, layer) vec4(1.0 - layer)
+#define CANOPY_LIGHT_AT(at, layer) vec4(1.0 - (layer))
 #endif
-
-/* Light from everywhere meets so many times the layers that a steep ray does. */
-const float HERBS_SLANT = 1.0;
 
 /* What comes down to a place among leaves. */
 struct wd_shelter {
@@ -29,10 +26,11 @@ struct wd_shelter {
     float floor_open; /* share of the sky's and the sun's light that herbs leave to that */
 };
 
-/* Skylight past herbs that have so many layers over a place. */
+/* Skylight past herbs that have so many layers over a place. Slanting rays meet more of them, but leaves let
+ * some through: of path-traced ferns under clouds, the like of a steep ray past black ones. */
 float through_herbs(float layers)
 {
-    return exp(-HERBS_SLANT * layers);
+    return exp(-layers);
 }
 
 wd_shelter ground_shelter(wd_pixel pixel)
@@ -152,8 +150,8 @@ struct wd_alone {
 
 const wd_alone NOT_ALONE = wd_alone(0.0, vec4(0.0), vec4(0.0));
 
-/* `past_trees`: the sun's share at the place. `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
- * unit, where a ray of the eye goes on to from one leaf. */
+/* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
+ * unit, where a ray of the eye goes on to from one leaf. `past_trees`: the sun's share at the place. */
 wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float ground_share, float past_trees,
                        wd_alone alone)
 {

@@ -181,11 +181,11 @@ struct work {
 };
 
 /* Of a cell's trees, by its share of the ground: the area of crowns' outlines from above; what crowns
- * and stems hide from above and from the side; base and top, weighted by the first.
- * What they hide from above; by that, first and second moments of its heights. Herbs are apart. */
+ * and stems hide from above and from the side; base and top, weighted by the first;
+ * by what is hidden from above, first and second moments of the leaves' heights. Herbs are apart. */
 struct sums {
     float outline, above, side, stem, base_m, top_m;
-    float woody, woody_m, woody_m2;
+    float leaves_m, leaves_m2;
     float herbs, herbs_m; /* layers of herbs, by them the mean of their tops */
 };
 
@@ -193,9 +193,8 @@ struct sums {
 static void add_heights(struct sums *sums, float above, float base_m, float top_m)
 {
     float middle_m = 0.5f * (base_m + top_m), deep_m = top_m - base_m;
-    sums->woody += above;
-    sums->woody_m += above * middle_m;
-    sums->woody_m2 += above * (middle_m * middle_m + deep_m * deep_m / 20);
+    sums->leaves_m += above * middle_m;
+    sums->leaves_m2 += above * (middle_m * middle_m + deep_m * deep_m / 20);
 }
 
 static void add_tree(struct sums *sums, const struct wd_canopy_field *field,
@@ -272,10 +271,10 @@ static struct sums sums_on_demand(const struct work *work, float cover)
 /* The ellipsoid whose leaves have the mean height and variance of all trees' of the cell. */
 static void settle_layer(struct wd_canopy_field *field, size_t cell, const struct sums *sums)
 {
-    if (sums->woody <= 0)
+    if (sums->above <= 0)
         return;
-    float middle_m = sums->woody_m / sums->woody;
-    float variance_m2 = fmaxf(sums->woody_m2 / sums->woody - middle_m * middle_m, 0);
+    float middle_m = sums->leaves_m / sums->above;
+    float variance_m2 = fmaxf(sums->leaves_m2 / sums->above - middle_m * middle_m, 0);
     float half_m = sqrtf(5 * variance_m2);
     field->layer_m[cell][0] = fmaxf(middle_m - half_m, 0);
     field->layer_m[cell][1] = middle_m + half_m;

@@ -268,6 +268,7 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     for (uint32_t i = 0; i < forest->model_count; i++) {
         wd_variant_describe(&forest->host_models[i], params->scene, i, &work->grown[i]);
         describe_content(work, i);
+        forest->falls |= forest->host_models[i].fall_mps > 0.0f;
     }
     return wd_forest_meshes_init(&forest->meshes, gpu, work->grown, forest->model_count) &&
            make_table(&forest->models, gpu, "tree models", forest->host_models,

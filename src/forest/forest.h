@@ -39,6 +39,7 @@ struct wd_forest_device {
     struct wd_progress progress; /* told while a method bakes what it needs; {0}: nobody is */
     uint32_t model_count, variants;
     float max_tree_height_m;
+    bool falls; /* leaves of some model are on their way down */
 };
 
 struct wd_forest_device_params {

@@ -183,14 +183,14 @@ static void measure_grain(struct wd_splat_model *model, const struct wd_forest_d
     model->grain = model->finer * side_m / forest->host_models[index].crown_m;
 }
 
-/* One of each stratum in turn, so that a window of all strata is one run of memory. Always inlined, with
- * a size that is known. */
-static inline void deal_strata(void *to, const void *from, const size_t size)
+/* One of each stratum in turn, so that a window of all strata is one run of memory. */
+static void deal_strata(void *to, const void *from, size_t size)
 {
-    for (size_t at = 0; at < WD_STRATUM_SPLATS; at++)
-        for (size_t stratum = 0; stratum < WD_SPLAT_STRATA; stratum++)
+    for (size_t stratum = 0; stratum < WD_SPLAT_STRATA; stratum++) {
+        for (size_t at = 0; at < WD_STRATUM_SPLATS; at++)
             memcpy((char *)to + (at * WD_SPLAT_STRATA + stratum) * size,
                    (const char *)from + (stratum * WD_STRATUM_SPLATS + at) * size, size);
+    }
 }
 
 static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,

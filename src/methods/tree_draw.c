@@ -119,19 +119,11 @@ bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *
     return ok;
 }
 
-static bool has_falling(const struct wd_forest_device *forest)
-{
-    for (uint32_t i = 0; i < forest->model_count; i++)
-        if (forest->host_models[i].fall_mps > 0.0f)
-            return true;
-    return false;
-}
-
 bool wd_tree_pipelines_prepare(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu,
                                const struct wd_forest_device *forest, bool cards)
 {
     bool ok = true;
-    if (!pipelines->leaf_detail[1].pipeline && has_falling(forest))
+    if (!pipelines->leaf_detail[1].pipeline && forest->falls)
         ok = init_leaves(pipelines, gpu, 1);
     for (int pass = WD_PASS_CAMERA; ok && cards && pass <= WD_PASS_SHADOW; pass++)
         if (!pipelines->card_listed[pass].pipeline)

@@ -42,48 +42,38 @@ static bool has_single(uint32_t list)
     return (wd_tile_list_parts(list) & (WD_PART_TREES | WD_PART_WATER)) == WD_PART_TREES;
 }
 
-static struct wd_compute_params shading_params(uint32_t first_binding_type)
+static struct wd_compute_params shading_params(void)
 {
-    struct wd_compute_params params = {
+    return (struct wd_compute_params){
         .shader = SPIRV(light_comp),
         .bindings = {16,
                      {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, TEXELS, TEXELS, TEXELS,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER, IMAGE, IMAGE, IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
-    params.bindings.types[0] = first_binding_type;
-    return params;
 }
 
-/* Of the parts that tiles of a list may have. Where there is water too, pixels that show
- * none are shaded. */
-static bool init_list(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t list, uint32_t single)
+/* Shades of a list's tiles the pixels of these parts. */
+static bool init_list(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t list,
+                      uint32_t parts, uint32_t single)
 {
-    uint32_t parts = wd_tile_list_parts(list), wet = parts & WD_PART_WATER;
     const uint32_t rows = gpu->software ? 1 : WD_TILE; /* of a tile at once */
-    const uint32_t constants[] = {parts & ~wet, list, wet != 0, gpu->runs, single, rows};
-    struct wd_compute_params params = shading_params(wet ? BUFFER : UNIFORM);
-    if (wet)
+    const uint32_t constants[] = {parts, list, list == WET_LIST, gpu->runs, single, rows};
+    struct wd_compute_params params = shading_params();
+    if (list == WET_LIST) {
         params.shader = (struct wd_spirv)SPIRV(light_water_comp);
-    params.constants = (struct wd_spec_constants){6, constants};
-    return wd_pipeline_init_compute(pipeline, gpu, &params);
-}
-
-static bool init_water(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
-{
-    const uint32_t rows = gpu->software ? 1 : WD_TILE;
-    const uint32_t constants[] = {WD_PART_ALL, WET_LIST, 1, gpu->runs, 0, rows};
-    struct wd_compute_params params = shading_params(BUFFER);
-    params.shader = (struct wd_spirv)SPIRV(light_water_comp);
+        params.bindings.types[0] = BUFFER;
+    }
     params.constants = (struct wd_spec_constants){6, constants};
     return wd_pipeline_init_compute(pipeline, gpu, &params);
 }
 
 static bool init_view(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
-    struct wd_compute_params params = shading_params(BUFFER);
+    struct wd_compute_params params = shading_params();
     params.shader = (struct wd_spirv)SPIRV(light_view_comp);
     params.bindings.count = 11;
+    params.bindings.types[0] = BUFFER;
     params.bindings.types[7] = BUFFER;
     return wd_pipeline_init_compute(pipeline, gpu, &params);
 }
@@ -93,12 +83,16 @@ static bool has_water(const struct wd_forest_device *forest)
     return forest->scene->water.enabled || forest->ground.terrain->water_m;
 }
 
-/* Asked each frame. */
-static bool is_prepared(const struct wd_light_pass *pass, const struct wd_light_needs *needs)
+/* What shades a list or, at WD_TILE_LISTS, the water of the last one; NULL where no such picture has any. */
+static struct wd_pipeline *shading_of(struct wd_light_pass *pass, uint32_t list,
+                                      const struct wd_light_needs *needs)
 {
-    bool single = needs->leaves == WD_LEAVES_SINGLE;
-    const struct wd_pipeline *last = single ? &pass->single[WET_LIST - 1] : &pass->light[WET_LIST - 1];
-    return last->pipeline && (!has_water(needs->forest) || pass->water.pipeline);
+    if (list >= WET_LIST && !has_water(needs->forest))
+        return NULL;
+    if (list == WD_TILE_LISTS)
+        return &pass->water;
+    bool single = needs->leaves == WD_LEAVES_SINGLE && has_single(list);
+    return single ? &pass->single[list] : &pass->light[list];
 }
 
 struct preparation {
@@ -108,33 +102,34 @@ struct preparation {
     atomic_bool failed;
 };
 
-/* The pipeline of a list or, the last one, that of water. */
 static void prepare_list(void *user, size_t index)
 {
     struct preparation *work = user;
-    struct wd_light_pass *pass = work->pass;
     uint32_t list = (uint32_t)index;
-    bool is_water = list == WD_TILE_LISTS;
-    bool single = work->needs->leaves == WD_LEAVES_SINGLE && !is_water && has_single(list);
-    struct wd_pipeline *pipeline = is_water ? &pass->water
-                                   : single ? &pass->single[list]
-                                            : &pass->light[list];
-    if (pipeline->pipeline || (list >= WET_LIST && !has_water(work->needs->forest)))
+    struct wd_pipeline *pipeline = shading_of(work->pass, list, work->needs);
+    if (!pipeline || pipeline->pipeline)
         return;
-    if (is_water ? !init_water(pipeline, work->gpu) : !init_list(pipeline, work->gpu, list, single))
+    bool water = pipeline == &work->pass->water;
+    bool single = list < WD_TILE_LISTS && pipeline == &work->pass->single[list];
+    uint32_t parts = water ? WD_PART_ALL : wd_tile_list_parts(list) & ~WD_PART_WATER;
+    if (!init_list(pipeline, work->gpu, water ? WET_LIST : list, parts, single))
         atomic_store(&work->failed, true);
 }
 
-/* These are the largest shaders of a frame: drivers take as long for them as for all others. */
+/* Shaders of lists are the largest of a frame: drivers take as long for them as for all others. */
 bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
                            const struct wd_light_needs *needs)
 {
     struct preparation work = {pass, gpu, needs, false};
+    uint32_t missing = 0;
     if (needs->view_mode != WD_MODE_LIT)
         return pass->view.pipeline || init_view(&pass->view, gpu);
-    if (is_prepared(pass, needs))
-        return true;
-    wd_jobs_run(0, WD_TILE_LISTS + 1, prepare_list, &work);
+    for (uint32_t list = 0; list <= WD_TILE_LISTS; list++) {
+        const struct wd_pipeline *pipeline = shading_of(pass, list, needs);
+        missing += pipeline && !pipeline->pipeline;
+    }
+    if (missing)
+        wd_jobs_run(0, WD_TILE_LISTS + 1, prepare_list, &work);
     return !atomic_load(&work.failed);
 }
 
