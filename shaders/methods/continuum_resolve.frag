@@ -14,7 +14,7 @@ layout(set = 0, binding = 1) uniform usamplerBuffer pixels;      /* id, depth */
 layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
 layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
 layout(set = 0, binding = 4) uniform usamplerBuffer splats;      /* wd_splat */
-layout(set = 0, binding = 5) uniform usamplerBuffer looks;       /* wd_splat_look */
+layout(set = 0, binding = 5) uniform usamplerBuffer looks;       /* WD_SPLAT_* looks */
 layout(set = 0, binding = 6) uniform usamplerBuffer wood_items;  /* wd_splat_item */
 layout(set = 0, binding = 7) uniform usamplerBuffer wood;        /* wd_splat_wood */
 layout(set = 0, binding = 8) uniform sampler2DArray bark;
@@ -45,8 +45,15 @@ struct wd_seen {
 
 vec3 look_albedo(uint look)
 {
-    vec3 root = unpackUnorm4x8(look).rgb;
-    return root * root;
+    uvec3 level = uvec3(look, look >> 5, look >> 10) & uint(WD_SPLAT_ALBEDO_MOST);
+    return exp2(vec3(level) * WD_SPLAT_ALBEDO_STEP + WD_SPLAT_ALBEDO_LEAST);
+}
+
+vec3 look_normal(uint look)
+{
+    ivec2 e = ivec2(bitfieldExtract(int(look), int(WD_SPLAT_NORMAL_BIT), 6),
+                    bitfieldExtract(int(look), int(WD_SPLAT_NORMAL_BIT) + 6, 6));
+    return octahedral(vec2(e) * (1.0 / WD_SPLAT_NORMAL_MOST));
 }
 
 wd_seen seen_splat(uint id)
@@ -55,15 +62,16 @@ wd_seen seen_splat(uint id)
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
     uint index =
         splat_index(tree, splat_turn(tree, WD_ITEM_FIRST(item) + id % WD_ITEM_SPLATS));
-    uvec2 look = texelFetch(looks, int(index)).xy;
+    uint look = texelFetch(looks, int(index)).x;
     wd_seen seen;
     seen.tree = tree;
     seen.face = splat_normal(splat_at(splats, index));
-    seen.normal = octahedral(unpackSnorm4x8(look.y).xy);
-    seen.albedo = look_albedo(look.x);
-    seen.openness = float(look.x >> 24 & 0x7fu) * (1.0 / 127.0);
+    seen.normal = look_normal(look);
+    seen.albedo = look_albedo(look);
+    seen.openness = float(bitfieldExtract(look, int(WD_SPLAT_OPENNESS_BIT), 4))
+                    * (1.0 / WD_SPLAT_OPENNESS_MOST);
     seen.lit = wd_sun_lit(texelFetch(lit, int(index)).x, tree.sun);
-    seen.wood = (look.x & WD_SPLAT_WOOD) != 0u;
+    seen.wood = (look >> WD_SPLAT_WOOD_BIT & 1u) != 0u;
     return seen;
 }
 
@@ -99,8 +107,9 @@ wd_seen seen_wood(uint id)
     seen.openness = seen.lit = 0.0;
     seen.face = vec3(0.0);
     for (uint k = 0u; k < 3u; k++) {
-        seen.albedo += share[k] * look_albedo(triangle.tints[k]);
-        seen.openness += share[k] * float(triangle.tints[k] >> 24 & 0x7fu) * (1.0 / 127.0);
+        vec4 tint = unpackUnorm4x8(triangle.tints[k]);
+        seen.albedo += share[k] * tint.rgb * tint.rgb;
+        seen.openness += share[k] * tint.a;
         seen.normal += share[k] * normalize(splat_normal(triangle.corners[k]));
         uv[k] = unpackHalf2x16(triangle.uvs[k]);
     }

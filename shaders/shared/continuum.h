@@ -45,13 +45,17 @@ struct wd_splat {
 };
 WD_STATIC_ASSERT_SIZE(wd_splat, 8);
 
-/* What a splat looks like: RGB square roots of its albedo and, in A, 7 bits of sky openness under
- * one bit that says wood; the normal that it is shaded with, as its face. */
-struct wd_splat_look {
-    uint32_t albedo, normal;
-};
-WD_STATIC_ASSERT_SIZE(wd_splat_look, 8);
-#define WD_SPLAT_WOOD 0x80000000u
+/* What a splat looks like, in 32 bits: R, G, B in 5 each, exp2(value * step + least) of them the linear
+ * albedo; 1 that says wood; sky openness in 4; the normal that it is shaded with, as its face, in 6 and
+ * 6 with signs. Colours and openness are dithered: they are right on average. */
+#define WD_SPLAT_ALBEDO_MOST 31.0f
+#define WD_SPLAT_ALBEDO_LEAST -8.0f
+#define WD_SPLAT_ALBEDO_STEP (8.0f / 31.0f)
+#define WD_SPLAT_WOOD_BIT 15u
+#define WD_SPLAT_OPENNESS_BIT 16u
+#define WD_SPLAT_OPENNESS_MOST 15.0f
+#define WD_SPLAT_NORMAL_BIT 20u
+#define WD_SPLAT_NORMAL_MOST 31.0f
 
 #ifdef __STDC_VERSION__
 #define WD_SPLAT_STRUCT struct wd_splat
@@ -63,7 +67,7 @@ WD_STATIC_ASSERT_SIZE(wd_splat_look, 8);
 struct wd_splat_wood {
     WD_SPLAT_STRUCT corners[3];
     uint32_t uvs[3];   /* two half floats */
-    uint32_t tints[3]; /* as a splat's look; RGB are factors of the bark's texture */
+    uint32_t tints[3]; /* RGB: square roots of factors of the bark's texture; A: openness */
 };
 WD_STATIC_ASSERT_SIZE(wd_splat_wood, 48);
 #define WD_SPLAT_WOOD_TEXELS 3

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/color.h"
+#include "base/dmath.h"
 #include "base/memory.h"
 #include "shared/hash.h"
 #include "tree/progressive.h"
@@ -60,24 +61,39 @@ static struct wd_splat leaf_at(const struct wd_splat_model *model, const struct 
     return splat;
 }
 
-/* Square roots of a linear colour in bytes, openness and kind above. */
-static uint32_t pack_look(const float color[3], float openness, bool wood)
+/* The whole number at or below `value` >= 0, or the next, at random. */
+static uint32_t dithered(float value, float next, uint32_t random)
 {
-    uint32_t packed = (uint32_t)(openness * 127.0f + 0.5f) << 24 | (wood ? WD_SPLAT_WOOD : 0);
-    for (int k = 0; k < 3; k++)
-        packed |= (uint32_t)wd_unorm_encode(sqrtf(color[k])) << (8 * k);
-    return packed;
+    return (uint32_t)value + (wd_hash_unit(random) < next);
 }
 
-static struct wd_splat_look point_look(const struct wd_tree_points *points, size_t i)
+/* Of a colour's part: levels are a factor apart, and a colour half way between two logarithms is less
+ * than half way between two colours. */
+static uint32_t albedo_level(float albedo, uint32_t random)
 {
-    const struct wd_tree_point *point = &points->points[i];
-    float color[3];
-    for (int k = 0; k < 3; k++)
-        color[k] = wd_srgb_decode((uint8_t)(point->albedo >> (8 * k)));
-    float openness = (float)(point->albedo >> 24) / 255.0f;
-    return (struct wd_splat_look){pack_look(color, openness, !(point->kind & WD_POINT_LEAF)),
-                                  normal8(point->normal)};
+    const float half_step = 0.34657359f * WD_SPLAT_ALBEDO_STEP; /* half of its natural logarithm */
+    float doublings = (float)(wd_dlog(fmaxf(albedo, 1e-6f)) / 0.69314718055994531);
+    float level = (doublings - WD_SPLAT_ALBEDO_LEAST) / WD_SPLAT_ALBEDO_STEP;
+    level = fminf(fmaxf(level, 0), WD_SPLAT_ALBEDO_MOST);
+    float above = level - floorf(level);
+    return dithered(level, above * (1 - half_step * (1 - above)), random);
+}
+
+static uint32_t point_look(const struct wd_tree_point *point)
+{
+    uint32_t look = point->kind & WD_POINT_LEAF ? 0 : 1u << WD_SPLAT_WOOD_BIT;
+    uint32_t random = wd_hash3(point->albedo, point->normal, point->face);
+    for (uint32_t k = 0; k < 3; k++) {
+        random = wd_hash1(random);
+        look |= albedo_level(wd_srgb_decode((uint8_t)(point->albedo >> (8 * k))), random) << (5 * k);
+    }
+    float openness = (float)(point->albedo >> 24) * (WD_SPLAT_OPENNESS_MOST / 255.0f);
+    look |= dithered(openness, openness - floorf(openness), wd_hash1(random)) << WD_SPLAT_OPENNESS_BIT;
+    for (uint32_t k = 0; k < 2; k++) {
+        float part = (float)(int16_t)(point->normal >> (16 * k)) * (WD_SPLAT_NORMAL_MOST / 32767.0f);
+        look |= ((uint32_t)(int32_t)lrintf(part) & 63u) << (WD_SPLAT_NORMAL_BIT + 6 * k);
+    }
+    return look;
 }
 
 /* --- discs ------------------------------------------------------------------------------- */
@@ -118,7 +134,7 @@ static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *
                          struct wd_tree_points *drawn, uint32_t step)
 {
     struct wd_splat *to = splats->splats + stratum * WD_STRATUM_SPLATS;
-    struct wd_splat_look *looks = splats->looks + stratum * WD_STRATUM_SPLATS;
+    uint32_t *looks = splats->looks + stratum * WD_STRATUM_SPLATS;
     uint32_t *lit = splats->lit + stratum * WD_STRATUM_SPLATS, used = 0;
     for (size_t i = 0; i < points->count && used < WD_STRATUM_SPLATS; i++) {
         const struct wd_tree_point *point = &points->points[i];
@@ -128,7 +144,7 @@ static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *
         drawn->points[used * step + stratum] = *point;
         drawn->lit[used * step + stratum] = lit[used] = points->lit[i];
         to[used] = leaf_at(&splats->model, point);
-        looks[used++] = point_look(points, i);
+        looks[used++] = point_look(point);
     }
     for (uint32_t i = used; used && i < WD_STRATUM_SPLATS; i++) {
         drawn->points[i * step + stratum] = drawn->points[(i - used) * step + stratum];
@@ -219,18 +235,24 @@ static void order_wood(struct sized *order, uint32_t count, const struct wd_tree
     free(shares);
 }
 
+/* Square roots of a vertex's factors, in bytes; openness as it is. */
+static uint32_t root_tint(uint32_t tint)
+{
+    uint32_t root = tint & 0xff000000u;
+    for (int k = 0; k < 24; k += 8)
+        root |= (uint32_t)wd_unorm_encode(sqrtf((float)(tint >> k & 255u) / 255.0f)) << k;
+    return root;
+}
+
 static struct wd_splat_wood wood_triangle(const struct wd_splat_model *model,
                                           const struct wd_tree_mesh *mesh, const uint32_t *corners)
 {
     struct wd_splat_wood wood = {0};
     for (int i = 0; i < 3; i++) {
-        float tint[4];
         const struct wd_tree_vertex *v = &mesh->vertices[corners[i]];
         wood.corners[i] = splat_at(model, v->position_m, v->normal);
         wood.uvs[i] = v->uv;
-        for (int k = 0; k < 4; k++)
-            tint[k] = (float)(v->tint >> (8 * k) & 255u) / 255.0f;
-        wood.tints[i] = pack_look(tint, tint[3], true);
+        wood.tints[i] = root_tint(v->tint);
     }
     return wood;
 }
@@ -313,7 +335,7 @@ static bool fill_wood(struct wd_splats *splats, uint32_t half, const struct wd_t
         drawn->points[i] = *point;
         drawn->lit[i] = splats->lit[first + i] = points->lit[chosen];
         splats->splats[first + i] = splat_at(&splats->model, point->position_m, point->face);
-        splats->looks[first + i] = point_look(points, chosen);
+        splats->looks[first + i] = point_look(point);
     }
     free(which);
     free(order);
@@ -426,14 +448,12 @@ void wd_splats_finish(struct wd_splats *splats)
 
 /* --- cache ------------------------------------------------------------------------------- */
 
-enum { POINTS_BYTES = WD_SPLATS * (sizeof(struct wd_splat) + sizeof(struct wd_splat_look) + sizeof(uint32_t)) };
-
 /* Of the wood of a reduced mesh: what is larger was not kept. */
 enum { MOST_TRIANGLES = 1 << 20 };
 
 static size_t kept_bytes(uint32_t triangles)
 {
-    return sizeof(struct wd_splat_model) + POINTS_BYTES + triangles * sizeof(struct wd_splat_wood);
+    return sizeof(struct wd_splat_model) + WD_SPLATS_BYTES + triangles * sizeof(struct wd_splat_wood);
 }
 
 bool wd_splats_load(struct wd_splats *splats, struct wd_bake_cache *cache, uint64_t model_key)

@@ -7,11 +7,14 @@
 #include "tree/grow.h"
 #include "tree/points.h"
 
+/* A model's discs with looks and light. */
+enum { WD_SPLATS_BYTES = WD_SPLATS * (sizeof(struct wd_splat) + 2 * sizeof(uint32_t)) };
+
 struct wd_splats {
     struct wd_splat *splats; /* WD_SPLATS: strata of leaves from the top down, then wood */
-    struct wd_splat_look *looks; /* parallel, as is: */
-    uint32_t *lit;               /* ways of shared/sun_ways.h that the tree leaves open, a bit each */
-    struct wd_splat_wood *wood; /* model.wood_count triangles, large ones first */
+    uint32_t *looks; /* parallel, see shared/continuum.h; as is: */
+    uint32_t *lit;   /* ways of shared/sun_ways.h that the tree leaves open, a bit each */
+    struct wd_splat_wood *wood;  /* model.wood_count triangles, large ones first */
     struct wd_splat_model model; /* model.wood_first is 0 */
 };
 

@@ -203,7 +203,7 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
     struct wd_splat_wood *wood = wd_alloc_array(triangles + 1, sizeof *wood);
     triangles = 0;
     struct wd_splat *all = wd_alloc_array(count, sizeof *all);
-    struct wd_splat_look *looks = wd_alloc_array(count, sizeof *looks);
+    uint32_t *looks = wd_alloc_array(count, sizeof *looks);
     uint32_t *lit = wd_alloc_array(count, sizeof *lit);
     struct wd_splat_model *headers = wd_alloc_array(models, sizeof *headers);
     for (size_t i = 0; i < models; i++) {
@@ -218,7 +218,7 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
     bool ok = make_buffer(&own->splats, gpu, "splats", all, count * sizeof *all,
                           VK_FORMAT_R32G32_UINT) &&
               make_buffer(&own->looks, gpu, "splat looks", looks, count * sizeof *looks,
-                          VK_FORMAT_R32G32_UINT) &&
+                          VK_FORMAT_R32_UINT) &&
               make_buffer(&own->lit, gpu, "splat lit", lit, count * sizeof *lit,
                           VK_FORMAT_R32_UINT) &&
               make_buffer(&own->wood, gpu, "splat wood", wood, (triangles + 1) * sizeof *wood,

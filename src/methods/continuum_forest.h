@@ -8,7 +8,7 @@
 struct wd_continuum_forest {
     struct wd_buffer clusters; /* struct wd_cluster[cluster_count], then those of pages */
     struct wd_buffer splats;   /* struct wd_splat[WD_SPLATS] a model */
-    struct wd_buffer looks;    /* struct wd_splat_look, parallel */
+    struct wd_buffer looks;    /* uint32_t, parallel: see shared/continuum.h */
     struct wd_buffer lit;      /* uint32_t, parallel */
     struct wd_buffer wood;     /* struct wd_splat_wood of all models */
     struct wd_buffer models;   /* struct wd_splat_model a model */

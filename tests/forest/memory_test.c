@@ -15,8 +15,7 @@ static size_t model_bytes(const struct wd_forest_device *forest)
 static size_t splat_bytes(void)
 {
     enum { WOOD_TRIANGLES = 2000 };
-    return WD_SPLATS * (sizeof(struct wd_splat) + sizeof(struct wd_splat_look) + sizeof(uint32_t)) +
-           WOOD_TRIANGLES * sizeof(struct wd_splat_wood);
+    return WD_SPLATS_BYTES + WOOD_TRIANGLES * sizeof(struct wd_splat_wood);
 }
 
 static void an_oaks_levels_are_small(void **state)
