@@ -7,13 +7,19 @@ wd_splat splat_at(usamplerBuffer table, uint index)
     return wd_splat(texel.x, texel.y);
 }
 
-wd_splat_wood splat_wood_at(usamplerBuffer table, uint index)
+wd_splat_corner splat_corner_at(usamplerBuffer table, uint index)
 {
-    int first = int(index) * WD_SPLAT_WOOD_TEXELS;
-    uvec4 a = texelFetch(table, first), b = texelFetch(table, first + 1),
-          c = texelFetch(table, first + 2);
-    return wd_splat_wood(wd_splat[3](wd_splat(a.x, a.y), wd_splat(a.z, a.w), wd_splat(b.x, b.y)),
-                         uint[3](b.z, b.w, c.x), uint[3](c.y, c.z, c.w));
+    uvec4 texel = texelFetch(table, int(index));
+    return wd_splat_corner(wd_splat(texel.x, texel.y), texel.z, texel.w);
+}
+
+/* Corners of a triangle of the model whose triangles begin at `first`. */
+uvec3 splat_wood_at(usamplerBuffer table, uint first, uint triangle)
+{
+    const uint mask = (1u << WD_WOOD_BITS) - 1u;
+    uvec4 texel = texelFetch(table, int(first + triangle / WD_WOOD_TRIANGLES));
+    uvec2 bits = triangle % WD_WOOD_TRIANGLES == 0u ? texel.xy : texel.zw;
+    return first - (uvec3(bits.x, bits.x >> 21 | bits.y << 11, bits.y >> 10) & mask);
 }
 
 wd_splat_item splat_item_at(usamplerBuffer table, uint index)

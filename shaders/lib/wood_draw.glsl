@@ -10,7 +10,7 @@ layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view_block; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
 layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tree */
 layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
-layout(set = 0, binding = 4) uniform usamplerBuffer wood;        /* wd_splat_wood */
+layout(set = 0, binding = 4) uniform usamplerBuffer wood;        /* wd_splat_corner */
 layout(set = 0, binding = 7, rg32ui) uniform readonly uimageBuffer drawn; /* the visibility buffer */
 
 /* Read before any branch: lib/light_pixels.glsl tells why. */
@@ -69,18 +69,18 @@ void main()
     group = counts.done_wood + dealt(group, groups);
     wd_splat_item item = splat_item_at(items, group);
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
-    uint count = WD_ITEM_COUNT(item), from = tree.first_wood + WD_ITEM_FIRST(item);
+    uint count = WD_ITEM_COUNT(item), from = WD_ITEM_FIRST(item);
     vec2 size = vec2(view.width, view.height);
     uint i = gl_LocalInvocationID.x;
     if (i >= count)
         return;
     do {
-        wd_splat_wood triangle = splat_wood_at(wood, from + i);
+        uvec3 corners = splat_wood_at(wood, tree.first_wood, from + i);
         vec3 at[3];
         vec2 low = vec2(1e9), high = vec2(-1e9);
         float nearest = 1e9;
         for (uint k = 0u; k < 3u; k++) {
-            vec3 clip = splat_clip(tree, splat_place(triangle.corners[k]));
+            vec3 clip = splat_clip(tree, splat_place(splat_corner_at(wood, corners[k]).at));
             float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
             float depth = ORTHOGRAPHIC != 0u ? clip.z : view.near_m / w;
             at[k] = vec3((clip.xy / w * 0.5 + 0.5) * size, depth);

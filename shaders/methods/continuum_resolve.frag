@@ -16,7 +16,7 @@ layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_ite
 layout(set = 0, binding = 4) uniform usamplerBuffer splats;      /* wd_splat */
 layout(set = 0, binding = 5) uniform usamplerBuffer looks;       /* WD_SPLAT_* looks */
 layout(set = 0, binding = 6) uniform usamplerBuffer wood_items;  /* wd_splat_item */
-layout(set = 0, binding = 7) uniform usamplerBuffer wood;        /* wd_splat_wood */
+layout(set = 0, binding = 7) uniform usamplerBuffer wood;        /* wd_splat_corner */
 layout(set = 0, binding = 8) uniform sampler2DArray bark;
 layout(set = 0, binding = 9) uniform usamplerBuffer lit;         /* ways that are open, of each splat */
 
@@ -76,12 +76,12 @@ wd_seen seen_splat(uint id)
 }
 
 /* Perspective-correct shares of the corners at the pixel's middle, and pixels the triangle covers. */
-vec4 corner_shares(wd_splat_tree tree, wd_splat_wood triangle)
+vec4 corner_shares(wd_splat_tree tree, wd_splat_corner corners[3])
 {
     vec2 size = vec2(frame.width, frame.height), at[3];
     vec3 w;
     for (uint k = 0u; k < 3u; k++) {
-        vec3 clip = splat_clip(tree, splat_place(triangle.corners[k]));
+        vec3 clip = splat_clip(tree, splat_place(corners[k].at));
         at[k] = (clip.xy / clip.z * 0.5 + 0.5) * size;
         w[k] = clip.z;
     }
@@ -97,9 +97,12 @@ wd_seen seen_wood(uint id)
 {
     wd_splat_item item = splat_item_at(wood_items, id / WD_ITEM_SPLATS);
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
-    wd_splat_wood triangle =
-        splat_wood_at(wood, tree.first_wood + WD_ITEM_FIRST(item) + id % WD_ITEM_SPLATS);
-    vec4 share = corner_shares(tree, triangle);
+    uvec3 at_corner =
+        splat_wood_at(wood, tree.first_wood, WD_ITEM_FIRST(item) + id % WD_ITEM_SPLATS);
+    wd_splat_corner corners[3];
+    for (uint k = 0u; k < 3u; k++)
+        corners[k] = splat_corner_at(wood, at_corner[k]);
+    vec4 share = corner_shares(tree, corners);
     vec2 uv[3];
     wd_seen seen;
     seen.tree = tree;
@@ -107,11 +110,11 @@ wd_seen seen_wood(uint id)
     seen.openness = seen.lit = 0.0;
     seen.face = vec3(0.0);
     for (uint k = 0u; k < 3u; k++) {
-        vec4 tint = unpackUnorm4x8(triangle.tints[k]);
+        vec4 tint = unpackUnorm4x8(corners[k].tint);
         seen.albedo += share[k] * tint.rgb * tint.rgb;
         seen.openness += share[k] * tint.a;
-        seen.normal += share[k] * normalize(splat_normal(triangle.corners[k]));
-        uv[k] = unpackHalf2x16(triangle.uvs[k]);
+        seen.normal += share[k] * normalize(splat_normal(corners[k].at));
+        uv[k] = unpackHalf2x16(corners[k].uv);
     }
     vec2 u = uv[1] - uv[0], v = uv[2] - uv[0];
     float texels = abs(u.x * v.y - u.y * v.x) * float(textureSize(bark, 0).x)

@@ -63,14 +63,16 @@ WD_STATIC_ASSERT_SIZE(wd_splat, 8);
 #define WD_SPLAT_STRUCT wd_splat
 #endif
 
-/* A triangle of bark. */
-struct wd_splat_wood {
-    WD_SPLAT_STRUCT corners[3];
-    uint32_t uvs[3];   /* two half floats */
-    uint32_t tints[3]; /* RGB: square roots of factors of the bark's texture; A: openness */
+/* A corner of triangles of bark. These follow the corners of their model, WD_WOOD_TRIANGLES of them in the
+ * room of one: 63 bits each, that say thrice in 21 how far before the first triangle a corner lies. */
+struct wd_splat_corner {
+    WD_SPLAT_STRUCT at;
+    uint32_t uv;   /* two half floats */
+    uint32_t tint; /* RGB: square roots of factors of the bark's texture; A: openness */
 };
-WD_STATIC_ASSERT_SIZE(wd_splat_wood, 48);
-#define WD_SPLAT_WOOD_TEXELS 3
+WD_STATIC_ASSERT_SIZE(wd_splat_corner, 16);
+#define WD_WOOD_TRIANGLES 2u
+#define WD_WOOD_BITS 21u
 
 struct wd_splat_model {
     WD_GAINS_STRUCT wood, leaf; /* what keeps the mesh's coverage */
@@ -87,11 +89,12 @@ struct wd_splat_model {
                                              times `finer` */
     float finer;                          /* 1 .. 4: plants of few triangles are drawn as if they
                                              were so many times as near */
-    uint32_t wood_first, wood_count;      /* triangles, those that show most first */
+    uint32_t wood_first;                  /* place of the first triangle among all corners */
+    uint32_t wood_count, wood_corners;    /* triangles, those that show most first */
 };
-WD_STATIC_ASSERT_SIZE(wd_splat_model, 540);
+WD_STATIC_ASSERT_SIZE(wd_splat_model, 544);
 /* Its words, to be fetched one by one. */
-#define WD_SPLAT_MODEL_WORDS 135u
+#define WD_SPLAT_MODEL_WORDS 136u
 #define WD_WORD_WOOD_GAINS 0u
 #define WD_WORD_LEAF_GAINS 36u
 #define WD_WORD_LIGHT_GAINS 72u
@@ -237,7 +240,7 @@ struct wd_splat_tree {
                               second half */
     uint32_t strata;       /* bits 0..3: of how many, from the top, it has splats; 4..7: WD_DISC_CLOSE,
                               in fifteenths; 8..31: the layer of its bark among looks */
-    uint32_t first_wood;   /* triangle of the model */
+    uint32_t first_wood;   /* of the model: wood_first */
     uint32_t turn;         /* cosine and sine of the tree's yaw, half floats */
     uint32_t shape;        /* 1 or -1 mirrored, vertical over horizontal scale, half floats */
     uint32_t tint;         /* half of each factor of the leaves' colour and of openness, unorm 8 */

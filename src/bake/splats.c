@@ -244,28 +244,45 @@ static uint32_t root_tint(uint32_t tint)
     return root;
 }
 
-static struct wd_splat_wood wood_triangle(const struct wd_splat_model *model,
-                                          const struct wd_tree_mesh *mesh, const uint32_t *corners)
+static struct wd_splat_corner wood_corner(const struct wd_splat_model *model,
+                                          const struct wd_tree_vertex *vertex)
 {
-    struct wd_splat_wood wood = {0};
-    for (int i = 0; i < 3; i++) {
-        const struct wd_tree_vertex *v = &mesh->vertices[corners[i]];
-        wood.corners[i] = splat_at(model, v->position_m, v->normal);
-        wood.uvs[i] = v->uv;
-        wood.tints[i] = root_tint(v->tint);
-    }
-    return wood;
+    return (struct wd_splat_corner){splat_at(model, vertex->position_m, vertex->normal), vertex->uv,
+                                    root_tint(vertex->tint)};
+}
+
+/* Corners of the triangles in their order, each once. */
+static void fill_wood_triangles(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
+                                const struct sized *order)
+{
+    struct wd_splat_model *model = &splats->model;
+    uint32_t *number = wd_alloc_array(mesh->vertex_count + 1, sizeof *number); /* 0: not yet */
+    for (uint32_t i = 0; i < model->wood_count; i++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t vertex = mesh->indices[3 * order[i].triangle + (uint32_t)k];
+            if (!number[vertex]) {
+                splats->corners[model->wood_corners] = wood_corner(model, &mesh->vertices[vertex]);
+                number[vertex] = ++model->wood_corners;
+            }
+        }
+    for (uint32_t i = 0; i < model->wood_count; i++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t vertex = mesh->indices[3 * order[i].triangle + (uint32_t)k];
+            uint64_t before = model->wood_corners + 1 - number[vertex];
+            splats->wood[i] |= before << (k * (int)WD_WOOD_BITS);
+        }
+    free(number);
 }
 
 static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
                       const struct sized *order)
 {
+    const uint32_t most = (1u << WD_WOOD_BITS) / 3 - 1;
     uint32_t count = mesh->wood_index_count / 3, first = first_triangles(count);
-    splats->wood = wd_alloc_array(count, sizeof *splats->wood);
-    splats->model.wood_count = count;
-    for (uint32_t i = 0; i < count; i++)
-        splats->wood[i] =
-            wood_triangle(&splats->model, mesh, mesh->indices + 3 * order[i].triangle);
+    splats->model.wood_count = count < most ? count : most;
+    splats->wood = wd_alloc_array(splats->model.wood_count, sizeof *splats->wood);
+    splats->corners = wd_alloc_array(3 * (size_t)splats->model.wood_count, sizeof *splats->corners);
+    fill_wood_triangles(splats, mesh, order);
     float all = 0, large = 0;
     for (uint32_t i = 0; i < count; i++) {
         all += order[i].area;
@@ -442,44 +459,62 @@ void wd_splats_finish(struct wd_splats *splats)
     free(splats->splats);
     free(splats->looks);
     free(splats->lit);
+    free(splats->corners);
     free(splats->wood);
     *splats = (struct wd_splats){0};
 }
 
 /* --- cache ------------------------------------------------------------------------------- */
 
-/* Of the wood of a reduced mesh: what is larger was not kept. */
-enum { MOST_TRIANGLES = 1 << 20 };
-
-static size_t kept_bytes(uint32_t triangles)
+static size_t kept_bytes(const struct wd_splat_model *model)
 {
-    return sizeof(struct wd_splat_model) + WD_SPLATS_BYTES + triangles * sizeof(struct wd_splat_wood);
+    return sizeof *model + WD_SPLATS_BYTES + model->wood_corners * sizeof(struct wd_splat_corner) +
+           model->wood_count * sizeof(uint64_t);
+}
+
+/* Brings all but the model from a block, or to it. */
+static void copy_parts(struct wd_splats *splats, uint8_t *block, bool from_block)
+{
+    const struct {
+        void *part;
+        size_t bytes;
+    } parts[] = {
+        {splats->splats, WD_SPLATS * sizeof *splats->splats},
+        {splats->looks, WD_SPLATS * sizeof *splats->looks},
+        {splats->lit, WD_SPLATS * sizeof *splats->lit},
+        {splats->corners, splats->model.wood_corners * sizeof *splats->corners},
+        {splats->wood, splats->model.wood_count * sizeof *splats->wood},
+    };
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        memcpy(from_block ? parts[i].part : block, from_block ? block : parts[i].part,
+               parts[i].bytes);
+        block += parts[i].bytes;
+    }
+}
+
+static void allocate(struct wd_splats *splats)
+{
+    splats->splats = wd_alloc_array(WD_SPLATS, sizeof *splats->splats);
+    splats->looks = wd_alloc_array(WD_SPLATS, sizeof *splats->looks);
+    splats->lit = wd_alloc_array(WD_SPLATS, sizeof *splats->lit);
+    splats->corners = wd_alloc_array(splats->model.wood_corners, sizeof *splats->corners);
+    splats->wood = wd_alloc_array(splats->model.wood_count, sizeof *splats->wood);
 }
 
 bool wd_splats_load(struct wd_splats *splats, struct wd_bake_cache *cache, uint64_t model_key)
 {
+    const struct wd_splat_model largest = {.wood_count = 1u << WD_WOOD_BITS,
+                                           .wood_corners = 1u << WD_WOOD_BITS};
     size_t size;
-    uint8_t *block =
-        wd_cache_load(cache, "splats", model_key, kept_bytes(MOST_TRIANGLES), &size);
+    uint8_t *block = wd_cache_load(cache, "splats", model_key, kept_bytes(&largest), &size);
     *splats = (struct wd_splats){0};
-    bool found = block && size >= kept_bytes(0);
+    bool found = block && size >= sizeof splats->model;
     if (found)
         memcpy(&splats->model, block, sizeof splats->model);
-    found = found && splats->model.wood_count <= MOST_TRIANGLES &&
-            size == kept_bytes(splats->model.wood_count);
+    found = found && size == kept_bytes(&splats->model);
     if (found) {
-        const uint8_t *at = block + sizeof splats->model;
-        splats->splats = wd_alloc_array(WD_SPLATS, sizeof *splats->splats);
-        splats->looks = wd_alloc_array(WD_SPLATS, sizeof *splats->looks);
-        splats->lit = wd_alloc_array(WD_SPLATS, sizeof *splats->lit);
-        splats->wood = wd_alloc_array(splats->model.wood_count, sizeof *splats->wood);
-        memcpy(splats->splats, at, WD_SPLATS * sizeof *splats->splats);
-        at += WD_SPLATS * sizeof *splats->splats;
-        memcpy(splats->looks, at, WD_SPLATS * sizeof *splats->looks);
-        at += WD_SPLATS * sizeof *splats->looks;
-        memcpy(splats->lit, at, WD_SPLATS * sizeof *splats->lit);
-        at += WD_SPLATS * sizeof *splats->lit;
-        memcpy(splats->wood, at, splats->model.wood_count * sizeof *splats->wood);
+        allocate(splats);
+        copy_parts(splats, block + sizeof splats->model, true);
     }
     free(block);
     return found;
@@ -488,19 +523,11 @@ bool wd_splats_load(struct wd_splats *splats, struct wd_bake_cache *cache, uint6
 void wd_splats_store(const struct wd_splats *splats, struct wd_bake_cache *cache,
                      uint64_t model_key)
 {
-    if (splats->model.wood_count > MOST_TRIANGLES)
-        return;
-    size_t bytes = kept_bytes(splats->model.wood_count);
-    uint8_t *block = wd_alloc(bytes), *at = block;
-    memcpy(at, &splats->model, sizeof splats->model);
-    at += sizeof splats->model;
-    memcpy(at, splats->splats, WD_SPLATS * sizeof *splats->splats);
-    at += WD_SPLATS * sizeof *splats->splats;
-    memcpy(at, splats->looks, WD_SPLATS * sizeof *splats->looks);
-    at += WD_SPLATS * sizeof *splats->looks;
-    memcpy(at, splats->lit, WD_SPLATS * sizeof *splats->lit);
-    at += WD_SPLATS * sizeof *splats->lit;
-    memcpy(at, splats->wood, splats->model.wood_count * sizeof *splats->wood);
+    size_t bytes = kept_bytes(&splats->model);
+    uint8_t *block = wd_alloc(bytes);
+    struct wd_splats parts = *splats;
+    memcpy(block, &splats->model, sizeof splats->model);
+    copy_parts(&parts, block + sizeof splats->model, false);
     wd_cache_store(cache, "splats", model_key, block, bytes);
     free(block);
 }

@@ -14,8 +14,9 @@ struct wd_splats {
     struct wd_splat *splats; /* WD_SPLATS: strata of leaves from the top down, then wood */
     uint32_t *looks; /* parallel, see shared/continuum.h; as is: */
     uint32_t *lit;   /* ways of shared/sun_ways.h that the tree leaves open, a bit each */
-    struct wd_splat_wood *wood;  /* model.wood_count triangles, large ones first */
-    struct wd_splat_model model; /* model.wood_first is 0 */
+    struct wd_splat_corner *corners; /* model.wood_corners */
+    uint64_t *wood;                  /* model.wood_count triangles of them, large ones first */
+    struct wd_splat_model model;     /* model.wood_first is 0 */
 };
 
 /* Makes them of the model's points and the wood of its reduced mesh. Where leaves or wood are

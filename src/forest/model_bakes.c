@@ -83,22 +83,18 @@ static bool make_image(struct wd_image *image, struct wd_gpu *gpu, struct wd_ima
 
 /* --- cards ------------------------------------------------------------------------------- */
 
-/* Normals are read once a pixel, and blocks do. Albedo's opacity is read for every card that a pixel
- * may show: software devices unpack blocks at 4% of a frame, others in no time. */
+/* Software devices unpack blocks of albedo, whose opacity is read for every card that a pixel may show, at 4%
+ * of a frame: a fair price for a fourth of the memory. */
 static struct wd_card_form card_form(const struct wd_gpu *gpu, enum wd_bake_parts parts,
                                      struct wd_image *images[WD_PLANES],
                                      enum wd_card_depth depth)
 {
     bool blocks = gpu->features & WD_GPU_FEATURE_BLOCKS;
-    const bool small[WD_PLANES] = {
-        [WD_PLANE_ALBEDO] = blocks && !gpu->software,
-        [WD_PLANE_NORMAL] = blocks,
-    };
     struct wd_card_form form = {.parts = parts};
     for (int plane = 0; plane < WD_PLANES; plane++)
-        form.planes[plane] = !images[plane] ? WD_CARD_NOTHING
-                             : small[plane] ? WD_CARD_BLOCKS
-                                            : WD_CARD_TEXELS;
+        form.planes[plane] = !images[plane]                      ? WD_CARD_NOTHING
+                             : blocks && plane != WD_PLANE_DEPTH ? WD_CARD_BLOCKS
+                                                                 : WD_CARD_TEXELS;
     if (images[WD_PLANE_DEPTH] && depth == WD_CARD_DEPTH_LEAVES)
         form.planes[WD_PLANE_DEPTH] = blocks ? WD_CARD_ALPHA_BLOCKS : WD_CARD_ALPHA;
     return form;

@@ -193,15 +193,39 @@ static void deal_strata(void *to, const void *from, size_t size)
     }
 }
 
+/* In rooms of a corner. */
+static size_t wood_room(const struct wd_splat_model *model)
+{
+    return model->wood_corners + (model->wood_count + WD_WOOD_TRIANGLES - 1) / WD_WOOD_TRIANGLES;
+}
+
+/* The corners of each model, then its triangles. */
+static bool upload_wood(struct wd_continuum_forest *own, struct wd_gpu *gpu,
+                        const struct wd_splats *splats, struct wd_splat_model *headers,
+                        uint32_t models)
+{
+    size_t room = 1, at = 0; /* never empty: a buffer must hold something */
+    for (uint32_t i = 0; i < models; i++)
+        room += wood_room(&splats[i].model);
+    struct wd_splat_corner *wood = wd_alloc_array(room, sizeof *wood);
+    for (uint32_t i = 0; i < models; i++) {
+        const struct wd_splat_model *model = &splats[i].model;
+        memcpy(wood + at, splats[i].corners, model->wood_corners * sizeof *wood);
+        headers[i].wood_first = (uint32_t)at + model->wood_corners;
+        memcpy(wood + headers[i].wood_first, splats[i].wood,
+               model->wood_count * sizeof *splats[i].wood);
+        at += wood_room(model);
+    }
+    bool ok = make_buffer(&own->wood, gpu, "splat wood", wood, room * sizeof *wood,
+                          VK_FORMAT_R32G32B32A32_UINT);
+    free(wood);
+    return ok;
+}
+
 static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
                           const struct wd_splats *splats, uint32_t models)
 {
-    size_t count = (size_t)models * WD_SPLATS, triangles = 0;
-    for (size_t i = 0; i < models; i++)
-        triangles += splats[i].model.wood_count;
-    /* never empty: a buffer must hold something */
-    struct wd_splat_wood *wood = wd_alloc_array(triangles + 1, sizeof *wood);
-    triangles = 0;
+    size_t count = (size_t)models * WD_SPLATS;
     struct wd_splat *all = wd_alloc_array(count, sizeof *all);
     uint32_t *looks = wd_alloc_array(count, sizeof *looks);
     uint32_t *lit = wd_alloc_array(count, sizeof *lit);
@@ -210,10 +234,7 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
         deal_strata(all + i * WD_SPLATS, splats[i].splats, sizeof *all);
         deal_strata(looks + i * WD_SPLATS, splats[i].looks, sizeof *looks);
         deal_strata(lit + i * WD_SPLATS, splats[i].lit, sizeof *lit);
-        memcpy(wood + triangles, splats[i].wood, splats[i].model.wood_count * sizeof *wood);
         headers[i] = splats[i].model;
-        headers[i].wood_first = (uint32_t)triangles;
-        triangles += splats[i].model.wood_count;
     }
     bool ok = make_buffer(&own->splats, gpu, "splats", all, count * sizeof *all,
                           VK_FORMAT_R32G32_UINT) &&
@@ -221,14 +242,12 @@ static bool upload_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
                           VK_FORMAT_R32_UINT) &&
               make_buffer(&own->lit, gpu, "splat lit", lit, count * sizeof *lit,
                           VK_FORMAT_R32_UINT) &&
-              make_buffer(&own->wood, gpu, "splat wood", wood, (triangles + 1) * sizeof *wood,
-                          VK_FORMAT_R32G32B32A32_UINT) &&
+              upload_wood(own, gpu, splats, headers, models) &&
               make_buffer(&own->models, gpu, "splat models", headers, models * sizeof *headers,
                           VK_FORMAT_R32_UINT);
     free(all);
     free(looks);
     free(lit);
-    free(wood);
     free(headers);
     return ok;
 }

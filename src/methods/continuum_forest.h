@@ -10,7 +10,7 @@ struct wd_continuum_forest {
     struct wd_buffer splats;   /* struct wd_splat[WD_SPLATS] a model */
     struct wd_buffer looks;    /* uint32_t, parallel: see shared/continuum.h */
     struct wd_buffer lit;      /* uint32_t, parallel */
-    struct wd_buffer wood;     /* struct wd_splat_wood of all models */
+    struct wd_buffer wood;     /* struct wd_splat_corner of all models, and triangles of them */
     struct wd_buffer models;   /* struct wd_splat_model a model */
     uint32_t cluster_count;
     float *grains;     /* [model]: as in struct wd_splat_model */

@@ -199,6 +199,7 @@ static void assert_same_splats(const struct wd_splats *a, const struct wd_splats
     assert_memory_equal(a->splats, b->splats, WD_SPLATS * sizeof *a->splats);
     assert_memory_equal(a->looks, b->looks, WD_SPLATS * sizeof *a->looks);
     assert_memory_equal(a->lit, b->lit, WD_SPLATS * sizeof *a->lit);
+    assert_memory_equal(a->corners, b->corners, a->model.wood_corners * sizeof *a->corners);
     assert_memory_equal(a->wood, b->wood, a->model.wood_count * sizeof *a->wood);
 }
 

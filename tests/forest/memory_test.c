@@ -14,8 +14,9 @@ static size_t model_bytes(const struct wd_forest_device *forest)
 /* What `continuum` adds for a model. */
 static size_t splat_bytes(void)
 {
-    enum { WOOD_TRIANGLES = 2000 };
-    return WD_SPLATS_BYTES + WOOD_TRIANGLES * sizeof(struct wd_splat_wood);
+    enum { WOOD_TRIANGLES = 2000, WOOD_CORNERS = 2000 };
+    return WD_SPLATS_BYTES + WOOD_TRIANGLES * sizeof(uint64_t) +
+           WOOD_CORNERS * sizeof(struct wd_splat_corner);
 }
 
 static void an_oaks_levels_are_small(void **state)
