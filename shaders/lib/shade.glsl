@@ -503,12 +503,12 @@ float leaf_coat_around(float toward_eye, float roughness)
 
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
  * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
- * Meshes' leaves (lit 1) keep what depth says beside the map: by the map alone forests from within are 3 %
- * brighter in green, and too bright by that, and leaves near a lens 7 %. 0: none goes on to the eye. */
+ * Leaves of meshes (lit 1) are in the nearest map as they are, but for a sward's blades, which are less than
+ * its texels. 0: none goes on to the eye. */
 void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint cascade)
 {
     if (pixel.lit <= 0.0 || pixel.lit >= 1.0) {
-        place.own = pixel.lit <= 0.0 ? 0.0 : place.own;
+        place.own = pixel.lit <= 0.0 ? 0.0 : cascade == 0u ? mix(1.0, place.own, crown.sward) : place.own;
         return;
     }
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));

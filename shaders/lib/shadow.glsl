@@ -87,8 +87,9 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
     mat4 m = shadow_from_rel(cascade);
     float w = (m * vec4(rel, 1.0)).w;
     float texel_m = of_cascade(frame.cascade_texel_m, cascade) * w;
-    vec3 off = mix(normal, sheet, dot(sheet, sheet));
-    vec3 from = rel + off * texel_m * 1.2 + frame.sun_direction * texel_m * 0.8;
+    float flat_on = dot(sheet, sheet);
+    vec3 off = mix(normal * 1.2, sheet * 0.5, flat_on) + frame.sun_direction * mix(0.8, 0.4, flat_on);
+    vec3 from = rel + off * texel_m;
     vec4 clip = m * vec4(from, 1.0);
     vec3 at = clip.xyz / clip.w;
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0))))

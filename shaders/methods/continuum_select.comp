@@ -301,7 +301,7 @@ void select_tree(uint index, float share, uint place)
     float shown = 1.0;
     float near_m = wd_near_reach_m(tree, model_float(model_index, WD_WORD_GRAIN), view.near_leaves_m,
                                    view.near_grains);
-    if (ORTHOGRAPHIC == 0u && near_m > 0.0)
+    if (near_m > 0.0)
         shown = wd_near_splats(wd_near_distance_m(tree, model.crown_base_m / model.height_m, foot),
                                near_m);
     if (shown <= 0.0)

@@ -46,8 +46,8 @@ vec3 seen_side()
     return vec3(in_uv.xy, in_uv.z + (back ? float(WD_LOOK_LEAF_BACK - WD_LOOK_LEAF) : 0.0));
 }
 
-/* A leaf as the sheet that it is: its lower side, its veins, and where the sun shines through, what
- * comes through. */
+/* A leaf as the sheet that it is: its lower side, its veins on top of how it is turned to the light, and
+ * where the sun shines through, what comes through. */
 void detail_leaf(inout wd_surface leaf, float near)
 {
     vec3 face = look_face(in_place.xyz);
@@ -56,8 +56,8 @@ void detail_leaf(inout wd_surface leaf, float near)
     float lit = dot(face, in_sun_show.xyz);
     float through = mix(1.0, 2.0 * relief.rest, near * smoothstep(0.05, -0.05, lit));
     leaf.albedo *= through;
-    vec3 own = dot(relief.normal, in_normal) < 0.0 ? -relief.normal : relief.normal;
-    leaf.normal = normalize(mix(leaf.normal, own, 0.8 * near));
+    vec3 veins = (0.8 * near) * (relief.normal - face);
+    leaf.normal = normalize(leaf.normal + (dot(face, leaf.normal) < 0.0 ? -veins : veins));
 }
 
 void detail_wood(inout wd_surface wood, float near)

@@ -15,6 +15,8 @@ static const double LENS_SHARE = 0.7;
 static const double SIZE_STEP = 1.1;
 /* Look-ups of what lies at a slice's edge. */
 static const double LOOK_MARGIN_M = 0.2;
+/* The first cascade is not calm where anything is seen from nearer than this: leaves move in the wind. */
+static const float LEAVES_M = 25.0f;
 /* Penumbras and the offsets of shadow look-ups reach this far. */
 static const float CASTER_MARGIN_M = 3.0f;
 
@@ -92,16 +94,20 @@ static void snap(struct wd_cascade_box *box, const struct wd_cascades_params *pa
                     axes[2][k] * box->center[2];
 }
 
+static bool is_calm(const struct wd_cascades_params *params, int cascade, double radius)
+{
+    bool leaves = cascade == 0 && params->nearest_m < LEAVES_M;
+    return params->calm_m > 0.0 && !leaves && 2.0 * radius / params->size >= params->calm_m;
+}
+
 static void cascade_box(struct wd_cascade_box *box, const struct wd_cascades_params *params,
-                        double near, double far)
+                        int cascade, double near, double far)
 {
     const struct wd_view *view = params->view;
     double distance, center[3];
     /* Rounded up, so that a turning camera changes nothing. */
     double radius = ceil(slice_sphere(view, near, far, &distance) * 16.0) / 16.0;
-    *box = (struct wd_cascade_box){
-        .radius = radius,
-        .calm = params->calm_m > 0.0 && 2.0 * radius / params->size >= params->calm_m};
+    *box = (struct wd_cascade_box){.radius = radius, .calm = is_calm(params, cascade, radius)};
     double sp = sin(view->camera.pitch_rad), cp = cos(view->camera.pitch_rad);
     const double forward[3] = {sin(view->camera.yaw_rad) * cp, cos(view->camera.yaw_rad) * cp, sp};
     for (int k = 0; k < 3; k++)
@@ -268,7 +274,7 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
         cascades[i] = (struct wd_view){
             .width = params->size, .height = params->size, .cascade = (uint32_t)i};
         const struct wd_cascade_box *box = &cascades[i].box;
-        cascade_box(&cascades[i].box, params, near, far);
+        cascade_box(&cascades[i].box, params, i, near, far);
         cascade_view(&cascades[i], params->view, eye_m);
         if (!box->calm)
             keep_to_slice(&cascades[i], params, near, far);

@@ -69,7 +69,7 @@ struct wd_cascades_params {
     double max_height_m;     /* of a tree */
     /* Cascades with texels at least so large are calm: they show trees as the mean wind bends them, hold
      * all of their box, and move in steps of a sixteenth of it: a camera that moves little changes
-     * nothing, and the map can be kept. 0: none is. */
+     * nothing, and the map can be kept. 0: none is; nor is the first where leaves are near. */
     double calm_m;
 };
 /* Fills the shadow members of `*uniforms` and one view a cascade. */

@@ -419,8 +419,7 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     wd_cmd_scope_begin(cmd, "pages");
     select_pages(c, draw);
     wd_cmd_scope_end(cmd);
-    if (draw->pass == WD_PASS_CAMERA)
-        wd_near_trees_select(&c->near, draw, &near);
+    wd_near_trees_select(&c->near, draw, &near);
     if (!fit_lists(c, cmd, draw->view) || !fit_pixels(c, cmd, draw->view) ||
         !fit_pyramid(c, cmd, draw->view))
         cmd->failed = true;
@@ -471,11 +470,11 @@ static void continuum_draw(void *state, const struct wd_tree_draw *draw)
 {
     if (draw->cmd->failed)
         return;
-    if (draw->pass == WD_PASS_CAMERA) {
+    if (draw->pass == WD_PASS_CAMERA)
         draw_camera(state, draw);
-        wd_tree_draw_selection(draw, &((struct continuum *)state)->near, WD_DRAW_GROUPED);
-    } else
+    else
         draw_cascade(state, draw);
+    wd_tree_draw_selection(draw, &((struct continuum *)state)->near, WD_DRAW_GROUPED);
 }
 
 /* The depth pyramid of what this frame sees. */

@@ -88,12 +88,18 @@ float wd_continuum_detail(const struct wd_tree_draw *draw)
     return (float)(spacing_px / draw->max_error_px);
 }
 
+/* The nearest cascade holds the leaves that the camera sees as meshes; the others hold crowns. */
+static bool holds_leaves(const struct wd_view *view)
+{
+    return view->cascade == 0 && !view->box.calm;
+}
+
 struct wd_near_rule wd_continuum_near_rule(const struct wd_tree_draw *draw,
                                            const struct wd_continuum_forest *forest)
 {
     const struct wd_continuum_options *options = &draw->forest->scene->methods.continuum;
     struct wd_near_rule rule = {.grains = forest->grains};
-    if (draw->forest->pages.capacity || draw->pass == WD_PASS_SHADOW)
+    if (draw->forest->pages.capacity || (draw->pass == WD_PASS_SHADOW && !holds_leaves(draw->view)))
         return rule;
     rule.leaves_m = (float)options->near_leaves_m;
     if (options->near_px > 0.0)
@@ -127,14 +133,6 @@ static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw 
         memcpy(values->slice[side], view->box.slice[side], sizeof view->box.slice[side]);
 }
 
-static void set_camera(struct wd_splat_view *values, const struct wd_continuum_view_params *params)
-{
-    const struct wd_near_rule rule = wd_continuum_near_rule(params->draw, params->forest);
-    set_history(values, params);
-    values->near_leaves_m = rule.leaves_m;
-    values->near_grains = rule.reach;
-}
-
 void wd_continuum_view_fill(struct wd_splat_view *values,
                             const struct wd_continuum_view_params *params)
 {
@@ -143,6 +141,7 @@ void wd_continuum_view_fill(struct wd_splat_view *values,
     const struct wd_continuum_options *options = &draw->forest->scene->methods.continuum;
     bool shadow = draw->pass == WD_PASS_SHADOW;
     float detail = wd_continuum_detail(draw);
+    const struct wd_near_rule near = wd_continuum_near_rule(draw, params->forest);
     *values = (struct wd_splat_view){
         .plane_count = view->frustum.count,
         .orthographic = shadow,
@@ -156,6 +155,8 @@ void wd_continuum_view_fill(struct wd_splat_view *values,
         .density = (float)options->density * detail * detail,
         .detail = detail,
         .min_splats = (uint32_t)options->min_splats,
+        .near_leaves_m = near.leaves_m,
+        .near_grains = near.reach,
         .wood_px = (float)options->wood_px,
         .cluster_count = params->forest->cluster_count,
         .page_count = params->page_count,
@@ -170,5 +171,5 @@ void wd_continuum_view_fill(struct wd_splat_view *values,
     if (shadow)
         set_cascade(values, draw);
     else
-        set_camera(values, params);
+        set_history(values, params);
 }
