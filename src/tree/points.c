@@ -12,10 +12,10 @@ struct surface {
     const struct wd_tree_mesh *mesh;
     uint32_t *order; /* triangle */
     double *below;   /* [count + 1] m^2 */
-    uint32_t *guide; /* [GUIDES + 1]: place in the order of what holds each part of the area */
     size_t count, wood_count;
 };
-enum { GUIDES = 1 << 14 };
+
+enum { KEY = 0x70e5 };
 
 static struct wd_vec3 corner(const struct wd_tree_mesh *mesh, size_t index)
 {
@@ -50,18 +50,6 @@ static void order_part(struct surface *surface, size_t first, size_t count)
     free(centers);
 }
 
-static void make_guide(struct surface *surface)
-{
-    surface->guide = wd_alloc_array(GUIDES + 1, sizeof *surface->guide);
-    size_t place = 0;
-    for (size_t i = 0; i <= GUIDES; i++) {
-        double area = surface->below[surface->count] * (double)i / GUIDES;
-        while (place + 1 < surface->count && surface->below[place + 1] <= area)
-            place++;
-        surface->guide[i] = (uint32_t)place;
-    }
-}
-
 static void surface_init(struct surface *surface, const struct wd_tree_mesh *mesh)
 {
     size_t count = mesh->index_count / 3, wood = mesh->wood_index_count / 3;
@@ -74,31 +62,12 @@ static void surface_init(struct surface *surface, const struct wd_tree_mesh *mes
     };
     order_part(surface, 0, surface->wood_count);
     order_part(surface, surface->wood_count, count - surface->wood_count);
-    make_guide(surface);
 }
 
 static void surface_finish(struct surface *surface)
 {
     free(surface->order);
     free(surface->below);
-    free(surface->guide);
-}
-
-/* Place in the order of the triangle that holds `area`. */
-static size_t find_triangle(const struct surface *surface, double area)
-{
-    size_t part = (size_t)(area / surface->below[surface->count] * GUIDES);
-    size_t low = part > 0 ? surface->guide[part - 1] : 0, high = surface->count;
-    if (part + 2 <= GUIDES)
-        high = (size_t)surface->guide[part + 2] + 1;
-    while (high - low > 1) {
-        size_t middle = low + (high - low) / 2;
-        if (surface->below[middle] <= area)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
 }
 
 static uint32_t pack_albedo(const float rgb[3], float sky)
@@ -202,13 +171,11 @@ struct wd_vec3 wd_point_along(const struct wd_tree_point *point)
     return wd_v3_unit(wd_v3_mad(wd_v3_scale(axes[0], x), axes[1], 1 - fabsf(x)));
 }
 
+/* The point at `area` of the triangle at `place`. */
 static void sample_point(struct wd_tree_point *point, const struct surface *surface,
-                         const struct wd_point_look *look, uint32_t index, float area_m2)
+                         const struct wd_point_look *look, uint32_t index, double area,
+                         size_t place, float area_m2)
 {
-    enum { KEY = 0x70e5 };
-    double share = (double)wd_scrambled_radical(index, KEY) / 4294967296.0;
-    double area = share * surface->below[surface->count];
-    size_t place = find_triangle(surface, area);
     double within = surface->below[place + 1] - surface->below[place];
     float u = within > 0 ? (float)((area - surface->below[place]) / within) : 0;
     float v = wd_hash_unit(wd_hash2(index, KEY)), side = sqrtf(u);
@@ -235,6 +202,30 @@ static void sample_point(struct wd_tree_point *point, const struct surface *surf
                   (wd_pack_uv(0, area_m2) & 0xffff0000u);
 }
 
+/* Each of 2^bits equal parts of the area holds one point at most: they are made in the order of the curve,
+ * along which triangles and their corners lie close together. */
+static void sample_points(struct wd_tree_points *points, const struct surface *surface,
+                          const struct wd_point_look *look, float area_m2)
+{
+    int bits = 0;
+    while (((size_t)1 << bits) < points->count)
+        bits++;
+    uint32_t *held = wd_alloc_array((size_t)1 << bits, sizeof *held); /* 1 + index, 0 none */
+    for (uint32_t i = 0; i < points->count; i++)
+        held[(uint64_t)wd_scrambled_radical(i, KEY) >> (32 - bits)] = i + 1;
+    for (size_t part = 0, place = 0; part >> bits == 0; part++) {
+        if (!held[part])
+            continue;
+        uint32_t index = held[part] - 1;
+        double share = (double)wd_scrambled_radical(index, KEY) / 4294967296.0;
+        double area = share * surface->below[surface->count];
+        while (place + 1 < surface->count && surface->below[place + 1] <= area)
+            place++;
+        sample_point(&points->points[index], surface, look, index, area, place, area_m2);
+    }
+    free(held);
+}
+
 bool wd_tree_points_build(struct wd_tree_points *points, const struct wd_tree_mesh *mesh,
                           const struct wd_point_look *look, size_t count)
 {
@@ -247,9 +238,7 @@ bool wd_tree_points_build(struct wd_tree_points *points, const struct wd_tree_me
         points->count = count;
         points->wood_area_m2 = (float)surface.below[surface.wood_count];
         points->leaf_area_m2 = (float)(area - surface.below[surface.wood_count]);
-        for (size_t i = 0; i < count; i++)
-            sample_point(&points->points[i], &surface, look, (uint32_t)i,
-                         (float)(area / (double)count));
+        sample_points(points, &surface, look, (float)(area / (double)count));
     }
     surface_finish(&surface);
     return points->count > 0;

@@ -39,11 +39,15 @@ struct wd_silhouette_axes wd_silhouette_axes_of(const struct wd_silhouette *silh
 
 /* --- triangles, a batch at a time, each number of all of them together -------------------- */
 
-enum { BATCH = 64 };
+enum { BATCH = 256 };
+
+/* [corner][axis] in the tree */
+struct places {
+    float m[3][3][BATCH];
+};
 
 struct batch {
-    float places_m[3][3][BATCH]; /* [corner][axis] in the tree, */
-    float at[3][3][BATCH];       /* and in the picture */
+    float at[3][3][BATCH]; /* [corner][axis] in the picture */
     float turn[BATCH];     /* 1, or -1 of triangles that are seen from behind; 0 of none */
     float right[BATCH], down[BATCH], most[BATCH]; /* distance a pixel; the farthest corner's */
     int32_t x0[BATCH], x1[BATCH], y0[BATCH], y1[BATCH]; /* pixels whose middles it reaches over */
@@ -53,31 +57,78 @@ struct batch {
     float distance[4][BATCH];
 };
 
-static void gather(struct batch *batch, const struct wd_tree_mesh *mesh, const uint32_t *indices,
-                   int count)
+/* Triangles of the mesh, from the first of the indices on; or `which` of them. */
+static void gather(struct places *places, const struct wd_tree_mesh *mesh, const uint32_t *indices,
+                   const int *which, int count)
 {
     for (int i = 0; i < count; i += 4)
         for (int corner = 0; corner < 3; corner++) {
             wd_four rows[4], columns[3];
             for (int k = 0; k < 4; k++) { /* the last one again where there are no four */
-                int triangle = i + k < count ? i + k : count - 1;
+                int at = i + k < count ? i + k : count - 1, triangle = which ? which[at] : at;
                 memcpy(&rows[k], &mesh->vertices[indices[3 * triangle + corner]], sizeof rows[k]);
             }
             wd_four_columns(columns, rows);
             for (int axis = 0; axis < 3; axis++)
-                memcpy(batch->places_m[corner][axis] + i, &columns[axis], sizeof *columns);
+                memcpy(places->m[corner][axis] + i, &columns[axis], sizeof *columns);
         }
 }
 
-static void place_corners(float at[3][BATCH], const float places_m[3][BATCH],
-                          const struct wd_silhouette_axes *axes)
+static inline struct wd_vec3 corner(const struct places *places, int k, int i)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        struct wd_vec3 a = axes->axis[axis];
-        for (int i = 0; i < BATCH; i++)
-            at[axis][i] = wd_v3_dot(WD_V3(places_m[0][i], places_m[1][i], places_m[2][i]), a) -
-                          axes->low[axis];
+    return WD_V3(places->m[k][0][i], places->m[k][1][i], places->m[k][2][i]);
+}
+
+static inline float least(float a, float b, float c)
+{
+    return wd_minf(wd_minf(a, b), c);
+}
+
+static inline float most(float a, float b, float c)
+{
+    return wd_maxf(wd_maxf(a, b), c);
+}
+
+/* Whether the way from a to b, both above -low - 1, passes the middle of a pixel or nearly so. */
+static inline int passes(float a, float b, float low)
+{
+    const float nearly = 1 / 1024.0f;
+    return (int)(a + (0.5f - nearly - low)) != (int)(b + (0.5f + nearly - low));
+}
+
+/* Most triangles lie between the middles of pixels. Finds the others, and few of those: without a
+ * branch to be guessed. */
+static int find_reaching(int reaching[BATCH + 1], const struct places *places,
+                         const struct wd_silhouette_axes *axes, int count)
+{
+    int32_t reaches[BATCH];
+    const struct wd_vec3 right = axes->axis[0], up = axes->axis[1];
+    for (int i = 0; i < BATCH; i++) {
+        struct wd_vec3 p = corner(places, 0, i), q = corner(places, 1, i), r = corner(places, 2, i);
+        /* right.z is 0 */
+        float a = p.x * right.x + p.y * right.y;
+        float b = q.x * right.x + q.y * right.y;
+        float c = r.x * right.x + r.y * right.y;
+        float d = wd_v3_dot(p, up), e = wd_v3_dot(q, up), f = wd_v3_dot(r, up);
+        reaches[i] = passes(least(a, b, c), most(a, b, c), axes->low[0]) &
+                     passes(least(d, e, f), most(d, e, f), axes->low[1]);
     }
+    int found = 0;
+    for (int i = 0; i < count; i++) {
+        reaching[found] = i;
+        found += reaches[i];
+    }
+    return found;
+}
+
+static void place_corners(struct batch *batch, const struct places *places,
+                          const struct wd_silhouette_axes *axes, int count)
+{
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 3; axis++)
+            for (int i = 0; i < count; i++)
+                batch->at[k][axis][i] =
+                    wd_v3_dot(corner(places, k, i), axes->axis[axis]) - axes->low[axis];
 }
 
 /* First pixels whose middle is at x or beyond, within the picture; 0 for NaN. */
@@ -89,13 +140,13 @@ static inline wd_four_ints pixels(wd_four x)
     return pixel - (wd_four_convert(pixel) < from);
 }
 
-static void find_range(int32_t *first, int32_t *end, const float *a, const float *b,
-                       const float *c)
+static void find_range(int32_t *first, int32_t *end, float (*at)[3][BATCH], int axis, int count)
 {
-    for (int i = 0; i < BATCH; i += 4) {
-        wd_four p = wd_four_load(a + i), q = wd_four_load(b + i), r = wd_four_load(c + i);
-        wd_four_ints low = pixels(wd_four_min(wd_four_min(p, q), r));
-        wd_four_ints high = pixels(wd_four_max(wd_four_max(p, q), r));
+    for (int i = 0; i < count; i += 4) {
+        wd_four a = wd_four_load(at[0][axis] + i), b = wd_four_load(at[1][axis] + i);
+        wd_four c = wd_four_load(at[2][axis] + i);
+        wd_four_ints low = pixels(wd_four_min(wd_four_min(a, b), c));
+        wd_four_ints high = pixels(wd_four_max(wd_four_max(a, b), c));
         memcpy(first + i, &low, sizeof low);
         memcpy(end + i, &high, sizeof high);
     }
@@ -108,24 +159,24 @@ static float area_of(struct batch *batch, int i)
     return bx * (c[1][i] - a[1][i]) - (c[0][i] - a[0][i]) * by;
 }
 
-static void find_turns(struct batch *batch)
+static void find_turns(struct batch *batch, int count)
 {
-    for (int i = 0; i < BATCH; i++) {
+    for (int i = 0; i < count; i++) {
         float area = area_of(batch, i);
         batch->turn[i] = area > 1e-9f ? 1.0f : area < -1e-9f ? -1.0f : 0.0f;
     }
 }
 
-static void find_slopes(struct batch *batch)
+static void find_slopes(struct batch *batch, int count)
 {
     float(*a)[BATCH] = batch->at[0], (*b)[BATCH] = batch->at[1], (*c)[BATCH] = batch->at[2];
-    for (int i = 0; i < BATCH; i++) {
+    for (int i = 0; i < count; i++) {
         float bx = b[0][i] - a[0][i], by = b[1][i] - a[1][i], bz = b[2][i] - a[2][i];
         float cx = c[0][i] - a[0][i], cy = c[1][i] - a[1][i], cz = c[2][i] - a[2][i];
         float over = 1 / area_of(batch, i);
         batch->right[i] = (bz * cy - cz * by) * over;
         batch->down[i] = (cz * bx - bz * cx) * over;
-        batch->most[i] = wd_maxf(wd_maxf(a[2][i], b[2][i]), c[2][i]);
+        batch->most[i] = most(a[2][i], b[2][i], c[2][i]);
     }
 }
 
@@ -279,21 +330,21 @@ static inline void draw_triangle(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *f
     }
 }
 
-static void prepare(struct batch *batch, const struct wd_silhouette_axes *axes, bool depth)
+static void prepare(struct batch *batch, const struct places *places,
+                    const struct wd_silhouette_axes *axes, int count, bool depth)
 {
-    for (int corner = 0; corner < 3; corner++)
-        place_corners(batch->at[corner], (const float(*)[BATCH])batch->places_m[corner], axes);
-    find_range(batch->x0, batch->x1, batch->at[0][0], batch->at[1][0], batch->at[2][0]);
-    find_range(batch->y0, batch->y1, batch->at[0][1], batch->at[1][1], batch->at[2][1]);
-    find_turns(batch);
+    int eights = (count + 7) & ~7;
+    place_corners(batch, places, axes, eights);
+    find_range(batch->x0, batch->x1, batch->at, 0, eights);
+    find_range(batch->y0, batch->y1, batch->at, 1, eights);
+    find_turns(batch, eights);
     if (depth)
-        find_slopes(batch);
-    for (int i = 0; i < BATCH; i += 4)
+        find_slopes(batch, eights);
+    for (int i = 0; i < count; i += 4)
         cover_small(batch, i, depth);
 }
 
-/* Most triangles are small, and many lie between the middles of pixels: these are sorted out
- * without a branch to be guessed. */
+/* Small ones that lie between the middles of pixels are sorted out without a branch to be guessed. */
 static inline void draw_batch(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *front,
                               const struct batch *batch, int count)
 {
@@ -309,44 +360,54 @@ static inline void draw_batch(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *fron
         draw_triangle(covered, front, batch, large[i]);
 }
 
-static int next_batch(struct batch *batch, const struct wd_tree_mesh *mesh, uint32_t first,
-                      uint32_t end)
+struct drawing {
+    struct places all, some; /* triangles, and those that reach over the middle of a pixel of a view */
+    struct batch batch;      /* these in the view */
+};
+
+/* Triangles from `indices` on, BATCH at most, in all views: into their bits, or into `fronts`. */
+static inline void draw_views(struct drawing *drawing, struct wd_silhouette *covers, float *fronts,
+                              const struct wd_silhouette *views, int view_count,
+                              const struct wd_tree_mesh *mesh, const uint32_t *indices, int count)
 {
-    int count = (end - first) / 3 < BATCH ? (int)((end - first) / 3) : BATCH;
-    gather(batch, mesh, mesh->indices + first, count);
-    return count;
+    int reaching[BATCH + 1];
+    gather(&drawing->all, mesh, indices, NULL, count);
+    for (int view = 0; view < view_count; view++) {
+        const struct wd_silhouette_axes axes = wd_silhouette_axes_of(&views[view]);
+        int reach = find_reaching(reaching, &drawing->all, &axes, count);
+        gather(&drawing->some, mesh, indices, reaching, reach);
+        prepare(&drawing->batch, &drawing->some, &axes, reach, fronts != NULL);
+        draw_batch(covers ? covers[view].covered : NULL,
+                   fronts ? fronts + view * WD_SILHOUETTE_FRONT : NULL, &drawing->batch, reach);
+    }
+}
+
+static inline int batch_at(uint32_t first, uint32_t end)
+{
+    return (end - first) / 3 < BATCH ? (int)((end - first) / 3) : BATCH;
 }
 
 WD_FOUR_TWICE
 void wd_silhouette_cover(struct wd_silhouette *views, int view_count,
                          const struct wd_tree_mesh *mesh, uint32_t first, uint32_t end)
 {
-    struct batch batch = {0};
-    for (uint32_t i = first; i + 2 < end; i += 3 * BATCH) {
-        int count = next_batch(&batch, mesh, i, end);
-        for (int view = 0; view < view_count; view++) {
-            const struct wd_silhouette_axes axes = wd_silhouette_axes_of(&views[view]);
-            prepare(&batch, &axes, false);
-            draw_batch(views[view].covered, NULL, &batch, count);
-        }
-    }
+    struct drawing drawing = {0};
+    for (uint32_t i = first; i + 2 < end; i += 3 * BATCH)
+        draw_views(&drawing, views, NULL, views, view_count, mesh, mesh->indices + i,
+                   batch_at(i, end));
 }
 
 WD_FOUR_TWICE
 void wd_silhouette_front(const struct wd_silhouette *views, int view_count,
                          const struct wd_tree_mesh *mesh, float *fronts)
 {
-    struct batch batch = {0};
+    struct drawing drawing = {0};
+    const uint32_t end = mesh->index_count;
     for (int i = 0; i < view_count * WD_SILHOUETTE_FRONT; i++)
         fronts[i] = -INFINITY;
-    for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3 * BATCH) {
-        int count = next_batch(&batch, mesh, i, mesh->index_count);
-        for (int view = 0; view < view_count; view++) {
-            const struct wd_silhouette_axes axes = wd_silhouette_axes_of(&views[view]);
-            prepare(&batch, &axes, true);
-            draw_batch(NULL, fronts + view * WD_SILHOUETTE_FRONT, &batch, count);
-        }
-    }
+    for (uint32_t i = 0; i + 2 < end; i += 3 * BATCH)
+        draw_views(&drawing, NULL, fronts, views, view_count, mesh, mesh->indices + i,
+                   batch_at(i, end));
 }
 
 size_t wd_silhouette_count(const struct wd_silhouette *silhouette)
