@@ -59,6 +59,15 @@ static inline wd_four wd_four_max(wd_four a, wd_four b)
 #endif
 }
 
+static inline wd_four wd_four_root(wd_four a)
+{
+#ifdef __SSE__
+    return (wd_four)_mm_sqrt_ps((__m128)a);
+#else
+    return (wd_four){sqrtf(a[0]), sqrtf(a[1]), sqrtf(a[2]), sqrtf(a[3])};
+#endif
+}
+
 static inline wd_four wd_four_abs(wd_four a)
 {
     return (wd_four)((wd_four_ints)a & 0x7fffffff);

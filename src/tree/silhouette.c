@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include "tree/four.h"
-
 void wd_silhouette_init(struct wd_silhouette *silhouette, const struct wd_tree_mesh *frame,
                         struct wd_vec3 toward)
 {
@@ -131,22 +129,13 @@ static void place_corners(struct batch *batch, const struct places *places,
                     wd_v3_dot(corner(places, k, i), axes->axis[axis]) - axes->low[axis];
 }
 
-/* First pixels whose middle is at x or beyond, within the picture; 0 for NaN. */
-static inline wd_four_ints pixels(wd_four x)
-{
-    const wd_four none = {0};
-    wd_four from = wd_four_min(wd_four_max(x, none), wd_four_of(WD_SILHOUETTE)) - 0.5f;
-    wd_four_ints pixel = wd_four_truncate(from);
-    return pixel - (wd_four_convert(pixel) < from);
-}
-
 static void find_range(int32_t *first, int32_t *end, float (*at)[3][BATCH], int axis, int count)
 {
     for (int i = 0; i < count; i += 4) {
         wd_four a = wd_four_load(at[0][axis] + i), b = wd_four_load(at[1][axis] + i);
         wd_four c = wd_four_load(at[2][axis] + i);
-        wd_four_ints low = pixels(wd_four_min(wd_four_min(a, b), c));
-        wd_four_ints high = pixels(wd_four_max(wd_four_max(a, b), c));
+        wd_four_ints low = wd_silhouette_pixels(wd_four_min(wd_four_min(a, b), c));
+        wd_four_ints high = wd_silhouette_pixels(wd_four_max(wd_four_max(a, b), c));
         memcpy(first + i, &low, sizeof low);
         memcpy(end + i, &high, sizeof high);
     }
@@ -408,6 +397,24 @@ void wd_silhouette_front(const struct wd_silhouette *views, int view_count,
     for (uint32_t i = 0; i + 2 < end; i += 3 * BATCH)
         draw_views(&drawing, NULL, fronts, views, view_count, mesh, mesh->indices + i,
                    batch_at(i, end));
+}
+
+WD_FOUR_TWICE
+uint32_t wd_silhouette_reach(uint32_t *triangles, const struct wd_silhouette *view,
+                             const struct wd_tree_mesh *mesh)
+{
+    struct places places = {0};
+    const struct wd_silhouette_axes axes = wd_silhouette_axes_of(view);
+    const uint32_t end = mesh->index_count;
+    uint32_t found = 0;
+    for (uint32_t i = 0; i + 2 < end; i += 3 * BATCH) {
+        int reaching[BATCH + 1], count = batch_at(i, end);
+        gather(&places, mesh, mesh->indices + i, NULL, count);
+        int reach = find_reaching(reaching, &places, &axes, count);
+        for (int k = 0; k < reach; k++)
+            triangles[found++] = i / 3 + (uint32_t)reaching[k];
+    }
+    return found;
 }
 
 size_t wd_silhouette_count(const struct wd_silhouette *silhouette)

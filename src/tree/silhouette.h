@@ -2,8 +2,8 @@
 #ifndef WD_TREE_SILHOUETTE_H
 #define WD_TREE_SILHOUETTE_H
 
+#include "tree/four.h"
 #include "tree/mesh.h"
-#include "tree/vec.h"
 
 enum {
     WD_SILHOUETTE = 160,                       /* pixels a side */
@@ -32,6 +32,11 @@ void wd_silhouette_cover(struct wd_silhouette *views, int view_count,
 void wd_silhouette_front(const struct wd_silhouette *views, int view_count,
                          const struct wd_tree_mesh *mesh, float *fronts);
 
+/* triangles[index_count / 3]: those of the mesh that reach over the middle of a pixel, and few others, in
+ * their order. Returns how many. */
+uint32_t wd_silhouette_reach(uint32_t *triangles, const struct wd_silhouette *view,
+                             const struct wd_tree_mesh *mesh);
+
 size_t wd_silhouette_count(const struct wd_silhouette *silhouette);
 
 /* Pixels and distance of a point p, in metres toward the picture's side, are dot(p, axis) - low of these. */
@@ -58,6 +63,15 @@ static inline int wd_silhouette_pixel(float x)
     float from = x - 0.5f;
     int pixel = (int)from; /* rounded up, without a call of the library */
     return pixel + ((float)pixel < from);
+}
+
+/* Of four; branchless. */
+static inline wd_four_ints wd_silhouette_pixels(wd_four x)
+{
+    const wd_four none = {0};
+    wd_four from = wd_four_min(wd_four_max(x, none), wd_four_of(WD_SILHOUETTE)) - 0.5f;
+    wd_four_ints pixel = wd_four_truncate(from);
+    return pixel - (wd_four_convert(pixel) < from);
 }
 
 #endif
