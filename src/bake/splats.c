@@ -219,7 +219,8 @@ static float triangle_middle(struct wd_tree_point *point, const struct wd_tree_m
 }
 
 /* Those of which most is seen of the full mesh's tree come first. */
-static void order_wood(struct sized *order, uint32_t count, const struct wd_tree_model *model)
+static void order_wood(struct sized *order, uint32_t count, const struct wd_tree_model *model,
+                       const struct wd_tree_sides *sides)
 {
     struct wd_tree_points middles = {.points = wd_alloc_array(count + 1, sizeof *middles.points),
                                      .count = count};
@@ -227,7 +228,7 @@ static void order_wood(struct sized *order, uint32_t count, const struct wd_tree
     for (uint32_t i = 0; i < count; i++)
         order[i] = (struct sized){
             triangle_middle(&middles.points[i], &model->reduced, model->reduced.indices + 3 * i), i};
-    wd_tree_points_seen(shares, &middles, &model->full);
+    wd_tree_points_seen(shares, &middles, sides);
     for (uint32_t i = 0; i < count; i++)
         order[i].area *= fmaxf(shares[i], LEAST_SEEN);
     qsort(order, count, sizeof *order, larger_first);
@@ -320,10 +321,10 @@ static void compare_sides(struct wd_splat_model *model, const struct wd_point_lo
 
 /* Wood by lot, as much as is seen; all points of a tree without. */
 static void keep_seen(bool *keep, const struct wd_tree_points *points,
-                      const struct wd_tree_mesh *mesh)
+                      const struct wd_tree_sides *sides)
 {
     float *shares = wd_alloc_array(points->count, sizeof *shares);
-    wd_tree_points_seen(shares, points, mesh);
+    wd_tree_points_seen(shares, points, sides);
     for (size_t i = 0; i < points->count; i++)
         keep[i] = points->wood_area_m2 <= 0.0f ||
                   (!(points->points[i].kind & WD_POINT_LEAF) &&
@@ -389,17 +390,19 @@ static void keep_thin(bool *keep, const struct wd_tree_points *points,
 
 /* `wood` gets the points of all of it, the stratum's first half. */
 static void fill_wood_halves(struct wd_splats *splats, const struct wd_tree_points *points,
-                             const struct wd_tree_model *model, const struct sized *order,
-                             struct wd_tree_points *wood)
+                             const struct wd_tree_model *model, const struct wd_tree_sides *sides,
+                             const struct sized *order, struct wd_tree_points *wood)
 {
     bool *keep = wd_alloc_array(points->count, sizeof *keep);
     struct wd_tree_points thin = room_for(WD_WOOD_SPLATS);
     uint32_t first = first_triangles(model->reduced.wood_index_count / 3);
-    keep_seen(keep, points, &model->full);
+    keep_seen(keep, points, sides);
     fill_wood(splats, 0, points, keep, wood);
-    fill_wood(splats, 1, points, keep, &thin);
     keep_thin(keep, points, &model->reduced, order, first);
-    fill_wood(splats, 1, points, keep, &thin);
+    if (!fill_wood(splats, 1, points, keep, &thin)) {
+        keep_seen(keep, points, sides);
+        fill_wood(splats, 1, points, keep, &thin);
+    }
     wd_tree_points_finish(&thin);
     free(keep);
 }
@@ -411,10 +414,12 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     uint32_t triangles = model->reduced.wood_index_count / 3;
     struct wd_tree_points leaves = room_for(leaf_count), wood = room_for(WD_WOOD_SPLATS);
     struct sized *order = wd_alloc_array(triangles + 1, sizeof *order);
-    order_wood(order, triangles, model);
+    struct wd_tree_sides sides;
+    wd_tree_sides_init(&sides, &model->full);
+    order_wood(order, triangles, model, &sides);
     make_wood(splats, &model->reduced, order);
     fill_leaves(splats, points, &leaves);
-    fill_wood_halves(splats, points, model, order, &wood);
+    fill_wood_halves(splats, points, model, &sides, order, &wood);
     struct wd_disc_fit fits;
     const float stratum = 1.0f / WD_SPLAT_STRATA;
     const struct wd_disc_class woody = {&wood, points->wood_area_m2, stratum};
@@ -426,6 +431,7 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     memcpy(splats->model.lower, fits.lower, sizeof fits.lower);
     wd_tree_points_finish(&leaves);
     wd_tree_points_finish(&wood);
+    wd_tree_sides_finish(&sides);
     free(order);
 }
 

@@ -34,10 +34,18 @@ void wd_tree_points_finish(struct wd_tree_points *points); /* accepts {0} */
 /* The way, or the one back, that the leaf points in whose surface this is; unit. */
 struct wd_vec3 wd_point_along(const struct wd_tree_point *point);
 
-/* shares[points->count]: of what a point of wood's side shows around and half above the tree, the share
- * that nothing of the mesh hides; 0 of leaves. Points need no more than places, normals and kinds. */
+/* A mesh seen from around and from half above. */
+struct wd_tree_sides {
+    struct wd_silhouette *frames;
+    float *fronts; /* as of wd_silhouette_front */
+};
+void wd_tree_sides_init(struct wd_tree_sides *sides, const struct wd_tree_mesh *mesh);
+void wd_tree_sides_finish(struct wd_tree_sides *sides); /* accepts {0} */
+
+/* shares[points->count]: of what a point of wood shows to all sides, the share that nothing of the mesh
+ * hides; 0 of leaves. Points need no more than places, normals and kinds. */
 void wd_tree_points_seen(float *shares, const struct wd_tree_points *points,
-                         const struct wd_tree_mesh *mesh);
+                         const struct wd_tree_sides *sides);
 
 /* Finds the ways of shared/sun_ways.h, a bit each, on which nothing of the mesh lies between a point and
  * the sky. */
