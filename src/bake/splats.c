@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "shared/hash.h"
 #include "tree/progressive.h"
+#include "tree/radix.h"
 
 /* Most of a tree's bark lies behind leaves. Few discs spent on all of it alike leave a stem to one or
  * two that are far too large. Of wood that is hidden from all sides so much is kept: crowns have gaps. */
@@ -105,26 +106,25 @@ static struct wd_tree_points room_for(size_t count)
                                    .count = count};
 }
 
-static int descending(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return x < y ? 1 : x > y ? -1 : 0;
-}
-
 /* Heights that part the points of one kind into `strata` of equal count; tops[0] is the highest. */
 static void find_tops(const struct wd_tree_points *points, uint32_t leaf, uint32_t strata,
                       float *tops)
 {
-    float *heights = wd_alloc_array(points->count, sizeof *heights);
+    uint32_t *which = wd_alloc_array(points->count, sizeof *which);
+    uint32_t *keys = wd_alloc_array(points->count, sizeof *keys);
+    uint32_t *order = wd_alloc_array(points->count, sizeof *order);
     size_t count = 0;
-    for (size_t i = 0; i < points->count; i++) {
-        if ((points->points[i].kind & WD_POINT_LEAF) == leaf)
-            heights[count++] = points->points[i].position_m[2];
-    }
-    qsort(heights, count, sizeof *heights, descending);
+    for (uint32_t i = 0; i < points->count; i++)
+        if ((points->points[i].kind & WD_POINT_LEAF) == leaf) {
+            keys[count] = ~wd_radix_key(points->points[i].position_m[2]);
+            which[count++] = i;
+        }
+    wd_radix_order(order, keys, count);
     for (uint32_t s = 0; s < strata; s++)
-        tops[s] = count ? heights[s * count / strata] : 0.0f;
-    free(heights);
+        tops[s] = count ? points->points[which[order[s * count / strata]]].position_m[2] : 0.0f;
+    free(which);
+    free(keys);
+    free(order);
 }
 
 /* Fills one stratum with the points of its kind between the heights, in their order and round
@@ -378,14 +378,15 @@ static bool lies_on(struct wd_vec3 p, const struct wd_vec3 corners[3])
 static void keep_thin(bool *keep, const struct wd_tree_points *points,
                       const struct wd_tree_mesh *mesh, const struct sized *first, uint32_t count)
 {
-    for (uint32_t t = 0; t < count; t++) {
-        struct wd_vec3 corners[3];
-        for (uint32_t k = 0; k < 3; k++)
-            corners[k] =
-                wd_v3_of(mesh->vertices[mesh->indices[3 * first[t].triangle + k]].position_m);
-        for (size_t i = 0; i < points->count; i++)
-            keep[i] = keep[i] && !lies_on(wd_v3_of(points->points[i].position_m), corners);
+    struct wd_vec3(*corners)[3] = wd_alloc_array(count + 1, sizeof *corners);
+    for (uint32_t i = 0; i < 3 * count; i++) {
+        uint32_t vertex = mesh->indices[3 * first[i / 3].triangle + i % 3];
+        corners[i / 3][i % 3] = wd_v3_of(mesh->vertices[vertex].position_m);
     }
+    for (size_t i = 0; i < points->count; i++)
+        for (uint32_t t = 0; t < count && keep[i]; t++)
+            keep[i] = !lies_on(wd_v3_of(points->points[i].position_m), corners[t]);
+    free(corners);
 }
 
 /* `wood` gets the points of all of it, the stratum's first half. */

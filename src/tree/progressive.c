@@ -5,8 +5,9 @@
 
 #include "base/memory.h"
 #include "shared/hash.h"
+#include "tree/radix.h"
 
-enum { CURVE_BITS = 10, DIGIT_BITS = 10, DIGITS = 1 << DIGIT_BITS };
+enum { CURVE_BITS = 10 };
 
 static uint32_t reverse_bits(uint32_t x)
 {
@@ -76,12 +77,11 @@ static uint32_t curve_cell(float x)
 
 static void curve_places(uint32_t *places, const struct wd_vec3 *points, size_t count)
 {
-    struct wd_vec3 low = points[0], high = points[0];
-    for (size_t i = 1; i < count; i++) {
-        low = WD_V3(fminf(low.x, points[i].x), fminf(low.y, points[i].y),
-                    fminf(low.z, points[i].z));
-        high = WD_V3(fmaxf(high.x, points[i].x), fmaxf(high.y, points[i].y),
-                     fmaxf(high.z, points[i].z));
+    struct wd_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < count; i++) { /* numbers alone */
+        struct wd_vec3 p = points[i];
+        low = WD_V3(wd_minf(p.x, low.x), wd_minf(p.y, low.y), wd_minf(p.z, low.z));
+        high = WD_V3(wd_maxf(p.x, high.x), wd_maxf(p.y, high.y), wd_maxf(p.z, high.z));
     }
     struct wd_vec3 size = wd_v3_sub(high, low);
     float side = fmaxf(fmaxf(size.x, size.y), fmaxf(size.z, 1e-6f));
@@ -100,33 +100,14 @@ static void curve_places(uint32_t *places, const struct wd_vec3 *points, size_t 
     }
 }
 
-/* One pass of a stable radix sort. */
-static void sort_digit(uint32_t *to, const uint32_t *from, const uint32_t *keys, size_t count,
-                       int shift)
-{
-    size_t first[DIGITS + 1] = {0};
-    for (size_t i = 0; i < count; i++)
-        first[(keys[i] >> shift & (DIGITS - 1)) + 1]++;
-    for (size_t digit = 0; digit < DIGITS; digit++)
-        first[digit + 1] += first[digit];
-    for (size_t i = 0; i < count; i++)
-        to[first[keys[from[i]] >> shift & (DIGITS - 1)]++] = from[i];
-}
-
 void wd_curve_order(uint32_t *order, const struct wd_vec3 *points, size_t count)
 {
     if (count == 0)
         return;
     uint32_t *places = wd_alloc_array(count, sizeof *places);
-    uint32_t *other = wd_alloc_array(count, sizeof *other);
     curve_places(places, points, count);
-    for (size_t i = 0; i < count; i++)
-        other[i] = (uint32_t)i;
-    sort_digit(order, other, places, count, 0);
-    sort_digit(other, order, places, count, DIGIT_BITS);
-    sort_digit(order, other, places, count, 2 * DIGIT_BITS);
+    wd_radix_order(order, places, count);
     free(places);
-    free(other);
 }
 
 /* The curve is cut into 2^k >= count equal parts, each with at most one point, and the parts are
