@@ -39,9 +39,14 @@ struct wd_silhouette_axes wd_silhouette_axes_of(const struct wd_silhouette *silh
 
 enum { BATCH = 256 };
 
-/* [corner][axis] in the tree */
+/* Corners of triangles in the tree, with a number more that is none of theirs; */
+struct corners {
+    wd_four rows[BATCH][3];
+};
+
+/* and number by number. */
 struct places {
-    float m[3][3][BATCH];
+    float m[3][3][BATCH]; /* [corner][axis] */
 };
 
 struct batch {
@@ -55,21 +60,31 @@ struct batch {
     float distance[4][BATCH];
 };
 
-/* Triangles of the mesh, from the first of the indices on; or `which` of them. */
-static void gather(struct places *places, const struct wd_tree_mesh *mesh, const uint32_t *indices,
-                   const int *which, int count)
+/* Triangles from the first of the indices on. */
+static void load(struct corners *corners, const struct wd_tree_mesh *mesh, const uint32_t *indices,
+                 int count)
 {
-    for (int i = 0; i < count; i += 4)
-        for (int corner = 0; corner < 3; corner++) {
-            wd_four rows[4], columns[3];
-            for (int k = 0; k < 4; k++) { /* the last one again where there are no four */
-                int at = i + k < count ? i + k : count - 1, triangle = which ? which[at] : at;
-                memcpy(&rows[k], &mesh->vertices[indices[3 * triangle + corner]], sizeof rows[k]);
-            }
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            memcpy(&corners->rows[i][k], &mesh->vertices[indices[3 * i + k]], sizeof(wd_four));
+}
+
+/* All of them, or `which`, and up to three more. */
+static inline void turn(struct places *places, const struct corners *corners, const int *which,
+                        int count)
+{
+    for (int i = 0; i < count; i += 4) {
+        const wd_four(*from[4])[3];
+        for (int j = 0; j < 4; j++)
+            from[j] = &corners->rows[which ? which[i + j] : i + j];
+        for (int k = 0; k < 3; k++) {
+            wd_four columns[3];
+            const wd_four rows[4] = {(*from[0])[k], (*from[1])[k], (*from[2])[k], (*from[3])[k]};
             wd_four_columns(columns, rows);
             for (int axis = 0; axis < 3; axis++)
-                memcpy(places->m[corner][axis] + i, &columns[axis], sizeof *columns);
+                memcpy(places->m[k][axis] + i, &columns[axis], sizeof *columns);
         }
+    }
 }
 
 static inline struct wd_vec3 corner(const struct places *places, int k, int i)
@@ -95,8 +110,8 @@ static inline int passes(float a, float b, float low)
 }
 
 /* Most triangles lie between the middles of pixels. Finds the others, and few of those: without a
- * branch to be guessed. */
-static int find_reaching(int reaching[BATCH + 1], const struct places *places,
+ * branch to be guessed. Three more follow that are any. */
+static int find_reaching(int reaching[BATCH + 3], const struct places *places,
                          const struct wd_silhouette_axes *axes, int count)
 {
     int32_t reaches[BATCH];
@@ -116,6 +131,7 @@ static int find_reaching(int reaching[BATCH + 1], const struct places *places,
         reaching[found] = i;
         found += reaches[i];
     }
+    reaching[found] = reaching[found + 1] = reaching[found + 2] = 0;
     return found;
 }
 
@@ -350,6 +366,7 @@ static inline void draw_batch(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *fron
 }
 
 struct drawing {
+    struct corners corners;
     struct places all, some; /* triangles, and those that reach over the middle of a pixel of a view */
     struct batch batch;      /* these in the view */
 };
@@ -359,12 +376,13 @@ static inline void draw_views(struct drawing *drawing, struct wd_silhouette *cov
                               const struct wd_silhouette *views, int view_count,
                               const struct wd_tree_mesh *mesh, const uint32_t *indices, int count)
 {
-    int reaching[BATCH + 1];
-    gather(&drawing->all, mesh, indices, NULL, count);
+    int reaching[BATCH + 3];
+    load(&drawing->corners, mesh, indices, count);
+    turn(&drawing->all, &drawing->corners, NULL, count);
     for (int view = 0; view < view_count; view++) {
         const struct wd_silhouette_axes axes = wd_silhouette_axes_of(&views[view]);
         int reach = find_reaching(reaching, &drawing->all, &axes, count);
-        gather(&drawing->some, mesh, indices, reaching, reach);
+        turn(&drawing->some, &drawing->corners, reaching, reach);
         prepare(&drawing->batch, &drawing->some, &axes, reach, fronts != NULL);
         draw_batch(covers ? covers[view].covered : NULL,
                    fronts ? fronts + view * WD_SILHOUETTE_FRONT : NULL, &drawing->batch, reach);
@@ -403,13 +421,15 @@ WD_FOUR_TWICE
 uint32_t wd_silhouette_reach(uint32_t *triangles, const struct wd_silhouette *view,
                              const struct wd_tree_mesh *mesh)
 {
-    struct places places = {0};
+    struct corners corners = {0};
+    struct places places;
     const struct wd_silhouette_axes axes = wd_silhouette_axes_of(view);
     const uint32_t end = mesh->index_count;
     uint32_t found = 0;
     for (uint32_t i = 0; i + 2 < end; i += 3 * BATCH) {
-        int reaching[BATCH + 1], count = batch_at(i, end);
-        gather(&places, mesh, mesh->indices + i, NULL, count);
+        int reaching[BATCH + 3], count = batch_at(i, end);
+        load(&corners, mesh, mesh->indices + i, count);
+        turn(&places, &corners, NULL, count);
         int reach = find_reaching(reaching, &places, &axes, count);
         for (int k = 0; k < reach; k++)
             triangles[found++] = i / 3 + (uint32_t)reaching[k];
