@@ -299,10 +299,12 @@ static void mean_albedo(const struct wd_point_look *look, uint32_t layer, float 
     size_t count = (size_t)look->size * look->size;
     double sum[3] = {0}, shown = 1e-9;
     const uint8_t *texels = look->rgba + 4 * count * layer;
+    float linear[256];
+    wd_srgb_table(linear);
     for (size_t i = 0; i < count; i++) {
         shown += texels[4 * i + 3];
         for (size_t k = 0; k < 3; k++)
-            sum[k] += (double)wd_srgb_decode(texels[4 * i + k]) * texels[4 * i + 3];
+            sum[k] += (double)linear[texels[4 * i + k]] * texels[4 * i + 3];
     }
     for (int k = 0; k < 3; k++)
         color[k] = (float)(sum[k] / shown);

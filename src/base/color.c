@@ -8,6 +8,12 @@ float wd_srgb_decode(uint8_t value)
     return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
 }
 
+void wd_srgb_table(float linear[256])
+{
+    for (int value = 0; value < 256; value++)
+        linear[value] = wd_srgb_decode((uint8_t)value);
+}
+
 uint8_t wd_unorm_encode(float value)
 {
     float above = value > 0.0f ? value : 0.0f; /* 0 for NaN */

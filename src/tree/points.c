@@ -13,6 +13,7 @@ struct surface {
     uint32_t *order; /* triangle */
     double *below;   /* [count + 1] m^2 */
     size_t count, wood_count;
+    float linear[256]; /* of sRGB */
 };
 
 enum { KEY = 0x70e5 };
@@ -36,18 +37,21 @@ static double triangle_area(const struct wd_tree_mesh *mesh, size_t triangle)
 static void order_part(struct surface *surface, size_t first, size_t count)
 {
     struct wd_vec3 *centers = wd_alloc_array(count ? count : 1, sizeof *centers);
+    double *areas = wd_alloc_array(count ? count : 1, sizeof *areas);
     for (size_t i = 0; i < count; i++) {
         struct wd_vec3 sum = {0};
         for (size_t k = 0; k < 3; k++)
             sum = wd_v3_add(sum, corner(surface->mesh, 3 * (first + i) + k));
         centers[i] = wd_v3_scale(sum, 1 / 3.0f);
+        areas[i] = triangle_area(surface->mesh, first + i);
     }
     wd_curve_order(surface->order + first, centers, count);
     for (size_t i = first; i < first + count; i++) {
+        surface->below[i + 1] = surface->below[i] + areas[surface->order[i]];
         surface->order[i] += (uint32_t)first;
-        surface->below[i + 1] = surface->below[i] + triangle_area(surface->mesh, surface->order[i]);
     }
     free(centers);
+    free(areas);
 }
 
 static void surface_init(struct surface *surface, const struct wd_tree_mesh *mesh)
@@ -60,6 +64,7 @@ static void surface_init(struct surface *surface, const struct wd_tree_mesh *mes
         .count = count,
         .wood_count = wood < count ? wood : count,
     };
+    wd_srgb_table(surface->linear);
     order_part(surface, 0, surface->wood_count);
     order_part(surface, surface->wood_count, count - surface->wood_count);
 }
@@ -190,7 +195,7 @@ static void sample_point(struct wd_tree_point *point, const struct surface *surf
     float albedo[3];
     for (int k = 0; k < 3; k++) {
         point->position_m[k] = blend.position_m[k];
-        albedo[k] = blend.tint[k] * wd_srgb_decode(color[k]);
+        albedo[k] = blend.tint[k] * surface->linear[color[k]];
     }
     point->normal = wd_pack_normal(normal);
     point->face = wood ? point->normal : face_of(surface->mesh, surface->order[place]);

@@ -214,18 +214,18 @@ static void send_skylight(struct fit *fit, const struct shown *point, uint32_t s
 
 /* How many places are lit of those where depth leaves as much of the sun: 1 - exp(-a x^b), a line through
  * logarithms. Whichever way the eye and the sun are, it is nearly the same curve. */
-static void fit_curve(struct fit *fit, const struct wd_tree_points *points)
+static void fit_curve(struct fit *fit, const struct wd_tree_points *points,
+                      const struct shown *shown)
 {
     double all[STEPS] = {0}, lit[STEPS] = {0}, n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (size_t i = 0; i < points->count; i++) {
         if (!(points->points[i].kind & WD_POINT_LEAF))
             continue;
-        struct shown shown = shown_at(fit, points, i);
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
-            int step = (int)fminf(shown.left[way] * STEPS, STEPS - 1);
-            float side = fabsf(wd_v3_dot(shown.face, fit->suns[way]));
+            int step = (int)fminf(shown[i].left[way] * STEPS, STEPS - 1);
+            float side = fabsf(wd_v3_dot(shown[i].face, fit->suns[way]));
             all[step] += (double)side;
-            lit[step] += (double)(side * wd_sun_way_lit(shown.lit, way));
+            lit[step] += (double)(side * wd_sun_way_lit(shown[i].lit, way));
         }
     }
     for (int step = 0; step < STEPS; step++) {
@@ -241,10 +241,11 @@ static void fit_curve(struct fit *fit, const struct wd_tree_points *points)
     fit->curve[0] = n > 0 ? (float)exp((sy - (double)fit->curve[1] * sx) / n) : 1;
 }
 
-static void send(struct fit *fit, const struct wd_tree_points *points, const uint32_t *seen)
+static void send(struct fit *fit, const struct wd_tree_points *points, const uint32_t *seen,
+                 const struct shown *all)
 {
     for (size_t i = 0; i < points->count; i++) {
-        struct shown shown = shown_at(fit, points, i);
+        struct shown shown = all[i];
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
             shown.left[way] = wd_crown_lit(shown.left[way], fit->curve[0], fit->curve[1]);
         send_skylight(fit, &shown, seen[i], !(points->points[i].kind & WD_POINT_LEAF));
@@ -319,8 +320,12 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
         wd_tree_points_light(&points, &model->full);
         wd_tree_points_open(seen, &points, &model->full, ways, EYES);
         wd_tree_points_open(low, &points, &model->full, low_ways, LOW_WAYS);
-        fit_curve(fit, &points);
-        send(fit, &points, seen);
+        struct shown *shown = wd_alloc_array(points.count, sizeof *shown);
+        for (size_t i = 0; i < points.count; i++)
+            shown[i] = shown_at(fit, &points, i);
+        fit_curve(fit, &points, shown);
+        send(fit, &points, seen, shown);
+        free(shown);
         free(seen);
         free(low);
     }

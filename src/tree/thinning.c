@@ -20,6 +20,7 @@ struct thinning {
     uint32_t first_vertex;    /* of leaves */
     struct wd_silhouette others[MOST_VIEWS]; /* what wood and flowers cover, from one side */
     int views;
+    float *wanted; /* what the full mesh covers from each side; 0: not known yet */
 };
 
 /* The views of a side. */
@@ -74,13 +75,15 @@ static float covered(struct thinning *t, uint32_t count, float factor)
     return count_covered(views, t->views);
 }
 
-static void thinning_init(struct thinning *t, const struct wd_tree_model *model, int level)
+static void thinning_init(struct thinning *t, const struct wd_tree_model *model, int level,
+                          float wanted[WD_GAIN_SIDES])
 {
     const struct wd_leaf_set *flowers = &model->sets[level][WD_SET_FLOWERS];
     *t = (struct thinning){
         .model = model,
         .set = &model->sets[level][WD_SET_LEAVES],
         .mesh = level == 0 ? &model->full : &model->reduced,
+        .wanted = wanted,
     };
     t->first_vertex = t->mesh->vertex_count - t->set->leaf_count * t->set->corner_count -
                       flowers->leaf_count * flowers->corner_count;
@@ -96,13 +99,16 @@ static float look_from(struct thinning *t, int side)
     const struct wd_tree_mesh *full = &t->model->full;
     uint32_t leaves_end =
         t->mesh->wood_index_count + t->set->leaf_count * t->set->index_count;
-    struct wd_silhouette whole[MOST_VIEWS];
     t->views = frame_side(t->others, full, side);
-    memcpy(whole, t->others, sizeof whole);
-    wd_silhouette_cover(whole, t->views, full, 0, full->index_count);
+    if (t->wanted[side] == 0) {
+        struct wd_silhouette whole[MOST_VIEWS];
+        memcpy(whole, t->others, sizeof whole);
+        wd_silhouette_cover(whole, t->views, full, 0, full->index_count);
+        t->wanted[side] = count_covered(whole, t->views);
+    }
     wd_silhouette_cover(t->others, t->views, t->mesh, 0, t->mesh->wood_index_count);
     wd_silhouette_cover(t->others, t->views, t->mesh, leaves_end, t->mesh->index_count);
-    return count_covered(whole, t->views);
+    return t->wanted[side];
 }
 
 /* How coverage grows, by the last two tries. */
@@ -142,10 +148,10 @@ static void fit_side(struct thinning *t, int side, float growth[WD_LEAF_GROWTHS]
     }
 }
 
-static void fit_level(struct wd_tree_model *model, int level)
+static void fit_level(struct wd_tree_model *model, int level, float wanted[WD_GAIN_SIDES])
 {
     struct thinning t;
-    thinning_init(&t, model, level);
+    thinning_init(&t, model, level, wanted);
     for (int side = 0; side < WD_GAIN_SIDES; side++)
         fit_side(&t, side, model->leaf_growth[level].of[side]);
     free(t.part.vertices);
@@ -153,10 +159,11 @@ static void fit_level(struct wd_tree_model *model, int level)
 
 void wd_tree_thinning_fit(struct wd_tree_model *model)
 {
+    float wanted[WD_GAIN_SIDES] = {0};
     for (int level = 0; level < 2; level++) {
         for (int k = 0; k < WD_GAIN_SIDES * WD_LEAF_GROWTHS; k++)
             model->leaf_growth[level].of[k / WD_LEAF_GROWTHS][k % WD_LEAF_GROWTHS] = 1;
         if (model->leaves && model->sets[level][WD_SET_LEAVES].leaf_count > 0)
-            fit_level(model, level);
+            fit_level(model, level, wanted);
     }
 }
