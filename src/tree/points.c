@@ -83,22 +83,39 @@ static uint32_t pack_albedo(const float rgb[3], float sky)
     return packed;
 }
 
+struct triangle {
+    const struct wd_tree_vertex *vertices[3];
+    struct wd_vec3 a, b, c; /* a corner, and from it to the others */
+    float uv[3][2];
+};
+
+static struct triangle triangle_of(const struct wd_tree_mesh *mesh, size_t index)
+{
+    struct triangle triangle;
+    for (size_t k = 0; k < 3; k++) {
+        triangle.vertices[k] = &mesh->vertices[mesh->indices[3 * index + k]];
+        wd_unpack_uv(triangle.vertices[k]->uv, triangle.uv[k]);
+    }
+    triangle.a = wd_v3_of(triangle.vertices[0]->position_m);
+    triangle.b = wd_v3_sub(wd_v3_of(triangle.vertices[1]->position_m), triangle.a);
+    triangle.c = wd_v3_sub(wd_v3_of(triangle.vertices[2]->position_m), triangle.a);
+    return triangle;
+}
+
 /* Sums of a triangle's vertices by weight. */
 struct blend {
     float position_m[3], normal[3], tint[4], uv[2], flexibility;
 };
 
-static struct blend blend_corners(const struct wd_tree_mesh *mesh, size_t triangle,
-                                  const float weight[3])
+static struct blend blend_corners(const struct triangle *triangle, const float weight[3])
 {
     struct blend blend = {0};
     for (size_t k = 0; k < 3; k++) {
-        const struct wd_tree_vertex *vertex = &mesh->vertices[mesh->indices[3 * triangle + k]];
-        float normal[3], uv[2];
+        const struct wd_tree_vertex *vertex = triangle->vertices[k];
+        float normal[3];
         wd_unpack_normal(vertex->normal, normal);
-        wd_unpack_uv(vertex->uv, uv);
-        blend.uv[0] += weight[k] * uv[0];
-        blend.uv[1] += weight[k] * uv[1];
+        blend.uv[0] += weight[k] * triangle->uv[k][0];
+        blend.uv[1] += weight[k] * triangle->uv[k][1];
         for (int i = 0; i < 3; i++) {
             blend.position_m[i] += weight[k] * vertex->position_m[i];
             blend.normal[i] += weight[k] * normal[i];
@@ -119,14 +136,10 @@ static const uint8_t *texel(const struct wd_point_look *look, uint32_t layer, co
 }
 
 /* Across the triangle, out of the side that its texture is not mirrored on: a leaf's upper one. */
-static uint32_t face_of(const struct wd_tree_mesh *mesh, size_t triangle)
+static uint32_t face_of(const struct triangle *triangle)
 {
-    struct wd_vec3 a = corner(mesh, 3 * triangle);
-    struct wd_vec3 b = wd_v3_sub(corner(mesh, 3 * triangle + 1), a);
-    struct wd_vec3 c = wd_v3_sub(corner(mesh, 3 * triangle + 2), a), n = wd_v3_cross(b, c);
-    float uv[3][2];
-    for (size_t k = 0; k < 3; k++)
-        wd_unpack_uv(mesh->vertices[mesh->indices[3 * triangle + k]].uv, uv[k]);
+    const float(*uv)[2] = triangle->uv;
+    struct wd_vec3 n = wd_v3_cross(triangle->b, triangle->c);
     float turn = (uv[1][0] - uv[0][0]) * (uv[2][1] - uv[0][1]) -
                  (uv[1][1] - uv[0][1]) * (uv[2][0] - uv[0][0]);
     n = wd_v3_unit(turn < 0 ? wd_v3_scale(n, -1) : n);
@@ -135,15 +148,11 @@ static uint32_t face_of(const struct wd_tree_mesh *mesh, size_t triangle)
 }
 
 /* Along a leaf, of any length: as v grows on its texture. */
-static struct wd_vec3 along_of(const struct wd_tree_mesh *mesh, size_t triangle)
+static struct wd_vec3 along_of(const struct triangle *triangle)
 {
-    struct wd_vec3 a = corner(mesh, 3 * triangle);
-    struct wd_vec3 b = wd_v3_sub(corner(mesh, 3 * triangle + 1), a);
-    struct wd_vec3 c = wd_v3_sub(corner(mesh, 3 * triangle + 2), a);
-    float uv[3][2];
-    for (size_t k = 0; k < 3; k++)
-        wd_unpack_uv(mesh->vertices[mesh->indices[3 * triangle + k]].uv, uv[k]);
-    return wd_v3_sub(wd_v3_scale(c, uv[1][0] - uv[0][0]), wd_v3_scale(b, uv[2][0] - uv[0][0]));
+    const float(*uv)[2] = triangle->uv;
+    return wd_v3_sub(wd_v3_scale(triangle->c, uv[1][0] - uv[0][0]),
+                     wd_v3_scale(triangle->b, uv[2][0] - uv[0][0]));
 }
 
 /* Two axes of the plane across a unit normal (Duff et al. 2017). */
@@ -185,12 +194,12 @@ static void sample_point(struct wd_tree_point *point, const struct surface *surf
     float u = within > 0 ? (float)((area - surface->below[place]) / within) : 0;
     float v = wd_hash_unit(wd_hash2(index, KEY)), side = sqrtf(u);
     const float weight[3] = {1 - side, side * (1 - v), side * v};
-    struct blend blend = blend_corners(surface->mesh, surface->order[place], weight);
+    const struct triangle triangle = triangle_of(surface->mesh, surface->order[place]);
+    struct blend blend = blend_corners(&triangle, weight);
     struct wd_vec3 n = wd_v3_unit(WD_V3(blend.normal[0], blend.normal[1], blend.normal[2]));
     const float normal[3] = {n.x, n.y, n.z};
     bool wood = place < surface->wood_count;
-    uint32_t corner_index = surface->mesh->indices[3 * (size_t)surface->order[place]];
-    uint32_t layer = wd_vertex_layer(surface->mesh->vertices[corner_index].kind);
+    uint32_t layer = wd_vertex_layer(triangle.vertices[0]->kind);
     const uint8_t *color = texel(look, layer, blend.uv);
     float albedo[3];
     for (int k = 0; k < 3; k++) {
@@ -198,12 +207,11 @@ static void sample_point(struct wd_tree_point *point, const struct surface *surf
         albedo[k] = blend.tint[k] * surface->linear[color[k]];
     }
     point->normal = wd_pack_normal(normal);
-    point->face = wood ? point->normal : face_of(surface->mesh, surface->order[place]);
+    point->face = wood ? point->normal : face_of(&triangle);
     point->albedo = pack_albedo(albedo, blend.tint[3]);
     point->kind = (uint32_t)wd_clampf(blend.flexibility + 0.5f, 0, 255) |
                   (wood ? WD_POINT_ONE_SIDED : WD_POINT_LEAF) |
-                  pack_along(point->face, along_of(surface->mesh, surface->order[place]))
-                      << WD_POINT_ALONG_BIT |
+                  pack_along(point->face, along_of(&triangle)) << WD_POINT_ALONG_BIT |
                   (wd_pack_uv(0, area_m2) & 0xffff0000u);
 }
 

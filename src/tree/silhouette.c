@@ -19,13 +19,6 @@ void wd_silhouette_init(struct wd_silhouette *silhouette, const struct wd_tree_m
     silhouette->low[1] = wd_v3_dot(middle, silhouette->up) - half - 1 / silhouette->scale;
 }
 
-void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p[3], float at[2])
-{
-    struct wd_vec3 v = WD_V3(p[0], p[1], p[2]);
-    at[0] = (wd_v3_dot(v, silhouette->right) - silhouette->low[0]) * silhouette->scale;
-    at[1] = (wd_v3_dot(v, silhouette->up) - silhouette->low[1]) * silhouette->scale;
-}
-
 struct wd_silhouette_axes wd_silhouette_axes_of(const struct wd_silhouette *silhouette)
 {
     return (struct wd_silhouette_axes){

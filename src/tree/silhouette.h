@@ -51,7 +51,12 @@ static inline void wd_silhouette_place(const struct wd_silhouette_axes *axes, co
     for (int i = 0; i < 3; i++)
         at[i] = wd_v3_dot(wd_v3_of(p), axes->axis[i]) - axes->low[i];
 }
-void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p[3], float at[2]);
+static inline void wd_silhouette_project(const struct wd_silhouette *silhouette, const float p[3],
+                                         float at[2])
+{
+    at[0] = (wd_v3_dot(wd_v3_of(p), silhouette->right) - silhouette->low[0]) * silhouette->scale;
+    at[1] = (wd_v3_dot(wd_v3_of(p), silhouette->up) - silhouette->low[1]) * silhouette->scale;
+}
 
 /* First pixel whose middle is at x or beyond, within the picture; 0 for NaN. */
 static inline int wd_silhouette_pixel(float x)
