@@ -2,7 +2,7 @@
  *
  * Discs of area A/n each cover too much: leaves overlap in depth and lie at a slant, and a disc
  * wider than the branch it stands for covers what is beside it. Both gains of a count are found by
- * drawing: the mesh and windows of discs from the same sides, with depth, until discs cover as many
+ * drawing the mesh and windows of discs from the same sides, with depth, until discs cover as many
  * pixels as the mesh and show as much wood between the leaves. */
 #include <stdlib.h>
 
@@ -25,7 +25,7 @@ struct plan {
     struct wd_shown mesh; /* over all views */
 };
 
-/* Some of the discs from all sides, of any size. */
+/* So many discs, of whatever size, in all views. */
 struct windows {
     struct wd_disc_window of[MOST_VIEWS][MOST_WINDOWS];
     uint32_t count;   /* a view */
@@ -41,6 +41,7 @@ static size_t disc_count(const struct plan *plan, int class, size_t count)
     wanted = wanted > 0 ? wanted : 1;
     return discs->area_m2 > 0 ? wanted < discs->discs->count ? wanted : discs->discs->count : 0;
 }
+
 /* Few discs differ more from window to window: a fifth where there are sixteen. The mean over all
  * windows and views is known to 2 %. */
 static uint32_t window_count(size_t count)

@@ -28,16 +28,16 @@ struct wd_silhouette_axes wd_silhouette_axes_of(const struct wd_silhouette *silh
     };
 }
 
-/* --- triangles, a batch at a time, each number of all of them together -------------------- */
+/* --- triangles, a batch at a time ----------------------------------------------------------- */
 
 enum { BATCH = 256 };
 
-/* Corners of triangles in the tree, with a number more that is none of theirs; */
+/* Triangles in the tree: three numbers a corner and one that is none of its, */
 struct corners {
     wd_four rows[BATCH][3];
 };
 
-/* and number by number. */
+/* and each number of all of them together. */
 struct places {
     float m[3][3][BATCH]; /* [corner][axis] */
 };
@@ -95,7 +95,7 @@ static inline float most(float a, float b, float c)
     return wd_maxf(wd_maxf(a, b), c);
 }
 
-/* Whether the way from a to b, both above -low - 1, passes the middle of a pixel or nearly so. */
+/* Whether the middle of one of the picture's pixels lies between a and b, or nearly so. */
 static inline int passes(float a, float b, float low)
 {
     const float nearly = 1 / 1024.0f;
@@ -103,7 +103,8 @@ static inline int passes(float a, float b, float low)
 }
 
 /* Most triangles lie between the middles of pixels. Finds the others, and few of those: without a
- * branch to be guessed. Three more follow that are any. */
+ * branch to be guessed, and not by a rounding less than wd_silhouette_pixels does. They are followed by
+ * three that are any. */
 static int find_reaching(int reaching[BATCH + 3], const struct places *places,
                          const struct wd_silhouette_axes *axes, int count)
 {
@@ -360,8 +361,8 @@ static inline void draw_batch(uint8_t (*covered)[WD_SILHOUETTE_ROW], float *fron
 
 struct drawing {
     struct corners corners;
-    struct places all, some; /* triangles, and those that reach over the middle of a pixel of a view */
-    struct batch batch;      /* these in the view */
+    struct places all, some; /* some reach over the middle of a pixel of a view, */
+    struct batch batch;      /* where they are these */
 };
 
 /* Triangles from `indices` on, BATCH at most, in all views: into their bits, or into `fronts`. */
@@ -415,7 +416,7 @@ uint32_t wd_silhouette_reach(uint32_t *triangles, const struct wd_silhouette *vi
                              const struct wd_tree_mesh *mesh)
 {
     struct corners corners = {0};
-    struct places places;
+    struct places places = {0};
     const struct wd_silhouette_axes axes = wd_silhouette_axes_of(view);
     const uint32_t end = mesh->index_count;
     uint32_t found = 0;

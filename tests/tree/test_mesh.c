@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "shared/hash.h"
 #include "tree/silhouette.h"
 #include "tree/thinning.h"
 #include "tree_test.h"
@@ -128,6 +129,53 @@ static void few_leaves_cover_what_all_do_from_each_side(void **state)
     wd_arena_finish(&arena);
 }
 
+static bool reaches(const struct wd_silhouette *view, const struct wd_tree_vertex corners[3])
+{
+    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int k = 0; k < 3; k++) {
+        float at[2];
+        wd_silhouette_project(view, corners[k].position_m, at);
+        for (int axis = 0; axis < 2; axis++) {
+            low[axis] = fminf(low[axis], at[axis]);
+            high[axis] = fmaxf(high[axis], at[axis]);
+        }
+    }
+    return wd_silhouette_pixel(low[0]) < wd_silhouette_pixel(high[0]) &&
+           wd_silhouette_pixel(low[1]) < wd_silhouette_pixel(high[1]);
+}
+
+/* Some of the size of pixels, most much smaller. */
+static void triangles_that_reach_pixels_are_found(void **state)
+{
+    enum { TRIANGLES = 5000 };
+    struct wd_tree_mesh mesh = {0};
+    struct wd_silhouette view;
+    uint32_t found[TRIANGLES], expected = 0, at = 0;
+    (void)state;
+    for (uint32_t i = 0; i < 3 * TRIANGLES; i++) {
+        struct wd_tree_vertex vertex = {0};
+        for (uint32_t k = 0; k < 3; k++)
+            vertex.position_m[k] = 10 * wd_hash_unit(wd_hash2(i / 3, k)) +
+                                   (i / 3 % 7 ? 0.02f : 0.3f) * wd_hash_unit(wd_hash2(i, 3 + k));
+        wd_tree_mesh_add_vertex(&mesh, &vertex);
+        if (i % 3 == 2)
+            wd_tree_mesh_add_triangle(&mesh, i - 2, i - 1, i);
+    }
+    wd_tree_mesh_update_bounds(&mesh);
+    wd_silhouette_init(&view, &mesh, WD_V3(0.6f, 0, 0.8f));
+    uint32_t count = wd_silhouette_reach(found, &view, &mesh);
+    for (uint32_t i = 0; i < TRIANGLES; i++) {
+        bool known = at < count && found[at] == i, reaching = reaches(&view, &mesh.vertices[3 * i]);
+        assert_true(known || !reaching);
+        at += known;
+        expected += reaching;
+    }
+    assert_int_equal(at, count);
+    assert_in_range(expected, 500, TRIANGLES / 2);
+    assert_in_range(count, expected, expected + 50);
+    wd_tree_mesh_finish(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -136,6 +184,7 @@ int main(void)
         cmocka_unit_test(uv_packs_as_halves),
         cmocka_unit_test(mesh_grows_and_knows_its_bounds),
         cmocka_unit_test(few_leaves_cover_what_all_do_from_each_side),
+        cmocka_unit_test(triangles_that_reach_pixels_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

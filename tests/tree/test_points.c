@@ -5,6 +5,7 @@
 #include "tree/look_map.h"
 #include "tree/points.h"
 #include "tree/progressive.h"
+#include "tree/radix.h"
 #include "tree/random.h"
 
 enum { POINTS = 8192, LOOK_SIZE = 32 };
@@ -65,6 +66,19 @@ static void sampled_finish(struct sampled *sampled)
     wd_tree_points_finish(&sampled->points);
     wd_tree_model_finish(&sampled->model);
     wd_arena_finish(&sampled->arena);
+}
+
+static void numbers_are_ordered(void **state)
+{
+    static const float numbers[] = {3, -0.0f, -7, 1e30f, 0, 3, -1e-30f, 1e-30f, -7, -INFINITY};
+    static const uint32_t expected[] = {9, 2, 8, 6, 1, 4, 7, 0, 5, 3};
+    enum { COUNT = sizeof numbers / sizeof *numbers };
+    uint32_t keys[COUNT], order[COUNT];
+    (void)state;
+    for (int i = 0; i < COUNT; i++)
+        keys[i] = wd_radix_key(numbers[i]);
+    wd_radix_order(order, keys, COUNT);
+    assert_memory_equal(order, expected, sizeof order);
 }
 
 static void scrambled_numbers_fill_every_part(void **state)
@@ -424,6 +438,7 @@ static void broken_meshes_give_none_or_few(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_are_ordered),
         cmocka_unit_test(scrambled_numbers_fill_every_part),
         cmocka_unit_test(orders_are_permutations),
         cmocka_unit_test(neighbours_on_the_curve_are_neighbours_in_space),
