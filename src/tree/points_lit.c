@@ -61,7 +61,7 @@ static inline wd_four_ints are_lit(const struct four_points *points, const struc
     wd_four toward = wd_four_dot(&points->place, axes->axis[2]) - axes->low[2];
     wd_four_ints framed = (x >= none) & (x < WD_SILHOUETTE) & (y >= none) & (y < WD_SILHOUETTE);
     wd_four_ints column = wd_four_truncate(x), row = wd_four_truncate(y);
-    wd_four_ints at = (row * WD_SILHOUETTE + column) & framed;
+    wd_four_ints at = (row & framed) * WD_SILHOUETTE + (column & framed);
     wd_four right = wd_four_convert(column) + 0.5f - x, up = wd_four_convert(row) + 0.5f - y;
     const float *front = picture->front;
     wd_four nearest = {front[at[0]], front[at[1]], front[at[2]], front[at[3]]};
