@@ -1,7 +1,43 @@
-/* A mesh's triangles in the frame of a picture. Expects `vertices`, `indices`, `shots`, `looks` and
- * `push`. */
+/* A mesh's triangles in the frame of a picture. Its buffers are fetched from as texels: llvmpipe reads
+ * storage buffers lane by lane. Expects `vertices`, `indices`, `looks` and `push`. */
 #include "lib/tree_vertex.glsl"
 
+const int VERTEX_WORDS = 7; /* of a wd_tree_vertex */
+
+uvec3 bake_triangle(uint triangle)
+{
+    int at = 3 * int(triangle);
+    return uvec3(texelFetch(indices, at).x, texelFetch(indices, at + 1).x,
+                 texelFetch(indices, at + 2).x);
+}
+
+vec3 bake_position(uint vertex)
+{
+    int at = VERTEX_WORDS * int(vertex);
+    return uintBitsToFloat(uvec3(texelFetch(vertices, at).x, texelFetch(vertices, at + 1).x,
+                                 texelFetch(vertices, at + 2).x));
+}
+
+vec3 bake_normal(uint vertex)
+{
+    uint packed = texelFetch(vertices, VERTEX_WORDS * int(vertex) + 3).x;
+    return octahedral_decode(unpackSnorm2x16(packed));
+}
+
+vec2 bake_uv(uint vertex)
+{
+    return unpackHalf2x16(texelFetch(vertices, VERTEX_WORDS * int(vertex) + 4).x);
+}
+
+vec4 bake_tint(uint vertex)
+{
+    return unpackUnorm4x8(texelFetch(vertices, VERTEX_WORDS * int(vertex) + 5).x);
+}
+
+uint bake_kind(uint vertex)
+{
+    return texelFetch(vertices, VERTEX_WORDS * int(vertex) + 6).x;
+}
 
 /* Both passes must find the same depth to the bit. */
 vec3 bake_project(wd_bake_shot shot, vec3 p)
@@ -13,6 +49,14 @@ vec3 bake_project(wd_bake_shot shot, vec3 p)
     return at;
 }
 
+/* Twice the samples that a triangle has, below 0 seen from behind. */
+float bake_area(vec3 a, vec3 b, vec3 c)
+{
+    precise vec2 ab = b.xy - a.xy, ac = c.xy - a.xy;
+    precise float area = ab.x * ac.y - ab.y * ac.x;
+    return area;
+}
+
 /* Shares of b and c in a place of the triangle a, b, c: a's is the rest. `area` is that of
  * bake_area and not 0. */
 vec2 bake_shares(vec3 a, vec3 b, vec3 c, float area, vec2 place)
@@ -22,33 +66,20 @@ vec2 bake_shares(vec3 a, vec3 b, vec3 c, float area, vec2 place)
     return shares;
 }
 
-float bake_area(vec3 a, vec3 b, vec3 c)
-{
-    precise vec2 ab = b.xy - a.xy, ac = c.xy - a.xy;
-    precise float area = ab.x * ac.y - ab.y * ac.x;
-    return area;
-}
-
-uvec3 bake_triangle(uint triangle)
-{
-    uint at = push.first_index + 3u * triangle;
-    return uvec3(indices[at], indices[at + 1u], indices[at + 2u]);
-}
-
-/* The look of a triangle of a picture, from its corners b and c as seen from a. */
+/* The look of a triangle, from its corners b and c as seen from a. */
 struct bake_look {
     vec2 from, to_b, to_c;
     float layer, lod;
 };
 
-bake_look bake_look_of(wd_tree_vertex a, wd_tree_vertex b, wd_tree_vertex c, float area)
+bake_look bake_look_of(uvec3 corner, float area)
 {
     bake_look look;
-    look.from = unpackHalf2x16(a.uv);
-    look.to_b = unpackHalf2x16(b.uv) - look.from;
-    look.to_c = unpackHalf2x16(c.uv) - look.from;
+    look.from = bake_uv(corner.x);
+    look.to_b = bake_uv(corner.y) - look.from;
+    look.to_c = bake_uv(corner.z) - look.from;
     float turn = look.to_b.x * look.to_c.y - look.to_b.y * look.to_c.x;
-    uint layer = wd_vertex_layer(a.kind);
+    uint layer = wd_vertex_layer(bake_kind(corner.x));
     /* y runs down: a sheet whose texture runs as it was drawn shows its upper side */
     if (layer == WD_LOOK_LEAF && turn * area > 0.0)
         layer = WD_LOOK_LEAF_BACK;

@@ -1,109 +1,157 @@
-/* The triangles of bake_raster*.comp: one thread a triangle, into all pictures of a batch. Triangles
+/* The triangles of bake_raster*.comp: one thread a triangle, into one picture of a batch. Triangles
  * of many samples are put on a list, which a second dispatch (LARGE 1) draws with a workgroup each:
  * no thread is left behind with one, and software devices, which end a thread's loops after 65,535
- * turns in all, see each to its end. Expects `draw`, IDENTITY (0 in the pass that makes the list) and
- * LARGE. */
+ * turns in all, see each to its end. Expects `draw`, IDENTITY (0 in the pass that makes the list),
+ * LARGE and CUT_OUT (1: texels of the look below WD_LOOK_CUT are holes). */
 layout(local_size_x = 64) in;
 
-layout(scalar, set = 0, binding = 0) readonly buffer Vertices { wd_tree_vertex vertices[]; };
-layout(scalar, set = 0, binding = 1) readonly buffer Indices { uint indices[]; };
-layout(scalar, set = 0, binding = 2) readonly buffer Shots { wd_bake_shot shots[]; };
-/* Groups of the dispatch, places taken, then triangles and their shots. All begin as 1. */
+layout(set = 0, binding = 0) uniform usamplerBuffer vertices;
+layout(set = 0, binding = 1) uniform usamplerBuffer indices;
 layout(scalar, set = 0, binding = 4) buffer List {
+    /* Groups of the dispatch, places taken, then triangles and their shots. All begin as 1. */
     uvec3 list_groups;
     uint list_count;
     uvec2 list[];
 };
 layout(set = 0, binding = 5) uniform sampler2DArray looks;
+layout(scalar, set = 0, binding = 6) readonly buffer Shots { wd_bake_shot shots[]; };
 
 #include "lib/bake_mesh.glsl"
 
-/* First and last sample of a row that lie inside the triangle, as x; empty where first > last. */
-ivec2 row_span(vec2 a, vec2 b, vec2 c, float winding, float y)
-{
-    float from = -1e9, to = 1e9;
-    vec2 p[3] = vec2[3](a, b, c);
-    for (int k = 0; k < 3; k++) {
-        vec2 edge = (p[(k + 1) % 3] - p[k]) * winding;
-        float value = edge.x * (y - p[k].y) + edge.y * p[k].x; /* inside: value >= edge.y * x */
-        if (edge.y > 0.0)
-            to = min(to, value / edge.y);
-        else if (edge.y < 0.0)
-            from = max(from, value / edge.y);
-        else if (value < 0.0)
-            to = -1e9;
-    }
-    return ivec2(ceil(max(from, -1.0) - 0.5), floor(min(to, 1e6) - 0.5));
-}
+/* A triangle of a picture. */
+struct raster {
+    vec3 a, b, c;
+    float area;
+    vec2 top, middle, bottom;                  /* the corners from above */
+    float long_slope, upper_slope, lower_slope; /* samples right for each one down: the long edge, and
+                                                   the two beside it */
+    ivec2 first, last;                         /* samples that it may touch */
+};
 
-bake_look look_of(uint triangle, float area)
+raster raster_of(vec3 a, vec3 b, vec3 c)
 {
-    uvec3 corner = bake_triangle(triangle);
-    return bake_look_of(vertices[corner.x], vertices[corner.y], vertices[corner.z], area);
-}
-
-/* Rows first, first + step, .. of the triangle's. */
-void draw_rows(uint shot_index, uint triangle, vec3 a, vec3 b, vec3 c, ivec2 rows, int step)
-{
-    float area = bake_area(a, b, c);
+    raster r;
+    r.a = a;
+    r.b = b;
+    r.c = c;
+    r.area = bake_area(a, b, c);
+    bool swap = a.y > b.y;
+    vec2 upper = swap ? b.xy : a.xy, lower = swap ? a.xy : b.xy;
+    r.top = c.y < upper.y ? c.xy : upper;
+    r.bottom = c.y > lower.y ? c.xy : lower;
+    r.middle = c.y < upper.y ? upper : c.y > lower.y ? lower : c.xy;
+    const float least = 1e-12;
+    r.long_slope = (r.bottom.x - r.top.x) / max(r.bottom.y - r.top.y, least);
+    r.upper_slope = (r.middle.x - r.top.x) / max(r.middle.y - r.top.y, least);
+    r.lower_slope = (r.bottom.x - r.middle.x) / max(r.bottom.y - r.middle.y, least);
+    vec2 low = min(a.xy, min(b.xy, c.xy)), high = max(a.xy, max(b.xy, c.xy));
     ivec2 size = ivec2(push.width, push.height) * int(push.samples);
-    bake_look look;
-    if (push.cut_out != 0u)
-        look = look_of(triangle, area);
-    int row = rows.x, column = 0, last = -1;
-    float y = 0.0;
-    uint at = 0u;
-    /* one loop over all samples: threads whose rows are short need not wait at each for long ones */
-    while (column <= last || row <= rows.y) {
-        if (column > last) {
-            y = float(row) + 0.5;
-            ivec2 span = row_span(a.xy, b.xy, c.xy, area > 0.0 ? 1.0 : -1.0, y);
-            column = max(span.x, 0);
-            last = min(span.y, size.x - 1);
-            at = (shot_index * uint(size.y) + uint(row)) * uint(size.x);
-            row += step;
-        }
-        if (column <= last) {
-            vec2 shares = bake_shares(a, b, c, area, vec2(float(column) + 0.5, y));
-            precise float depth = a.z + shares.x * (b.z - a.z) + shares.y * (c.z - a.z);
-            if (push.cut_out == 0u || bake_look_at(look, shares).a >= WD_LOOK_CUT)
-                draw(at + uint(column), clamp(depth, 1e-6, 1.0), triangle);
-            column++;
-        }
-    }
+    r.first = max(ivec2(ceil(max(low, -1.0) - 0.5)), 0);
+    r.last = min(ivec2(floor(min(high, 1e6) - 0.5)), size - 1);
+    return r;
 }
 
-/* First and last row that a triangle may touch. */
-ivec2 rows_of(vec3 a, vec3 b, vec3 c)
+/* First and last sample of a row that lie inside; none where first > last. */
+ivec2 row_span(raster r, int row)
 {
-    float low = min(a.y, min(b.y, c.y)), high = max(a.y, max(b.y, c.y));
-    return ivec2(max(int(ceil(max(low, -1.0) - 0.5)), 0),
-                 min(int(floor(min(high, 1e6) - 0.5)), int(push.height * push.samples) - 1));
+    float y = float(row) + 0.5;
+    float x = r.top.x + r.long_slope * (y - r.top.y);
+    float other = y < r.middle.y ? r.top.x + r.upper_slope * (y - r.top.y)
+                                 : r.middle.x + r.lower_slope * (y - r.middle.y);
+    return ivec2(ceil(clamp(min(x, other), -1.0, 1e6) - 0.5),
+                 floor(clamp(max(x, other), -1.0, 1e6) - 0.5));
+}
+
+/* Bits of the samples from `corner` on that lie inside: `rows` rows of `columns`, at most 32. */
+uint inside_of(raster r, ivec2 corner, int columns, int rows)
+{
+    uint bits = 0u;
+    int end = min(rows, r.last.y - corner.y + 1);
+    for (int row = 0; row < end; row++) {
+        ivec2 span = row_span(r, corner.y + row) - corner.x;
+        span = ivec2(max(span.x, 0), min(span.y, min(columns - 1, r.last.x - corner.x)));
+        if (span.x <= span.y)
+            bits |= (~0u >> (31 - (span.y - span.x))) << (row * columns + span.x);
+    }
+    return bits;
+}
+
+/* Draws blocks of at most 32 samples: of the rows of blocks `from`, `from` + `step`, .. A loop over bits
+ * takes as long as the thread with most of them, not as the widest rows of all. */
+void draw_blocks(uint shot_index, uint triangle, raster r, int from, int step)
+{
+    bool alike = 0.5 * abs(r.area) <= WD_BAKE_FLAT_TEXELS * float(push.samples * push.samples);
+    uint seen = WD_BAKE_SEEN(triangle, r.area < 0.0 ? 1u : 0u, alike ? 1u : 0u);
+    precise vec3 ab = r.b - r.a, ac = r.c - r.a;
+    precise vec2 slope = vec2(ab.z * ac.y - ac.z * ab.y, ac.z * ab.x - ab.z * ac.x) / r.area;
+    float nearest = min(max(r.a.z, max(r.b.z, r.c.z)), 1.0);
+    float farthest = max(min(r.a.z, min(r.b.z, r.c.z)), 1e-6);
+    int stride = int(push.width * push.samples);
+    int picture = int(shot_index) * stride * int(push.height * push.samples);
+    int columns = clamp(r.last.x - r.first.x + 1, 1, 32), rows = int(32.0 / float(columns));
+    float row_of_bit = 1.0 / float(columns);
+    bake_look look;
+    if (CUT_OUT != 0u)
+        look = bake_look_of(bake_triangle(triangle), r.area);
+    ivec2 corner = ivec2(r.first.x, r.first.y + from * rows);
+    while (corner.y <= r.last.y) {
+        uint bits = inside_of(r, corner, columns, rows);
+        while (bits != 0u) {
+            int bit = findLSB(bits);
+            bits &= bits - 1u;
+            int row = int((float(bit) + 0.5) * row_of_bit);
+            ivec2 at = corner + ivec2(bit - row * columns, row);
+            precise vec2 off = vec2(at) + 0.5 - r.a.xy;
+            precise float depth = r.a.z + slope.x * off.x + slope.y * off.y;
+            if (CUT_OUT != 0u) {
+                vec2 shares = bake_shares(r.a, r.b, r.c, r.area, vec2(at) + 0.5);
+                if (bake_look_at(look, shares).a < WD_LOOK_CUT)
+                    continue;
+            }
+            draw(uint(picture + at.y * stride + at.x), max(min(depth, nearest), farthest), seen);
+        }
+        corner.x += columns;
+        if (corner.x > r.last.x)
+            corner = ivec2(r.first.x, corner.y + step * rows);
+    }
 }
 
 /* Whether a triangle of that many samples is left to the list. Should the list be full, the first
  * pass draws on its own and the second pass, which cannot tell which, draws all. */
-bool listed(uint shot_index, uint triangle)
+bool listed(uint triangle)
 {
     if (IDENTITY != 0u)
         return list_count <= WD_BAKE_LIST;
     uint place = atomicAdd(list_count, 1u);
     if (place >= WD_BAKE_LIST)
         return false;
-    list[place] = uvec2(triangle, shot_index);
+    list[place] = uvec2(triangle, push.shot_index);
     atomicMax(list_groups.x, place + 1u);
     return true;
 }
 
-void draw_small(uint shot_index, uint triangle, vec3 a, vec3 b, vec3 c)
+raster project(wd_bake_shot shot, uint triangle)
 {
-    if (abs(bake_area(a, b, c)) < 1e-9)
+    uvec3 corner = bake_triangle(triangle);
+    return raster_of(bake_project(shot, bake_position(corner.x)),
+                     bake_project(shot, bake_position(corner.y)),
+                     bake_project(shot, bake_position(corner.z)));
+}
+
+void draw_small()
+{
+    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint triangle = group * 64u + gl_LocalInvocationID.x;
+    if (triangle >= push.triangle_count)
         return;
-    ivec2 rows = rows_of(a, b, c);
-    float across = max(a.x, max(b.x, c.x)) - min(a.x, min(b.x, c.x));
-    if (float(rows.y - rows.x) * across > WD_BAKE_LARGE && listed(shot_index, triangle))
+    triangle += push.first_triangle;
+    raster r = project(push.shot, triangle);
+    ivec2 across = r.last - r.first + 1;
+    if (any(lessThan(across, ivec2(1))) || abs(r.area) < 1e-9)
         return;
-    draw_rows(shot_index, triangle, a, b, c, rows, 1);
+    if (float(across.x) * float(across.y) > WD_BAKE_LARGE && listed(triangle))
+        return;
+    draw_blocks(push.shot_index, triangle, r, 0, 1);
 }
 
 void draw_listed()
@@ -111,33 +159,14 @@ void draw_listed()
     if (gl_WorkGroupID.x == 0u)
         return;
     uvec2 entry = list[gl_WorkGroupID.x];
-    wd_bake_shot shot = shots[entry.y];
-    uvec3 corner = bake_triangle(entry.x);
-    vec3 a = bake_project(shot, vertices[corner.x].position_m);
-    vec3 b = bake_project(shot, vertices[corner.y].position_m);
-    vec3 c = bake_project(shot, vertices[corner.z].position_m);
-    ivec2 rows = rows_of(a, b, c);
-    rows.x += int(gl_LocalInvocationID.x);
-    draw_rows(entry.y, entry.x, a, b, c, rows, 64);
+    draw_blocks(entry.y, entry.x, project(shots[entry.y], entry.x), int(gl_LocalInvocationID.x),
+                64);
 }
 
 void main()
 {
-    if (LARGE != 0u) {
+    if (LARGE != 0u)
         draw_listed();
-        return;
-    }
-    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    uint triangle = group * 64u + gl_LocalInvocationID.x;
-    if (triangle >= push.triangle_count)
-        return;
-    triangle += push.first_triangle;
-    uvec3 corner = bake_triangle(triangle);
-    vec3 a = vertices[corner.x].position_m, b = vertices[corner.y].position_m;
-    vec3 c = vertices[corner.z].position_m;
-    for (uint i = 0u; i < push.shot_count; i++) {
-        wd_bake_shot shot = shots[i];
-        draw_small(i, triangle, bake_project(shot, a), bake_project(shot, b),
-                   bake_project(shot, c));
-    }
+    else
+        draw_small();
 }

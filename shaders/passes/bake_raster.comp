@@ -7,24 +7,26 @@
 layout(constant_id = 0) const uint IDENTITY = 0u;
 layout(constant_id = 1) const uint LARGE = 0u;
 layout(constant_id = 2) const uint DEPTHS = 0u;
+layout(constant_id = 3) const uint CUT_OUT = 0u;
 
-layout(scalar, set = 0, binding = 3) buffer Samples { wd_bake_sample samples[]; };
+layout(scalar, set = 0, binding = 2) buffer Samples { wd_bake_sample samples[]; };
+layout(scalar, set = 0, binding = 3) buffer Rays { wd_bake_ray rays[]; };
 layout(scalar, push_constant) uniform Push { wd_bake_push push; };
 
-void draw(uint at, float depth, uint triangle)
+void draw(uint at, float depth, uint seen)
 {
     uint bits = floatBitsToUint(depth);
     if (IDENTITY != 0u) {
         if (samples[at].front == bits)
-            atomicMax(samples[at].triangle, triangle + 1u);
+            atomicMax(samples[at].seen, seen);
         return;
     }
     atomicMax(samples[at].front, bits);
     if (DEPTHS == 0u)
         return;
-    atomicMax(samples[at].back, ~bits);
-    if (triangle >= push.wood_triangles)
-        atomicAdd(samples[at].sheets, 1u);
+    atomicMax(rays[at].back, ~bits);
+    if (WD_BAKE_TRIANGLE(seen) >= push.wood_triangles)
+        atomicAdd(rays[at].sheets, 1u);
 }
 
 #include "lib/bake_raster.glsl"

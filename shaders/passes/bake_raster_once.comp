@@ -8,25 +8,22 @@
 
 layout(constant_id = 1) const uint LARGE = 0u;
 layout(constant_id = 2) const uint DEPTHS = 0u;
+layout(constant_id = 3) const uint CUT_OUT = 0u;
 const uint IDENTITY = 0u;
 
-/* A wd_bake_sample. */
-struct wide_sample {
-    uint64_t nearest;
-    uint back, sheets;
-};
-layout(scalar, set = 0, binding = 3) buffer Samples { wide_sample samples[]; };
+layout(scalar, set = 0, binding = 2) buffer Samples { uint64_t samples[]; }; /* wd_bake_sample */
+layout(scalar, set = 0, binding = 3) buffer Rays { wd_bake_ray rays[]; };
 layout(scalar, push_constant) uniform Push { wd_bake_push push; };
 
-void draw(uint at, float depth, uint triangle)
+void draw(uint at, float depth, uint seen)
 {
     uint bits = floatBitsToUint(depth);
-    atomicMax(samples[at].nearest, uint64_t(bits) << 32 | uint64_t(triangle + 1u));
+    atomicMax(samples[at], uint64_t(bits) << 32 | uint64_t(seen));
     if (DEPTHS == 0u)
         return;
-    atomicMax(samples[at].back, ~bits);
-    if (triangle >= push.wood_triangles)
-        atomicAdd(samples[at].sheets, 1u);
+    atomicMax(rays[at].back, ~bits);
+    if (WD_BAKE_TRIANGLE(seen) >= push.wood_triangles)
+        atomicAdd(rays[at].sheets, 1u);
 }
 
 #include "lib/bake_raster.glsl"

@@ -1,45 +1,71 @@
 #version 460
-/* Texels of baked pictures from the samples in them: what shared/view_set.h says. */
+/* Texels of a baked picture from the samples in them: what shared/view_set.h says. */
 #include "shared/bake.h"
 #include "shared/tree.h"
 
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint DEPTHS = 0u;
 
-layout(scalar, set = 0, binding = 0) readonly buffer Vertices { wd_tree_vertex vertices[]; };
-layout(scalar, set = 0, binding = 1) readonly buffer Indices { uint indices[]; };
-layout(scalar, set = 0, binding = 2) readonly buffer Shots { wd_bake_shot shots[]; };
-layout(scalar, set = 0, binding = 3) readonly buffer Samples { wd_bake_sample samples[]; };
-layout(scalar, set = 0, binding = 4) writeonly buffer Texels { uint texels[]; };
+layout(set = 0, binding = 0) uniform usamplerBuffer vertices;
+layout(set = 0, binding = 1) uniform usamplerBuffer indices;
+layout(set = 0, binding = 2) uniform usamplerBuffer samples; /* wd_bake_sample */
+layout(set = 0, binding = 3) uniform usamplerBuffer rays;    /* wd_bake_ray */
+layout(set = 0, binding = 4) uniform usamplerBuffer flats;   /* wd_bake_flat */
 layout(set = 0, binding = 5) uniform sampler2DArray looks;
+layout(scalar, set = 0, binding = 6) writeonly buffer Texels { uint texels[]; };
 layout(scalar, push_constant) uniform Push { wd_bake_push push; };
 
 #include "lib/bake_mesh.glsl"
 
 /* Sums over the samples of a texel. */
 struct bake_sum {
-    vec3 color, normal;
-    float openness, front, back, sheets, leaf, count;
+    vec3 color;
+    vec4 around; /* normal * 0.5 + 0.5, sky openness */
+    float front, back, sheets, leaf, count;
 };
 
-/* What a triangle shows at a place of a picture. */
-void add_surface(inout bake_sum sum, wd_bake_shot shot, uint triangle, vec2 place)
+void add_flat(inout bake_sum sum, uint seen, float weight)
+{
+    uvec4 words = texelFetch(flats, max(int(seen >> 2) - 1, 0));
+    bool turned = WD_BAKE_IS_TURNED(seen);
+    vec2 blues = unpackHalf2x16(words.z);
+    vec3 color = vec3(unpackHalf2x16(turned ? words.y : words.x), turned ? blues.y : blues.x);
+    sum.color += weight * color;
+    sum.around += weight * unpackUnorm4x8(words.w);
+}
+
+/* What a triangle shows at a place of the picture. */
+void add_surface(inout bake_sum sum, uint triangle, vec2 place)
 {
     uvec3 corner = bake_triangle(triangle);
-    wd_tree_vertex u = vertices[corner.x], v = vertices[corner.y], w = vertices[corner.z];
-    vec3 a = bake_project(shot, u.position_m), b = bake_project(shot, v.position_m);
-    vec3 c = bake_project(shot, w.position_m);
+    vec3 a = bake_project(push.shot, bake_position(corner.x));
+    vec3 b = bake_project(push.shot, bake_position(corner.y));
+    vec3 c = bake_project(push.shot, bake_position(corner.z));
     float area = bake_area(a, b, c);
     vec2 bc = bake_shares(a, b, c, area, place);
     vec3 share = vec3(1.0 - bc.x - bc.y, bc);
-    vec3 normal = share.x * tree_vertex_normal(u) + share.y * tree_vertex_normal(v)
-                  + share.z * tree_vertex_normal(w);
-    vec4 tint = share.x * unpackUnorm4x8(u.tint) + share.y * unpackUnorm4x8(v.tint)
-                + share.z * unpackUnorm4x8(w.tint);
-    bool leaf = triangle >= push.wood_triangles;
-    sum.color += bake_look_at(bake_look_of(u, v, w, area), bc).rgb * tint.rgb;
-    sum.normal += normalize(normal + vec3(0.0, 0.0, 1e-6));
-    sum.openness += tint.a;
-    sum.leaf += leaf ? 1.0 : 0.0;
+    vec3 normal = share.x * bake_normal(corner.x) + share.y * bake_normal(corner.y)
+                  + share.z * bake_normal(corner.z);
+    vec4 tint = share.x * bake_tint(corner.x) + share.y * bake_tint(corner.y)
+                + share.z * bake_tint(corner.z);
+    sum.color += bake_look_at(bake_look_of(corner, area), bc).rgb * tint.rgb;
+    sum.around += vec4(normalize(normal + vec3(0.0, 0.0, 1e-6)) * 0.5 + 0.5, tint.a);
+}
+
+/* Those of a sample that the texel sees at all, but for what a large triangle shows: returns 1 there. */
+uint add_sample(inout bake_sum sum, int at)
+{
+    uint seen = texelFetch(samples, at).x;
+    add_flat(sum, seen, WD_BAKE_IS_FLAT(seen) ? 1.0 : 0.0);
+    sum.leaf += seen >> 2 > push.wood_triangles ? 1.0 : 0.0;
+    sum.count += seen != 0u ? 1.0 : 0.0;
+    if (DEPTHS != 0u) {
+        uvec2 ray = texelFetch(rays, at).xy;
+        sum.front += uintBitsToFloat(texelFetch(samples, at).y);
+        sum.back += seen != 0u ? uintBitsToFloat(~ray.x) : 0.0;
+        sum.sheets += float(ray.y);
+    }
+    return seen != 0u && !WD_BAKE_IS_FLAT(seen) ? 1u : 0u;
 }
 
 vec3 srgb_encode(vec3 linear)
@@ -48,36 +74,43 @@ vec3 srgb_encode(vec3 linear)
     return mix(high, low, lessThanEqual(linear, vec3(0.0031308)));
 }
 
-void main()
+void write_texel(bake_sum sum, uint within)
 {
-    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    uint texel = group * 64u + gl_LocalInvocationID.x, picture = push.width * push.height;
-    if (texel >= picture * push.shot_count)
-        return;
-    uint shot_index = texel / picture, within = texel % picture, s = push.samples;
-    uvec2 corner = uvec2(within % push.width, within / push.width) * s;
-    wd_bake_shot shot = shots[shot_index];
-    bake_sum sum = bake_sum(vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for (uint i = 0u; i < s * s; i++) {
-        uvec2 place = corner + uvec2(i % s, i / s);
-        wd_bake_sample seen =
-            samples[(shot_index * push.height * s + place.y) * push.width * s + place.x];
-        if (seen.triangle == 0u)
-            continue;
-        sum.front += uintBitsToFloat(seen.front);
-        sum.back += seen.back != 0u ? uintBitsToFloat(~seen.back) : 0.0;
-        sum.sheets += float(seen.sheets);
-        sum.count += 1.0;
-        add_surface(sum, shot, seen.triangle - 1u, vec2(place) + 0.5);
-    }
+    uint picture = push.width * push.height, s = push.samples;
+    uint at = push.shot_index * picture * 3u + within;
     float per = 1.0 / max(sum.count, 1.0);
-    uint at = shot_index * picture * 3u + within;
     bool empty = sum.count == 0.0;
     vec4 albedo = vec4(srgb_encode(sum.color * per), sum.count / float(s * s));
-    vec4 normal = vec4(sum.normal * per * 0.5 + 0.5, sum.openness * per);
     vec4 depth = vec4(sum.front, sum.back, 0.0, sum.leaf) * per;
     depth.z = 1.0 - exp(-0.25 * sum.sheets * per);
     texels[at] = empty ? 0u : packUnorm4x8(albedo);
-    texels[at + picture] = empty ? 0u : packUnorm4x8(normal);
+    texels[at + picture] = empty ? 0u : packUnorm4x8(sum.around * per);
     texels[at + 2u * picture] = empty ? 0u : packUnorm4x8(depth);
+}
+
+void main()
+{
+    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint within = group * 64u + gl_LocalInvocationID.x, s = push.samples;
+    if (within >= push.width * push.height)
+        return;
+    uvec2 corner = uvec2(within % push.width, within / push.width) * s;
+    int stride = int(push.width * s);
+    int first = int((push.shot_index * push.height * s + corner.y) * push.width * s + corner.x);
+    bake_sum sum = bake_sum(vec3(0.0), vec4(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    uvec2 large = uvec2(0u); /* bits of the samples that show large triangles */
+    for (uint y = 0u, i = 0u; y < s; y++)
+        for (uint x = 0u; x < s; x++, i++) {
+            uint bit = add_sample(sum, first + int(y) * stride + int(x)) << (i & 31u);
+            large |= i < 32u ? uvec2(bit, 0u) : uvec2(0u, bit);
+        }
+    while ((large.x | large.y) != 0u) {
+        int i = large.x != 0u ? findLSB(large.x) : 32 + findLSB(large.y);
+        large = large.x != 0u ? uvec2(large.x & (large.x - 1u), large.y)
+                              : uvec2(0u, large.y & (large.y - 1u));
+        ivec2 place = ivec2(i % int(s), i / int(s));
+        uint seen = texelFetch(samples, first + place.y * stride + place.x).x;
+        add_surface(sum, WD_BAKE_TRIANGLE(seen), vec2(corner) + vec2(place) + 0.5);
+    }
+    write_texel(sum, within);
 }

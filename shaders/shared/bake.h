@@ -2,7 +2,7 @@
 #ifndef WD_SHARED_BAKE_H
 #define WD_SHARED_BAKE_H
 
-#include "shared/types.h"
+#include "shared/vec.h"
 
 /* An orthographic picture: rows give x and y in samples (y down) and depth 0..1 (1 nearest the
  * viewer) of a model's point (x, y, z, 1). Beyond 0..1 nothing is drawn. */
@@ -18,25 +18,48 @@ WD_STATIC_ASSERT_SIZE(wd_bake_shot, 48);
 #define WD_BAKE_LARGE 512.0
 #define WD_BAKE_LIST 65535
 
+/* Up to so many texels a triangle looks alike all over. */
+#define WD_BAKE_FLAT_TEXELS 2.0
+
 /* Push constants of the baking shaders. */
 struct wd_bake_push {
-    uint32_t first_index, triangle_count, first_triangle; /* first_triangle: of the mesh, drawn */
-    uint32_t shot_count;       /* of this batch */
+    WD_STRUCT wd_bake_shot shot;
+    uint32_t shot_index;       /* of this batch */
+    uint32_t triangle_count, first_triangle; /* first_triangle: of the mesh, drawn */
     uint32_t width, height;    /* texels */
     uint32_t samples;          /* a texel, along each side */
     uint32_t wood_triangles;   /* of the mesh: those from here on are leaves */
     uint32_t look_layer;       /* the species' first */
-    uint32_t cut_out;          /* 1: texels of the look below WD_LOOK_CUT are holes */
 };
+WD_STATIC_ASSERT_SIZE(wd_bake_push, 80);
 
-/* What one sample remembers while triangles are drawn. The first two are one number of 64 bits to
+/* What one sample remembers while triangles are drawn: one number of 64 bits to
  * bake_raster_once.comp. */
 struct wd_bake_sample {
-    uint32_t triangle; /* 1 + index of the one in front */
-    uint32_t front;    /* bits of the greatest depth; 0 nothing */
-    uint32_t back;     /* ~bits of the least depth, or 0 where depths are not wanted, */
-    uint32_t sheets;   /* leaves on the ray, likewise */
+    uint32_t seen;  /* WD_BAKE_SEEN of the triangle in front; 0 nothing */
+    uint32_t front; /* bits of the greatest depth */
 };
-WD_STATIC_ASSERT_SIZE(wd_bake_sample, 16);
+WD_STATIC_ASSERT_SIZE(wd_bake_sample, 8);
+
+/* `turned`: 1 seen from behind; `alike`: 1 where its wd_bake_flat says what it shows. */
+#define WD_BAKE_SEEN(triangle, turned, alike) (((triangle) + 1u) << 2 | (alike) << 1 | (turned))
+#define WD_BAKE_TRIANGLE(seen) (((seen) >> 2) - 1u)
+#define WD_BAKE_IS_FLAT(seen) (((seen) & 2u) != 0u)
+#define WD_BAKE_IS_TURNED(seen) (((seen) & 1u) != 0u)
+
+/* And, where depths are wanted, */
+struct wd_bake_ray {
+    uint32_t back;   /* ~bits of the least depth */
+    uint32_t sheets; /* leaves on the ray */
+};
+WD_STATIC_ASSERT_SIZE(wd_bake_ray, 8);
+
+/* The mean of what a triangle shows: linear colour as half floats, from before R, G in `before` and B in
+ * the low half of `blues`, from behind likewise; `around`: normal * 0.5 + 0.5 and sky openness, a
+ * byte each. */
+struct wd_bake_flat {
+    uint32_t before, behind, blues, around;
+};
+WD_STATIC_ASSERT_SIZE(wd_bake_flat, 16);
 
 #endif

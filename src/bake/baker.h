@@ -17,27 +17,34 @@ enum wd_bake_depths { WD_BAKE_DEPTHS, WD_BAKE_NO_DEPTHS };
 
 /* A mesh on the device, and the look textures that its leaves and bark show. */
 struct wd_bake_mesh {
-    struct wd_buffer *vertices; /* struct wd_tree_vertex[] */
-    struct wd_buffer *indices;  /* uint32_t[], made with VK_BUFFER_USAGE_STORAGE_BUFFER_BIT */
-    uint32_t first_vertex;      /* that index 0 means: a multiple of 64 */
-    uint32_t vertex_count;
-    uint32_t first_index, index_count;
+    struct wd_buffer *vertices; /* struct wd_tree_vertex[]; both with texels of WD_BAKE_WORDS */
+    struct wd_buffer *indices;  /* uint32_t[] */
+    uint32_t index_count;
     uint32_t wood_index_count;  /* of index_count, these come first */
     struct wd_image *looks;
     uint32_t look_layer;        /* the first of WD_LOOK_LAYERS */
     uint32_t cut_out;           /* 1: the looks' alpha cuts holes (imported leaves) */
 };
+#define WD_BAKE_WORDS VK_FORMAT_R32_UINT
+
+/* A form of the raster's pipeline; made when the first job needs it. */
+enum wd_bake_raster {
+    WD_BAKE_RASTER_IDENTITY = 1, /* never where 64-bit atomics find it in the first pass */
+    WD_BAKE_RASTER_LARGE = 2,
+    WD_BAKE_RASTER_DEPTHS = 4,
+    WD_BAKE_RASTER_CUT_OUT = 8,
+    WD_BAKE_RASTERS = 16,
+};
 
 struct wd_baker {
     struct wd_gpu *gpu;
     struct wd_frames frames;
-    struct wd_pipeline raster[2][2][2]; /* [depths][identity][large]; no identity where 64-bit atomics
-                                            find it in the first pass */
     uint32_t passes;
-    struct wd_pipeline resolve;
+    struct wd_pipeline raster[WD_BAKE_RASTERS], flat, resolve[2]; /* [depths] */
     VkSampler sampler;
-    struct wd_buffer samples, texels; /* of one batch; grow on demand */
-    struct wd_buffer list; /* of large triangles */
+    struct wd_buffer samples, rays, texels; /* of one batch; grow on demand */
+    struct wd_buffer flats;                 /* of one job, likewise */
+    struct wd_buffer list;                  /* of large triangles */
     const struct wd_log *log;
 };
 bool wd_baker_init(struct wd_baker *baker, struct wd_gpu *gpu, const struct wd_log *log);

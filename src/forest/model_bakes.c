@@ -20,11 +20,10 @@ bool wd_forest_grow_model(struct wd_tree_model *grown, struct wd_forest_device *
     return true;
 }
 
-static bool upload_storage(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
-                           const void *data, size_t size)
+static bool upload_words(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
+                         const void *data, size_t size)
 {
-    const struct wd_buffer_params params = {name, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                            WD_MEMORY_DEVICE};
+    const struct wd_buffer_params params = {name, size, 0, WD_MEMORY_DEVICE, WD_BAKE_WORDS};
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
 }
 
@@ -35,17 +34,16 @@ static bool upload_mesh(struct wd_model_mesh *mesh, struct wd_gpu *gpu,
     mesh->mesh = (struct wd_bake_mesh){
         .vertices = &mesh->vertices,
         .indices = &mesh->indices,
-        .vertex_count = full->vertex_count,
         .index_count = full->index_count,
         .wood_index_count = full->wood_index_count,
         .looks = &forest->looks,
         .look_layer = forest->host_models[model].look_layer,
         .cut_out = forest->scene->species[model / forest->variants].imported ? 1 : 0,
     };
-    return upload_storage(&mesh->vertices, gpu, "model vertices", full->vertices,
-                          full->vertex_count * sizeof *full->vertices) &&
-           upload_storage(&mesh->indices, gpu, "model indices", full->indices,
-                          full->index_count * sizeof *full->indices);
+    return upload_words(&mesh->vertices, gpu, "model vertices", full->vertices,
+                        full->vertex_count * sizeof *full->vertices) &&
+           upload_words(&mesh->indices, gpu, "model indices", full->indices,
+                        full->index_count * sizeof *full->indices);
 }
 
 bool wd_model_mesh_init(struct wd_model_mesh *mesh, struct wd_gpu *gpu,

@@ -2,8 +2,7 @@
 
 static bool upload(struct wd_buffer *buffer, struct wd_gpu *gpu, const void *data, size_t size)
 {
-    const struct wd_buffer_params params = {"mesh", size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                            WD_MEMORY_DEVICE};
+    const struct wd_buffer_params params = {"mesh", size, 0, WD_MEMORY_DEVICE, WD_BAKE_WORDS};
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
 }
 
@@ -31,7 +30,6 @@ bool device_mesh_init(struct device_mesh *device, struct wd_gpu *gpu,
     device->mesh = (struct wd_bake_mesh){
         .vertices = &device->vertices,
         .indices = &device->indices,
-        .vertex_count = mesh->vertex_count,
         .index_count = mesh->index_count,
         .wood_index_count = mesh->wood_index_count,
         .looks = &device->looks,
