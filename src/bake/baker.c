@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/jobs.h"
 #include "base/memory.h"
 #include "shared/tree.h"
 #include "shared/view_set.h"
@@ -288,6 +289,22 @@ static bool grow_buffers(struct wd_baker *baker, const struct wd_bake_job *job, 
            grow(baker, &baker->texels, "bake texels", texels * WD_PLANES * 4, 0);
 }
 
+/* Pictures of a batch that have come back. */
+struct taking {
+    void (*take)(void *user, uint32_t shot, const uint8_t *planes);
+    void *user;
+    const uint8_t *planes;
+    size_t shot_bytes;
+    uint32_t first;
+};
+
+static void take_shot(void *user, size_t index)
+{
+    const struct taking *taking = user;
+    taking->take(taking->user, taking->first + (uint32_t)index,
+                 taking->planes + index * taking->shot_bytes);
+}
+
 bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
                   void (*take)(void *user, uint32_t shot, const uint8_t *planes), void *user)
 {
@@ -310,8 +327,8 @@ bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
         batch.count = left < most ? left : most;
         ok = run_batch(&batch) &&
              wd_buffer_read(baker->gpu, &baker->texels, 0, planes, batch.count * shot_bytes);
-        for (uint32_t i = 0; i < batch.count && ok; i++)
-            take(user, batch.first + i, planes + i * shot_bytes);
+        struct taking taking = {take, user, planes, shot_bytes, batch.first};
+        wd_jobs_run(0, ok ? batch.count : 0, take_shot, &taking);
     }
     free(planes);
     return ok;

@@ -101,37 +101,36 @@ static struct wd_bake_shot card_shot(const struct wd_card_extent *extent, uint32
     };
 }
 
-struct taking {
-    struct wd_cards *cards;
-    struct wd_pyramid pyramid;
-    uint8_t *texels; /* of one mip */
-};
-
-static void take_mip(struct taking *taking, uint32_t card, uint32_t mip, int plane)
+/* Writes a mip of the pyramid; `texels` has room for it. */
+static void keep_mip(const struct wd_cards *cards, const struct wd_pyramid *pyramid,
+                     uint8_t *texels, uint32_t card, uint32_t mip, int plane)
 {
     uint32_t width, height;
-    const struct wd_card_form *form = &taking->cards->form;
-    uint8_t *out = taking->cards->planes[plane] + wd_card_offset(form, plane, card, mip);
-    enum wd_card_texels texels = form->planes[plane];
+    uint8_t *out = cards->planes[plane] + wd_card_offset(&cards->form, plane, card, mip);
+    enum wd_card_texels kept = cards->form.planes[plane];
     wd_card_size(mip, &width, &height);
-    wd_pyramid_get(&taking->pyramid, mip, plane, texels == WD_CARD_TEXELS ? out : taking->texels,
-                   (size_t)4 * width);
-    if (texels == WD_CARD_BLOCKS)
-        wd_blocks_pack(out, taking->texels, width, height);
-    else if (texels == WD_CARD_ALPHA_BLOCKS)
-        wd_alpha_blocks_pack(out, taking->texels, width, height);
-    for (size_t i = 0; i < (size_t)width * height && texels == WD_CARD_ALPHA; i++)
-        out[i] = taking->texels[4 * i + 3];
+    wd_pyramid_get(pyramid, mip, plane, kept == WD_CARD_TEXELS ? out : texels, (size_t)4 * width);
+    if (kept == WD_CARD_BLOCKS)
+        wd_blocks_pack(out, texels, width, height);
+    else if (kept == WD_CARD_ALPHA_BLOCKS)
+        wd_alpha_blocks_pack(out, texels, width, height);
+    for (size_t i = 0; i < (size_t)width * height && kept == WD_CARD_ALPHA; i++)
+        out[i] = texels[4 * i + 3];
 }
 
 static void take_card(void *user, uint32_t card, const uint8_t *planes)
 {
-    struct taking *taking = user;
-    wd_pyramid_set(&taking->pyramid, planes);
+    const struct wd_cards *cards = user;
+    struct wd_pyramid pyramid;
+    uint8_t *texels = wd_alloc((size_t)4 * WD_CARD_WIDTH * WD_CARD_HEIGHT);
+    wd_pyramid_init(&pyramid, WD_CARD_WIDTH, WD_CARD_HEIGHT, WD_CARD_MIPS);
+    wd_pyramid_set(&pyramid, planes);
     for (int plane = 0; plane < WD_PLANES; plane++)
-        for (uint32_t mip = wd_card_first_mip(&taking->cards->form, plane);
-             mip < WD_CARD_MIPS && taking->cards->planes[plane]; mip++)
-            take_mip(taking, card, mip, plane);
+        for (uint32_t mip = wd_card_first_mip(&cards->form, plane);
+             mip < WD_CARD_MIPS && cards->planes[plane]; mip++)
+            keep_mip(cards, &pyramid, texels, card, mip, plane);
+    wd_pyramid_finish(&pyramid);
+    free(texels);
 }
 
 bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct wd_bake_mesh *mesh,
@@ -152,13 +151,8 @@ bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct 
         .height = WD_CARD_HEIGHT,
         .samples = WD_CARD_SUPERSAMPLING,
     };
-    struct taking taking = {.cards = cards,
-                            .texels = wd_alloc((size_t)4 * WD_CARD_WIDTH * WD_CARD_HEIGHT)};
     init_cards(cards, form);
-    wd_pyramid_init(&taking.pyramid, WD_CARD_WIDTH, WD_CARD_HEIGHT, WD_CARD_MIPS);
-    bool ok = wd_baker_run(baker, &job, take_card, &taking);
-    wd_pyramid_finish(&taking.pyramid);
-    free(taking.texels);
+    bool ok = wd_baker_run(baker, &job, take_card, cards);
     if (!ok)
         wd_cards_finish(cards);
     return ok;

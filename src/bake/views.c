@@ -118,23 +118,21 @@ static struct wd_bake_shot shot_of(const struct wd_view_frame *frame, float samp
     };
 }
 
-struct taking {
-    struct wd_view_set *set;
-    struct wd_pyramid pyramid;
-};
-
 static void take_view(void *user, uint32_t view, const uint8_t *planes)
 {
-    struct taking *taking = user;
-    const struct wd_view_atlas *atlas = &taking->set->atlas;
-    wd_pyramid_set(&taking->pyramid, planes);
+    const struct wd_view_set *set = user;
+    const struct wd_view_atlas *atlas = &set->atlas;
+    struct wd_pyramid pyramid;
+    wd_pyramid_init(&pyramid, atlas->size, atlas->size, atlas->mips);
+    wd_pyramid_set(&pyramid, planes);
     for (uint32_t mip = 0; mip < atlas->mips; mip++) {
         size_t stride = (size_t)4 * wd_view_layer_size(atlas, mip), tile = atlas->size >> mip;
         size_t at = wd_view_mip_offset(atlas, mip) + view / atlas->columns * tile * stride +
                     view % atlas->columns * tile * 4;
         for (int plane = 0; plane < WD_PLANES; plane++)
-            wd_pyramid_get(&taking->pyramid, mip, plane, taking->set->planes[plane] + at, stride);
+            wd_pyramid_get(&pyramid, mip, plane, set->planes[plane] + at, stride);
     }
+    wd_pyramid_finish(&pyramid);
 }
 
 bool wd_view_set_bake(struct wd_view_set *set, struct wd_baker *baker,
@@ -157,11 +155,8 @@ bool wd_view_set_bake(struct wd_view_set *set, struct wd_baker *baker,
         .height = atlas->size,
         .samples = params->samples,
     };
-    struct taking taking = {.set = set};
     init_set(set, atlas, model);
-    wd_pyramid_init(&taking.pyramid, atlas->size, atlas->size, atlas->mips);
-    bool ok = wd_baker_run(baker, &job, take_view, &taking);
-    wd_pyramid_finish(&taking.pyramid);
+    bool ok = wd_baker_run(baker, &job, take_view, set);
     free(shots);
     if (!ok)
         wd_view_set_finish(set);

@@ -4,6 +4,7 @@
 
 #include "bake/growth_cache.h"
 #include "base/clock.h"
+#include "base/jobs.h"
 #include "base/memory.h"
 
 static const VkFormat formats[WD_PLANES] = {
@@ -27,7 +28,31 @@ static bool upload_words(struct wd_buffer *buffer, struct wd_gpu *gpu, const cha
     return wd_buffer_init(buffer, gpu, &params) && wd_buffer_upload(gpu, buffer, 0, data, size);
 }
 
-static bool upload_mesh(struct wd_model_mesh *mesh, struct wd_gpu *gpu,
+/* A model's full mesh on the host, with every leaf as triangles in an order that suits bakers. */
+static bool grow_mesh(struct wd_tree_model *grown, struct wd_forest_device *forest, uint32_t model,
+                      const struct wd_log *log)
+{
+    uint64_t key;
+    if (!wd_growth_get(grown, &key, &forest->cache, forest->scene, model, log))
+        return false;
+    wd_tree_model_add_leaves_by_place(grown);
+    return true;
+}
+
+/* And on the device: made for one bake. */
+struct model_mesh {
+    struct wd_buffer vertices, indices;
+    struct wd_bake_mesh mesh;
+};
+
+static void finish_mesh(struct model_mesh *mesh, struct wd_gpu *gpu)
+{
+    wd_buffer_finish(&mesh->vertices, gpu);
+    wd_buffer_finish(&mesh->indices, gpu);
+}
+
+/* To be finished also after a failure. */
+static bool upload_mesh(struct model_mesh *mesh, struct wd_gpu *gpu,
                         struct wd_forest_device *forest, uint32_t model,
                         const struct wd_tree_mesh *full)
 {
@@ -44,26 +69,6 @@ static bool upload_mesh(struct wd_model_mesh *mesh, struct wd_gpu *gpu,
                         full->vertex_count * sizeof *full->vertices) &&
            upload_words(&mesh->indices, gpu, "model indices", full->indices,
                         full->index_count * sizeof *full->indices);
-}
-
-bool wd_model_mesh_init(struct wd_model_mesh *mesh, struct wd_gpu *gpu,
-                        struct wd_forest_device *forest, uint32_t model)
-{
-    struct wd_tree_model grown;
-    *mesh = (struct wd_model_mesh){0};
-    if (!wd_forest_grow_model(&grown, forest, model, gpu->log))
-        return false;
-    bool ok = upload_mesh(mesh, gpu, forest, model, &grown.full);
-    wd_tree_model_finish(&grown);
-    if (!ok)
-        wd_model_mesh_finish(mesh, gpu);
-    return ok;
-}
-
-void wd_model_mesh_finish(struct wd_model_mesh *mesh, struct wd_gpu *gpu)
-{
-    wd_buffer_finish(&mesh->vertices, gpu);
-    wd_buffer_finish(&mesh->indices, gpu);
 }
 
 static bool make_image(struct wd_image *image, struct wd_gpu *gpu, struct wd_image_params params)
@@ -123,23 +128,79 @@ static bool make_card_plane(struct wd_image *image, struct wd_gpu *gpu,
                                                .mips = WD_CARD_MIPS - first});
 }
 
-/* The baker is made when the first model is not in the cache. */
-static bool get_cards(struct wd_cards *cards, struct wd_forest_device *forest, struct wd_gpu *gpu,
-                      struct wd_baker *baker, uint32_t index, const struct wd_card_form *form)
+/* A few models at a time: all that the processor does for them alone is done on several threads. */
+enum { MODELS_AT_ONCE = 4 };
+struct made_cards {
+    struct wd_forest_device *forest;
+    const struct wd_card_form *form;
+    const struct wd_log *log;
+    uint32_t first;
+    struct {
+        struct wd_cards cards;
+        struct wd_tree_model grown;
+        bool found, ready, baked; /* found: in the cache; ready: or grown */
+    } models[MODELS_AT_ONCE];
+};
+
+static void prepare_cards(void *user, size_t i)
 {
-    const struct wd_model *model = &forest->host_models[index];
-    uint64_t key = forest->model_keys[index];
-    if (wd_cards_load(cards, &forest->cache, key, form))
-        return true;
+    struct made_cards *made = user;
+    struct wd_forest_device *forest = made->forest;
+    uint32_t index = made->first + (uint32_t)i;
+    made->models[i].found = wd_cards_load(&made->models[i].cards, &forest->cache,
+                                          forest->model_keys[index], made->form);
+    made->models[i].ready = made->models[i].found ||
+                            grow_mesh(&made->models[i].grown, forest, index, made->log);
+}
+
+/* The baker is made when the first model is not in the cache. */
+static void bake_cards(struct made_cards *made, struct wd_gpu *gpu, struct wd_baker *baker,
+                       uint32_t i)
+{
+    struct wd_tree_model *grown = &made->models[i].grown;
+    const struct wd_model *model = &made->forest->host_models[made->first + i];
     const struct wd_card_extent extent = {model->half_width_m, model->half_depth_m,
                                           model->bottom_m, model->top_m};
-    struct wd_model_mesh mesh = {0};
-    bool ok = (baker->gpu || wd_baker_init(baker, gpu, gpu->log)) &&
-              wd_model_mesh_init(&mesh, gpu, forest, index) &&
-              wd_cards_bake(cards, baker, &mesh.mesh, &extent, form);
-    wd_model_mesh_finish(&mesh, gpu);
-    if (ok)
-        wd_cards_store(cards, &forest->cache, key);
+    struct model_mesh mesh = {0};
+    made->models[i].baked =
+        (baker->gpu || wd_baker_init(baker, gpu, gpu->log)) &&
+        upload_mesh(&mesh, gpu, made->forest, made->first + i, &grown->full) &&
+        wd_cards_bake(&made->models[i].cards, baker, &mesh.mesh, &extent, made->form);
+    finish_mesh(&mesh, gpu);
+    wd_tree_model_finish(grown);
+}
+
+static void store_cards(void *user, size_t i)
+{
+    struct made_cards *made = user;
+    if (made->models[i].baked)
+        wd_cards_store(&made->models[i].cards, &made->forest->cache,
+                       made->forest->model_keys[made->first + i]);
+}
+
+/* Models `first` up to `first` + `count`, at most MODELS_AT_ONCE. */
+static bool make_cards(struct wd_forest_device *forest, struct wd_gpu *gpu, struct wd_baker *baker,
+                       const struct wd_card_form *form, struct wd_image *images[WD_PLANES],
+                       uint32_t first, uint32_t count)
+{
+    struct made_cards made = {forest, form, gpu->log, first, {{.found = false}}};
+    bool ok = true;
+    wd_jobs_run(0, count, prepare_cards, &made);
+    for (uint32_t i = 0; i < count && ok; i++) {
+        ok = made.models[i].ready && wd_progress_report(&forest->progress, "baking trees",
+                                                        first + i, forest->model_count);
+        if (ok && !made.models[i].found)
+            bake_cards(&made, gpu, baker, i);
+        ok = ok && (made.models[i].found || made.models[i].baked);
+    }
+    wd_jobs_run(0, count, store_cards, &made); /* also of one that was stopped half-way */
+    for (uint32_t i = 0; i < count; i++) {
+        for (int k = 0; k < WD_PLANES && ok; k++)
+            ok = !images[k] || wd_image_upload_layers(gpu, images[k], (first + i) * WD_CARDS,
+                                                      WD_CARDS, made.models[i].cards.planes[k]);
+        wd_cards_finish(&made.models[i].cards);
+        wd_tree_model_finish(&made.models[i].grown);
+    }
     return ok;
 }
 
@@ -152,14 +213,10 @@ bool wd_forest_bake_cards(struct wd_forest_device *forest, struct wd_gpu *gpu,
     bool ok = true;
     for (int k = 0; k < WD_PLANES && ok; k++)
         ok = !images[k] || make_card_plane(images[k], gpu, &form, k, forest->model_count);
-    for (uint32_t i = 0; i < forest->model_count && ok; i++) {
-        struct wd_cards cards = {0};
-        ok = wd_progress_report(&forest->progress, "baking trees", i, forest->model_count) &&
-             get_cards(&cards, forest, gpu, &baker, i, &form);
-        for (int k = 0; k < WD_PLANES && ok; k++)
-            ok = !images[k] ||
-                 wd_image_upload_layers(gpu, images[k], i * WD_CARDS, WD_CARDS, cards.planes[k]);
-        wd_cards_finish(&cards);
+    for (uint32_t i = 0; i < forest->model_count && ok; i += MODELS_AT_ONCE) {
+        uint32_t left = forest->model_count - i;
+        ok = make_cards(forest, gpu, &baker, &form, images, i,
+                        left < MODELS_AT_ONCE ? left : MODELS_AT_ONCE);
     }
     wd_baker_finish(&baker);
     return ok;
@@ -208,13 +265,16 @@ static bool get_set(struct wd_view_sets *sets, struct wd_gpu *gpu, struct wd_for
 {
     const struct wd_view_set_name name = {&forest->cache, forest->model_keys[index], params, model};
     struct wd_view_set set = {0};
-    struct wd_model_mesh mesh = {0};
     bool ok = wd_view_set_load(&set, &sets->atlas, &name);
     sets->from_cache += ok;
     if (!ok) {
-        ok = wd_model_mesh_init(&mesh, gpu, forest, index) &&
+        struct model_mesh mesh = {0};
+        struct wd_tree_model grown = {0};
+        ok = grow_mesh(&grown, forest, index, gpu->log) &&
+             upload_mesh(&mesh, gpu, forest, index, &grown.full) &&
              wd_view_set_bake(&set, baker, &mesh.mesh, model, &sets->atlas, params);
-        wd_model_mesh_finish(&mesh, gpu);
+        finish_mesh(&mesh, gpu);
+        wd_tree_model_finish(&grown);
         if (ok)
             wd_view_set_store(&set, &name);
     }

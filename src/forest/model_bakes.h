@@ -6,15 +6,6 @@
 #include "bake/views.h"
 #include "forest/forest.h"
 
-/* A model's full mesh as bakers want it, with every leaf as triangles: made for one bake. */
-struct wd_model_mesh {
-    struct wd_buffer vertices, indices;
-    struct wd_bake_mesh mesh;
-};
-bool wd_model_mesh_init(struct wd_model_mesh *mesh, struct wd_gpu *gpu,
-                        struct wd_forest_device *forest, uint32_t model);
-void wd_model_mesh_finish(struct wd_model_mesh *mesh, struct wd_gpu *gpu); /* accepts {0} */
-
 /* A model with its leaves as triangles, as it was grown or as the cache has it; the caller's to
  * finish. */
 bool wd_forest_grow_model(struct wd_tree_model *grown, struct wd_forest_device *forest,

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "tree/clip_mesh.h"
@@ -11,6 +12,7 @@
 #include "tree/leaf_spray.h"
 #include "tree/import.h"
 #include "tree/openness.h"
+#include "tree/progressive.h"
 #include "tree/twigs.h"
 #include "tree/wood.h"
 
@@ -133,6 +135,31 @@ void wd_tree_model_add_leaves(struct wd_tree_model *model)
         return;
     add_sets(model, 0);
     add_sets(model, 1);
+}
+
+static void order_by_place(struct wd_tree_leaf *leaves, size_t count, const struct wd_leaf_box *box)
+{
+    struct wd_vec3 *feet = wd_alloc_array(count + 1, sizeof *feet);
+    uint32_t *order = wd_alloc_array(count + 1, sizeof *order);
+    struct wd_tree_leaf *before = wd_alloc_array(count + 1, sizeof *before);
+    memcpy(before, leaves, count * sizeof *leaves);
+    for (size_t i = 0; i < count; i++)
+        feet[i] = wd_leaf_foot(leaves[i], *box);
+    wd_curve_order(order, feet, count);
+    for (size_t i = 0; i < count; i++)
+        leaves[i] = before[order[i]];
+    free(feet);
+    free(order);
+    free(before);
+}
+
+void wd_tree_model_add_leaves_by_place(struct wd_tree_model *model)
+{
+    if (!model->leaves || has_leaf_triangles(model))
+        return;
+    order_by_place(model->leaves, model->leaf_count, &model->leaf_box);
+    order_by_place(model->leaves + model->leaf_count, model->flower_count, &model->leaf_box);
+    add_sets(model, 0);
 }
 
 void wd_tree_model_drop_leaves(struct wd_tree_model *model)

@@ -76,6 +76,9 @@ void wd_tree_model_finish(struct wd_tree_model *model);
  * still those of the whole, and leaves are where `sets` say. Imported trees keep theirs. */
 void wd_tree_model_add_leaves(struct wd_tree_model *model); /* where they are not there already */
 void wd_tree_model_drop_leaves(struct wd_tree_model *model);
+/* Adds those of the full mesh alone, in the order in which they lie in space: who draws all of them has
+ * its memory near by. `leaves` are in that order afterwards, no longer in the progressive one. */
+void wd_tree_model_add_leaves_by_place(struct wd_tree_model *model);
 
 /* Look textures, generated: `size` x `size` texels RGBA8 (sRGB colour, A = 255), tileable bark and
  * one leaf (or needle shoot) that fills the square. `rgba` holds size * size * 4 bytes. */
