@@ -80,7 +80,8 @@ uint inside_of(raster r, ivec2 corner, int columns, int rows)
  * takes as long as the thread with most of them, not as the widest rows of all. */
 void draw_blocks(uint shot_index, uint triangle, raster r, int from, int step)
 {
-    bool alike = 0.5 * abs(r.area) <= WD_BAKE_FLAT_TEXELS * float(push.samples * push.samples);
+    float texels = 0.5 * abs(r.area) / float(push.samples * push.samples);
+    bool alike = CUT_OUT == 0u && texels <= WD_BAKE_FLAT_TEXELS; /* a mean would take in holes */
     uint seen = WD_BAKE_SEEN(triangle, r.area < 0.0 ? 1u : 0u, alike ? 1u : 0u);
     precise vec3 ab = r.b - r.a, ac = r.c - r.a;
     precise vec2 slope = vec2(ab.z * ac.y - ac.z * ab.y, ac.z * ab.x - ab.z * ac.x) / r.area;

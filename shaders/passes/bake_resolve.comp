@@ -24,14 +24,15 @@ struct bake_sum {
     float front, back, sheets, leaf, count;
 };
 
-void add_flat(inout bake_sum sum, uint seen, float weight)
+/* What a small triangle shows; nothing of others, whose words may be anything. */
+void add_flat(inout bake_sum sum, uint seen)
 {
     uvec4 words = texelFetch(flats, max(int(seen >> 2) - 1, 0));
+    words = WD_BAKE_IS_FLAT(seen) ? words : uvec4(0u);
     bool turned = WD_BAKE_IS_TURNED(seen);
     vec2 blues = unpackHalf2x16(words.z);
-    vec3 color = vec3(unpackHalf2x16(turned ? words.y : words.x), turned ? blues.y : blues.x);
-    sum.color += weight * color;
-    sum.around += weight * unpackUnorm4x8(words.w);
+    sum.color += vec3(unpackHalf2x16(turned ? words.y : words.x), turned ? blues.y : blues.x);
+    sum.around += unpackUnorm4x8(words.w);
 }
 
 /* What a triangle shows at a place of the picture. */
@@ -56,7 +57,7 @@ void add_surface(inout bake_sum sum, uint triangle, vec2 place)
 uint add_sample(inout bake_sum sum, int at)
 {
     uint seen = texelFetch(samples, at).x;
-    add_flat(sum, seen, WD_BAKE_IS_FLAT(seen) ? 1.0 : 0.0);
+    add_flat(sum, seen);
     sum.leaf += seen >> 2 > push.wood_triangles ? 1.0 : 0.0;
     sum.count += seen != 0u ? 1.0 : 0.0;
     if (DEPTHS != 0u) {

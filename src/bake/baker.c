@@ -26,7 +26,7 @@ static const uint32_t bake_flat_comp[] =
 #define IMAGE VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
 
 enum {
-    GROUP = 64,      /* threads, in every shader */
+    GROUP = 64, /* threads, in every shader */
     BATCH_SAMPLE_BYTES = 32 << 20,
     BATCH_SHOTS = 16,
 };
@@ -263,10 +263,11 @@ static bool run_batch(struct batch *batch)
     wd_cmd_scope_begin(&cmd, "bake raster");
     record_rasters(&cmd, batch);
     wd_cmd_scope_end(&cmd);
-    wd_cmd_scope_begin(&cmd, "bake flat");
-    if (batch->first == 0)
+    if (batch->first == 0 && !mesh->cut_out) {
+        wd_cmd_scope_begin(&cmd, "bake flat");
         record_flat(&cmd, batch);
-    wd_cmd_scope_end(&cmd);
+        wd_cmd_scope_end(&cmd);
+    }
     wd_cmd_scope_begin(&cmd, "bake resolve");
     record_resolve(&cmd, batch);
     wd_cmd_scope_end(&cmd);

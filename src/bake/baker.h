@@ -1,7 +1,7 @@
 /* baker.h: orthographic pictures of tree meshes, rasterised in compute: tree triangles are about a
- * sample large, where one thread a triangle beats the graphics pipeline, and all of a batch of
- * pictures is one dispatch. Depth, the farthest surface and the sheets on a ray come out of the
- * same pass. Pictures of one device are the same each time. */
+ * sample large, where one thread a triangle beats the graphics pipeline. Depth, the farthest surface
+ * and the sheets on a ray come out of the same pass. What a triangle of few samples shows is found once
+ * a mesh, of others at each sample. Pictures of one device are the same each time. */
 #ifndef WD_BAKE_BAKER_H
 #define WD_BAKE_BAKER_H
 

@@ -1,5 +1,6 @@
 #version 460
 /* Every struct that C and GLSL share, so that the compiled module tells its offsets. */
+#include "shared/bake.h"
 #include "shared/card_soup.h"
 #include "shared/forest.h"
 #include "shared/frame.h"
@@ -25,6 +26,7 @@ layout(scalar, binding = 17) buffer Forms { wd_leaf_vertex form; };
 layout(scalar, binding = 18) buffer MeshPushes { wd_mesh_push mesh_push; };
 layout(scalar, binding = 19) buffer SprayPushes { wd_spray_push spray_push; };
 layout(scalar, binding = 20) buffer Blocks { wd_tree_block block; };
+layout(scalar, binding = 21) buffer BakePushes { wd_bake_push bake; };
 
 void main()
 {
@@ -32,5 +34,5 @@ void main()
               + instance.tree + push.level
               + frame.width + chunk.first_tree + card.turn + corner.card + uint(cull.plane[0].x)
               + soup.variants + draw.index_count + leaf.turn + spray.leaf
-              + packed.xy + form.kind + mesh_push.forms + spray_push.tree.level;
+              + packed.xy + form.kind + mesh_push.forms + spray_push.tree.level + bake.width;
 }

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "shared/bake.h"
 #include "shared/card_soup.h"
 #include "shared/forest.h"
 #include "shared/frame.h"
@@ -24,6 +25,10 @@ struct member {
 #define M(type, name) {#type, #name, offsetof(struct type, name)}
 
 static const struct member members[] = {
+    M(wd_bake_shot, x), M(wd_bake_shot, y), M(wd_bake_shot, depth),
+    M(wd_bake_push, shot), M(wd_bake_push, shot_index), M(wd_bake_push, triangle_count),
+    M(wd_bake_push, first_triangle), M(wd_bake_push, width), M(wd_bake_push, height),
+    M(wd_bake_push, samples), M(wd_bake_push, wood_triangles), M(wd_bake_push, look_layer),
     M(wd_packed_tree, x_kind), M(wd_packed_tree, y_look), M(wd_packed_tree, z_height),
     M(wd_packed_tree, crown_look),
     M(wd_tree_block, x_mm), M(wd_tree_block, y_mm), M(wd_tree_block, z_mm), M(wd_tree_block, steps),
