@@ -7,7 +7,7 @@
 #include "shared/fall.h"
 
 layout(constant_id = 0) const uint SHADOW = 0u;
-layout(constant_id = 1) const uint DETAIL = 0u;
+layout(constant_id = 1) const uint LISTED = 0u; /* 1: of a full mesh, of which some leaves are drawn */
 layout(constant_id = 2) const uint FALLS = 0u; /* 1: leaves are on their way down */
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
@@ -16,7 +16,7 @@ layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[];
 layout(scalar, set = 0, binding = 3) readonly buffer Corners { wd_leaf_vertex corners[]; };
 layout(scalar, set = 0, binding = 4) readonly buffer Instances { wd_instance instances[]; };
 layout(scalar, set = 0, binding = 7) readonly buffer Leaves { wd_tree_leaf leaves[]; };
-layout(scalar, set = 0, binding = 8) readonly buffer Listed { uint listed[]; }; /* DETAIL: what is in view */
+layout(scalar, set = 0, binding = 8) readonly buffer Listed { uint listed[]; };
 layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 
 #include "lib/trees.glsl"
@@ -48,8 +48,9 @@ float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
     float far_m = length(at_m);
     float sine = SHADOW != 0u ? frame.sun_direction.z : at_m.z / far_m;
     float sprays = wd_spray_share(far_m, max(push.spray_reach, 1e-6));
-    bool twig = DETAIL != 0u && wd_hash_unit(wd_hash2(index, wd_tree_random(tree))) < sprays;
-    float share = wd_leaf_share(push.leaf_m * pose.across * push.pixels_per_radian / far_m);
+    bool twig = LISTED != 0u && wd_hash_unit(wd_hash2(index, wd_tree_random(tree))) < sprays;
+    float share = min(wd_leaf_share(push.leaf_m * pose.across * push.pixels_per_radian / far_m),
+                      push.leaf_most);
     bool thin = float(index) >= share * float(push.leaf_count);
     float grown = inversesqrt(share) * leaf_growth(model, share, sine);
     grown = thin ? 0.0 : grown;
@@ -65,7 +66,7 @@ void main()
         WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
     wd_model model = models[model_index];
     uint index = uint(gl_VertexIndex) >> mesh.corner_bits;
-    if (DETAIL != 0u)
+    if (LISTED != 0u)
         index = listed[index];
     uint at = uint(gl_VertexIndex) & ((1u << mesh.corner_bits) - 1u);
     wd_tree_leaf leaf = leaves[mesh.first_leaf + index];

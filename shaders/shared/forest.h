@@ -128,6 +128,7 @@ struct wd_tree_push {
     float spray_reach;       /* of wd_spray_share; 0: no leaf is drawn as a twig */
     float leaf_m;            /* length of the mesh's leaves, on sprigs of each */
     uint32_t leaf_count;     /* of them, in progressive order; 0: all are drawn at any distance */
+    float leaf_most;         /* share of them that is never drawn more */
 };
 
 /* Push constants of pipelines that draw meshes: those of all, then of wood the box of its vertices,

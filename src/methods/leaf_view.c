@@ -27,6 +27,7 @@ void wd_stand_place(const struct wd_stand *stand, struct wd_vec3 in_tree, float 
 struct reach {
     float size;      /* over the leaf's own, where all leaves stand */
     float px_m;      /* size in pixels of the mesh's leaves, times their distance */
+    float most;      /* share of them that is never drawn more */
     float bend_m;    /* way of the top in the wind */
     float flutter_m;
 };
@@ -49,6 +50,7 @@ static struct reach reach_of(const struct wd_tree_draw *draw, uint32_t tree,
         .px_m = range->leaf_count ? range->leaf_m * stand->pose.across *
                                         wd_leaf_pixels(forest, draw->view, draw->pass)
                                   : INFINITY,
+        .most = wd_leaf_most(forest, draw->view, draw->pass, index, WD_LEVEL_MESH),
         .bend_m = 0.1f * speed_mps * model->flexibility * WD_TREE_HEIGHT_M(*record) *
                   (1.0f + 1.5f * gust),
         .flutter_m = 0.006f * fminf(speed_mps, 12.0f),
@@ -70,7 +72,11 @@ uint32_t wd_leaves_in_view(const struct wd_tree_draw *draw, uint32_t tree,
 {
     const struct wd_forest_device *forest = draw->forest;
     const struct wd_tree *record = &forest->world->trees[tree];
-    const struct wd_twig_range *twigs = &forest->meshes.twigs[wd_forest_model_of(forest, record)];
+    uint32_t model = wd_forest_model_of(forest, record);
+    const struct wd_twig_range *twigs = &forest->meshes.twigs[model];
+    const struct wd_mesh_range *range = &forest->meshes.ranges[model][WD_LEVEL_MESH];
+    const uint32_t thinning = set == &range->sets[WD_SET_LEAVES] ? range->leaf_count : 0;
+    const float rounding = 1.01f;
     const struct wd_tree_leaf *leaves =
         forest->meshes.host_leaves + twigs->first_leaf + set->first_leaf;
     const struct wd_stand stand = wd_stand_of(draw, tree);
@@ -81,7 +87,9 @@ uint32_t wd_leaves_in_view(const struct wd_tree_draw *draw, uint32_t tree,
         float at[3];
         wd_stand_place(&stand, wd_leaf_foot(leaves[i], twigs->box), at);
         float far_m = sqrtf(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
-        float share = wd_leaf_share(reach.px_m / fmaxf(far_m, 1e-3f));
+        float share = fminf(wd_leaf_share(reach.px_m / fmaxf(far_m, 1e-3f)), reach.most);
+        if (thinning && (float)i > rounding * share * (float)thinning)
+            continue; /* as shaders/methods/tree_leaf.vert has it */
         float high = (at[2] - stand.foot[2]) / height_m;
         float size_m = reach.size * wd_leaf_size_m(leaves[i], twigs->box) / sqrtf(share);
         float reach_m = size_m + reach.flutter_m + reach.bend_m * high * high;

@@ -43,6 +43,22 @@ float wd_leaf_pixels(const struct wd_forest_device *forest, const struct wd_view
            (WD_LEAF_WHOLE_PX / least_px);
 }
 
+float wd_leaf_most(const struct wd_forest_device *forest, const struct wd_view *view,
+                   enum wd_tree_pass pass, uint32_t model, uint32_t level)
+{
+    const struct wd_mesh_range *range = &forest->meshes.ranges[model][level];
+    const struct wd_leaf_draw *leaves = &range->sets[WD_SET_LEAVES];
+    const float *seen_m2 = forest->host_models[model].seen_m2;
+    float triangles = (float)leaves->leaf_count * (float)leaves->index_count / 3.0f;
+    if (pass == WD_PASS_CAMERA || view->box.radius <= 0.0 || triangles <= 0.0f)
+        return 1.0f;
+    float texel_m = 2.0f * (float)view->box.radius / (float)view->width;
+    float covered_m2 =
+        wd_seen_m2(seen_m2[0], seen_m2[1], seen_m2[2], fmaxf((float)view->box.toward[2], 0.0f));
+    float share = 2.0f * covered_m2 / (texel_m * texel_m * triangles);
+    return fminf(fmaxf(share, WD_LEAF_LEAST_SHARE), 1.0f);
+}
+
 /* Shares of a nearer and a farther level about the distance where they change. */
 static void blend_levels(const struct wd_level_rule *rule, float from_m, float distance_m,
                          float *nearer, float *farther)
@@ -146,11 +162,12 @@ static enum wd_side tree_side(const struct wd_view *view, const struct wd_tree *
 
 /* How far the leaves of a tree's mesh thin out, seen from the place of its box that is nearest. */
 static uint32_t leaf_step(const struct wd_forest_device *forest, const struct wd_view *view,
-                          enum wd_tree_pass pass, const struct wd_mesh_range *range,
+                          enum wd_tree_pass pass, const struct wd_mesh_choice *choice,
                           uint32_t index, const float foot[3])
 {
     const struct wd_tree *tree = &forest->world->trees[index];
-    const struct wd_model *model = &forest->host_models[wd_forest_model_of(forest, tree)];
+    const struct wd_mesh_range *range = &forest->meshes.ranges[choice->model][choice->level];
+    const struct wd_model *model = &forest->host_models[choice->model];
     struct tree_box box = box_of(tree, foot);
     float squared = 0;
     for (int k = 0; k < 3; k++) {
@@ -158,8 +175,9 @@ static uint32_t leaf_step(const struct wd_forest_device *forest, const struct wd
         squared += outside * outside;
     }
     float leaf_m = range->leaf_m * WD_TREE_CROWN_M(*tree) / model->crown_m;
-    float share =
-        wd_leaf_share(leaf_m * wd_leaf_pixels(forest, view, pass) / fmaxf(sqrtf(squared), 0.01f));
+    float leaf_px = leaf_m * wd_leaf_pixels(forest, view, pass) / fmaxf(sqrtf(squared), 0.01f);
+    float share = fminf(wd_leaf_share(leaf_px),
+                        wd_leaf_most(forest, view, pass, choice->model, choice->level));
     uint32_t step = 0;
     for (; range->leaf_count && step < WD_LEAF_STEPS - 1 && share <= 0.5f; step++)
         share *= 2;
@@ -203,10 +221,9 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
     uint32_t model = wd_forest_model_of(forest, tree);
     for (uint32_t level = WD_LEVEL_MESH; level <= WD_LEVEL_REDUCED; level++) {
         if (levels.show[level] * fade > 0.0f) {
-            uint32_t step =
-                leaf_step(forest, view, rule->pass, &forest->meshes.ranges[model][level], index, foot);
-            wd_selection_add_mesh(selection, &(struct wd_mesh_choice){model, level, step}, index,
-                                  levels.show[level] * fade);
+            struct wd_mesh_choice choice = {model, level, 0};
+            choice.leaf_step = leaf_step(forest, view, rule->pass, &choice, index, foot);
+            wd_selection_add_mesh(selection, &choice, index, levels.show[level] * fade);
         }
     }
     /* the card's shader applies the fade itself: ranges need it too */

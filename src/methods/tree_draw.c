@@ -100,10 +100,11 @@ static bool init_leaves(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu,
 {
     const struct wd_spirv leaf = SPIRV(tree_leaf_vert);
     for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
-        if (!init_mesh(&pipelines->leaf[pass][falls], gpu, pass, leaf, 0, falls))
+        if (!init_mesh(&pipelines->leaf[pass][falls], gpu, pass, leaf, 0, falls) ||
+            !init_mesh(&pipelines->leaf_listed[pass][falls], gpu, pass, leaf, 1, falls))
             return false;
     }
-    return init_mesh(&pipelines->leaf_detail[falls], gpu, WD_PASS_CAMERA, leaf, 1, falls);
+    return true;
 }
 
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
@@ -123,7 +124,7 @@ bool wd_tree_pipelines_prepare(struct wd_tree_pipelines *pipelines, struct wd_gp
                                const struct wd_forest_device *forest, bool cards)
 {
     bool ok = true;
-    if (!pipelines->leaf_detail[1].pipeline && forest->falls)
+    if (!pipelines->leaf[WD_PASS_CAMERA][1].pipeline && forest->falls)
         ok = init_leaves(pipelines, gpu, 1);
     for (int pass = WD_PASS_CAMERA; ok && cards && pass <= WD_PASS_SHADOW; pass++)
         if (!pipelines->card_listed[pass].pipeline)
@@ -137,10 +138,11 @@ void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu
     wd_pipeline_finish(&pipelines->mesh_detail, gpu);
     wd_pipeline_finish(&pipelines->spray, gpu);
     for (int i = 0; i < 2; i++) {
-        wd_pipeline_finish(&pipelines->leaf_detail[i], gpu);
         wd_pipeline_finish(&pipelines->mesh[i], gpu);
-        wd_pipeline_finish(&pipelines->leaf[WD_PASS_CAMERA][i], gpu);
-        wd_pipeline_finish(&pipelines->leaf[WD_PASS_SHADOW][i], gpu);
+        for (int falls = 0; falls < 2; falls++) {
+            wd_pipeline_finish(&pipelines->leaf[i][falls], gpu);
+            wd_pipeline_finish(&pipelines->leaf_listed[i][falls], gpu);
+        }
         wd_pipeline_finish(&pipelines->card_range[i], gpu);
         wd_pipeline_finish(&pipelines->card_listed[i], gpu);
     }
@@ -231,23 +233,26 @@ static void bind_meshes(const struct meshes *meshes, const struct wd_pipeline *p
     wd_cmd_bind_indices_of(draw->cmd, &forest->meshes.indices, index_type);
 }
 
-static bool is_detailed(const struct meshes *meshes)
-{
-    return meshes->draw->pass == WD_PASS_CAMERA && meshes->batch->level == WD_LEVEL_MESH;
-}
-
 static const struct wd_pipeline *mesh_pipeline(const struct meshes *meshes)
 {
     const struct wd_tree_pipelines *pipelines = meshes->draw->pipelines;
-    return is_detailed(meshes) ? &pipelines->mesh_detail : &pipelines->mesh[meshes->draw->pass];
+    enum wd_tree_pass pass = meshes->draw->pass;
+    bool detailed = pass == WD_PASS_CAMERA && meshes->batch->level == WD_LEVEL_MESH;
+    return detailed ? &pipelines->mesh_detail : &pipelines->mesh[pass];
+}
+
+/* Full meshes have many leaves, of which few are in view or shade what is. */
+static bool lists_leaves(const struct meshes *meshes)
+{
+    return meshes->batch->level == WD_LEVEL_MESH;
 }
 
 static const struct wd_pipeline *leaf_pipeline(const struct meshes *meshes)
 {
     const struct wd_tree_draw *draw = meshes->draw;
     bool falls = draw->forest->host_models[meshes->batch->model].fall_mps > 0.0f;
-    return is_detailed(meshes) ? &draw->pipelines->leaf_detail[falls]
-                               : &draw->pipelines->leaf[draw->pass][falls];
+    return lists_leaves(meshes) ? &draw->pipelines->leaf_listed[draw->pass][falls]
+                                : &draw->pipelines->leaf[draw->pass][falls];
 }
 
 /* Triangles: of grown trees their wood, of imported ones all, or with `wood` their wood alone. */
@@ -291,6 +296,8 @@ static struct wd_mesh_push leaf_push(const struct meshes *meshes, const struct w
     }
     if (meshes->batch->level == WD_LEVEL_MESH)
         push.tree.spray_reach = meshes->spray_scale * twig->reach;
+    push.tree.leaf_most = wd_leaf_most(draw->forest, draw->view, draw->pass, meshes->batch->model,
+                                       meshes->batch->level);
     push.tree.leaf_m = meshes->range->leaf_m;
     push.tree.leaf_count = meshes->range->leaf_count;
     return push;
@@ -324,7 +331,8 @@ static uint32_t list_leaves(const struct meshes *meshes, uint32_t tree,
     return count;
 }
 
-/* Those in view, tree by tree: most of what stands near by lies beside the picture or above it. */
+/* Those in view, or that shade what is, tree by tree: most of what stands near by lies beside the picture
+ * or above it. */
 static void draw_seen_leaves(const struct meshes *meshes, int kind, uint32_t count)
 {
     uint32_t *list = wd_alloc_array(count, sizeof *list);
@@ -348,7 +356,7 @@ static void draw_seen_leaves(const struct meshes *meshes, int kind, uint32_t cou
 
 static void draw_set(const struct meshes *meshes, int kind, uint32_t count)
 {
-    if (count && is_detailed(meshes))
+    if (count && lists_leaves(meshes))
         draw_seen_leaves(meshes, kind, count);
     else if (count)
         draw_leaves(meshes, kind, count);

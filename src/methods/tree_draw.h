@@ -14,7 +14,8 @@ struct wd_tree_pipelines {
     /* [WD_PASS_CAMERA, WD_PASS_SHADOW] */
     struct wd_pipeline mesh[2];
     struct wd_pipeline mesh_detail; /* full meshes for the camera */
-    struct wd_pipeline leaf[2][2], leaf_detail[2]; /* by whether they hang or fall */
+    struct wd_pipeline leaf[2][2], leaf_listed[2][2]; /* by whether they hang or fall; of full meshes
+                                                         those that the view may show */
     struct wd_pipeline spray;       /* leaves close by as twigs */
     struct wd_pipeline card_range[2], card_listed[2];
 };

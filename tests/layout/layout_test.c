@@ -49,7 +49,7 @@ static const struct member members[] = {
     M(wd_tree_push, variants), M(wd_tree_push, cascade), M(wd_tree_push, level),
     M(wd_tree_push, show), M(wd_tree_push, pixels_per_radian),
     M(wd_tree_push, card_vertices), M(wd_tree_push, spray_reach),
-    M(wd_tree_push, leaf_m), M(wd_tree_push, leaf_count),
+    M(wd_tree_push, leaf_m), M(wd_tree_push, leaf_count), M(wd_tree_push, leaf_most),
     M(wd_spray_instance, tree), M(wd_spray_instance, leaf),
     M(wd_tree_leaf, xy), M(wd_tree_leaf, z_size), M(wd_tree_leaf, turn),
     M(wd_tree_leaf, shading), M(wd_tree_leaf, tint),
