@@ -43,6 +43,10 @@ float wd_leaf_pixels(const struct wd_forest_device *forest, const struct wd_view
            (WD_LEAF_WHOLE_PX / least_px);
 }
 
+/* Of leaves in a shadow map. Fewer are coarser than what the camera sees: with 2 an understory is as with
+ * discs, with 8 its FLIP is 0.02 less, nearly as with all. */
+static const float TRIANGLES_A_TEXEL = 8.0f;
+
 float wd_leaf_most(const struct wd_forest_device *forest, const struct wd_view *view,
                    enum wd_tree_pass pass, uint32_t model, uint32_t level)
 {
@@ -55,7 +59,7 @@ float wd_leaf_most(const struct wd_forest_device *forest, const struct wd_view *
     float texel_m = 2.0f * (float)view->box.radius / (float)view->width;
     float covered_m2 =
         wd_seen_m2(seen_m2[0], seen_m2[1], seen_m2[2], fmaxf((float)view->box.toward[2], 0.0f));
-    float share = 2.0f * covered_m2 / (texel_m * texel_m * triangles);
+    float share = TRIANGLES_A_TEXEL * covered_m2 / (texel_m * texel_m * triangles);
     return fminf(fmaxf(share, WD_LEAF_LEAST_SHARE), 1.0f);
 }
 
