@@ -89,7 +89,8 @@ void draw_blocks(uint shot_index, uint triangle, raster r, int from, int step)
     float farthest = max(min(r.a.z, min(r.b.z, r.c.z)), 1e-6);
     int stride = int(push.width * push.samples);
     int picture = int(shot_index) * stride * int(push.height * push.samples);
-    int columns = clamp(r.last.x - r.first.x + 1, 1, 32), rows = int(32.0 / float(columns));
+    int columns = clamp(r.last.x - r.first.x + 1, 1, 32);
+    int rows = int(32.5 / float(columns)); /* as 32 / columns; but quotients may be a bit too small */
     float row_of_bit = 1.0 / float(columns);
     bake_look look;
     if (CUT_OUT != 0u)

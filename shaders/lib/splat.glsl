@@ -19,7 +19,8 @@ uvec3 splat_wood_at(usamplerBuffer table, uint first, uint triangle)
     const uint mask = (1u << WD_WOOD_BITS) - 1u;
     uvec4 texel = texelFetch(table, int(first + triangle / WD_WOOD_TRIANGLES));
     uvec2 bits = triangle % WD_WOOD_TRIANGLES == 0u ? texel.xy : texel.zw;
-    return first - (uvec3(bits.x, bits.x >> 21 | bits.y << 11, bits.y >> 10) & mask);
+    return first - (uvec3(bits.x, bits.x >> WD_WOOD_BITS | bits.y << (32u - WD_WOOD_BITS),
+                          bits.y >> (2u * WD_WOOD_BITS - 32u)) & mask);
 }
 
 wd_splat_item splat_item_at(usamplerBuffer table, uint index)

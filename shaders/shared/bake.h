@@ -21,6 +21,9 @@ WD_STATIC_ASSERT_SIZE(wd_bake_shot, 48);
 /* Up to so many texels a triangle looks alike all over. */
 #define WD_BAKE_FLAT_TEXELS 2.0
 
+/* Samples of a texel along each side: of large triangles they are bits of two words. */
+#define WD_BAKE_SAMPLES_MAX 8
+
 /* Push constants of the baking shaders. */
 struct wd_bake_push {
     WD_STRUCT wd_bake_shot shot;

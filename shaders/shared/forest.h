@@ -128,7 +128,7 @@ struct wd_tree_push {
     float spray_reach;       /* of wd_spray_share; 0: no leaf is drawn as a twig */
     float leaf_m;            /* length of the mesh's leaves, on sprigs of each */
     uint32_t leaf_count;     /* of them, in progressive order; 0: all are drawn at any distance */
-    float leaf_most;         /* share of them that is never drawn more */
+    float leaf_most;         /* of wd_leaf_stand */
 };
 
 /* Push constants of pipelines that draw meshes: those of all, then of wood the box of its vertices,
@@ -161,6 +161,13 @@ WD_FUNC float wd_leaf_share(float leaf_px)
 {
     float t = leaf_px / WD_LEAF_WHOLE_PX, share = t * t;
     return share > 1.0f ? 1.0f : (share < WD_LEAF_LEAST_SHARE ? WD_LEAF_LEAST_SHARE : share);
+}
+
+/* The same, of which no more than `most` are ever drawn of a tree as wide as its model; this one is `across`
+ * times as wide. */
+WD_FUNC float wd_leaf_stand(float leaf_px, float most, float across)
+{
+    return WD_MIN(wd_leaf_share(leaf_px), WD_MAX(most * across * across, WD_LEAF_LEAST_SHARE));
 }
 
 #endif

@@ -28,7 +28,7 @@ static const uint32_t bake_flat_comp[] =
 enum {
     GROUP = 64, /* threads, in every shader */
     BATCH_SAMPLE_BYTES = 32 << 20,
-    BATCH_SHOTS = 16,
+    BATCH_SHOTS = 16, /* they share the list of large triangles */
 };
 
 static bool init_raster(struct wd_baker *baker, uint32_t form)
@@ -316,6 +316,7 @@ bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
     uint32_t most = (uint32_t)(BATCH_SAMPLE_BYTES / sample_bytes);
     most = most < 1 ? 1 : most > BATCH_SHOTS ? BATCH_SHOTS : most;
     most = most > job->shot_count ? job->shot_count : most;
+    assert(job->samples >= 1 && job->samples <= WD_BAKE_SAMPLES_MAX);
     assert(job->samples * (job->width > job->height ? job->width : job->height) <=
            WD_BAKE_SIDE_MAX);
     if (!init_pipelines(baker, job) || !grow_buffers(baker, job, most))

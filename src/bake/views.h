@@ -11,7 +11,7 @@ enum {
     WD_VIEW_SIZE_MIN = 8,
     WD_VIEW_SIZE_MAX = 256,
     WD_VIEW_SIZE = 64, /* texels a side where params say 0 */
-    WD_VIEW_SAMPLES_MAX = 8,
+    WD_VIEW_SAMPLES_MAX = WD_BAKE_SAMPLES_MAX,
 };
 
 /* {0} is valid: 181 evenly spread views of 64 x 64 texels, 4 x 4 samples a texel. */

@@ -15,7 +15,8 @@ static const double LENS_SHARE = 0.7;
 static const double SIZE_STEP = 1.1;
 /* Look-ups of what lies at a slice's edge. */
 static const double LOOK_MARGIN_M = 0.2;
-/* The first cascade is not calm where anything is seen from nearer than this: leaves move in the wind. */
+/* The first cascade is not calm where anything is seen from nearer than this, or through a longer lens from
+ * as many times farther: it holds single leaves then. */
 static const float LEAVES_M = 25.0f;
 /* Penumbras and the offsets of shadow look-ups reach this far. */
 static const float CASTER_MARGIN_M = 3.0f;
@@ -96,7 +97,7 @@ static void snap(struct wd_cascade_box *box, const struct wd_cascades_params *pa
 
 static bool is_calm(const struct wd_cascades_params *params, int cascade, double radius)
 {
-    bool leaves = cascade == 0 && params->nearest_m < LEAVES_M;
+    bool leaves = cascade == 0 && params->nearest_m < LEAVES_M * params->view->lod_scale;
     return params->calm_m > 0.0 && !leaves && 2.0 * radius / params->size >= params->calm_m;
 }
 

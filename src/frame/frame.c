@@ -178,7 +178,7 @@ static bool is_kept(const struct wd_kept_cascade *kept, const struct wd_method *
                     const struct wd_cascade_box *box)
 {
     const struct wd_cascade_box *old = &kept->box;
-    return kept->method == method && box->calm && box->radius == old->radius &&
+    return kept->method == method && box->calm && old->calm && box->radius == old->radius &&
            box->depth == old->depth && !memcmp(box->center, old->center, sizeof box->center) &&
            !memcmp(box->toward, old->toward, sizeof box->toward);
 }

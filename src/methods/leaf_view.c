@@ -27,7 +27,7 @@ void wd_stand_place(const struct wd_stand *stand, struct wd_vec3 in_tree, float 
 struct reach {
     float size;      /* over the leaf's own, where all leaves stand */
     float px_m;      /* size in pixels of the mesh's leaves, times their distance */
-    float most;      /* share of them that is never drawn more */
+    float most;      /* of wd_leaf_stand */
     float bend_m;    /* way of the top in the wind */
     float flutter_m;
 };
@@ -87,7 +87,7 @@ uint32_t wd_leaves_in_view(const struct wd_tree_draw *draw, uint32_t tree,
         float at[3];
         wd_stand_place(&stand, wd_leaf_foot(leaves[i], twigs->box), at);
         float far_m = sqrtf(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
-        float share = fminf(wd_leaf_share(reach.px_m / fmaxf(far_m, 1e-3f)), reach.most);
+        float share = wd_leaf_stand(reach.px_m / fmaxf(far_m, 1e-3f), reach.most, stand.pose.across);
         if (thinning && (float)i > rounding * share * (float)thinning)
             continue; /* as shaders/methods/tree_leaf.vert has it */
         float high = (at[2] - stand.foot[2]) / height_m;

@@ -55,12 +55,11 @@ float wd_leaf_most(const struct wd_forest_device *forest, const struct wd_view *
     const float *seen_m2 = forest->host_models[model].seen_m2;
     float triangles = (float)leaves->leaf_count * (float)leaves->index_count / 3.0f;
     if (pass == WD_PASS_CAMERA || view->box.radius <= 0.0 || triangles <= 0.0f)
-        return 1.0f;
+        return INFINITY;
     float texel_m = 2.0f * (float)view->box.radius / (float)view->width;
     float covered_m2 =
         wd_seen_m2(seen_m2[0], seen_m2[1], seen_m2[2], fmaxf((float)view->box.toward[2], 0.0f));
-    float share = TRIANGLES_A_TEXEL * covered_m2 / (texel_m * texel_m * triangles);
-    return fminf(fmaxf(share, WD_LEAF_LEAST_SHARE), 1.0f);
+    return TRIANGLES_A_TEXEL * covered_m2 / (texel_m * texel_m * triangles);
 }
 
 /* Shares of a nearer and a farther level about the distance where they change. */
@@ -178,10 +177,10 @@ static uint32_t leaf_step(const struct wd_forest_device *forest, const struct wd
         float outside = fmaxf(fmaxf(box.min[k], -box.max[k]), 0);
         squared += outside * outside;
     }
-    float leaf_m = range->leaf_m * WD_TREE_CROWN_M(*tree) / model->crown_m;
-    float leaf_px = leaf_m * wd_leaf_pixels(forest, view, pass) / fmaxf(sqrtf(squared), 0.01f);
-    float share = fminf(wd_leaf_share(leaf_px),
-                        wd_leaf_most(forest, view, pass, choice->model, choice->level));
+    float across = WD_TREE_CROWN_M(*tree) / model->crown_m, far_m = fmaxf(sqrtf(squared), 0.01f);
+    float share =
+        wd_leaf_stand(range->leaf_m * across * wd_leaf_pixels(forest, view, pass) / far_m,
+                      wd_leaf_most(forest, view, pass, choice->model, choice->level), across);
     uint32_t step = 0;
     for (; range->leaf_count && step < WD_LEAF_STEPS - 1 && share <= 0.5f; step++)
         share *= 2;

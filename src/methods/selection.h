@@ -29,8 +29,7 @@ struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
  * scene may want them longer or shorter than WD_LEAF_WHOLE_PX. */
 float wd_leaf_pixels(const struct wd_forest_device *forest, const struct wd_view *view,
                      enum wd_tree_pass pass);
-/* Share of a mesh's leaves that is never drawn more: a shadow map needs but some triangles of them for each
- * texel that the tree covers. */
+/* Of wd_leaf_stand: a shadow map needs but some triangles of leaves for each texel that the tree covers. */
 float wd_leaf_most(const struct wd_forest_device *forest, const struct wd_view *view,
                    enum wd_tree_pass pass, uint32_t model, uint32_t level);
 struct wd_levels wd_levels_at(const struct wd_level_rule *rule, float height_m, float distance_m);

@@ -124,7 +124,7 @@ bool wd_tree_pipelines_prepare(struct wd_tree_pipelines *pipelines, struct wd_gp
                                const struct wd_forest_device *forest, bool cards)
 {
     bool ok = true;
-    if (!pipelines->leaf[WD_PASS_CAMERA][1].pipeline && forest->falls)
+    if (!pipelines->leaf_listed[WD_PASS_SHADOW][1].pipeline && forest->falls)
         ok = init_leaves(pipelines, gpu, 1);
     for (int pass = WD_PASS_CAMERA; ok && cards && pass <= WD_PASS_SHADOW; pass++)
         if (!pipelines->card_listed[pass].pipeline)
@@ -241,10 +241,12 @@ static const struct wd_pipeline *mesh_pipeline(const struct meshes *meshes)
     return detailed ? &pipelines->mesh_detail : &pipelines->mesh[pass];
 }
 
-/* Full meshes have many leaves, of which few are in view or shade what is. */
+/* Full meshes have many leaves, of which few are in view or shade what is; those that fall are anywhere. */
 static bool lists_leaves(const struct meshes *meshes)
 {
-    return meshes->batch->level == WD_LEVEL_MESH;
+    const struct wd_tree_draw *draw = meshes->draw;
+    bool hang = draw->forest->host_models[meshes->batch->model].fall_mps <= 0.0f;
+    return meshes->batch->level == WD_LEVEL_MESH && (hang || draw->pass == WD_PASS_CAMERA);
 }
 
 static const struct wd_pipeline *leaf_pipeline(const struct meshes *meshes)

@@ -383,7 +383,7 @@ static inline void draw_views(struct drawing *drawing, struct wd_silhouette *cov
     }
 }
 
-static inline int batch_at(uint32_t first, uint32_t end)
+static inline int batch_count(uint32_t first, uint32_t end)
 {
     return (end - first) / 3 < BATCH ? (int)((end - first) / 3) : BATCH;
 }
@@ -395,7 +395,7 @@ void wd_silhouette_cover(struct wd_silhouette *views, int view_count,
     struct drawing drawing = {0};
     for (uint32_t i = first; i + 2 < end; i += 3 * BATCH)
         draw_views(&drawing, views, NULL, views, view_count, mesh, mesh->indices + i,
-                   batch_at(i, end));
+                   batch_count(i, end));
 }
 
 WD_FOUR_TWICE
@@ -408,7 +408,7 @@ void wd_silhouette_front(const struct wd_silhouette *views, int view_count,
         fronts[i] = -INFINITY;
     for (uint32_t i = 0; i + 2 < end; i += 3 * BATCH)
         draw_views(&drawing, NULL, fronts, views, view_count, mesh, mesh->indices + i,
-                   batch_at(i, end));
+                   batch_count(i, end));
 }
 
 WD_FOUR_TWICE
@@ -421,7 +421,7 @@ uint32_t wd_silhouette_reach(uint32_t *triangles, const struct wd_silhouette *vi
     const uint32_t end = mesh->index_count;
     uint32_t found = 0;
     for (uint32_t i = 0; i + 2 < end; i += 3 * BATCH) {
-        int reaching[BATCH + 3], count = batch_at(i, end);
+        int reaching[BATCH + 3], count = batch_count(i, end);
         load(&corners, mesh, mesh->indices + i, count);
         turn(&places, &corners, NULL, count);
         int reach = find_reaching(reaching, &places, &axes, count);
