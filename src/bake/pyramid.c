@@ -24,8 +24,7 @@ void wd_pyramid_init(struct wd_pyramid *pyramid, uint32_t width, uint32_t height
 {
     assert(mips >= 1 && mips <= WD_PYRAMID_MIPS);
     *pyramid = (struct wd_pyramid){.mips = mips};
-    for (int i = 0; i < 256; i++)
-        pyramid->linear[i] = wd_srgb_decode((uint8_t)i);
+    wd_srgb_table(pyramid->linear);
     for (uint32_t mip = 0; mip < mips; mip++) {
         struct wd_pyramid_level *level = &pyramid->levels[mip];
         *level = (struct wd_pyramid_level){halved(width, mip), halved(height, mip), NULL};

@@ -161,8 +161,7 @@ bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *
                      uint32_t species_count)
 {
     struct mip_rule rule = {.halve = halve_look};
-    for (int i = 0; i < 256; i++)
-        rule.linear[i] = wd_srgb_decode((uint8_t)i);
+    wd_srgb_table(rule.linear);
     return make_image(image, gpu, "looks", VK_FORMAT_R8G8B8A8_SRGB, species_count) &&
            upload_mips(image, gpu, rgba, &rule);
 }

@@ -11,14 +11,20 @@ static const VkFormat formats[WD_PLANES] = {
     VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM};
 static const char *const names[WD_PLANES] = {"albedo", "normal", "depth"};
 
-bool wd_forest_grow_model(struct wd_tree_model *grown, struct wd_forest_device *forest,
-                          uint32_t model, const struct wd_log *log)
+static bool get_model(struct wd_tree_model *grown, struct wd_forest_device *forest, uint32_t model,
+                      const struct wd_log *log, void (*add_leaves)(struct wd_tree_model *model))
 {
     uint64_t key;
     if (!wd_growth_get(grown, &key, &forest->cache, forest->scene, model, log))
         return false;
-    wd_tree_model_add_leaves(grown);
+    add_leaves(grown);
     return true;
+}
+
+bool wd_forest_grow_model(struct wd_tree_model *grown, struct wd_forest_device *forest,
+                          uint32_t model, const struct wd_log *log)
+{
+    return get_model(grown, forest, model, log, wd_tree_model_add_leaves);
 }
 
 static bool upload_words(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
@@ -32,11 +38,7 @@ static bool upload_words(struct wd_buffer *buffer, struct wd_gpu *gpu, const cha
 static bool grow_mesh(struct wd_tree_model *grown, struct wd_forest_device *forest, uint32_t model,
                       const struct wd_log *log)
 {
-    uint64_t key;
-    if (!wd_growth_get(grown, &key, &forest->cache, forest->scene, model, log))
-        return false;
-    wd_tree_model_add_leaves_by_place(grown);
-    return true;
+    return get_model(grown, forest, model, log, wd_tree_model_add_leaves_by_place);
 }
 
 /* And on the device: made for one bake. */

@@ -86,8 +86,7 @@ static void add_children(struct wd_octant_look *looks, const struct wd_octree *o
                          enum wd_octant_average average)
 {
     float linear[256];
-    for (int i = 0; i < 256; i++)
-        linear[i] = wd_srgb_decode((uint8_t)i);
+    wd_srgb_table(linear);
     for (uint32_t i = octree->count; i-- > 0;) {
         const struct wd_octant *octant = &octree->octants[i];
         const struct wd_octant_look *parts[8] = {NULL};

@@ -125,8 +125,7 @@ bool wd_octant_pictures_init(struct wd_octant_pictures *p, struct wd_gpu *gpu,
     p->columns = ATLAS_PIXELS / (p->cells * p->pixels);
     p->albedo_bytes = wd_alloc((size_t)4 * ATLAS_PIXELS * ATLAS_PIXELS);
     p->normal_bytes = wd_alloc((size_t)4 * ATLAS_PIXELS * ATLAS_PIXELS);
-    for (int i = 0; i < 256; i++)
-        p->linear[i] = wd_srgb_decode((uint8_t)i);
+    wd_srgb_table(p->linear);
     bool ok = wd_frames_init(&p->frames, gpu) && init_pipeline(&p->pipeline, gpu) &&
               init_atlas(p) && wd_forest_make_cards(forest, gpu) &&
               wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, planes, WD_CARD_DEPTH_ALL);

@@ -13,18 +13,12 @@ static unsigned distance(uint8_t a, uint8_t b)
     return a > b ? (unsigned)(a - b) : (unsigned)(b - a);
 }
 
-static void fill_linear(float linear[256])
-{
-    for (int i = 0; i < 256; i++)
-        linear[i] = wd_srgb_decode((uint8_t)i);
-}
-
 void wd_image_block_means(const uint8_t *rgb, uint32_t width, uint32_t height, uint32_t block,
                           float *means)
 {
     uint32_t columns = (width + block - 1) / block, rows = (height + block - 1) / block;
     float linear[256];
-    fill_linear(linear);
+    wd_srgb_table(linear);
     double *sums = wd_alloc_array((size_t)columns * rows * 3, sizeof *sums);
     for (uint32_t y = 0; y < height; y++) {
         double *row = sums + (size_t)(y / block) * columns * 3;
@@ -76,7 +70,7 @@ struct wd_image_difference wd_image_compare(const uint8_t *a, const uint8_t *b, 
     if (pixels == 0)
         return difference;
     float linear[256];
-    fill_linear(linear);
+    wd_srgb_table(linear);
     double squares = 0;
     uint64_t sum = 0, different = 0;
     for (size_t i = 0; i < pixels; i++) {

@@ -1,6 +1,7 @@
 #include "planted.h"
 
 #include "bake/splats.h"
+#include "forest/model_bakes.h"
 
 /* What a forest's models hold on the device: meshes, leaves and cards. */
 static size_t model_bytes(const struct wd_forest_device *forest)
@@ -8,7 +9,8 @@ static size_t model_bytes(const struct wd_forest_device *forest)
     const struct wd_forest_meshes *meshes = &forest->meshes;
     return meshes->vertices.memory_size + meshes->indices.memory_size +
            meshes->leaves.memory_size + meshes->corners.memory_size +
-           forest->card_albedo.memory_size + forest->card_normal.memory_size;
+           forest->card_albedo.memory_size + forest->card_normal.memory_size +
+           forest->card_leaf.memory_size;
 }
 
 /* What `continuum` adds for a model. */
@@ -23,15 +25,17 @@ static void an_oaks_levels_are_small(void **state)
 {
     struct planted planted;
     planted_init(&planted, *state, "tests/forest/one.json", NULL);
+    assert_true(wd_forest_make_cards(&planted.forest, &planted.test->gpu));
     const struct wd_twig_range *leaves = &planted.forest.meshes.twigs[0];
     size_t bytes = model_bytes(&planted.forest) + splat_bytes();
     print_message("oak of %u leaves: %.2f MB, of which cards %.2f, splats %.2f\n",
                   leaves->leaf_count, 1e-6 * (double)bytes,
                   1e-6 * (double)(planted.forest.card_albedo.memory_size +
-                                  planted.forest.card_normal.memory_size),
+                                  planted.forest.card_normal.memory_size +
+                                  planted.forest.card_leaf.memory_size),
                   1e-6 * (double)splat_bytes());
     assert_in_range(leaves->leaf_count, 15000, 25000);
-    assert_true(bytes <= 4000000);
+    assert_true(bytes <= 2800000);
     /* a leaf is its record, whatever its form */
     assert_true(planted.forest.meshes.leaves.memory_size <= 20 * leaves->leaf_count + 4096);
     planted_finish(&planted);
@@ -41,10 +45,11 @@ static void trees_of_several_species_share_little_memory(void **state)
 {
     struct planted planted;
     planted_init(&planted, *state, "tests/forest/five.json", NULL);
+    assert_true(wd_forest_make_cards(&planted.forest, &planted.test->gpu));
     assert_int_equal(planted.forest.model_count, 10);
     size_t each = model_bytes(&planted.forest) / planted.forest.model_count;
     print_message("%.2f MB a tree\n", 1e-6 * (double)each);
-    assert_true(each <= 1700000);
+    assert_true(each <= 1200000);
     /* nothing that only served to make them is left */
     size_t all = planted.test->gpu.bytes_allocated;
     size_t looks = planted.forest.looks.memory_size + planted.forest.look_details.memory_size;

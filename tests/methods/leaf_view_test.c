@@ -141,11 +141,54 @@ static void the_rest_of_the_crown_is_not(void **state)
     fixture_finish(&f);
 }
 
+/* A shadow map of coarse texels has a part of the leaves: those that shaders/methods/tree_leaf.vert lets
+ * stand, and hardly more. */
+static void shadow_maps_have_no_more_leaves_than_they_show(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_init(&f);
+    struct wd_mesh_range *range = &f.ranges[0][0];
+    uint32_t count = range->sets[WD_SET_LEAVES].leaf_count, standing = 0, at = 0;
+    range->sets[WD_SET_LEAVES].index_count = f.grown.sets[0][WD_SET_LEAVES].index_count;
+    range->leaf_count = count;
+    range->leaf_m = 0.1f;
+    for (int k = 0; k < 3; k++)
+        f.model.seen_m2[k] = 20;
+    look(&f, 0, 1.2);
+    f.draw.pass = WD_PASS_SHADOW;
+    f.view.box.radius = 0.12 * f.view.width;
+    f.view.box.toward[2] = 1;
+    f.listed = wd_leaves_in_view(&f.draw, 0, &range->sets[WD_SET_LEAVES], count, f.list);
+    const struct wd_stand stand = wd_stand_of(&f.draw, 0);
+    float pixels = wd_leaf_pixels(&f.forest, &f.view, WD_PASS_SHADOW);
+    float most = wd_leaf_most(&f.forest, &f.view, WD_PASS_SHADOW, 0, WD_LEVEL_MESH);
+    assert_true(most > 0.02f && most < 0.5f);
+    for (uint32_t i = 0; i < count; i++) {
+        float place[3];
+        wd_stand_place(&stand, wd_leaf_foot(f.grown.leaves[i], f.twigs.box), place);
+        float far_m = sqrtf(place[0] * place[0] + place[1] * place[1] + place[2] * place[2]);
+        float px = range->leaf_m * stand.pose.across * pixels / far_m;
+        bool stands = (float)i < wd_leaf_stand(px, most, stand.pose.across) * (float)count;
+        bool listed = at < f.listed && f.list[at] == i;
+        at += listed;
+        standing += stands;
+        assert_true(listed || !stands || !leaf_shows(&f, i));
+    }
+    print_message("%u leaves, %u stand, %u listed\n", count, standing, f.listed);
+    assert_true(standing > 100 && f.listed < standing + standing / 20 + 8);
+    f.view.box.radius *= 2;
+    uint32_t fewer = wd_leaves_in_view(&f.draw, 0, &range->sets[WD_SET_LEAVES], count, f.list);
+    assert_in_range(fewer, f.listed / 5, f.listed / 3);
+    fixture_finish(&f);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_leaf_that_shows_is_listed_once),
         cmocka_unit_test(the_rest_of_the_crown_is_not),
+        cmocka_unit_test(shadow_maps_have_no_more_leaves_than_they_show),
     };
     if (argc != 2)
         return 2;
