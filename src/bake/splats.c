@@ -278,7 +278,7 @@ static void fill_wood_triangles(struct wd_splats *splats, const struct wd_tree_m
 static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
                       const struct sized *order)
 {
-    const uint32_t most = (1u << WD_WOOD_BITS) / 3 - 1;
+    const uint32_t most = (1u << WD_WOOD_BITS) / 3 - 1; /* that can be named; what shows least goes */
     uint32_t count = mesh->wood_index_count / 3, first = first_triangles(count);
     splats->model.wood_count = count < most ? count : most;
     splats->wood = wd_alloc_array(splats->model.wood_count, sizeof *splats->wood);

@@ -31,7 +31,8 @@ void wd_continuum_view_again(struct wd_splat_view *values);
 float wd_continuum_detail(const struct wd_tree_draw *draw);
 /* Of a cascade: texels that a metre spans. */
 float wd_texels_per_m(const struct wd_view *view);
-/* Where trees are meshes: none in cascades, nor where they are on demand and not known here. */
+/* Where trees are meshes: in cascades but the first, or in that while it is calm, none are, nor where they are
+ * on demand and not known here. */
 struct wd_near_rule wd_continuum_near_rule(const struct wd_tree_draw *draw,
                                            const struct wd_continuum_forest *forest);
 /* Floats of the depth pyramid; `first`: of each level. */
