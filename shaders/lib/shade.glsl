@@ -597,7 +597,7 @@ float sward_tufts_lit()
  * free the model's own table says how much of that on all of it goes to this eye: of a cloud of leaves
  * (cards, and meshes of few that stand for many), or of leaves that are lit one by one. */
 wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float free, vec2 sunlit,
-                    uint cascade)
+                    float hot, uint cascade)
 {
     bool card = pixel.material == WD_MATERIAL_CARD;
     bool disc = pixel.lit >= 0.0 && pixel.lit < 1.0;
@@ -630,6 +630,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
     place.sheet = fine > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
     light_disc(place, pixel, crown, model, cascade);
+    place.own *= disc ? mix(1.0, hot, free) : 1.0; /* what discs know comes of such pictures, too */
     return place;
 }
 
@@ -656,7 +657,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         wd_crown crown = crown_of(tree, model);
         alone = crown_alone(crown, pixel.openness, skylit, shelter, pixel.rel.z - crown.foot_z);
         if (pixel.material >= WD_MATERIAL_LEAF)
-            place = leaf_place(pixel, crown, model, alone.share, sunlit, cascade);
+            place = leaf_place(pixel, crown, model, alone.share, sunlit, mixed.hot, cascade);
         else
             place = wood_place(pixel, crown, model.sun_curve, alone.share, sunlit.y, cascade);
         facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction),
