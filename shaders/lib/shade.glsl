@@ -250,7 +250,7 @@ struct wd_sunlit_mix {
 };
 
 /* The eye sees past a leaf's edge what the sun reaches past it, if both come nearly the same way: more than
- * the table's pictures tell, whose pixels are as wide as leaves. By path-traced rows of eight species under
+ * the table's pictures tell, whose pixels are as wide as leaves. By path-traced rows of six species under
  * suns 0 to 60 degrees from the eye. */
 float hot_spot(float cosine)
 {
