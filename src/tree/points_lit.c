@@ -1,4 +1,5 @@
 /* Which ways over the sky a tree itself leaves open at points of its surface. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,8 +10,9 @@
 
 enum { TOGETHER = 8 }; /* pictures */
 
-/* Leaves are no plane all through, nor is bark. */
-static const float CLEAR_M = 0.02f, MOST_TILT = 6.0f;
+/* Leaves are no plane all through, nor is bark: so far before it nothing hides a point; small plants have small
+ * leaves. */
+static const float CLEAR_M = 0.02f, CLEAR_PX = 0.3f, MOST_TILT = 6.0f;
 
 struct four_points {
     struct wd_four_vec3 place, face;
@@ -63,9 +65,10 @@ static inline wd_four_ints are_lit(const struct four_points *points, const struc
     wd_four_ints column = wd_four_truncate(x), row = wd_four_truncate(y);
     wd_four_ints at = (row & framed) * WD_SILHOUETTE + (column & framed);
     wd_four right = wd_four_convert(column) + 0.5f - x, up = wd_four_convert(row) + 0.5f - y;
+    float clear_m = fminf(CLEAR_M, CLEAR_PX / picture->frame->scale);
     const float *front = picture->front;
     wd_four nearest = {front[at[0]], front[at[1]], front[at[2]], front[at[3]]};
-    wd_four most = toward + nearer_m(picture->frame, &points->face, right, up) + CLEAR_M;
+    wd_four most = toward + nearer_m(picture->frame, &points->face, right, up) + clear_m;
     wd_four_ints behind = points->one_sided &
                           (wd_four_dot(&points->face, picture->frame->toward) <= none);
     /* what is not framed, corners of a box, has little of a crown before it */
