@@ -112,6 +112,20 @@ struct wd_around {
     vec3 mirrored; /* of a surface that looks along `mirror` */
 };
 
+/* The sky about the sun lies wide beside stems and far crowns, whose shadows it fills, but is hidden by the
+ * leaves close to a leaf that hide the sun: how far. Of a hill that hides the sun it is in part above. */
+const float NEAR_SUN = 0.7, OVER_HILLS = 0.6;
+
+/* Ways past a stand to the sky about the sun, which lies somewhat higher than a low sun, over the mean way of the
+ * sky's light, times their sine. */
+const float WIDE_WAY = 0.8;
+
+/* The sun's own and that of the sky about it, on a surface that faces it. */
+vec3 sunlight()
+{
+    return frame.sun_irradiance + frame.circumsolar;
+}
+
 /* Irradiance of level ground that has these shares of the sky's quarters. */
 vec3 sky_level(vec4 through)
 {
@@ -151,10 +165,15 @@ struct wd_alone {
 
 const wd_alone NOT_ALONE = wd_alone(0.0, vec4(0.0), vec4(0.0), vec3(0.0));
 
+/* Of the ways past a stand to what a leaf of it mirrors, by how many leaves longer than the mean way of the
+ * sky's light: 0.67 by chance, less for leaves that an eye sees through a gap. By path-traced stands under a high
+ * sun and at dawn. */
+const float ALONG = 0.5;
+
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
  * unit, where a ray of the eye goes on to from one leaf. `past_trees`: the sun's share at the place. */
 wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float ground_share, float past_trees,
-                       wd_alone alone)
+                       wd_alone alone, float eye_z)
 {
     vec3 n = facing.xyz, s = frame.leaf_scatter;
     /* Slanting rays meet more of the stand's leaves, and of the tree's own (below). */
@@ -163,12 +182,14 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 even = mix(SKY_EVEN(frame.sky_form, n), SKY_EVEN(frame.sky_under, n), deep)
                 + frame.sky_form[6] * facing.w;
     vec4 through = exp2(frame.sky_slant * log2(shelter.through));
-    vec3 reach = sky_level(through) / max(frame.sky_irradiance, vec3(1e-12))
+    vec3 open_sky = sky_level(vec4(1.0));
+    vec3 reach = sky_level(through) / max(open_sky, vec3(1e-12))
                  * mix(vec3(1.0), frame.sky_under_tint, deep);
     float mean = dot(shelter.through, vec4(0.25));
-    /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer. */
+    /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer. What an eye
+     * over the stand sees of upright faces looks out of a gap. */
     float own = min(mean * exp2(-shelter.under), 1.0), own4 = own * own * own * own;
-    float upright = 0.40 + 0.45 * own + 0.15 * own4;
+    float upright = mix(0.40 + 0.45 * own + 0.15 * own4, 1.0, smoothstep(0.15, 0.5, eye_z));
     vec3 gain = exp2((s - 1.0) * log2(mean)), sky = reach * gain * mix(upright, 1.0, abs(n.z));
     /* Half of what would reach it by being scattered has left by the crown's sides. */
     vec3 own_gain = 0.5 + 0.5 * gain;
@@ -181,7 +202,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     float rise = max(frame.sun_direction.z, 0.0);
     float longer = 0.67 / max(rise, 0.05);
     float beam = exp2(longer * log2(dot(frame.sunward, shelter.through)));
-    vec3 sun = frame.sun_irradiance * (rise * ground_share);
+    vec3 sun = sunlight() * (rise * ground_share);
     vec3 diffuse = exp2(s * log2(mean));
     vec3 between = (sqrt(diffuse * beam) * 2.0 + 0.5 * (diffuse + beam)) * (1.0 / 3.0);
     vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
@@ -190,21 +211,22 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 floor_albedo = mix(frame.grass, frame.litter, covered);
     vec3 below = mix((1.0 - s) / (1.0 + s), floor_albedo,
                      exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
-    vec3 upward = below * (frame.sky_irradiance * sky + with_scattered) * shelter.floor_open;
+    vec3 upward = below * (open_sky * sky + with_scattered) * shelter.floor_open;
     vec3 beside = floor_albedo * (sky_level(alone.beside) + sun) * shelter.floor_open;
     vec3 upward_front = mix(upward, beside * alone.lets.z, alone.share);
     vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
     float up = 0.5 + 0.5 * n.z;
     wd_around around;
-    around.front = max(even + odd, vec3(0.0)) * sky_front + mix(scattered * up, alone.scattered, alone.share);
+    vec3 again = alone.scattered * mix(mean, 1.0, alone.share); /* in a stand, `scattered` has deeper ones' */
+    around.front = max(even + odd, vec3(0.0)) * sky_front + scattered * (up * (1.0 - alone.share)) + again;
     around.back = max(even - odd, vec3(0.0)) * sky_back
-                  + mix(scattered * (1.0 - up), alone.scattered, alone.share);
+                  + scattered * ((1.0 - up) * (1.0 - alone.share)) + again;
     around.front += upward_front * (1.0 - up);
     around.back += upward_back * up;
     float up_mirror = 0.5 + 0.5 * mirror.z;
     vec3 ahead = mix(SKY_LEVELS(frame.sky_form, mirror), SKY_LEVELS(frame.sky_under, mirror), deep);
-    vec3 along = exp2(s * (log2(mean) * 0.67 / max(mirror.z, 0.05))); /* past the stand, that way */
-    around.mirrored = max(ahead, vec3(0.0)) * mix(min(along, sky_front), sky_front, alone.share)
+    vec3 along = exp2(s * (log2(mean) * ALONG / max(mirror.z, 0.05))); /* past the stand, that way */
+    around.mirrored = max(ahead, vec3(0.0)) * mix(along, sky_front, alone.share)
                       + mix(upward_front, scattered, up_mirror);
     return around;
 }
@@ -344,6 +366,17 @@ vec2 leaf_blade(vec3 facing, vec3 eye, float plain)
  * less. Leaves of every direction mirror pi / 8 of it to any side. Only upper sides shine. */
 const float WAX = 0.028;
 
+/* The flatter wax is looked at, the more it mirrors (Schlick 1994) and the less comes out through it of the
+ * light from within: 1 - WAX times this. */
+float grazing(float cosine)
+{
+    float rest = 1.0 - cosine, rest2 = rest * rest;
+    return rest2 * rest2 * rest;
+}
+
+/* Its mean over leaves of every direction, by how much of them is seen. */
+const float WAX_CLOUD = 1.0 / 21.0;
+
 /* What a leaf's wax mirrors of the sun, relative to a lit wall: Blinn and Phong's lobe with the
  * normal reflection of wax (0.04), as wide as GGX of this roughness. Far off, leaves of every
  * direction share a pixel and the lobe widens; no leaf is flat enough for less than 0.42. */
@@ -360,8 +393,7 @@ float leaf_gloss(wd_pixel pixel, float roughness, float near)
  * angle to it has this cosine: most of what is ahead. */
 float wax_ahead(float cosine)
 {
-    float rest = 1.0 - sqrt(max(0.5 + 0.5 * cosine, 0.0)), rest2 = rest * rest;
-    return (1.0 - WAX) * rest2 * rest2 * rest;
+    return (1.0 - WAX) * grazing(sqrt(max(0.5 + 0.5 * cosine, 0.0)));
 }
 
 /* Light of a layer's leaves whose way up through others is `over` times the mean way to the next one:
@@ -398,6 +430,7 @@ struct wd_place {
     float coat;         /* share of light from everywhere that wax mirrors: of one leaf, light about the
                            mirrored ray; of many, light that falls on them */
     float waxed;        /* share of upper sides among leaves seen */
+    float body;         /* share of the light from within that their wax lets out toward the eye */
     float sward;        /* 1: a blade in a sward, */
     float over;         /* under so many layers of others */
 };
@@ -416,6 +449,7 @@ wd_place ground_place(wd_pixel pixel)
     place.gloss = 0.0;
     place.coat = 0.0;
     place.waxed = 0.0;
+    place.body = 1.0;
     place.sward = 0.0;
     place.over = 0.0;
     return place;
@@ -523,8 +557,7 @@ float leaf_coat(vec3 normal, vec3 eye, float roughness)
     vec3 half_way = normalize(eye + frame.sun_direction);
     float alpha = roughness * roughness, alpha2 = alpha * alpha, along = dot(normal, half_way);
     float spread = along * along * (alpha2 - 1.0) + 1.0;
-    float rest = 1.0 - max(dot(half_way, eye), 0.0), rest2 = rest * rest;
-    float mirrored = WAX + (1.0 - WAX) * rest2 * rest2 * rest;
+    float mirrored = WAX + (1.0 - WAX) * grazing(max(dot(half_way, eye), 0.0));
     float open = 1.0 + ggx_hidden(toward_eye, alpha2) + ggx_hidden(lit, alpha2);
     return lit <= 0.0 ? 0.0 : mirrored * alpha2 / (spread * spread * open * 4.0 * toward_eye);
 }
@@ -537,6 +570,10 @@ float leaf_coat_around(float toward_eye, float roughness)
     float flat_on = min(r.x * r.x, exp2(-9.28 * toward_eye)) * r.x + r.y;
     return WAX * (r.z - 1.04 * flat_on) + max(1.04 * flat_on + r.w, 0.0);
 }
+
+/* How much of a disc's shade the map is left to tell: its look-up leaves out the leaves next to the place. By
+ * path-traced stands of oaks, from within and from above. */
+const float MAP_TELLS = 0.5;
 
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
  * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
@@ -554,8 +591,9 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint casca
     float texel_m = of_cascade(frame.cascade_texel_m, min(cascade, 3u));
     float discs = 0.6 * crown.radii_m.x * tall_m / (pixel_m * pixel_m); /* about as many */
     float known = wd_disc_close(discs) * map_holds_leaves(cascade, 1.0);
-    float ahead_m = (cascade == 0u ? 0.0 : place.ahead_m) + 0.5 + texel_m; /* its own tree is in `lit` */
-    place.own = mix(pixel.lit, 1.0, known);
+    float tree_m = min(0.5, 0.5 * tall_m); /* its own tree is in `lit` */
+    float ahead_m = (cascade == 0u ? 0.0 : place.ahead_m) + tree_m + texel_m;
+    place.own = mix(pixel.lit, 1.0, known * mix(MAP_TELLS, 1.0, crown.sward));
     place.ahead_m = mix(ahead_m, pixel_m, known);
 }
 
@@ -570,6 +608,7 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     float cosine = dot(pixel.normal, frame.sun_direction);
     place.sides = vec2(max(cosine, 0.0), max(-cosine, 0.0));
     place.waxed = pixel.above;
+    place.body = 1.0 - pixel.above * (1.0 - crown.sward) * grazing(abs(dot(pixel.normal, pixel.direction)));
     place.gloss = leaf_coat(pixel.normal, -pixel.direction, abs(model.roughness)) * pixel.above;
     place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), abs(model.roughness));
 }
@@ -619,6 +658,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.sides = mix(mix(blades * sunlit_seen(eye, crown), sunlit, free), blades, mapped);
     place.transmittance = model.transmittance;
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
+    place.body = 1.0 - WAX_CLOUD * place.waxed * (1.0 - sward);
     place.sward = sward;
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
@@ -682,12 +722,14 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         past_trees = mix(past_trees, pow(stand, beam), out_of_maps);
     }
     sun_share = place.own * ground_share * past_trees;
-    vec3 transmitted = pixel.albedo * place.transmittance;
-    vec3 within = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
-    vec3 sunlit = within * place.sides.x + transmitted * place.sides.y + place.gloss;
+    vec3 transmitted = pixel.albedo * place.transmittance * place.body;
+    vec3 within = (pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo)) * place.body;
+    vec3 sunlit = within * place.sides.x + transmitted * place.sides.y;
     vec3 mirror = reflect(pixel.direction, pixel.normal);
-    alone.scattered = frame.sun_irradiance * sun_share * scattered_again(pixel.albedo + transmitted);
-    wd_around around = light_around(facing, mirror, shelter, ground_share, past_trees, alone);
+    alone.scattered = sunlight() * (pixel.surface == 0u ? 0.0 : sun_share)
+                      * scattered_again(pixel.albedo * (1.0 + place.transmittance));
+    wd_around around = light_around(facing, mirror, shelter, ground_share, past_trees, alone,
+                                    -pixel.direction.z);
     /* Upright ground is where the world is cut off: before it lies bright haze, as the path tracer has it. */
     if (pixel.surface == 0u && abs(pixel.normal.z) < 0.01)
         around.front += 0.5 * frame.sky_irradiance;
@@ -695,6 +737,10 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 sheen = mix(place.coat * (one_leaf ? around.mirrored : around.front),
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
     vec3 skylit = around.front * within + sheen * place.waxed + around.back * transmitted;
-    vec3 light = frame.sun_irradiance * sun_share * sunlit + skylit;
+    float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
+    float wide_way = pow(dot(frame.sunward, shelter.through), WIDE_WAY / (max(frame.sun_direction.z, 0.0) + 0.2));
+    float about_sun = mix(wide_way, leaf_way, pixel.surface == 0u ? 0.0 : NEAR_SUN);
+    vec3 light = sunlight() * (sun_share * place.gloss)
+                 + (frame.sun_irradiance * sun_share + frame.circumsolar * about_sun) * sunlit + skylit;
     return light * PER_PI;
 }

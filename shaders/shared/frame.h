@@ -51,6 +51,8 @@ struct wd_frame_uniforms {
     float sky_turbidity;
     WD_VEC3(sky_irradiance);         /* of the whole sky on level ground */
     float sky_strength;
+    WD_VEC3(circumsolar);            /* irradiance of the sky about the sun, beyond the rest's, on a surface
+                                        facing the sun */
     WD_VEC3(sky_glow);               /* radiance of haze at the horizon over its phase function */
     float near_m;
     WD_VEC3(sky_horizon);            /* radiance there without the glow */
@@ -71,12 +73,12 @@ struct wd_frame_uniforms {
     WD_VEC3(soil); float snow_line_m;
     WD_VEC3(rock); float tree_line_m;
     WD_VEC3(litter); float terrain_cell_m;
-    WD_VEC3(sky_form[9]);            /* the sky's irradiance as a polynomial in the normal: 1, x, y,
-                                        z, xy, yz, zz, xz, xx - yy */
+    WD_VEC3(sky_form[9]);            /* the sky's irradiance, but the circumsolar part, as a polynomial in the
+                                        normal: 1, x, y, z, xy, yz, zz, xz, xx - yy */
     WD_VEC3(sky_under[9]);           /* sky_form of what comes down below a closed forest, times so much
                                         that level ground has as much by either, */
     WD_VEC3(sky_under_tint);         /* and its colour: the share that comes down over that of green */
-    WD_VEC3(sky_quarters[4]);        /* sky_irradiance by where it comes from: E, N, W, S */
+    WD_VEC3(sky_quarters[4]);        /* the same light on level ground by where it comes from: E, N, W, S */
     WD_VEC4(sky_slant);              /* by quarters: how much more a layer of leaves dims that light
                                         than an even sky's, as a power */
     WD_VEC4(sunward);                /* shares of the quarters toward the sun's bearing */

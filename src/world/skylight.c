@@ -53,6 +53,41 @@ static void add_quarters(struct wd_frame_uniforms *frame, struct slants *slants,
     add_slants(slants, share, light[1] * d.z, d.z);
 }
 
+/* The sky about the sun is bright, a third of a clear sky's light: leaves and ground that the sun reaches have
+ * that as well, and shaded ones little of it. It counts whole so far from the sun, and not at all so far; what
+ * is brighter there than the sky farther off is meant. In degrees. */
+static const float NEAR_SUN_DEG = 15, OFF_SUN_DEG = 35, FAR_SUN_DEG = 55;
+
+struct about_sun {
+    struct wd_vec3 sun, rest; /* `rest`: radiance of the sky farther off */
+    float gate;               /* 0: there is no sun */
+};
+
+static float from_sun_deg(const struct about_sun *about, struct wd_vec3 d)
+{
+    return acosf(wd_clampf(wd_v3_dot(d, about->sun), -1, 1)) * (180 / PI);
+}
+
+/* What of a direction's radiance is circumsolar. */
+static struct wd_vec3 circumsolar(const struct about_sun *about, struct wd_vec3 d, struct wd_vec3 radiance)
+{
+    float x = wd_clampf((OFF_SUN_DEG - from_sun_deg(about, d)) / (OFF_SUN_DEG - NEAR_SUN_DEG), 0, 1);
+    float share = about->gate * x * x * (3 - 2 * x);
+    struct wd_vec3 more = wd_v3_sub(radiance, about->rest);
+    return wd_v3_scale(WD_V3(fmaxf(more.x, 0), fmaxf(more.y, 0), fmaxf(more.z, 0)), share);
+}
+
+/* As light from the sun's direction: as much on level ground, but of a very low sun, which lights that least. */
+static void add_circumsolar(struct wd_frame_uniforms *frame, const struct about_sun *about, struct wd_vec3 d,
+                            struct wd_vec3 light)
+{
+    const float level[3] = {light.x * d.z, light.y * d.z, light.z * d.z};
+    for (int k = 0; k < 3; k++) {
+        frame->sky_irradiance[k] += level[k];
+        frame->circumsolar[k] += level[k] / fmaxf(about->sun.z, 0.2f);
+    }
+}
+
 static void add_direction(struct wd_frame_uniforms *frame, struct slants *slants, struct wd_vec3 d,
                           struct wd_vec3 radiance, float solid_angle)
 {
@@ -105,7 +140,7 @@ static void settle_under(struct wd_frame_uniforms *frame, const float level[3])
         float here = on_level_ground(form, k), open = on_level_ground(frame->sky_form, k);
         for (int i = 0; i < FORMS && here > 0; i++)
             form[i][k] *= open / here;
-        share[k] = frame->sky_irradiance[k] > 0 ? level[k] / frame->sky_irradiance[k] : 1;
+        share[k] = open > 0 ? level[k] / open : 1;
     }
     for (int k = 0; k < 3; k++)
         frame->sky_under_tint[k] = share[1] > 0 ? share[k] / share[1] : 1;
@@ -129,18 +164,45 @@ struct wd_vec3 wd_skylight_direction(float ring, float bearing)
     return WD_V3(across * cosf(turn), across * sinf(turn), rise);
 }
 
+static struct wd_vec3 part_direction(int part)
+{
+    return wd_skylight_direction((float)(part / BEARINGS) + 0.5f, (float)(part % BEARINGS) + 0.5f);
+}
+
+static struct about_sun about_sun_of(const struct wd_frame_uniforms *frame, wd_skylight_radiance *radiance,
+                                     const void *user)
+{
+    struct about_sun about = {.sun = wd_v3_of(frame->sun_direction)};
+    float count = 0, up = wd_clampf(about.sun.z * 10, 0, 1);
+    for (int part = 0; part < RINGS * BEARINGS; part++) {
+        struct wd_vec3 d = part_direction(part);
+        float off_deg = from_sun_deg(&about, d);
+        if (off_deg < OFF_SUN_DEG || off_deg > FAR_SUN_DEG)
+            continue;
+        about.rest = wd_v3_add(about.rest, radiance(user, d));
+        count++;
+    }
+    about.rest = wd_v3_scale(about.rest, 1 / fmaxf(count, 1));
+    about.gate = frame->sun_irradiance[1] > 0 && count > 0 ? up : 0;
+    return about;
+}
+
 void wd_skylight_fill(struct wd_frame_uniforms *frame, wd_skylight_radiance *radiance,
                       const void *user)
 {
+    const float solid_angle = 2 * PI / (RINGS * BEARINGS);
     struct slants slants = {0};
+    struct about_sun about = about_sun_of(frame, radiance, user);
     memset(frame->sky_irradiance, 0, sizeof frame->sky_irradiance);
+    memset(frame->circumsolar, 0, sizeof frame->circumsolar);
     memset(frame->sky_form, 0, sizeof frame->sky_form);
     memset(frame->sky_under, 0, sizeof frame->sky_under);
     memset(frame->sky_quarters, 0, sizeof frame->sky_quarters);
     for (int part = 0; part < RINGS * BEARINGS; part++) {
-        float ring = (float)(part / BEARINGS) + 0.5f, bearing = (float)(part % BEARINGS) + 0.5f;
-        struct wd_vec3 d = wd_skylight_direction(ring, bearing);
-        add_direction(frame, &slants, d, radiance(user, d), 2 * PI / (RINGS * BEARINGS));
+        struct wd_vec3 d = part_direction(part);
+        struct wd_vec3 all = radiance(user, d), near_sun = circumsolar(&about, d, all);
+        add_circumsolar(frame, &about, d, wd_v3_scale(near_sun, solid_angle));
+        add_direction(frame, &slants, d, wd_v3_sub(all, near_sun), solid_angle);
     }
     float under[3]; /* the moment of rise is the irradiance of level ground */
     memcpy(under, frame->sky_under[3], sizeof under);

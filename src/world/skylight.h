@@ -16,8 +16,9 @@ struct wd_vec3 wd_skylight_direction(float ring, float bearing);
 /* Radiance of the sky toward a unit direction, without the sun's disc. */
 typedef struct wd_vec3 wd_skylight_radiance(const void *user, struct wd_vec3 direction);
 
-/* Fills sky_irradiance, sky_form, sky_quarters, sky_slant and sunward of `*frame` by the midpoint rule over the
- * parts of the upper hemisphere; nothing comes from below. sun_direction is already set. */
+/* Fills sky_irradiance, circumsolar, sky_form, sky_quarters, sky_slant and sunward of `*frame` by the midpoint
+ * rule over the parts of the upper hemisphere; nothing comes from below. sun_direction and sun_irradiance are
+ * already set: without a sun nothing is circumsolar. */
 void wd_skylight_fill(struct wd_frame_uniforms *frame, wd_skylight_radiance *radiance,
                       const void *user);
 

@@ -126,6 +126,29 @@ static void test_slants(void **state)
         assert_true(frame.sky_slant[quarter] > 1.5f);
 }
 
+static struct wd_vec3 bright_south(const void *user, struct wd_vec3 d)
+{
+    (void)user;
+    return gray(0.8f * d.z - 0.6f * d.y > 0.95f ? 11 : 1);
+}
+
+/* What is brighter about the sun goes to it, as much as level ground has of it; without a sun all is sky. */
+static void test_circumsolar(void **state)
+{
+    (void)state;
+    struct wd_frame_uniforms frame = {.sun_direction = {0, -0.6f, 0.8f}};
+    wd_skylight_fill(&frame, bright_south, NULL);
+    float whole = frame.sky_irradiance[0], wanted = whole - PI;
+    assert_true(wanted > 0.1f && frame.circumsolar[0] == 0);
+    for (int k = 0; k < 3; k++)
+        frame.sun_irradiance[k] = 1;
+    wd_skylight_fill(&frame, bright_south, NULL);
+    assert_float_equal(frame.sky_irradiance[0], whole, 1e-4);
+    assert_float_equal(frame.circumsolar[0] * 0.8f, wanted, 0.05f * wanted);
+    assert_float_equal(harmonics(&frame, WD_V3(0, 0, 1)), PI, 0.02);
+    assert_float_equal(frame.sky_quarters[3][0], PI / 4, 0.02);
+}
+
 static struct wd_vec3 red_low(const void *user, struct wd_vec3 d)
 {
     (void)user;
@@ -156,6 +179,7 @@ int main(void)
         cmocka_unit_test(test_level_ground),
         cmocka_unit_test(test_every_normal),
         cmocka_unit_test(test_quarters),
+        cmocka_unit_test(test_circumsolar),
         cmocka_unit_test(test_slants),
         cmocka_unit_test(test_under_leaves),
     };
