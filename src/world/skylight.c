@@ -53,9 +53,9 @@ static void add_quarters(struct wd_frame_uniforms *frame, struct slants *slants,
     add_slants(slants, share, light[1] * d.z, d.z);
 }
 
-/* The sky about the sun is bright, a third of a clear sky's light: leaves and ground that the sun reaches have
- * that as well, and shaded ones little of it. It counts whole so far from the sun, and not at all so far; what
- * is brighter there than the sky farther off is meant. In degrees. */
+/* The sky about the sun is bright, a third of a clear sky's light: leaves that the sun reaches have that as
+ * well, and shaded ones little of it. What is brighter there than the sky between the second and the third of
+ * these angles counts whole nearer than the first and not at all beyond the second. In degrees. */
 static const float NEAR_SUN_DEG = 15, OFF_SUN_DEG = 35, FAR_SUN_DEG = 55;
 
 struct about_sun {
@@ -169,17 +169,16 @@ static struct wd_vec3 part_direction(int part)
     return wd_skylight_direction((float)(part / BEARINGS) + 0.5f, (float)(part % BEARINGS) + 0.5f);
 }
 
-static struct about_sun about_sun_of(const struct wd_frame_uniforms *frame, wd_skylight_radiance *radiance,
-                                     const void *user)
+static struct about_sun about_sun_of(const struct wd_frame_uniforms *frame,
+                                     const struct wd_vec3 sky[RINGS * BEARINGS])
 {
     struct about_sun about = {.sun = wd_v3_of(frame->sun_direction)};
     float count = 0, up = wd_clampf(about.sun.z * 10, 0, 1);
     for (int part = 0; part < RINGS * BEARINGS; part++) {
-        struct wd_vec3 d = part_direction(part);
-        float off_deg = from_sun_deg(&about, d);
+        float off_deg = from_sun_deg(&about, part_direction(part));
         if (off_deg < OFF_SUN_DEG || off_deg > FAR_SUN_DEG)
             continue;
-        about.rest = wd_v3_add(about.rest, radiance(user, d));
+        about.rest = wd_v3_add(about.rest, sky[part]);
         count++;
     }
     about.rest = wd_v3_scale(about.rest, 1 / fmaxf(count, 1));
@@ -191,8 +190,11 @@ void wd_skylight_fill(struct wd_frame_uniforms *frame, wd_skylight_radiance *rad
                       const void *user)
 {
     const float solid_angle = 2 * PI / (RINGS * BEARINGS);
+    struct wd_vec3 sky[RINGS * BEARINGS];
     struct slants slants = {0};
-    struct about_sun about = about_sun_of(frame, radiance, user);
+    for (int part = 0; part < RINGS * BEARINGS; part++)
+        sky[part] = radiance(user, part_direction(part));
+    struct about_sun about = about_sun_of(frame, sky);
     memset(frame->sky_irradiance, 0, sizeof frame->sky_irradiance);
     memset(frame->circumsolar, 0, sizeof frame->circumsolar);
     memset(frame->sky_form, 0, sizeof frame->sky_form);
@@ -200,9 +202,9 @@ void wd_skylight_fill(struct wd_frame_uniforms *frame, wd_skylight_radiance *rad
     memset(frame->sky_quarters, 0, sizeof frame->sky_quarters);
     for (int part = 0; part < RINGS * BEARINGS; part++) {
         struct wd_vec3 d = part_direction(part);
-        struct wd_vec3 all = radiance(user, d), near_sun = circumsolar(&about, d, all);
+        struct wd_vec3 near_sun = circumsolar(&about, d, sky[part]);
         add_circumsolar(frame, &about, d, wd_v3_scale(near_sun, solid_angle));
-        add_direction(frame, &slants, d, wd_v3_sub(all, near_sun), solid_angle);
+        add_direction(frame, &slants, d, wd_v3_sub(sky[part], near_sun), solid_angle);
     }
     float under[3]; /* the moment of rise is the irradiance of level ground */
     memcpy(under, frame->sky_under[3], sizeof under);
