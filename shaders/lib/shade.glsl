@@ -23,7 +23,7 @@ struct wd_shelter {
     float herbs;      /* layers of herbs on the ground, */
     float herbs_m;    /* so high */
     float low;        /* 1: on the ground, whose light comes from right beside the place; 0: far over it */
-    float floor_open; /* share of the sky's and the sun's light that herbs leave to that */
+    float floor_herbs; /* log2 of the share of light that herbs between leave the ground */
 };
 
 /* Skylight past herbs that have so many layers over a place. Slanting rays meet more of them, but leaves let
@@ -42,7 +42,7 @@ wd_shelter ground_shelter(wd_pixel pixel)
     shelter.herbs = WD_HERBS_MOST * layers.z * layers.z;
     shelter.herbs_m = WD_HERB_M * layers.w * layers.w;
     shelter.low = 0.0;
-    shelter.floor_open = 1.0;
+    shelter.floor_herbs = 0.0;
     shelter.through = max(field * field, vec4(1e-3));
     shelter.floor_mean = dot(shelter.through, vec4(0.25));
     shelter.under = log2(shelter.floor_mean);
@@ -74,13 +74,14 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
     float higher = canopy_above(shelter.layer_m, top_m);
     float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
     float over = crown.sward * wd_crown_per_m(crown.radii_m) * sward_depth_m(crown, pixel.rel);
-    float own = max(pixel.openness, 1e-2);
+    float from_below = smoothstep(-0.15, 0.05, pixel.direction.z) * (1.0 - herb);
+    float own = pow(max(pixel.openness, 1e-2), 1.0 + 0.3 * from_below);
     float under = mix(higher, 1.0, above);
     vec4 stand = own * exp2(under * log2(shelter.through));
     shelter.through = mix(stand, shelter.through * own * exp(-0.7 * over), herb);
     shelter.through *= through_herbs(herbs_above(shelter, rel.z - crown.foot_z));
     shelter.low = exp2(min(crown.foot_z - pixel.rel.z, 0.0));
-    shelter.floor_open = mix(1.0, through_herbs(shelter.herbs), herb);
+    shelter.floor_herbs = log2(through_herbs(shelter.herbs));
     shelter.under *= mix(under, 1.0, herb);
     return shelter;
 }
@@ -208,11 +209,11 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
     vec3 with_scattered = sun * mix(beam, past_trees, shelter.low) + scattered;
     float covered = 1.0 - shelter.floor_mean;
-    vec3 floor_albedo = mix(frame.grass, frame.litter, covered);
-    vec3 below = mix((1.0 - s) / (1.0 + s), floor_albedo,
-                     exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
-    vec3 upward = below * (open_sky * sky + with_scattered) * shelter.floor_open;
-    vec3 beside = floor_albedo * (sky_level(alone.beside) + sun) * shelter.floor_open;
+    vec3 leaves_albedo = (1.0 - s) / (1.0 + s);
+    vec3 floor_albedo = mix(leaves_albedo, mix(frame.grass, frame.litter, covered), exp2(2.0 * s * shelter.floor_herbs));
+    vec3 below = mix(leaves_albedo, floor_albedo, exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
+    vec3 upward = below * (open_sky * sky + with_scattered);
+    vec3 beside = floor_albedo * (sky_level(alone.beside) + sun);
     vec3 upward_front = mix(upward, beside * alone.lets.z, alone.share);
     vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
     float up = 0.5 + 0.5 * n.z;
@@ -225,7 +226,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     around.back += upward_back * up;
     float up_mirror = 0.5 + 0.5 * mirror.z;
     vec3 ahead = mix(SKY_LEVELS(frame.sky_form, mirror), SKY_LEVELS(frame.sky_under, mirror), deep);
-    vec3 along = exp2(s * (log2(mean) * ALONG / max(mirror.z, 0.05))); /* past the stand, that way */
+    vec3 along = exp2(s * (log2(mean) * ALONG / (0.3 + 0.7 * max(mirror.z, 0.0)))); /* past the stand, that way */
     around.mirrored = max(ahead, vec3(0.0)) * mix(along, sky_front, alone.share)
                       + mix(upward_front, scattered, up_mirror);
     return around;
@@ -740,7 +741,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
     float wide_way = pow(dot(frame.sunward, shelter.through), WIDE_WAY / (max(frame.sun_direction.z, 0.0) + 0.2));
     float about_sun = mix(wide_way, leaf_way, pixel.surface == 0u ? 0.0 : NEAR_SUN);
-    vec3 light = sunlight() * (sun_share * place.gloss)
-                 + (frame.sun_irradiance * sun_share + frame.circumsolar * about_sun) * sunlit + skylit;
+    vec3 from_sun = frame.sun_irradiance * sun_share + frame.circumsolar * about_sun;
+    vec3 light = from_sun * (sunlit + place.gloss) + skylit;
     return light * PER_PI;
 }

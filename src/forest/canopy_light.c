@@ -72,13 +72,12 @@ static void triangle_areas(const struct wd_tree_mesh *mesh, uint32_t first, floa
 
 struct crown {
     struct outline above, side;
-    float base_m, stem_m2, whole_m2;
+    float base_m, stem_m2;
 };
 
 /* `areas`: as seen along each axis. */
 static void crown_add(struct crown *crown, const float middle[3], const float areas[3])
 {
-    crown->whole_m2 += areas[2];
     if (middle[2] <= crown->base_m) {
         crown->stem_m2 += areas[1];
         return;
@@ -146,12 +145,10 @@ struct wd_crown_shade wd_crown_shade_of(struct wd_tree_model *model)
         add_leaves(crown, model);
     float radius_m = fmaxf(model->crown_radius_m, 0.05f);
     float deep_m = fmaxf(model->height_m - model->crown_base_m, 0.1f);
-    float above_m2 = outline_hides_m2(&crown->above);
     const struct wd_crown_shade shade = {
-        .above = above_m2 / (PI * radius_m * radius_m),
+        .above = outline_hides_m2(&crown->above) / (PI * radius_m * radius_m),
         .side = outline_hides_m2(&crown->side) / (0.5f * PI * radius_m * deep_m),
-        .stem = crown->stem_m2 / (radius_m * fmaxf(model->crown_base_m, 0.1f)),
-        .clumped = crown->whole_m2 > 0 ? above_m2 / crown->whole_m2 : 1};
+        .stem = crown->stem_m2 / (radius_m * fmaxf(model->crown_base_m, 0.1f))};
     free(crown);
     return shade;
 }

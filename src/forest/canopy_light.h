@@ -11,9 +11,7 @@
  * from above and level. More than 1 where leaves reach far beyond the mean radius. */
 struct wd_crown_shade {
     float above, side;
-    float stem;    /* below the crown, over the crown's radius times its base's height */
-    float clumped; /* share of the ground that leaves hide over what they would if none lay behind
-                      another */
+    float stem; /* below the crown, over the crown's radius times its base's height */
 };
 /* The model has no leaves as triangles, before or after, unless it was imported. */
 struct wd_crown_shade wd_crown_shade_of(struct wd_tree_model *model);

@@ -191,24 +191,27 @@ static void set_sward_fade(struct wd_forest_device *forest)
     }
 }
 
-/* Leaves absorb what none of them reflects or lets through; each model counts by its area. What
- * light scatters on its way through a stand is what meets leaves at all: where these lie in clumps,
- * most comes through gaps. */
+/* Seven tenths of what a leaf scatters meets one of its own tree's again (recollision probability: Stenberg,
+ * Mottus and Rautiainen 2016; the light pass has it, too), so that what a crown stops it absorbs more of than
+ * a leaf does. */
+static const double RECOLLISION = 0.7;
+
+/* Leaves absorb what none of them reflects or lets through; each model counts by its area. */
 static void set_leaf_scatter(struct preparation *work)
 {
     struct wd_forest_device *forest = work->forest;
-    double sum[3] = {0}, area = 0, clumped = 0;
+    double sum[3] = {0}, area = 0;
     for (uint32_t i = 0; i < forest->model_count; i++) {
         const struct wd_species *species = &forest->scene->species[i / forest->variants];
         double own = (double)work->grown[i].leaf_area_m2;
         for (int k = 0; k < 3; k++)
             sum[k] += own * (double)(species->leaf.color[k] + species->leaf.transmittance[k]);
-        clumped += own * (double)work->shades[i].clumped;
         area += own;
     }
-    for (int k = 0; k < 3 && area > 0; k++)
-        forest->leaf_scatter[k] =
-            (float)(1 - clumped / area * (1 - sqrt(1 - fmin(sum[k] / area, 0.99))));
+    for (int k = 0; k < 3 && area > 0; k++) {
+        double leaf = fmin(sum[k] / area, 0.99);
+        forest->leaf_scatter[k] = (float)sqrt((1 - leaf) / (1 - RECOLLISION * leaf));
+    }
 }
 
 static void shade_model(void *user, size_t index)

@@ -34,7 +34,7 @@ static struct wd_model model = {.height_m = 20, .crown_base_m = 8, .roughness = 
 
 static struct wd_canopy_field field_of(const struct wd_world *world, unsigned threads)
 {
-    static const struct wd_crown_shade shade = {0.8f, 0.8f, 0.2f, 0.5f};
+    static const struct wd_crown_shade shade = {0.8f, 0.8f, 0.2f};
     struct wd_canopy_field field;
     wd_canopy_field_init(&field, &(struct wd_canopy_field_params){
                                      .world = world, .models = &model, .shades = &shade,
@@ -209,7 +209,6 @@ static void crowns_hide_their_leaves(void **state)
     assert_true(shade.above > 0 && shade.above * 3.14159f * 4 <= 4.0f);
     assert_float_equal(shade.side, 0, 1e-6);
     assert_float_equal(shade.stem, 0, 1e-6);
-    assert_true(shade.clumped > 0 && shade.clumped <= 1);
     wd_tree_mesh_finish(&leaf.full);
 }
 
