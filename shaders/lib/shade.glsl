@@ -24,6 +24,7 @@ struct wd_shelter {
     float herbs_m;    /* so high */
     float low;        /* 1: on the ground, whose light comes from right beside the place; 0: far over it */
     float floor_herbs; /* log2 of the share of light that herbs between leave the ground */
+    float within;      /* 1: the eye is below the stand's tops, 0: over them */
 };
 
 /* Skylight past herbs that have so many layers over a place. Slanting rays meet more of them, but leaves let
@@ -43,6 +44,7 @@ wd_shelter ground_shelter(wd_pixel pixel)
     shelter.herbs_m = WD_HERB_M * layers.w * layers.w;
     shelter.low = 0.0;
     shelter.floor_herbs = 0.0;
+    shelter.within = 0.0;
     shelter.through = max(field * field, vec4(1e-3));
     shelter.floor_mean = dot(shelter.through, vec4(0.25));
     shelter.under = log2(shelter.floor_mean);
@@ -63,6 +65,10 @@ float herbs_above(wd_shelter shelter, float height_m)
     return shelter.herbs * clamp(1.0 - height_m / max(shelter.herbs_m, 0.01), 0.0, 1.0);
 }
 
+/* An eye within a stand sees those leaves of a place that lie under the others there: by so many more of their
+ * tree's own. By path-traced oaks and beeches. */
+const float BELOW_LEAVES = 0.3;
+
 /* On a tree: what its own leaves let through, and of what the stand lets down to the ground as much as
  * there are leaves of it higher up: what of it is above the whole tree, and neighbours beside it. The
  * ground's own share is that of gaps between crowns, in which no leaf is. Herbs get what the ground
@@ -74,8 +80,8 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
     float higher = canopy_above(shelter.layer_m, top_m);
     float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
     float over = crown.sward * wd_crown_per_m(crown.radii_m) * sward_depth_m(crown, pixel.rel);
-    float from_below = smoothstep(-0.15, 0.05, pixel.direction.z) * (1.0 - herb);
-    float own = pow(max(pixel.openness, 1e-2), 1.0 + 0.3 * from_below);
+    shelter.within = 1.0 - smoothstep(0.5, 1.0, -crown.foot_z / max(shelter.layer_m.y, 1.0));
+    float own = pow(max(pixel.openness, 1e-2), 1.0 + BELOW_LEAVES * shelter.within * (1.0 - herb));
     float under = mix(higher, 1.0, above);
     vec4 stand = own * exp2(under * log2(shelter.through));
     shelter.through = mix(stand, shelter.through * own * exp(-0.7 * over), herb);
@@ -226,7 +232,9 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     around.back += upward_back * up;
     float up_mirror = 0.5 + 0.5 * mirror.z;
     vec3 ahead = mix(SKY_LEVELS(frame.sky_form, mirror), SKY_LEVELS(frame.sky_under, mirror), deep);
-    vec3 along = exp2(s * (log2(mean) * ALONG / (0.3 + 0.7 * max(mirror.z, 0.0)))); /* past the stand, that way */
+    /* Past the stand, that way: rough wax looks higher, too, and where the eye looks into a gap, out of that. */
+    float rise_along = mix(0.3 + 0.7 * max(mirror.z, 0.0), max(mirror.z, 0.05), shelter.within);
+    vec3 along = exp2(s * (log2(mean) * ALONG / rise_along));
     around.mirrored = max(ahead, vec3(0.0)) * mix(along, sky_front, alone.share)
                       + mix(upward_front, scattered, up_mirror);
     return around;
