@@ -115,7 +115,7 @@ WD_STATIC_ASSERT_SIZE(wd_splat_model, 544);
 /* Where trees cover fewer pixels than this, fewer of them stand for all. */
 #define WD_LEAST_TREE_PX 4.0
 /* Height of a tree that covers so many: its square's fifth. */
-#define WD_WHOLE_TREE_PX 6.3245553f
+#define WD_WHOLE_TREE_PX 4.4721360f
 struct wd_cluster {
     int32_t min_mm[3], max_mm[3]; /* bounds of its trees */
     uint32_t first;

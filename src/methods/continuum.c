@@ -15,7 +15,7 @@
 
 /* Visible trees and items of one view: hard caps, whatever the world holds. A tree for so many pixels, as far
  * as the device can bind and ids of items reach, which have 22 bits. */
-enum { LEAST_TREES = 1 << 20, PIXELS_A_TREE = 8, ITEMS_A_TREE = 2, LEAST_ITEMS = 1 << 20,
+enum { LEAST_TREES = 1 << 20, PIXELS_A_TREE = 4, ITEMS_A_TREE = 2, LEAST_ITEMS = 1 << 20,
        MOST_TREES = (1 << 22) / ITEMS_A_TREE - 1 };
 
 struct continuum {
