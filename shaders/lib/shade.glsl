@@ -216,7 +216,8 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 with_scattered = sun * mix(beam, past_trees, shelter.low) + scattered;
     float covered = 1.0 - shelter.floor_mean;
     vec3 leaves_albedo = (1.0 - s) / (1.0 + s);
-    vec3 floor_albedo = mix(leaves_albedo, mix(frame.grass, frame.litter, covered), exp2(2.0 * s * shelter.floor_herbs));
+    vec3 floor_albedo = mix(leaves_albedo, mix(frame.grass, frame.litter, covered),
+                            exp2(2.0 * s * shelter.floor_herbs));
     vec3 below = mix(leaves_albedo, floor_albedo, exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
     vec3 upward = below * (open_sky * sky + with_scattered);
     vec3 beside = floor_albedo * (sky_level(alone.beside) + sun);
@@ -515,13 +516,12 @@ wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter she
     return alone;
 }
 
-/* Of the sun that reaches leaves of a free crown, what they scatter comes to other ones: seven tenths of it
- * each time (recollision probability: Stenberg, Mottus and Rautiainen 2016). Irradiance of each side of
- * leaves of such albedo and transmittance, over the sun's share; those that the eye sees lie outside and get
- * little of it, by path-traced oaks. */
+/* Of the sun that reaches leaves of a crown, what they scatter comes to other ones, again and again. Irradiance
+ * of each side of leaves of such albedo and transmittance, over the sun's share; those that the eye sees lie
+ * outside and get little of it, by path-traced oaks. */
 vec3 scattered_again(vec3 leaf)
 {
-    vec3 again = 0.7 * min(leaf, vec3(0.95));
+    vec3 again = WD_RECOLLISION * min(leaf, vec3(0.95));
     return 0.08 * again / (1.0 - again);
 }
 

@@ -5,6 +5,10 @@
 
 #include "shared/vec.h"
 
+/* Of the light that a leaf scatters, this share meets another of its own tree's (recollision probability:
+ * Stenberg, Mottus and Rautiainen 2016). */
+#define WD_RECOLLISION 0.7f
+
 /* Of the light, a metre of crown takes this share: half the leaf area a ray meets stands across it
  * (spherical leaf angles), and a crown holds some 4 m2 of leaves over each m2 of ground, somewhat
  * clumped. */

@@ -82,7 +82,7 @@ struct wd_frame_uniforms {
     WD_VEC4(sky_slant);              /* by quarters: how much more a layer of leaves dims that light
                                         than an even sky's, as a power */
     WD_VEC4(sunward);                /* shares of the quarters toward the sun's bearing */
-    WD_VEC3(leaf_scatter);           /* root of the share of light that leaves absorb */
+    WD_VEC3(leaf_scatter);           /* root of what crowns absorb of the light that they stop */
     uint32_t width, height;          /* of the picture */
     uint32_t terrain_width, terrain_height; /* samples */
     uint32_t sample_index, sample_count;

@@ -11,6 +11,7 @@
 #include "forest/canopy_light.h"
 #include "forest/looks.h"
 #include "forest/sky.h"
+#include "shared/crown.h"
 #include "tree/variant.h"
 #include "world/cover.h"
 #include "world/packed_trees.h"
@@ -191,12 +192,8 @@ static void set_sward_fade(struct wd_forest_device *forest)
     }
 }
 
-/* Seven tenths of what a leaf scatters meets one of its own tree's again (recollision probability: Stenberg,
- * Mottus and Rautiainen 2016; the light pass has it, too), so that what a crown stops it absorbs more of than
- * a leaf does. */
-static const double RECOLLISION = 0.7;
-
-/* Leaves absorb what none of them reflects or lets through; each model counts by its area. */
+/* Leaves absorb what none of them reflects or lets through, and of what a crown stops it absorbs more, since
+ * what they scatter meets others of it; each model counts by its area. */
 static void set_leaf_scatter(struct preparation *work)
 {
     struct wd_forest_device *forest = work->forest;
@@ -210,7 +207,7 @@ static void set_leaf_scatter(struct preparation *work)
     }
     for (int k = 0; k < 3 && area > 0; k++) {
         double leaf = fmin(sum[k] / area, 0.99);
-        forest->leaf_scatter[k] = (float)sqrt((1 - leaf) / (1 - RECOLLISION * leaf));
+        forest->leaf_scatter[k] = (float)sqrt((1 - leaf) / (1 - (double)WD_RECOLLISION * leaf));
     }
 }
 
