@@ -24,7 +24,7 @@ struct wd_shelter {
     float herbs_m;    /* so high */
     float low;        /* 1: on the ground, whose light comes from right beside the place; 0: far over it */
     float floor_herbs; /* log2 of the share of light that herbs between leave the ground */
-    float within;      /* 1: the eye is below the stand's tops, 0: over them */
+    float within; /* 1: the eye is below the stand's tops, 0: over them */
 };
 
 /* Skylight past herbs that have so many layers over a place. Slanting rays meet more of them, but leaves let

@@ -112,7 +112,7 @@ WD_STATIC_ASSERT_SIZE(wd_splat_model, 544);
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u
-/* Where trees cover fewer pixels than this, fewer of them stand for all. */
+/* Where trees cover fewer pixels than this, fewer of them stand for all, wider than they are: more lit tops. */
 #define WD_LEAST_TREE_PX 4.0
 /* Height of a tree that covers so many: its square's fifth. */
 #define WD_WHOLE_TREE_PX 4.4721360f
