@@ -58,7 +58,7 @@ cp "$out/a.png" "$out/keep.png"
 {
     expect 1 'no camera "wset", did you mean "west"' render "$tiny" -o "$out/keep.png" $soft \
         --camera wset
-    expect 1 'there are: south, west' render "$tiny" -o "$out/keep.png" $soft --camera nowhere
+    expect 1 'there are: south, inside, west' render "$tiny" -o "$out/keep.png" $soft --camera nowhere
     expect 1 'there are: fly' render "$tiny" -o "$out/keep.png" $soft --path nowhere
     expect 1 'no-such-gpu' render "$tiny" -o "$out/keep.png" --gpu no-such-gpu
     expect 1 'max-error is for the method continuum, not for octree' render "$tiny" \

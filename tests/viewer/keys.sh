@@ -143,6 +143,9 @@ sleep 0.3
 xdotool mouseup 3
 expect 'the right button looks around' '.yaw_deg > $before.yaw_deg + 3'
 
+# With 70 m of ground ahead: slow machines fly far in few frames, and beyond its edge it is level.
+xdotool key c
+expect 'C goes to the next camera' '.camera == "inside" and .position_m[0] == 10'
 on_ground='((.position_m[2] - .ground_m - 1.7) | fabs) < 0.001'
 xdotool key f
 expect 'F lands on the ground, 1.7 m up' ".gait == \"walk\" and $on_ground"
@@ -186,7 +189,7 @@ jq -e '.cameras[0].position_m | length == 3' "$scratch/tiny.cameras.json" >/dev/
     fail "no camera in the file"
 remember
 xdotool key c
-expect 'C goes to the next camera' '.camera == "west" and .position_m[0] == -20'
+expect 'C goes to the one after it' '.camera == "west" and .position_m[0] == -20'
 xdotool key c
 expect 'and to the saved one' '.camera == "saved-1" and
     ((.position_m[1] - $before.position_m[1]) | fabs) < 0.001'
