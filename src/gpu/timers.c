@@ -56,12 +56,19 @@ static uint32_t open_scope(struct wd_cmd *cmd, const char *name)
     return index;
 }
 
+/* Where scopes are cut a label would end in another command buffer than it began in, which Mesa 22.3's
+ * llvmpipe does not survive. */
+static bool has_labels(const struct wd_cmd *cmd)
+{
+    return cmd->gpu->begin_label && (cmd->timing != WD_TIMING_ON || has_timestamps(cmd->gpu));
+}
+
 void wd_cmd_scope_begin(struct wd_cmd *cmd, const char *name)
 {
     assert(!cmd->rendering && cmd->scope_depth < 8);
     uint32_t index = cmd->timing == WD_TIMING_ON ? open_scope(cmd, name) : untimed;
     cmd->scope_stack[cmd->scope_depth++] = index;
-    if (cmd->gpu->begin_label) {
+    if (has_labels(cmd)) {
         const VkDebugUtilsLabelEXT label = {
             .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
             .pLabelName = name,
@@ -73,7 +80,7 @@ void wd_cmd_scope_begin(struct wd_cmd *cmd, const char *name)
 void wd_cmd_scope_end(struct wd_cmd *cmd)
 {
     assert(!cmd->rendering && cmd->scope_depth > 0);
-    if (cmd->gpu->end_label)
+    if (has_labels(cmd))
         cmd->gpu->end_label(cmd->vk);
     uint32_t index = cmd->scope_stack[cmd->scope_depth - 1];
     if (index != untimed) {

@@ -97,6 +97,31 @@ static void more_scopes_than_fit_are_left_out(void **state)
     assert_int_equal(test->frames.last_scope_count, WD_MAX_SCOPES);
 }
 
+/* Work between the begins and ends of scopes is cut from what follows, and labels with it. */
+static void scopes_within_scopes_of_work_end(void **state)
+{
+    struct gpu_test *test = *state;
+    test->frames.timing = WD_TIMING_ON;
+    struct spinner spinner = make_spinner(test);
+    for (int frame = 0; frame < 3; frame++) {
+        struct wd_cmd cmd = begin_frame(test);
+        for (int i = 0; i < WD_MAX_SCOPES / 4; i++) {
+            const char *const names[4] = {"pass", "view", "choose", "draw"};
+            for (int depth = 0; depth < 4; depth++) {
+                wd_cmd_scope_begin(&cmd, names[depth]);
+                spin(&cmd, &spinner, 10);
+            }
+            for (int depth = 0; depth < 4; depth++)
+                wd_cmd_scope_end(&cmd);
+        }
+        finish_frame(test, &cmd);
+    }
+    assert_int_equal(test->frames.last_scope_count, WD_MAX_SCOPES);
+    for (int i = 0; i < WD_MAX_SCOPES; i++)
+        assert_int_equal(test->frames.last_scopes[i].depth, i % 4);
+    finish_spinner(&spinner, test);
+}
+
 /* Lavapipe's timestamps are not true, but they are there: the other path runs too. */
 static void timestamps_are_read(void **state)
 {
@@ -145,6 +170,7 @@ int main(void)
         GPU_TEST(scopes_are_timed_alone_and_summed),
         GPU_TEST(without_timing_there_are_no_scopes),
         GPU_TEST(more_scopes_than_fit_are_left_out),
+        GPU_TEST(scopes_within_scopes_of_work_end),
         GPU_TEST(timestamps_are_read),
         GPU_TEST(failed_frame_keeps_the_last_times),
     };
