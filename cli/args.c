@@ -80,7 +80,8 @@ static const struct cli_option option_table[] = {
      "coverage); all: all but the last (default)"},
     {"max-error", 0, "PX", CLI_KIND_REAL, AT(max_error_px), WD_LEAST_ERROR_PX, WD_MOST_ERROR_PX,
      PICTURE_COMMANDS,
-     "error bound of continuum: mean distance of a crown's discs on screen, in pixels (default: 1.41)"},
+     "error bound of continuum: mean distance of a crown's discs on screen, in pixels (default: 1.41, of "
+     "several samples 1)"},
     {"budget-ms", 0, "MS", CLI_KIND_REAL, AT(budget_ms), 0.1, 60000, PICTURE_COMMANDS,
      "hold the time of a frame by that error bound instead; films and views of continuum only"},
     {"option", 0, "NAME=VALUE", CLI_KIND_WORDS, AT(method_options), 0, 0, SCENE_COMMANDS,

@@ -97,10 +97,11 @@ struct wd_render_params {
     enum wd_view_mode view;
     uint32_t layers;        /* wd_layer_bits wanted; 0: display */
     double max_error_px;    /* of continuum, WD_LEAST_ERROR_PX..WD_MOST_ERROR_PX; 0: by its option
-                               "density". Mean distance, on screen, between the discs that stand for a
-                               crown's surface: what is finer may be missing from a single sample. Trees
-                               less than about twice as wide are drawn as one for several, and triangles of
-                               wood and pages of trees on demand are chosen alike. */
+                               "density", or twice that where `samples` are more than 1. Mean distance, on
+                               screen, between the discs that stand for a crown's surface: what is finer
+                               may be missing from a single sample. Trees less than about twice as wide are
+                               drawn as one for several, and triangles of wood and pages of trees on demand
+                               are chosen alike. */
     /* WD_ACCUMULATE: one jittered sample, laid over what the pictures before this one of the same renderer,
      * method, view and size have shown of the same surfaces: moved along with camera and wind, and begun
      * anew where something else has come into view. For live views; `samples`, previous_camera and

@@ -68,7 +68,7 @@ card_tree card_tree_of(wd_tree tree, wd_model model)
     float height_m = WD_TREE_HEIGHT_M(tree), distance_m = length(t.foot);
     t.toward = -normalize(t.foot + vec3(0.0, 0.0, 0.5 * height_m));
     t.show = wd_layer_show(fades[WD_TREE_LAYER(tree)], distance_m);
-    float tall_px = height_m * (SHADOW != 0u ? 1.0 / frame.cascade_texel_m[push.cascade]
+    float tall_px = height_m * (SHADOW != 0u ? 1.0 / frame.cascades[push.cascade][WD_CASCADE_TEXEL_M]
                                              : push.pixels_per_radian / distance_m);
     t.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, float(WD_CARD_LAST_MIP));
     t.level = level_share(card_crown(t), abs(t.toward.z));

@@ -24,7 +24,7 @@ struct wd_shelter {
     float herbs_m;    /* so high */
     float low;        /* 1: on the ground, whose light comes from right beside the place; 0: far over it */
     float floor_herbs; /* log2 of the share of light that herbs between leave the ground */
-    float within; /* 1: the eye is below the stand's tops, 0: over them */
+    float within;      /* 1: the eye is below the stand's tops, 0: over them */
 };
 
 /* Skylight past herbs that have so many layers over a place. Slanting rays meet more of them, but leaves let
@@ -470,22 +470,27 @@ wd_place ground_place(wd_pixel pixel)
 float through_sward(float openness, uint cascade)
 {
     float beam = 0.67 / max(frame.sun_direction.z, 0.05);
-    return pow(min(openness * (1.0 / 0.85), 1.0), cascade == 0u ? 0.5 * beam : beam);
+    return pow(min(openness * (1.0 / 0.85), 1.0), cascade < WD_LEAF_CASCADES ? 0.5 * beam : beam);
 }
 
 /* Share of a leaf's shade that a shadow map of such texels tells: those wider than leaves mix what is lit
  * with what is not, and the eye sees more of the former. */
 float map_holds_leaves(uint cascade, float free)
 {
-    return cascade == 0u ? 1.0 - free * smoothstep(0.04, 0.12, frame.cascade_texel_m[0]) : 0.0;
+    float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
+    return cascade < WD_LEAF_CASCADES ? 1.0 - free * smoothstep(0.04, 0.12, texel_m) : 0.0;
 }
 
 /* The same of leaves that the map holds as the eye sees them: how far it tells what shades them from close
  * by, where the look-up leaves out a texel. By coarse maps alone forests from within are 7 % too bright in
- * green (5 with this), and swards, whose blades are thinner than any texel, too. */
-float map_tells_leaves(uint cascade)
+ * green (5 with this), and swards, whose blades are so many times thinner, too: by path-traced hedge rows,
+ * whose meadow is a tenth too dark if maps tell nothing of blades. */
+const float BLADES_THINNER = 2.4;
+
+float map_tells_leaves(uint cascade, float sward)
 {
-    return cascade == 0u ? 1.0 - smoothstep(0.02, 0.05, frame.cascade_texel_m[0]) : 0.0;
+    float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M] * mix(1.0, BLADES_THINNER, sward);
+    return cascade < WD_LEAF_CASCADES ? 1.0 - smoothstep(0.02, 0.05, texel_m) : 0.0;
 }
 
 /* Of the nearest texel of layer 0: one fetch instead of four. */
@@ -542,7 +547,7 @@ void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float open
     float path_m = crown_path_m(crown, place.rel);
     float through = wd_crown_through(crown.radii_m, path_m, openness);
     place.own = mix(through, wd_crown_lit(through, curve.x, curve.y) * factor, free);
-    place.ahead_m = path_m + of_cascade(frame.cascade_texel_m, min(cascade, 3u));
+    place.ahead_m = path_m + cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
 }
 
 /* `mapped` of their shade is in the shadow map, which holds leaves as far as `fine` says. */
@@ -586,22 +591,21 @@ const float MAP_TELLS = 0.5;
 
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
  * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
- * Leaves of meshes (lit 1) are in the nearest map as they are, but a sward's blades, which are less than its
- * texels. 0: none goes on to the eye. */
+ * Leaves of meshes (lit 1) are in the nearest maps as they are. 0: none goes on to the eye. */
 void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, uint cascade)
 {
     if (pixel.lit <= 0.0 || pixel.lit >= 1.0) {
-        float told = map_tells_leaves(cascade) * (1.0 - crown.sward);
+        float told = map_tells_leaves(cascade, crown.sward);
         place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, 1.0, told);
         return;
     }
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
     float tall_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
-    float texel_m = of_cascade(frame.cascade_texel_m, min(cascade, 3u));
+    float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
     float discs = 0.6 * crown.radii_m.x * tall_m / (pixel_m * pixel_m); /* about as many */
     float known = wd_disc_close(discs) * map_holds_leaves(cascade, 1.0);
     float tree_m = min(0.5, 0.5 * tall_m); /* its own tree is in `lit` */
-    float ahead_m = (cascade == 0u ? 0.0 : place.ahead_m) + tree_m + texel_m;
+    float ahead_m = (cascade < WD_LEAF_CASCADES ? 0.0 : place.ahead_m) + tree_m + texel_m;
     place.own = mix(pixel.lit, 1.0, known * mix(MAP_TELLS, 1.0, crown.sward));
     place.ahead_m = mix(ahead_m, pixel_m, known);
 }
@@ -724,7 +728,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     float past_trees = tree_shadow(ahead, place.normal, place.sheet, cascade, noise);
     /* No maps so far out: the canopy's cover stands for its shadow. Cards' own shade holds it. */
     if (pixel.surface == 0u || pixel.lit >= 0.0) {
-        float out_of_maps = smoothstep(0.7, 0.95, pixel.axis_m / frame.cascade_far_m.w);
+        float far_m = frame.cascades[WD_CASCADES - 1][WD_CASCADE_FAR_M];
+        float out_of_maps = smoothstep(0.7, 0.95, pixel.axis_m / far_m);
         float beam = 0.67 / max(frame.sun_direction.z, 0.05);
         float own = pixel.surface == 0u ? 1.0 : max(pixel.openness, 1e-2);
         float stand = min(dot(frame.sunward, shelter.through) / own, 1.0);

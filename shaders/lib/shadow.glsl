@@ -3,23 +3,26 @@
  * SUN_HEIGHT_AT(index). Where SHADOW_DEPTH names the same maps without comparison, penumbras widen with
  * the way from the caster. */
 
-/* Of four values that of a cascade, chosen: software devices index a block lane by lane. */
-vec4 of_cascade(vec4 first, vec4 second, vec4 third, vec4 fourth, uint cascade)
+/* Of five values that of a cascade, chosen: software devices index a block lane by lane. */
+vec4 of_cascade(vec4 first, vec4 second, vec4 third, vec4 fourth, vec4 fifth, uint cascade)
 {
     bvec4 odd = bvec4((cascade & 1u) != 0u);
-    return mix(mix(first, second, odd), mix(third, fourth, odd), bvec4(cascade > 1u));
-}
-
-float of_cascade(vec4 values, uint cascade)
-{
-    bool odd = (cascade & 1u) != 0u;
-    return mix(mix(values.x, values.y, odd), mix(values.z, values.w, odd), cascade > 1u);
+    vec4 four = mix(mix(first, second, odd), mix(third, fourth, odd), bvec4(cascade > 1u));
+    return mix(four, fifth, bvec4(cascade > 3u));
 }
 
 vec4 shadow_column(uint column, uint cascade)
 {
     return of_cascade(frame.shadow_from_rel[0][column], frame.shadow_from_rel[1][column],
-                      frame.shadow_from_rel[2][column], frame.shadow_from_rel[3][column], cascade);
+                      frame.shadow_from_rel[2][column], frame.shadow_from_rel[3][column],
+                      frame.shadow_from_rel[4][column], cascade);
+}
+
+/* A cascade's numbers (WD_CASCADE_*); beyond the last those of that. */
+vec4 cascade_numbers(uint cascade)
+{
+    return of_cascade(frame.cascades[0], frame.cascades[1], frame.cascades[2], frame.cascades[3],
+                      frame.cascades[4], cascade);
 }
 
 mat4 shadow_from_rel(uint cascade)
@@ -32,8 +35,11 @@ mat4 shadow_from_rel(uint cascade)
  * tenth, and noise picks one of both, so that no seam shows. */
 uint shadow_cascade(float axis_m, float noise)
 {
-    vec4 beyond = step(frame.cascade_far_m * (0.9 + 0.1 * noise), vec4(axis_m));
-    return uint(dot(beyond, vec4(1.0)));
+    float at_m = axis_m / (0.9 + 0.1 * noise);
+    uint cascade = 0u;
+    for (uint i = 0u; i < WD_CASCADES; i++)
+        cascade += uint(at_m >= frame.cascades[i][WD_CASCADE_FAR_M]);
+    return cascade;
 }
 
 /* How much nearer the sun a sheet is a texture coordinate to the right and up of a place on it: without
@@ -86,7 +92,8 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
         return 1.0;
     mat4 m = shadow_from_rel(cascade);
     float w = (m * vec4(rel, 1.0)).w;
-    float texel_m = of_cascade(frame.cascade_texel_m, cascade) * w;
+    vec4 numbers = cascade_numbers(cascade) * w;
+    float texel_m = numbers[WD_CASCADE_TEXEL_M];
     float flat_on = dot(sheet, sheet);
     vec3 off = mix(normal * 1.2, sheet * 0.5, flat_on) + frame.sun_direction * mix(0.8, 0.4, flat_on);
     vec3 from = rel + off * texel_m;
@@ -102,7 +109,7 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
 #ifdef SHADOW_DEPTH
     float sun_tan = sqrt(max(1.0 / (frame.sun_cos_radius * frame.sun_cos_radius) - 1.0, 0.0));
     bool fine = texel_m < CASTER_TEXEL_M; /* by no branch: software devices leave loops alone early */
-    float way_m = caster_m(at, cascade, of_cascade(frame.cascade_depth_m, cascade) * w, slope, spin,
+    float way_m = caster_m(at, cascade, numbers[WD_CASCADE_DEPTH_M], slope, spin,
                            sun_tan * CASTER_FAR_M / texel_m * texel, fine ? CASTER_PLACES : 0u);
     penumbra_m = fine ? sun_tan * way_m : penumbra_m;
 #endif

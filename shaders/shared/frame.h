@@ -20,7 +20,13 @@
 #define WD_MATERIAL_LEAF 2
 #define WD_MATERIAL_CARD 3 /* a billboard: its position is that of the card, not of the leaf */
 
-#define WD_CASCADES 4
+#define WD_CASCADES 5
+#define WD_LEAF_CASCADES 2 /* so many of the nearest hold single leaves, the others crowns */
+
+/* Numbers of a cascade in wd_frame_uniforms. */
+#define WD_CASCADE_FAR_M 0   /* distance from the camera at which it ends */
+#define WD_CASCADE_TEXEL_M 1 /* size of a texel on the ground, over w */
+#define WD_CASCADE_DEPTH_M 2 /* depth range that z 0..1 spans, over w */
 
 /* values of view_mode: as enum wd_view_mode of weald/renderer.h */
 #define WD_MODE_LIT 0
@@ -38,9 +44,7 @@ struct wd_frame_uniforms {
     WD_MAT4(shadow_from_rel[WD_CASCADES]); /* to texture coordinates (x, y in 0..1) and depth z
                                               (reversed: 1 nearest the sun); w is 1 but in a
                                               perspective map */
-    WD_VEC4(cascade_far_m);          /* distance from the camera at which each cascade ends */
-    WD_VEC4(cascade_texel_m);        /* size of a texel on the ground, over w */
-    WD_VEC4(cascade_depth_m);        /* depth range that z 0..1 spans, over w */
+    WD_VEC4(cascades[WD_CASCADES]);
     int32_t camera_mm[3];
     float time_s;
     WD_VEC3(camera_frac_m);          /* 0..0.001 */

@@ -15,8 +15,8 @@ static const double LENS_SHARE = 0.7;
 static const double SIZE_STEP = 1.1;
 /* Look-ups of what lies at a slice's edge. */
 static const double LOOK_MARGIN_M = 0.2;
-/* The first cascade is not calm where anything is seen from nearer than this, or through a longer lens from
- * as many times farther: it holds single leaves then. */
+/* Cascades of leaves are not calm where anything is seen from nearer than this, or through a longer lens from
+ * as many times farther. */
 static const float LEAVES_M = 25.0f;
 /* Penumbras and the offsets of shadow look-ups reach this far. */
 static const float CASTER_MARGIN_M = 3.0f;
@@ -97,7 +97,7 @@ static void snap(struct wd_cascade_box *box, const struct wd_cascades_params *pa
 
 static bool is_calm(const struct wd_cascades_params *params, int cascade, double radius)
 {
-    bool leaves = cascade == 0 && params->nearest_m < LEAVES_M * params->view->lod_scale;
+    bool leaves = cascade < WD_LEAF_CASCADES && params->nearest_m < LEAVES_M * params->view->lod_scale;
     return params->calm_m > 0.0 && !leaves && 2.0 * radius / params->size >= params->calm_m;
 }
 
@@ -289,9 +289,9 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
         }
         uniforms->shadow_from_rel[i][3][0] += 0.5f;
         uniforms->shadow_from_rel[i][3][1] += 0.5f;
-        uniforms->cascade_far_m[i] = (float)far;
-        uniforms->cascade_texel_m[i] = (float)(2.0 * box->radius / params->size);
-        uniforms->cascade_depth_m[i] = (float)box->depth;
+        uniforms->cascades[i][WD_CASCADE_FAR_M] = (float)far;
+        uniforms->cascades[i][WD_CASCADE_TEXEL_M] = (float)(2.0 * box->radius / params->size);
+        uniforms->cascades[i][WD_CASCADE_DEPTH_M] = (float)box->depth;
         near = far * 0.9; /* slices overlap where one fades into the next */
     }
 }

@@ -142,6 +142,7 @@ static struct wd_tree_draw tree_draw_of(const struct recording *r, const struct 
         .view_mode = frame->params.view_mode,
         .page_budget = frame->params.page_budget,
         .max_error_px = frame->params.max_error_px,
+        .samples = frame->params.samples,
     };
 }
 

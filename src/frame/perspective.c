@@ -116,8 +116,8 @@ static void set_matrix(struct wd_view *map, const struct bounds *bounds, double 
     map->clip_from_rel[3][2] = (float)(-bounds->low[2] * before_m / deep);
     map->clip_from_rel[3][3] = (float)-from;
     for (int i = 0; i < WD_CASCADES; i++) {
-        uniforms->cascade_texel_m[i] = (float)(2 * wide) / texels;
-        uniforms->cascade_depth_m[i] = (float)(deep / before_m);
+        uniforms->cascades[i][WD_CASCADE_TEXEL_M] = (float)(2 * wide) / texels;
+        uniforms->cascades[i][WD_CASCADE_DEPTH_M] = (float)(deep / before_m);
     }
 }
 
@@ -136,7 +136,7 @@ static void set_planes(struct wd_view *map)
 static void set_uniforms(struct wd_frame_uniforms *uniforms, const struct wd_view *map, float far_m)
 {
     for (int i = 0; i < WD_CASCADES; i++)
-        uniforms->cascade_far_m[i] = far_m;
+        uniforms->cascades[i][WD_CASCADE_FAR_M] = far_m;
     for (int column = 0; column < 4; column++) {
         const float *clip = map->clip_from_rel[column];
         const float texture[4] = {0.5f * (clip[0] + clip[3]), 0.5f * (clip[1] + clip[3]), clip[2],

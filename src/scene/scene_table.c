@@ -199,7 +199,7 @@ static const struct wd_key quality_keys[] = {
      "Shadow look-ups a pixel; 0: no shadows of trees."},
     {"shadow_maps", WD_KEY_ENUM, IN(quality, shadow_maps), .fallback = "\"cascades\"",
      .choices = shadow_maps,
-     .doc = "\"cascades\": four maps, finer near the camera; \"perspective\": one, warped toward it, for "
+     .doc = "\"cascades\": five maps, finer near the camera; \"perspective\": one, warped toward it, for "
             "comparison (continuum draws cascades all the same)."},
     {"exposure_ev", WD_KEY_DOUBLE, IN(quality, exposure_ev), -20, 20, "0",
      "Stops added to the automatic exposure."},

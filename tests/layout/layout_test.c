@@ -78,7 +78,7 @@ static const struct member members[] = {
     M(wd_draw_indexed, first_instance),
 #define F(name) M(wd_frame_uniforms, name)
     F(clip_from_rel), F(rel_from_clip), F(previous_clip_from_rel), F(steady_clip_from_rel),
-    F(shadow_from_rel), F(cascade_far_m), F(cascade_texel_m), F(cascade_depth_m), F(camera_mm),
+    F(shadow_from_rel), F(cascades), F(camera_mm),
     F(time_s), F(camera_frac_m), F(previous_time_s), F(sun_direction), F(sun_cos_radius),
     F(sun_irradiance), F(sky_turbidity), F(sky_irradiance), F(sky_strength), F(circumsolar), F(sky_glow), F(near_m),
     F(sky_horizon), F(fog_per_m), F(sky_cloud), F(snow), F(sky_turn), F(sky_is_map),

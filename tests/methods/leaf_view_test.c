@@ -157,7 +157,7 @@ static void shadow_maps_have_no_more_leaves_than_they_show(void **state)
         f.model.seen_m2[k] = 20;
     look(&f, 0, 1.2);
     f.draw.pass = WD_PASS_SHADOW;
-    f.view.box.radius = 0.12 * f.view.width;
+    f.view.box.radius = 0.06 * f.view.width;
     f.view.box.toward[2] = 1;
     f.listed = wd_leaves_in_view(&f.draw, 0, &range->sets[WD_SET_LEAVES], count, f.list);
     const struct wd_stand stand = wd_stand_of(&f.draw, 0);
