@@ -9,7 +9,7 @@ expect 0 'camera +west: at -20' info "$tiny"
 expect 0 'path +fly: 4.0 s' info "$tiny"
 check 'info --json: 200 trees, sums agree' sh -c "'$weald' info '$tiny' --json |
     jq -e '.tree_count == 200 and ([.species[].tree_count] | add) == 200 and
-           (.cameras | map(.name)) == [\"south\", \"west\"] and .paths[0].duration_s == 4 and
+           (.cameras | map(.name)) == [\"south\", \"inside\", \"west\"] and .paths[0].duration_s == 4 and
            (.devices | length) > 0 and .octant_count > 0 and .host_bytes > 0'"
 check 'info --json: 625 stems a hectare, 8 to 14 m high' sh -c "'$weald' info '$tiny' --json |
     jq -e '([.species[].stems_per_ha] | add | . > 624 and . < 626) and
