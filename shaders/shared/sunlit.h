@@ -10,7 +10,10 @@
  * eye's elevation (the same rings), of leaves and of wood: from above to the side that is seen and to the
  * other, then from below. Factors on what they would have by how far they look up and by openness: */
 #define WD_SKYLIT_KINDS 4u
-#define WD_SKYLIT_PLACES 8u /* WD_SUN_RINGS of leaves, then of wood */
+#define WD_SKYLIT_PLACES 12u /* WD_SUN_RINGS each of these: */
+#define WD_SKYLIT_LEAVES 0u  /* with normals of their own; */
+#define WD_SKYLIT_WOOD 4u
+#define WD_SKYLIT_CLOUDS 8u  /* and of pixels that show many leaves, as wd_leaves_seen_up says */
 
 /* What has little of the sky overhead has more of it to its sides, and more of the ground. */
 WD_FUNC float wd_skylit_above(float openness)
@@ -21,6 +24,13 @@ WD_FUNC float wd_skylit_above(float openness)
 WD_FUNC float wd_skylit_below(float openness)
 {
     return openness + 0.4f;
+}
+
+/* How far up leaves that lie flat rather than upright look with the sides that an eye sees: their mean normal's
+ * z, as models of six species have it, much the same about any crown. `eye`: the sine of its elevation. */
+WD_FUNC float wd_leaves_seen_up(float eye)
+{
+    return 1.6f * eye / (1.0f + 1.3f * WD_ABS(eye));
 }
 
 #define WD_SUNLIT_TURNS 7u
@@ -65,9 +75,9 @@ struct wd_lit_model {
     uint32_t sunlit[2 * WD_SUNLIT_PLACES * 4];
     uint32_t skylit[WD_SKYLIT_PLACES * 4]; /* two half floats each: of a place, and of a ring on */
 };
-WD_STATIC_ASSERT_SIZE(wd_lit_model, 3744);
+WD_STATIC_ASSERT_SIZE(wd_lit_model, 3808);
 #define WD_LIT_LEAVES_TEXELS 2u
 #define WD_LIT_SKYLIT_TEXEL 226u
-#define WD_LIT_MODEL_TEXELS 234u
+#define WD_LIT_MODEL_TEXELS 238u
 
 #endif

@@ -171,13 +171,19 @@ static struct shown shown_at(const struct fit *fit, const struct wd_tree_points 
     return shown;
 }
 
-/* Of the point's face and of its other side, as the path tracer's scatter light: about the normal, and what
- * of that lies beyond the surface is mirrored back. */
-static struct skylit skylit_at(const struct fit *fit, const struct shown *point)
+/* `up`: the share of a sky without horizon that it would see. */
+static void tell(struct skylit *of, float up, float openness, float area)
+{
+    float above = area * wd_skylit_above(openness), below = area * wd_skylit_below(openness);
+    memcpy(of->told, (float[]){up * above, (1 - up) * above, (1 - up) * below, up * below},
+           sizeof of->told);
+}
+
+/* Of the point's face and of its other side, as the path tracer's scatter light: about the normal `n`, and
+ * what of that lies beyond the surface is mirrored back. */
+static struct skylit skylit_at(const struct fit *fit, const struct shown *point, struct wd_vec3 n)
 {
     struct skylit of = {0};
-    struct wd_vec3 n = point->normal;
-    n = wd_v3_dot(n, point->face) < 0 ? wd_v3_scale(n, -1) : n;
     for (uint32_t i = 0; i < WD_SUN_WAYS + LOW_WAYS; i++) {
         bool low = i >= WD_SUN_WAYS;
         if (!(low ? point->low >> (i - WD_SUN_WAYS) & 1 : point->lit >> i & 1))
@@ -189,26 +195,54 @@ static struct skylit skylit_at(const struct fit *fit, const struct shown *point)
         of.comes[2 * low + (rise < 0)] +=
             fit->sky[i].brings * (fmaxf(along, 0) + fmaxf(mirrored, 0));
     }
-    float up = 0.5f + 0.5f * n.z, above = wd_skylit_above(point->openness);
-    float below = wd_skylit_below(point->openness);
-    memcpy(of.told, (float[]){up * above, (1 - up) * above, (1 - up) * below, up * below},
-           sizeof of.told);
+    tell(&of, 0.5f + 0.5f * n.z, point->openness, 1);
     return of;
 }
 
+/* What an eye sees of it: `area` toward the eye, negative of the other side. */
+static struct skylit seen_of(const struct skylit *of, float area)
+{
+    struct skylit seen;
+    for (uint32_t k = 0; k < WD_SKYLIT_KINDS; k++) {
+        uint32_t from = area < 0 ? k ^ 1 : k;
+        seen.comes[k] = fabsf(area) * of->comes[from];
+        seen.told[k] = fabsf(area) * of->told[from];
+    }
+    return seen;
+}
+
+/* A cloud's normal is the same for all leaves that an eye sees. */
+static void tell_cloud(struct skylit *seen, const struct shown *point, float eye_sine, float area)
+{
+    float up = 0.5f + 0.5f * wd_leaves_seen_up(eye_sine);
+    tell(seen, up, point->openness, fabsf(area));
+}
+
+static void add_skylight(struct skylit *sum, const struct skylit *seen)
+{
+    for (uint32_t k = 0; k < WD_SKYLIT_KINDS; k++) {
+        sum->comes[k] += seen->comes[k];
+        sum->told[k] += seen->told[k];
+    }
+}
+
+/* As turn_to_eye has it: an eye that is beyond the leaf by its normal sees it flat. */
 static void send_skylight(struct fit *fit, const struct shown *point, uint32_t seen, bool wood)
 {
-    struct skylit of = skylit_at(fit, point);
-    for (uint32_t eye = 0; eye < EYES; eye++) {
-        float area = wd_v3_dot(point->face, fit->eyes[eye].toward);
-        if (!(seen >> eye & 1) || (wood && area <= 0))
+    struct wd_vec3 n = point->normal, face = point->face;
+    n = wd_v3_dot(n, face) < 0 ? wd_v3_scale(n, -1) : n;
+    const struct skylit bent = skylit_at(fit, point, n), flat = skylit_at(fit, point, face);
+    for (uint32_t i = 0; i < EYES; i++) {
+        const struct eye *eye = &fit->eyes[i];
+        float area = wd_v3_dot(face, eye->toward);
+        if (!(seen >> i & 1) || (wood && area <= 0))
             continue;
-        struct skylit *sum = &fit->skylit[(wood ? WD_SUN_RINGS : 0) + fit->eyes[eye].ring];
-        for (uint32_t k = 0; k < WD_SKYLIT_KINDS; k++) {
-            uint32_t from = area < 0 ? k ^ 1 : k;
-            sum->comes[k] += fabsf(area) * of.comes[from];
-            sum->told[k] += fabsf(area) * of.told[from];
-        }
+        struct skylit of = seen_of(wd_v3_dot(n, eye->toward) * area <= 0 ? &flat : &bent, area);
+        add_skylight(&fit->skylit[(wood ? WD_SKYLIT_WOOD : WD_SKYLIT_LEAVES) + eye->ring], &of);
+        if (wood)
+            continue;
+        tell_cloud(&of, point, eye->toward.z, area);
+        add_skylight(&fit->skylit[WD_SKYLIT_CLOUDS + eye->ring], &of);
     }
 }
 
