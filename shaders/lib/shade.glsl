@@ -553,14 +553,16 @@ vec3 leaves_albedo()
  * five species, 5 and 8 m apart, under an even sky. */
 const float NEIGHBOURS_OVER = 0.7;
 
-/* The model's table holds in stands, too, past what neighbours leave; but not of clouds of leaves, nor for an eye
- * below the tops, which sees what lies under others. */
+/* The model's table holds in stands, too, past what neighbours leave, where an eye looks down on single leaves. A
+ * low one sees what lies under others: the table's light would be a fifth too much there, and of a tree that stands
+ * free as much is hidden as of the ground beside it. */
 void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown, wd_shelter shelter, wd_place place)
 {
     float over = pow(canopy_above(shelter.layer_m, place.rel.z - crown.foot_z), NEIGHBOURS_OVER);
-    float stands_free = ALL_SINGLE || pixel.lit >= 0.0 ? shelter.within : 1.0;
-    alone.sides = exp2(over * log2(max(alone.beside, 1e-3)));
-    alone.known = mix(smoothstep(0.25, 0.35, crown.radii_m.z), alone.share, stands_free);
+    float from_above = smoothstep(0.15, 0.5, -pixel.direction.z) * (1.0 - shelter.within);
+    from_above *= ALL_SINGLE || pixel.lit >= 0.0 ? smoothstep(0.25, 0.35, crown.radii_m.z) : 0.0;
+    alone.sides = exp2(mix(1.0, over, from_above) * log2(max(alone.beside, 1e-3)));
+    alone.known = mix(alone.share, 1.0, from_above);
     alone.again = scattered_on(pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance)
                                                                   : leaves_albedo());
 }
