@@ -18,7 +18,8 @@ struct wd_reference_params {
 };
 
 /* Grows the trees of `forest` in full and readies them for rays. `forest` must outlive the result.
- * Needs about 0.2 GB for 75,000 trees and 0.6 GB for a million while a picture is made.
+ * Needs about 0.2 GB for 75,000 trees and 0.6 GB for a million while a picture is made, and some 0.1 GB for each
+ * million triangles of twigs that are close to the camera (4 at most).
  * Errors: WD_ERROR_INPUT (a species cannot be grown), WD_ERROR_MEMORY. */
 enum wd_result wd_reference_create(struct wd_reference **reference, const struct wd_forest *forest,
                                    const struct wd_reference_params *params);

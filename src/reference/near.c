@@ -8,7 +8,7 @@
 #include "tree/vec.h"
 
 /* Of twigs in all. */
-enum { MOST_TRIANGLES = 600000 };
+enum { MOST_TRIANGLES = 4000000 };
 
 /* --- which leaves ---------------------------------------------------------------------------- */
 

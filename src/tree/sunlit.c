@@ -72,7 +72,8 @@ struct skylit {
 struct sent {
     float seen;            /* area of leaves toward the eye */
     float sides[2];        /* reflected and transmitted, */
-    float card, leaf;      /* the same by depth: of the card's place; of the leaf's own place and side */
+    float leaf;            /* the same by depth, of the leaf's own place and side */
+    float pictured, card;  /* area of leaves in pictures on cards, and that by depth of the card's place */
     float wood, wood_deep; /* of the wood seen, and the same by depth */
 };
 
@@ -95,7 +96,7 @@ static void set_crown(struct fit *fit, const struct wd_tree_model *model)
     fit->radii_m = WD_V3(radius_m, radius_m, deep_m);
 }
 
-/* The place a card's texel with the point stands for, seen from far away. */
+/* The place that a card's texel stands for, seen from far away. */
 static struct wd_vec3 card_place(const struct fit *fit, struct wd_vec3 p, struct wd_vec3 toward)
 {
     const float far_m = 1000;
@@ -128,19 +129,43 @@ static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
     struct wd_vec3 toward = fit->eyes[eye].toward, face = point->face, normal = point->normal;
     turn_to_eye(&face, &normal, toward);
     float area = wd_v3_dot(face, toward);
-    struct wd_vec3 card = card_place(fit, wd_v3_add(point->place, fit->middle_m), toward);
     for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
         struct sent *sent = &fit->sent[eye][way];
         struct wd_vec3 sun = fit->suns[way];
         float cosine = wd_v3_dot(normal, sun);
         bool behind = wd_v3_dot(face, sun) < 0, lost = behind != (cosine < 0);
         float side = lost ? 0 : area * fabsf(cosine);
-        float through = wd_crown_through(
-            fit->radii_m, wd_crown_path_m(card, fit->radii_m, sun), point->openness);
         sent->seen += area;
         sent->sides[behind] += side * wd_sun_way_lit(point->lit, way);
         sent->leaf += side * point->left[way];
-        sent->card += area * wd_crown_lit(through, fit->curve[0], fit->curve[1]);
+    }
+}
+
+/* A card stands upright through the stem and shows what a level eye sees, to any eye: less open leaves than
+ * those that one from above sees. `pictured`: the level eye. */
+static void send_card(struct fit *fit, const struct shown *point, const struct eye *pictured, uint32_t eye)
+{
+    const struct wd_vec3 level = wd_v3_unit(WD_V3(pictured->toward.x, pictured->toward.y, 0));
+    struct wd_vec3 p = wd_v3_add(point->place, fit->middle_m), toward = fit->eyes[eye].toward;
+    struct wd_vec3 across = wd_v3_unit(WD_V3(toward.x, toward.y, 0));
+    float area = fabsf(wd_v3_dot(point->face, pictured->toward) * wd_v3_dot(across, level));
+    p = wd_v3_mad(p, level, -wd_v3_dot(p, level));
+    struct wd_vec3 place = card_place(fit, p, toward);
+    for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
+        float path_m = wd_crown_path_m(place, fit->radii_m, fit->suns[way]);
+        float through = wd_crown_through(fit->radii_m, path_m, point->openness);
+        fit->sent[eye][way].pictured += area;
+        fit->sent[eye][way].card += area * wd_crown_lit(through, fit->curve[0], fit->curve[1]);
+    }
+}
+
+/* Every other point by one of the level eyes that see it, for each eye. */
+static void send_cards(struct fit *fit, const struct shown *point, uint32_t seen, uint32_t index)
+{
+    for (uint32_t eye = index % 2; eye < EYES; eye += 2) {
+        uint32_t pictured = (index / 2 + eye) % eyes_on_ring[0];
+        if (seen >> pictured & 1)
+            send_card(fit, point, &fit->eyes[pictured], eye);
     }
 }
 
@@ -283,6 +308,8 @@ static void send(struct fit *fit, const struct wd_tree_points *points, const uin
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
             shown.left[way] = wd_crown_lit(shown.left[way], fit->curve[0], fit->curve[1]);
         send_skylight(fit, &shown, seen[i], !(points->points[i].kind & WD_POINT_LEAF));
+        if (points->points[i].kind & WD_POINT_LEAF)
+            send_cards(fit, &shown, seen[i], (uint32_t)i);
         for (uint32_t eye = 0; eye < EYES; eye++)
             if (seen[i] >> eye & 1 && points->points[i].kind & WD_POINT_LEAF)
                 send_leaf(fit, &shown, eye);
@@ -296,6 +323,7 @@ static void add_sent(struct sent *sum, const struct sent *sent, float weight)
     sum->seen += weight * sent->seen;
     sum->sides[0] += weight * sent->sides[0];
     sum->sides[1] += weight * sent->sides[1];
+    sum->pictured += weight * sent->pictured;
     sum->card += weight * sent->card;
     sum->leaf += weight * sent->leaf;
     sum->wood += weight * sent->wood;
@@ -368,8 +396,9 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
     for (uint32_t k = 0; k < WD_SUNLIT_PLACES; k++) {
         uint32_t turn = k % WD_SUNLIT_TURNS, rings = k / WD_SUNLIT_TURNS;
         struct sent sum = sum_near(fit, rings % WD_SUN_RINGS, rings / WD_SUN_RINGS, turn);
-        model->sunlit[k][0] = ratio(sum.sides[0], sum.card, sum.seen);
-        model->sunlit[k][1] = ratio(sum.sides[1], sum.card, sum.seen);
+        float card = sum.pictured > 0 ? sum.card / sum.pictured * sum.seen : 0;
+        model->sunlit[k][0] = ratio(sum.sides[0], card, sum.seen);
+        model->sunlit[k][1] = ratio(sum.sides[1], card, sum.seen);
         model->sunlit[k][2] = ratio(sum.sides[0] + sum.sides[1], sum.leaf, sum.seen);
         model->sunlit[k][3] = ratio(sum.wood, sum.wood_deep, sum.seen);
     }

@@ -13,7 +13,7 @@
 static const struct bound {
     const char *form;
     double coverage_pct, radiance_pct;
-} bounds[] = {{"full", 2.5, 3}, {"reduced", 2.5, 3}, {"cards", 3, 3}, {"splats", 3, 4}};
+} bounds[] = {{"full", 2.5, 3}, {"reduced", 2.5, 4}, {"cards", 3, 3}, {"splats", 3, 4}};
 
 enum { PX_32 = 2, FROM_ABOVE = 1 };
 

@@ -1,0 +1,259 @@
+/* Light from everywhere: the sky's past stands, herbs and a tree's own crown, what leaves scatter and what comes
+ * back from the ground.
+ * Expects `frame`, `push` (wd_light_push) and the libraries of gbuffer and crown. */
+
+/* Of the canopy here (forest/canopy_light.h), in layer 0 the roots of the shares of the sky's light from
+ * each quarter that reach the ground's herbs, past crowns and hills; in layer 1 those of its base and top,
+ * and of the herbs. Where the shader does not say, all light does. */
+#ifndef CANOPY_LIGHT_AT
+#define CANOPY_LIGHT_AT(at, layer) vec4(1.0 - (layer))
+#endif
+
+/* What comes down to a place among leaves. */
+struct wd_shelter {
+    vec4 through;     /* the share of the sky's quarters that no leaf stops */
+    float floor_mean; /* the mean of that on the ground */
+    float under;      /* log2 of the share that leaves of the stand over the place let down */
+    vec2 layer_m;     /* base and top of the stand's leaves over the ground */
+    float herbs;      /* layers of herbs on the ground, */
+    float herbs_m;    /* so high */
+    float low;        /* 1: on the ground, whose light comes from right beside the place; 0: far over it */
+    float floor_herbs; /* log2 of the share of light that herbs between leave the ground */
+    float within;      /* 1: the eye is below the stand's tops, 0: over them */
+};
+
+/* Skylight past herbs that have so many layers over a place. Slanting rays meet more of them, but leaves let
+ * some through: of path-traced ferns under clouds, the like of a steep ray past black ones. */
+float through_herbs(float layers)
+{
+    return exp(-layers);
+}
+
+wd_shelter ground_shelter(wd_pixel pixel)
+{
+    vec4 field = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 0.0);
+    vec4 layers = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 1.0);
+    wd_shelter shelter;
+    shelter.layer_m = WD_CANOPY_MOST_M * layers.xy * layers.xy;
+    shelter.herbs = WD_HERBS_MOST * layers.z * layers.z;
+    shelter.herbs_m = WD_HERB_M * layers.w * layers.w;
+    shelter.low = 0.0;
+    shelter.floor_herbs = 0.0;
+    shelter.within = 0.0;
+    shelter.through = max(field * field, vec4(1e-3));
+    shelter.floor_mean = dot(shelter.through, vec4(0.25));
+    shelter.under = log2(shelter.floor_mean);
+    shelter.through *= pixel.surface == 0u ? pixel.openness * through_herbs(shelter.herbs) : 1.0;
+    return shelter;
+}
+
+/* Share of the canopy's leaves that lie over a height: what lies above a plane through an ellipsoid. */
+float canopy_above(vec2 layer_m, float height_m)
+{
+    float above = 1.0 - smoothstep(layer_m.x, max(layer_m.y, layer_m.x + 0.5), height_m);
+    return above * above;
+}
+
+/* Layers of herbs over a height: their leaves are spread evenly over theirs. */
+float herbs_above(wd_shelter shelter, float height_m)
+{
+    return shelter.herbs * clamp(1.0 - height_m / max(shelter.herbs_m, 0.01), 0.0, 1.0);
+}
+
+/* An eye within a stand sees those leaves of a place that lie under the others there: by so many more of their
+ * tree's own. By path-traced oaks and beeches. */
+const float BELOW_LEAVES = 0.3;
+
+/* On a tree: what its own leaves let through, and of what the stand lets down to the ground as much as
+ * there are leaves of it higher up: what of it is above the whole tree, and neighbours beside it. The
+ * ground's own share is that of gaps between crowns, in which no leaf is. Herbs get what the ground
+ * gets, less what their own take. */
+wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter shelter)
+{
+    float top_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
+    float above = canopy_above(shelter.layer_m, rel.z - crown.foot_z);
+    float higher = canopy_above(shelter.layer_m, top_m);
+    float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
+    float over = crown.sward * wd_crown_per_m(crown.radii_m) * sward_depth_m(crown, pixel.rel);
+    shelter.within = 1.0 - smoothstep(0.5, 1.0, -crown.foot_z / max(shelter.layer_m.y, 1.0));
+    float own = pow(max(pixel.openness, 1e-2), 1.0 + BELOW_LEAVES * shelter.within * (1.0 - herb));
+    float under = mix(higher, 1.0, above);
+    vec4 stand = own * exp2(under * log2(shelter.through));
+    shelter.through = mix(stand, shelter.through * own * exp(-0.7 * over), herb);
+    shelter.through *= through_herbs(herbs_above(shelter, rel.z - crown.foot_z));
+    shelter.low = exp2(min(crown.foot_z - pixel.rel.z, 0.0));
+    shelter.floor_herbs = log2(through_herbs(shelter.herbs));
+    shelter.under *= mix(under, 1.0, herb);
+    return shelter;
+}
+
+/* Irradiance of a sky's form on a surface is even + odd, on its other side even - odd. */
+#define SKY_ODD(form, n) (form[1] * n.x + form[2] * n.y + form[3] * n.z)
+#define SKY_EVEN(form, n)                                                                          \
+    (form[0] + form[4] * (n.x * n.y) + form[5] * (n.y * n.z) + form[6] * (n.z * n.z)               \
+     + form[7] * (n.x * n.z) + form[8] * (n.x * n.x - n.y * n.y))
+
+/* The same, of level skies: without what differs between quarters beyond toward and away. */
+#define SKY_LEVELS(form, n) (form[0] + form[6] * (n.z * n.z) + SKY_ODD(form, n))
+
+/* Where a stand lets down 0.115 of an even sky's light, its rays come from as steep as in sky_under: one
+ * over the log2. Path-traced stems in a closed forest under clouds get 0.24 of what the ground does. */
+const float UNDER_PER_LOG2 = -0.32;
+
+/* Irradiance of a surface and of its other side. Leaves scatter a share of what they stop, so that a
+ * stand which lets t through if leaves were black lets t^s through, s the root of the share of light
+ * that they absorb (Goudriaan 1977, sections 2.3 and 2.4; de Pury and Farquhar 1997); a deep canopy
+ * returns (1 - s) / (1 + s). So all but the sun's own rays is had from the sky's share: a ray of the sun
+ * meets b times as many leaves as that of the mean of the sky's, cos(48 degrees). What leaves scatter
+ * of it downward, 1 - s, comes from where the ray met them as light from everywhere: of a depth that
+ * lets t through, (1 - s) b ln(1 / t) times the mean over its way of t^s below and t^b above, their
+ * logarithmic mean, within some percent (Carlson 1972). A low sun lights but the tops so; t^(s b), what
+ * the ray would bring along its own way, is next to nothing there. */
+struct wd_around {
+    vec3 front, back;
+    vec3 mirrored; /* of a surface that looks along `mirror` */
+};
+
+/* The sky about the sun lies wide beside stems and far crowns, whose shadows it fills, but is hidden by the
+ * leaves close to a leaf that hide the sun: how far. Of a hill that hides the sun it is in part above. */
+const float NEAR_SUN = 0.7, OVER_HILLS = 0.6;
+
+/* Ways past a stand to the sky about the sun, which lies somewhat higher than a low sun, over the mean way of the
+ * sky's light, times their sine. */
+const float WIDE_WAY = 0.8;
+
+/* The sun's own and that of the sky about it, on a surface that faces it. */
+vec3 sunlight()
+{
+    return frame.sun_irradiance + frame.circumsolar;
+}
+
+/* Irradiance of level ground that has these shares of the sky's quarters. */
+vec3 sky_level(vec4 through)
+{
+    return frame.sky_quarters[0] * through.x + frame.sky_quarters[1] * through.y
+           + frame.sky_quarters[2] * through.z + frame.sky_quarters[3] * through.w;
+}
+
+vec4 quarters_bright()
+{
+    return vec4(frame.sky_quarters[0].y, frame.sky_quarters[1].y, frame.sky_quarters[2].y,
+                frame.sky_quarters[3].y);
+}
+
+/* How much of the light of each quarter (east, north, west, south) a face has that looks this way. */
+vec4 faced_quarters(vec2 n)
+{
+    return 0.5 + 0.5 * vec4(n, -n);
+}
+
+/* Share of its sky's light that a face has where level ground has such shares of the quarters, all of one
+ * colour. What stands before a quarter leaves its high part: of a horizon at angle h ground keeps cos^2 h, an
+ * upright face 1 - (2 h + sin 2h) / pi, which is this within 0.04. `flat_on`: how level the face is. */
+float sky_faced(vec4 through, vec4 faced, float flat_on)
+{
+    vec4 upright = through * (1.0 - sqrt(max(1.0 - through, 0.0)));
+    return dot(mix(upright, through, flat_on), faced) / max(dot(faced, vec4(1.0)), 1e-12);
+}
+
+/* A crown stands before the quarters behind it, and what an eye sees of it looks out toward the eye: by how much
+ * that lets it have of the quarters. Fitted to path-traced oaks and spruces under skies of one bright side. */
+const float OWN_SIDE = 0.7;
+
+vec4 eye_side(vec3 eye)
+{
+    vec2 level = OWN_SIDE * eye.xy * inversesqrt(max(dot(eye.xy, eye.xy), 0.25));
+    return 1.0 + vec4(level, -level);
+}
+
+/* Share of its sky's light that a face has that an eye sees, of what it would have if the sky were as bright on
+ * all sides. */
+float sky_of_side(vec4 side, vec4 bright, vec4 faced)
+{
+    float even = dot(side, faced) / max(dot(faced, vec4(1.0)), 1e-12);
+    return dot(side, bright * faced) / max(even * dot(bright, faced), 1e-12);
+}
+
+/* Of a tree that stands free: low light comes in by its sides. What its own crown leaves is a table of its
+ * model's (shared/sunlit.h). */
+struct wd_alone {
+    float share;  /* how far it stands free, */
+    float known;  /* and how far that table tells what of the sky it has */
+    vec4 beside;  /* shares of the sky's quarters that the ground beside its crown has, */
+    vec4 sides;   /* and the place past what stands there */
+    vec4 side;    /* shares of what its own crown leaves that come from each quarter, over an even crown's */
+    vec4 lets;    /* of light from above to the side that is seen and to the other, then from below */
+    vec3 again;   /* times as much as without what its leaves scatter of that */
+    vec3 scattered; /* irradiance of each side by what the crown's own leaves scatter of the sun */
+};
+
+const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(1.0), vec4(0.0), vec3(1.0), vec3(0.0));
+
+/* Of the ways past a stand to what a leaf of it mirrors, by how many leaves longer than the mean way of the
+ * sky's light: 0.67 by chance, less for leaves that an eye sees through a gap. By path-traced stands under a high
+ * sun and at dawn. */
+const float ALONG = 0.5;
+
+/* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
+ * unit, where a ray of the eye goes on to from one leaf. `past_trees`: the sun's share at the place. */
+wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float ground_share, float past_trees,
+                       wd_alone alone, float eye_z)
+{
+    vec3 n = facing.xyz, s = frame.leaf_scatter;
+    /* Slanting rays meet more of the stand's leaves, and of the tree's own (below). */
+    float deep = min(shelter.under * UNDER_PER_LOG2, 1.0) * (1.0 - alone.share);
+    vec3 odd = mix(SKY_ODD(frame.sky_form, n), SKY_ODD(frame.sky_under, n), deep);
+    vec3 even = mix(SKY_EVEN(frame.sky_form, n), SKY_EVEN(frame.sky_under, n), deep)
+                + frame.sky_form[6] * facing.w;
+    vec4 through = exp2(frame.sky_slant * log2(shelter.through));
+    vec3 open_sky = sky_level(vec4(1.0));
+    vec3 reach = sky_level(through) / max(open_sky, vec3(1e-12))
+                 * mix(vec3(1.0), frame.sky_under_tint, deep);
+    float mean = dot(shelter.through, vec4(0.25));
+    /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer. What an eye
+     * over the stand sees of upright faces looks out of a gap. */
+    float own = min(mean * exp2(-shelter.under), 1.0), own4 = own * own * own * own;
+    float upright = mix(0.40 + 0.45 * own + 0.15 * own4, 1.0, smoothstep(0.15, 0.5, eye_z));
+    vec3 gain = exp2((s - 1.0) * log2(mean)), sky = reach * gain * mix(upright, 1.0, abs(n.z));
+    vec4 bright = quarters_bright(), faced = faced_quarters(n.xy);
+    float flat_on = min(sqrt(n.z * n.z + facing.w), 1.0);
+    vec3 beside_front = alone.again * sky_faced(alone.sides, bright * faced, flat_on)
+                        * sky_of_side(alone.side, bright, faced);
+    vec3 beside_back = alone.again * sky_faced(alone.sides, bright - bright * faced, flat_on)
+                       * sky_of_side(alone.side, bright, 1.0 - faced);
+    vec3 sky_front = mix(sky, beside_front * alone.lets.x, alone.known);
+    vec3 sky_back = mix(sky, beside_back * alone.lets.y, alone.known);
+    float rise = max(frame.sun_direction.z, 0.0);
+    float longer = 0.67 / max(rise, 0.05);
+    float beam = exp2(longer * log2(dot(frame.sunward, shelter.through)));
+    vec3 sun = sunlight() * (rise * ground_share);
+    vec3 diffuse = exp2(s * log2(mean));
+    vec3 between = (sqrt(diffuse * beam) * 2.0 + 0.5 * (diffuse + beam)) * (1.0 / 3.0);
+    vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
+    vec3 with_scattered = sun * mix(beam, past_trees, shelter.low) + scattered;
+    float covered = 1.0 - shelter.floor_mean;
+    vec3 deep_albedo = (1.0 - s) / (1.0 + s);
+    vec3 floor_albedo = mix(deep_albedo, mix(frame.grass, frame.litter, covered),
+                            exp2(2.0 * s * shelter.floor_herbs));
+    vec3 below = mix(deep_albedo, floor_albedo, exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
+    vec3 upward = below * (open_sky * sky + with_scattered);
+    vec3 beside = alone.again * floor_albedo * (sky_level(alone.beside) + sun);
+    vec3 upward_front = mix(upward, beside * alone.lets.z, alone.share);
+    vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
+    float up = 0.5 + 0.5 * n.z;
+    wd_around around;
+    vec3 again = alone.scattered * mix(mean, 1.0, alone.share); /* in a stand, `scattered` has deeper ones' */
+    around.front = max(even + odd, vec3(0.0)) * sky_front + scattered * (up * (1.0 - alone.share)) + again;
+    around.back = max(even - odd, vec3(0.0)) * sky_back
+                  + scattered * ((1.0 - up) * (1.0 - alone.share)) + again;
+    around.front += upward_front * (1.0 - up);
+    around.back += upward_back * up;
+    float up_mirror = 0.5 + 0.5 * mirror.z;
+    vec3 ahead = mix(SKY_LEVELS(frame.sky_form, mirror), SKY_LEVELS(frame.sky_under, mirror), deep);
+    /* Past the stand, that way: rough wax looks higher, too, and where the eye looks into a gap, out of that. */
+    float rise_along = mix(0.3 + 0.7 * max(mirror.z, 0.0), max(mirror.z, 0.05), shelter.within);
+    vec3 along = exp2(s * (log2(mean) * ALONG / rise_along));
+    around.mirrored = max(ahead, vec3(0.0)) * mix(along, sky_front, alone.share)
+                      + mix(upward_front, scattered, up_mirror);
+    return around;
+}
