@@ -59,14 +59,16 @@ vec2 sheet_slope(vec3 sheet, mat4 m)
 const float CASTER_FAR_M = 60.0;
 const float CASTER_TEXEL_M = 0.2;
 const uint CASTER_PLACES = 4u;
+const float CASTER_NEAR_M = 0.05;
 
-/* Mean way from a place in a map to what casts a shadow there (Fernando 2005, percentage-closer soft
- * shadows), from four texels at each of `places`; 0: nothing does. `range_m`: depth of
- * the map; `widest`: of the search, in texture coordinates. */
+/* Way from a place in a map to what casts a shadow there (Fernando 2005, percentage-closer soft
+ * shadows), from four texels at each of `places`; 0: nothing does. The harmonic mean keeps the edge
+ * of a trunk's shadow close by where crowns farther off hide the sun, too. `range_m`: depth of the
+ * map; `widest`: of the search, in texture coordinates. */
 float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, float widest,
                uint places)
 {
-    float sum_m = 0.0, count = 0.0;
+    float per_m = 0.0, count = 0.0;
     uint i = 0u;
     if (places == 0u)
         return 0.0;
@@ -75,11 +77,11 @@ float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, floa
         vec4 depth = textureGather(SHADOW_DEPTH, vec3(at.xy + off, float(cascade)));
         vec4 way_m = (depth - at.z - dot(slope, off)) * range_m;
         vec4 casts = step(vec4(0.0), way_m);
-        sum_m += dot(casts, way_m);
+        per_m += dot(casts, 1.0 / max(way_m, vec4(CASTER_NEAR_M)));
         count += dot(casts, vec4(1.0));
         spin = vec2(-spin.y, spin.x);
     } while (++i < places);
-    return sum_m / max(count, 1.0);
+    return count == 0.0 ? 0.0 : count / per_m;
 }
 #endif
 
