@@ -86,8 +86,8 @@ static void cross_triangle(struct wd_clip_grid *grid, const float *corner[3], ui
 {
     double low[2], high[2];
     for (int axis = 0; axis < 2; axis++) {
-        low[axis] = (double)wd_minf(corner[0][axis], wd_minf(corner[1][axis], corner[2][axis]));
-        high[axis] = (double)wd_maxf(corner[0][axis], wd_maxf(corner[1][axis], corner[2][axis]));
+        low[axis] = (double)wd_min3f(corner[0][axis], corner[1][axis], corner[2][axis]);
+        high[axis] = (double)wd_max3f(corner[0][axis], corner[1][axis], corner[2][axis]);
     }
     double height = (double)grid->max_m[2] - (double)grid->min_m[2];
     for (int j = column_of(grid, 1, low[1]); j <= column_of(grid, 1, high[1]); j++)

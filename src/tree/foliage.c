@@ -334,8 +334,8 @@ static void init_crown(struct wd_foliage *foliage, const struct wd_skeleton *ske
             struct wd_vec3 p = skeleton->nodes[branch->first_node + i].position_m;
             if (branch->order == WD_TRUNK)
                 p.z = wd_maxf(p.z, form->crown_base_m);
-            low = WD_V3(wd_minf(low.x, p.x), wd_minf(low.y, p.y), wd_minf(low.z, p.z));
-            high = WD_V3(wd_maxf(high.x, p.x), wd_maxf(high.y, p.y), wd_maxf(high.z, p.z));
+            low = wd_v3_min(p, low);
+            high = wd_v3_max(p, high);
         }
     }
     low = wd_v3_sub(low, WD_V3(around, around, fronds ? around : 3 * cell));

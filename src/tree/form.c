@@ -34,7 +34,7 @@ void wd_tree_form_clip(struct wd_tree_form *form, const struct wd_clip_grid *cli
 {
     float reach = 0;
     for (int axis = 0; axis < 2; axis++)
-        reach = wd_maxf(reach, wd_maxf(-clip->min_m[axis], clip->max_m[axis]));
+        reach = wd_max3f(reach, -clip->min_m[axis], clip->max_m[axis]);
     form->clip = clip;
     form->crown_radius_m = reach;
     form->crown_base_m = wd_maxf(clip->min_m[2], 0.05f * form->height_m);

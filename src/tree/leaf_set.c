@@ -314,9 +314,8 @@ struct wd_leaf_box wd_leaf_box_of(const struct wd_leaf_stand *places, size_t cou
     struct wd_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     float size_m = 0;
     for (size_t i = 0; i < count; i++) {
-        struct wd_vec3 p = places[i].position_m;
-        low = WD_V3(wd_minf(low.x, p.x), wd_minf(low.y, p.y), wd_minf(low.z, p.z));
-        high = WD_V3(wd_maxf(high.x, p.x), wd_maxf(high.y, p.y), wd_maxf(high.z, p.z));
+        low = wd_v3_min(places[i].position_m, low);
+        high = wd_v3_max(places[i].position_m, high);
         size_m = wd_maxf(size_m, places[i].size_m);
     }
     if (!count)

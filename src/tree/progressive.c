@@ -79,9 +79,8 @@ static void curve_places(uint32_t *places, const struct wd_vec3 *points, size_t 
 {
     struct wd_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < count; i++) { /* numbers alone */
-        struct wd_vec3 p = points[i];
-        low = WD_V3(wd_minf(p.x, low.x), wd_minf(p.y, low.y), wd_minf(p.z, low.z));
-        high = WD_V3(wd_maxf(p.x, high.x), wd_maxf(p.y, high.y), wd_maxf(p.z, high.z));
+        low = wd_v3_min(points[i], low);
+        high = wd_v3_max(points[i], high);
     }
     struct wd_vec3 size = wd_v3_sub(high, low);
     float side = fmaxf(fmaxf(size.x, size.y), fmaxf(size.z, 1e-6f));

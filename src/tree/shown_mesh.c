@@ -23,16 +23,6 @@ static float across(const struct corner *a, const struct corner *b, float x, flo
     return (b->at[0] - a->at[0]) * (y - a->at[1]) - (b->at[1] - a->at[1]) * (x - a->at[0]);
 }
 
-static float least(float a, float b, float c)
-{
-    return wd_minf(a, wd_minf(b, c));
-}
-
-static float most(float a, float b, float c)
-{
-    return wd_maxf(a, wd_maxf(b, c));
-}
-
 /* Which side of a leaf is seen: as shaders/lib/look.glsl has it, in a picture that is mirrored. */
 static uint8_t side_of(const struct wd_tree_vertex *const vertices[3], float area)
 {
@@ -65,10 +55,10 @@ static void draw_triangle(struct canvas *canvas, const struct wd_tree_vertex *co
     struct corner a = corner_of(canvas, vertices[0]), b = corner_of(canvas, vertices[1]);
     struct corner c = corner_of(canvas, vertices[2]);
     float area = across(&a, &b, c.at[0], c.at[1]);
-    int x0 = wd_silhouette_pixel(least(a.at[0], b.at[0], c.at[0]));
-    int x1 = wd_silhouette_pixel(most(a.at[0], b.at[0], c.at[0]));
-    int y0 = wd_silhouette_pixel(least(a.at[1], b.at[1], c.at[1]));
-    int y1 = wd_silhouette_pixel(most(a.at[1], b.at[1], c.at[1]));
+    int x0 = wd_silhouette_pixel(wd_min3f(a.at[0], b.at[0], c.at[0]));
+    int x1 = wd_silhouette_pixel(wd_max3f(a.at[0], b.at[0], c.at[0]));
+    int y0 = wd_silhouette_pixel(wd_min3f(a.at[1], b.at[1], c.at[1]));
+    int y1 = wd_silhouette_pixel(wd_max3f(a.at[1], b.at[1], c.at[1]));
     if (x0 >= x1 || y0 >= y1 || !(fabsf(area) > 1e-9f))
         return;
     for (int y = y0; y < y1; y++)

@@ -85,16 +85,6 @@ static inline struct wd_vec3 corner(const struct places *places, int k, int i)
     return WD_V3(places->m[k][0][i], places->m[k][1][i], places->m[k][2][i]);
 }
 
-static inline float least(float a, float b, float c)
-{
-    return wd_minf(wd_minf(a, b), c);
-}
-
-static inline float most(float a, float b, float c)
-{
-    return wd_maxf(wd_maxf(a, b), c);
-}
-
 /* Whether the middle of one of the picture's pixels lies between a and b, or nearly so. */
 static inline int passes(float a, float b, float low)
 {
@@ -117,8 +107,8 @@ static int find_reaching(int reaching[BATCH + 3], const struct places *places,
         float b = q.x * right.x + q.y * right.y;
         float c = r.x * right.x + r.y * right.y;
         float d = wd_v3_dot(p, up), e = wd_v3_dot(q, up), f = wd_v3_dot(r, up);
-        reaches[i] = passes(least(a, b, c), most(a, b, c), axes->low[0]) &
-                     passes(least(d, e, f), most(d, e, f), axes->low[1]);
+        reaches[i] = passes(wd_min3f(a, b, c), wd_max3f(a, b, c), axes->low[0]) &
+                     passes(wd_min3f(d, e, f), wd_max3f(d, e, f), axes->low[1]);
     }
     int found = 0;
     for (int i = 0; i < count; i++) {
@@ -175,7 +165,7 @@ static void find_slopes(struct batch *batch, int count)
         float over = 1 / area_of(batch, i);
         batch->right[i] = (bz * cy - cz * by) * over;
         batch->down[i] = (cz * bx - bz * cx) * over;
-        batch->most[i] = most(a[2][i], b[2][i], c[2][i]);
+        batch->most[i] = wd_max3f(a[2][i], b[2][i], c[2][i]);
     }
 }
 

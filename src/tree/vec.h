@@ -18,6 +18,27 @@ static inline float wd_minf(float a, float b)
     return a < b ? a : b;
 }
 
+static inline float wd_max3f(float a, float b, float c)
+{
+    return wd_maxf(wd_maxf(a, b), c);
+}
+
+static inline float wd_min3f(float a, float b, float c)
+{
+    return wd_minf(wd_minf(a, b), c);
+}
+
+/* Of numbers; b's where a's is none. */
+static inline struct wd_vec3 wd_v3_max(struct wd_vec3 a, struct wd_vec3 b)
+{
+    return WD_V3(wd_maxf(a.x, b.x), wd_maxf(a.y, b.y), wd_maxf(a.z, b.z));
+}
+
+static inline struct wd_vec3 wd_v3_min(struct wd_vec3 a, struct wd_vec3 b)
+{
+    return WD_V3(wd_minf(a.x, b.x), wd_minf(a.y, b.y), wd_minf(a.z, b.z));
+}
+
 /* a + b s */
 static inline struct wd_vec3 wd_v3_mad(struct wd_vec3 a, struct wd_vec3 b, float s)
 {
