@@ -30,12 +30,23 @@ float sward_depth_m(wd_crown crown, vec3 rel)
     return clamp(crown.center_rel.z + crown.radii_m.z - rel.z, 0.0, 2.0 * crown.radii_m.z);
 }
 
-/* Metres of crown between a place and the sun. */
-float crown_path_m(wd_crown crown, vec3 rel)
+/* Where a crown is between a place and the sun. */
+wd_crown_way crown_way(wd_crown crown, vec3 rel)
 {
-    float path_m = wd_crown_path_m(rel - crown.center_rel, crown.radii_m, frame.sun_direction);
+    wd_crown_way way = wd_crown_way_of(rel - crown.center_rel, crown.radii_m, frame.sun_direction);
     float level_m = sward_depth_m(crown, rel) / max(frame.sun_direction.z, 0.05);
-    return mix(path_m, level_m, crown.sward);
+    way.begins_m *= 1.0 - crown.sward;
+    way.ends_m = mix(way.ends_m, level_m, crown.sward);
+    return way;
+}
+
+/* Metres from a place toward the sun until the card is left behind that stands for the tree in coarse shadow
+ * maps: across the sun's rays, through the middle of its height. */
+float crown_card_m(wd_crown crown, vec3 rel)
+{
+    vec3 middle = crown.center_rel;
+    middle.z = 0.5 * (middle.z + crown.radii_m.z + crown.foot_z);
+    return dot(middle - rel, frame.sun_direction);
 }
 
 /* The same for a sward, whose leaves the eye meets by a, the sun by b a metre of depth: of those seen

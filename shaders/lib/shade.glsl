@@ -357,21 +357,18 @@ vec4 leaves_seen(vec3 eye)
     return vec4(0.6 * eye.xy, z, max(0.45 - z * z, 0.0));
 }
 
-/* The lowest boughs of slender crowns stand out of the ellipsoid, by so much of its radius, and their shade in the
- * maps would count twice: path-traced spruces that stand free are 6 % brighter. */
-const float BOUGHS_OUT = 0.5;
-
 /* What a tree's own leaves leave of the sun, by depth in the crown, behind which the map is then asked. Of
  * trees that stand free what is left to places is known (wd_crown_lit), with a factor of the model's
  * own; in closed stands, where crowns reach into one another, depth alone is right. */
 void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float openness, float free,
                     float factor, uint cascade)
 {
-    float path_m = crown_path_m(crown, place.rel);
+    wd_crown_way way = crown_way(crown, place.rel);
+    float path_m = way.ends_m - way.begins_m;
     float through = wd_crown_through(crown.radii_m, path_m, openness);
     place.own = mix(through, wd_crown_lit(through, curve.x, curve.y) * factor, free);
-    float out_m = BOUGHS_OUT * crown.radii_m.x * free * slenderness(crown);
-    place.ahead_m = path_m + out_m + cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
+    float left_m = max(way.ends_m, crown_card_m(crown, place.rel)); /* all of the tree itself */
+    place.ahead_m = mix(path_m, left_m, free) + cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
 }
 
 /* `mapped` of their shade is in the shadow map, which holds leaves as far as `fine` says. */

@@ -23,16 +23,30 @@ WD_FUNC WD_VECTOR wd_crown_units(WD_VECTOR way_m, WD_VECTOR radii_m)
     return WD_V3(way_m.x / radii_m.x, way_m.y / radii_m.y, way_m.z / radii_m.z);
 }
 
-/* Metres of crown between a place, from the crown's middle, and the sun; leaves without the ellipsoid are
- * taken to stand on it, the stem below where it is. */
-WD_FUNC float wd_crown_path_m(WD_VECTOR from_middle_m, WD_VECTOR radii_m, WD_VECTOR sun)
+/* Metres from a place toward the sun to where the crown begins and ends. */
+struct wd_crown_way {
+    float begins_m, ends_m;
+};
+
+/* Of a place from the crown's middle; leaves without the ellipsoid are taken to stand on it, the stem below
+ * where it is. */
+WD_FUNC WD_STRUCT wd_crown_way wd_crown_way_of(WD_VECTOR from_middle_m, WD_VECTOR radii_m, WD_VECTOR sun)
 {
+    WD_STRUCT wd_crown_way way;
     WD_VECTOR q = wd_crown_units(from_middle_m, radii_m), s = wd_crown_units(sun, radii_m);
     float out_by = WD_MAX(WD_SQRT(wd_v3_dot(q, q)), 1.0f);
     q = wd_v3_scale(q, q.z < -1.0f ? 1.0f : 1.0f / out_by);
     float ss = wd_v3_dot(s, s), qs = wd_v3_dot(q, s);
     float root = WD_SQRT(WD_MAX(qs * qs - ss * (wd_v3_dot(q, q) - 1.0f), 0.0f));
-    return (WD_MAX(root - qs, 0.0f) - WD_MAX(-root - qs, 0.0f)) / ss;
+    way.begins_m = WD_MAX(-root - qs, 0.0f) / ss;
+    way.ends_m = WD_MAX(root - qs, 0.0f) / ss;
+    return way;
+}
+
+WD_FUNC float wd_crown_path_m(WD_VECTOR from_middle_m, WD_VECTOR radii_m, WD_VECTOR sun)
+{
+    WD_STRUCT wd_crown_way way = wd_crown_way_of(from_middle_m, radii_m, sun);
+    return way.ends_m - way.begins_m;
 }
 
 /* Share of the sun left after that way, at a place that sees `openness` of the sky: a crown is no even
