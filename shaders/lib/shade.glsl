@@ -285,7 +285,7 @@ wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter she
     wd_alone alone = NOT_ALONE;
     alone.beside = field * field * through_herbs(herbs_above(shelter, height_m));
     alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open))
-                  * smoothstep(0.25, 0.35, crown.radii_m.z);
+                  * smoothstep(0.25, 0.35, crown.radii_m.z) * (1.0 - crown.sward);
     alone.lets.xy = skylit.xy * wd_skylit_above(openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(openness);
     return alone;

@@ -111,26 +111,33 @@ vec3 mirrored_unseen(vec3 rel, vec3 mirrored, vec3 sky)
     return mix(woods, sky, smoothstep(0.7 * hidden, 1.3 * hidden + 1e-4, height2));
 }
 
+/* A shore lies so many times as far off as the water that mirrors it; what stands nearer is slender. */
+const float FAR_SHORE = 2.0;
+
 /* Light that comes to the water at `rel` from `mirrored`; steps through the picture. A ray that has been
- * behind something near all the way has not met it. */
+ * behind something near all the way has not met it; where it comes out behind a shore that lies beyond the
+ * last place at which it was seen to be free, it has met that on the way. */
 vec3 mirrored_light(vec3 rel, vec3 mirrored, float noise)
 {
     const float STEPS = 20.0;
     vec3 sky = sky_radiance(mirrored);
     wd_screen_ray ray = screen_ray(rel, mirrored);
     bool told = ray.whole;
-    float before_m = frame.near_m / ray.from.z;
+    float first_m = frame.near_m / ray.from.z, before_m = first_m, free_m = first_m;
     for (float i = 0.0; i < STEPS; i += 1.0) {
         vec3 place = ray.from + ray.along * ((i + noise) / STEPS);
         float shown = texelFetch(gbuffer_depth, screen_texel(place), 0).x;
         float at_m = frame.near_m / max(place.z, 1e-9);
         float behind_m = at_m - frame.near_m / max(shown, 1e-9);
-        if (behind_m > 0.0 && behind_m < 3.0 + 0.03 * at_m + (at_m - before_m)) {
+        bool shore = at_m - behind_m > FAR_SHORE * first_m;
+        float way_m = at_m - (shore ? free_m : before_m);
+        if (behind_m > 0.0 && behind_m < 3.0 + 0.03 * at_m + way_m) {
             ivec2 met = screen_meeting(ray, max(i + noise - 1.0, 0.0) / STEPS, (i + noise) / STEPS);
             vec4 light = mirrored_pixel(met, normalize(rel), length(rel));
             return mix(sky, light.rgb, light.w);
         }
         told = told && behind_m <= 0.0;
+        free_m = behind_m <= 0.0 ? at_m : free_m;
         before_m = at_m;
     }
     return told ? sky : mirrored_unseen(rel, mirrored, sky);
