@@ -18,8 +18,9 @@ pops() {
 }
 
 # trees that vanish at once pop more than those that fade away: both beside the truth in which they fade
+grove=$root/tests/cli/grove.json
 vanish() {
-    pops "$1" "$tiny" tiny --methods patch --set "layers.0.fade_far_m=[$2]"
+    pops "$1" "$grove" grove --methods patch --set "layers.0.fade_far_m=[$2]"
     step=$(jq '[.rows[] | .popping_p999_pct] | add' "$dir/results.json")
 }
 vanish faded 15,45
@@ -75,12 +76,12 @@ boundary 'dissolve, full to billboard' 2 1.3 "$hard" "$found"
 
 # trees that give way to the canopy's map, and trees that do not
 canopy() {
-    pops "canopy-$1" "$tiny" canopy --methods zfield --set methods.zfield.near_m=0 \
+    pops "canopy-$1" "$grove" canopy --methods zfield --set methods.zfield.near_m=0 \
         --set layers.0.spacing_m=3 --set methods.zfield.rows=4 --set methods.zfield.fade=0 \
         --set "methods.zfield.range_m=$1"
     found=$(jq -c '[.rows[] | .step_billboard_canopy_pct]' "$dir/results.json")
 }
-canopy 60
+canopy 35
 check "canopy: steps of $found" jq -ne "[${found}[] | numbers] | length > 0"
 canopy 0
 check "canopy: none without a boundary: $found" jq -ne "[${found}[] | numbers] | length == 0"
