@@ -4,7 +4,7 @@ set -eu
 cd "$(dirname "$0")/.."
 build="build-asan"
 
-scripts/build.sh configure "$build" -Dbuildtype=debugoptimized -Db_sanitize=address,undefined \
+scripts/build.sh configure "$build" -Dbuildtype=plain -Doptimization=1 -Dc_args=-g1 -Dcpp_args=-g1 -Db_sanitize=address,undefined \
     -Db_lundef=false -Dtests=enabled
 export ASAN_OPTIONS=abort_on_error=1:detect_stack_use_after_return=1
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1

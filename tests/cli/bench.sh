@@ -4,6 +4,7 @@
 set -eu
 . "$(dirname "$0")/lib.sh"
 out=$scratch/bench
+grove=$root/tests/cli/grove.json
 
 expect 2 'no directory named' bench --suite quality
 expect 2 'no suite named' bench -o "$out"
@@ -15,11 +16,11 @@ expect 1 'No such file|cannot' bench "$scratch/none.json" --suite quality --quic
 rm -rf "$out"
 
 run() {
-    expect 0 "$1" bench "$tiny" --suite quality --quick --methods octree,separate --gpu software \
+    expect 0 "$1" bench "$grove" --suite quality --quick --methods octree,separate --gpu software \
         -o "$out"
 }
 run 'results.csv, results.json, report.html'
-check 'a row a method' [ "$(grep -c '^tiny,' "$out/results.csv")" -ge 2 ]
+check 'a row a method' [ "$(grep -c '^grove,' "$out/results.csv")" -ge 2 ]
 check 'errors in the rows' jq -e \
     '[.rows[] | select(.flip > 0 and .flip < 1 and .ssim > 0 and .frame_ms > 0)] | length >= 2' \
     "$out/results.json"
@@ -29,36 +30,36 @@ check 'frames counted, the noise of the reference told' jq -e \
 check 'the machine in the report' grep -q 'llvmpipe' "$out/report.html"
 
 # an interruption in the middle of a line: what is whole stays, the rest is measured again
-rows=$(grep -c '^tiny,' "$out/results.csv")
+rows=$(grep -c '^grove,' "$out/results.csv")
 head -n 3 "$out/results.csv" >"$scratch/cut"
-printf 'tiny,cut off' >>"$scratch/cut"
+printf 'grove,cut off' >>"$scratch/cut"
 cp "$scratch/cut" "$out/results.csv"
 run '1 results are there already'
-check 'all rows again' [ "$(grep -c '^tiny,' "$out/results.csv")" -eq "$rows" ]
-expect 1 'another suite' bench "$tiny" --suite scale --quick -o "$out"
+check 'all rows again' [ "$(grep -c '^grove,' "$out/results.csv")" -eq "$rows" ]
+expect 1 'another suite' bench "$grove" --suite scale --quick -o "$out"
 
 # a report that cannot be written
 mv "$out/report.html" "$scratch/report.html"
 mkdir "$out/report.html"
-expect 1 'report.html cannot be written' bench "$tiny" --suite quality --quick \
+expect 1 'report.html cannot be written' bench "$grove" --suite quality --quick \
     --methods octree,separate --gpu software -o "$out"
 rmdir "$out/report.html"
 mv "$scratch/report.html" "$out/report.html"
 cp "$out/results.csv" "$scratch/results.csv"
 rm "$out/results.csv"
 mkdir "$out/results.csv"
-expect 1 'results.csv' bench "$tiny" --suite quality --quick --gpu software -o "$out"
+expect 1 'results.csv' bench "$grove" --suite quality --quick --gpu software -o "$out"
 rmdir "$out/results.csv"
 mv "$scratch/results.csv" "$out/results.csv"
 
 # a reference picture of another size is refused
 set -- "$out"/reference/*.exr
 if [ "$weald" ]; then
-    "$weald" render "$tiny" -o "$scratch/other.exr" --size 40x30 --gpu software -q
+    "$weald" render "$grove" -o "$scratch/other.exr" --size 40x30 --gpu software -q
     cp "$scratch/other.exr" "$1"
     head -n 2 "$out/results.csv" >"$scratch/heads"
     cp "$scratch/heads" "$out/results.csv"
-    expect 1 'reference/tiny-.* 40 x 30 pixels, not 128 x 96' bench "$tiny" --suite quality --quick --methods octree --gpu software -o "$out"
+    expect 1 'reference/grove-.* 40 x 30 pixels, not 128 x 96' bench "$grove" --suite quality --quick --methods octree --gpu software -o "$out"
 fi
 
 if command -v chromium >/dev/null; then

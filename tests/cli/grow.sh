@@ -140,6 +140,6 @@ expect 1 'cut.glb: ' grow "$out/cut.glb" -o "$out/a.glb"
 expect 1 'cut.glb: ' check "$out/cut.glb"
 check 'a failed command leaves nothing' sh -c "! ls '$out' | grep -E '^a\\.|weald-'"
 
-expect 0 "sheet.png: " grow --sheet "$out/again.glb" -o "$out/sheet.png" --gpu software --size 96x96 --samples 2
+expect 0 "sheet.png: " grow --sheet "$out/oak.obj" -o "$out/sheet.png" --gpu software --size 96x96 --samples 2
 check 'a sheet is no small picture' test "$(wc -c <"$out/sheet.png")" -gt 20000
 finish
