@@ -126,10 +126,10 @@ static void compare_layers(struct bench_agreement *agreement, const struct wd_pi
 bool bench_agreement_measure(struct bench_agreement *agreement, const char *scene_path,
                              const char *camera_name, const char *gpu)
 {
-    /* A quarter of the trees: software devices shade the vertices of all their leaves on one thread. */
+    /* A ninth of the trees: software devices shade the vertices of all their leaves on one thread. */
     static const char *const settings[] = {"wind.speed_mps=0", "quality.mesh_distance_m=100000",
                                            "quality.reduced_distance_m=200000", "quality.leaf_px=0",
-                                           "layers.0.spacing_m=20", "layers.1.spacing_m=22",
+                                           "layers.0.spacing_m=30", "layers.1.spacing_m=33",
                                            NULL};
     const struct wd_forest_params params = {.scene_path = scene_path, .settings = settings};
     struct wd_forest *forest = NULL;

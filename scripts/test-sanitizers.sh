@@ -10,10 +10,11 @@ export ASAN_OPTIONS=abort_on_error=1:detect_stack_use_after_return=1
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 # Libraries of others keep what they keep for the life of the process.
 export LSAN_OPTIONS=suppressions=$PWD/scripts/leaks-of-others.txt:print_suppressions=0
-# tree-forms grows some hundreds of ordinary trees; tree-limits has the odd ones.
+# tree-forms and tree-grow grow some hundreds of ordinary trees; tree-hashes has one of each kind,
+# tree-limits the odd ones.
 # shellcheck disable=SC2046  # one word a test
 meson test -C "$build" --print-errorlogs --timeout-multiplier 5 \
-    $(scripts/select-tests.sh "$build" base scene world tree output viewer | grep -Ev 'viewer-keys|tree-forms')
+    $(scripts/select-tests.sh "$build" base scene world tree output viewer | grep -Ev 'viewer-keys|tree-(forms|grow)')
 # The program asks Vulkan for its devices, and the drivers keep memory when they are unloaded.
 export ASAN_OPTIONS="$ASAN_OPTIONS:detect_leaks=0"
 meson test -C "$build" --print-errorlogs --timeout-multiplier 5 cli-usage cli-scenes

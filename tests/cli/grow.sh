@@ -10,7 +10,7 @@ sound() { python3 "$root/tests/cli/glb_check.py" "$@"; }
 
 # shellcheck disable=SC2086  # $small is many words
 {
-    expect 0 'oak .* m high, .*80 years; triangles' grow oak --age 80 --open 1 --seed 3 -o "$out/oak.glb"
+    expect 0 'oak .* m high, .*20 years; triangles' grow oak --age 20 --open 1 --seed 3 -o "$out/oak.glb"
     expect 0 'oak.obj: ' grow oak --height 5 --detail 0.2 -o "$out/oak.obj"
     expect 0 'oak.png: ' grow oak --height 5 -o "$out/oak.png" $small --gpu-validate
     expect 0 . grow oak --height 5 --season autumn -o "$out/autumn.png" $small
@@ -53,7 +53,7 @@ check 'a list planted again is the same list' cmp "$out/trees.sorted" "$out/list
 for other in autumn cards near model; do
     check "$other changes the picture" sh -c "! cmp -s '$out/oak.png' '$out/$other.png'"
 done
-"$weald" grow oak --age 80 --open 1 --seed 3 -o "$out/same.glb" -q
+"$weald" grow oak --age 20 --open 1 --seed 3 -o "$out/same.glb" -q
 check 'the same tree, the same bytes' cmp "$out/oak.glb" "$out/same.glb"
 for file in oak.mtl oak-oak-wood.png oak-oak-leaf.png; do
     check "$file lies beside oak.obj" test -s "$out/$file"
