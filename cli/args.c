@@ -68,7 +68,7 @@ static const struct cli_option option_table[] = {
     {"quick", 0, NULL, CLI_KIND_FLAG, AT(quick), 0, 0, CLI_BENCH,
      "minutes instead of hours: small pictures, few samples"},
     {"methods", 0, "A,B,...", CLI_KIND_TEXT, AT(methods), 0, 0, CLI_BENCH,
-     "the methods to measure (default: all)"},
+     "the methods to measure (default: the suite's)"},
     {"metric", 0, "NAME", CLI_KIND_TEXT, AT(metric), 0, 0, CLI_BENCH,
      "the error that plots and the table show (default: flip)"},
     {"reference", 0, NULL, CLI_KIND_FLAG, AT(reference), 0, 0, CLI_RENDER,

@@ -36,7 +36,7 @@ static const struct wd_keys path_camera_table = {
 
 #define PATH(member) offsetof(struct wd_scene_path, member)
 static const struct wd_key path_keys[] = {
-    {"name", WD_KEY_STRING, PATH(name), .doc = "Name, for --camera.", .flags = WD_KEY_REQUIRED},
+    {"name", WD_KEY_STRING, PATH(name), .doc = "Name, for --path.", .flags = WD_KEY_REQUIRED},
     {"duration_s", WD_KEY_DOUBLE, PATH(duration_s), 0, 86400, "10",
      "Time from the first key to the last, in seconds.", .flags = WD_KEY_EXCLUSIVE_MIN},
     {"keys", WD_KEY_LIST, PATH(keys), .table = &path_camera_table, .count_offset = PATH(key_count),
