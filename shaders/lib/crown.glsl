@@ -7,8 +7,8 @@ struct wd_crown {
     vec3 center_rel;
     vec3 radii_m;
     float foot_z; /* rel */
-    float sward;  /* 1 where the plant is a grass: those close over the ground, and have no sides that light
-                     could come in by */
+    float sward;  /* 1 where the plant is one of low or dense grasses that close over the ground, and have no
+                     sides that light could come in by */
 };
 
 wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
@@ -20,7 +20,8 @@ wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
     crown.foot_z = foot_rel.z;
     crown.center_rel = foot_rel + vec3(0.0, 0.0, 0.5 * (height_m + base_m));
     crown.radii_m = max(vec3(radius_m, radius_m, 0.5 * (height_m - base_m)), vec3(0.1));
-    crown.sward = model.roughness < 0.0 ? 1.0 : 0.0;
+    float closes = model.roughness <= -1.0 ? 1.0 : 1.0 - smoothstep(0.22, 0.35, crown.radii_m.z);
+    crown.sward = model.roughness < 0.0 ? closes : 0.0;
     return crown;
 }
 

@@ -77,6 +77,11 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
     return at;
 }
 
+float leaf_roughness(wd_lit_leaves model)
+{
+    return fract(abs(model.roughness));
+}
+
 wd_lit_leaves lit_leaves(int model)
 {
     vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
@@ -274,6 +279,12 @@ vec4 canopy_light_near(vec2 place_m)
 #endif
 }
 
+/* A model's table holds for single plants, as far as they are no herbs. */
+float has_table(wd_crown crown)
+{
+    return smoothstep(0.25, 0.35, crown.radii_m.z) * (1.0 - crown.sward);
+}
+
 /* By the sky over the ground beside the crown, toward the sun: whether it stands free; and each quarter of its
  * sky where the crown is not before it. Low plants close over the ground, of which that knows nothing. */
 wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter shelter, float height_m)
@@ -285,7 +296,7 @@ wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter she
     wd_alone alone = NOT_ALONE;
     alone.beside = field * field * through_herbs(herbs_above(shelter, height_m));
     alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open))
-                  * smoothstep(0.25, 0.35, crown.radii_m.z) * (1.0 - crown.sward);
+                  * has_table(crown);
     alone.lets.xy = skylit.xy * wd_skylit_above(openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(openness);
     return alone;
@@ -341,7 +352,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     bool one_leaf = ALL_SINGLE || pixel.lit >= 0.0;
     float over = pow(canopy_above(shelter.layer_m, place.rel.z - crown.foot_z), NEIGHBOURS_OVER);
     float from_above = smoothstep(0.15, 0.5, -pixel.direction.z) * (1.0 - shelter.within);
-    from_above *= one_leaf ? smoothstep(0.25, 0.35, crown.radii_m.z) : 0.0;
+    from_above *= one_leaf ? has_table(crown) : 0.0;
     alone.sides = exp2(mix(1.0, over, from_above) * log2(max(alone.beside, 1e-3)));
     alone.known = mix(alone.share, 1.0, from_above);
     alone.side = mix(vec4(1.0), eye_side(-pixel.direction), one_leaf ? alone.share : 0.0);
@@ -425,7 +436,7 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, float hot,
     float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
     float discs = 0.6 * crown.radii_m.x * tall_m / (pixel_m * pixel_m); /* about as many */
     float known = wd_disc_close(discs) * map_holds_leaves(cascade, 1.0);
-    float tree_m = min(0.5, 0.5 * tall_m); /* its own tree is in `lit` */
+    float tree_m = (1.0 - crown.sward) * min(0.5, 0.5 * tall_m); /* its own tree is in `lit` */
     float ahead_m = (cascade < WD_LEAF_CASCADES ? 0.0 : place.ahead_m) + tree_m + texel_m;
     place.own = mix(pixel.lit * hot, 1.0, known * mix(MAP_TELLS, 1.0, crown.sward));
     place.ahead_m = mix(ahead_m, pixel_m, known);
@@ -444,8 +455,8 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.sides = vec2(max(cosine, 0.0), max(-cosine, 0.0));
     place.waxed = pixel.above;
     place.body = 1.0 - pixel.above * (1.0 - crown.sward) * grazing(abs(dot(pixel.normal, pixel.direction)));
-    place.gloss = leaf_coat(pixel.normal, -pixel.direction, abs(model.roughness)) * pixel.above;
-    place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), abs(model.roughness));
+    place.gloss = leaf_coat(pixel.normal, -pixel.direction, leaf_roughness(model)) * pixel.above;
+    place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), leaf_roughness(model));
 }
 
 /* Wood within a crown is in its shade as leaves are. */
@@ -497,7 +508,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.sward = sward;
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
-    place.gloss = leaf_gloss(pixel, abs(model.roughness), near) + WAX * 0.39;
+    place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WAX * 0.39;
     place.coat = WAX * mix(1.85, 1.05, smoothstep(0.0, 0.64, eye.z)); /* of path-traced rows under an even sky */
     place.gloss = (place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));

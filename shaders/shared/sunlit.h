@@ -59,7 +59,8 @@ struct wd_lit_leaves {
     float crown_base_m, height_m; /* as of struct wd_model */
     WD_VEC2(sun_curve);           /* of wd_crown_lit */
     WD_VEC3(transmittance);       /* of a leaf over its albedo, linear */
-    float roughness;              /* of leaves, the root of GGX's alpha; minus that of a sward's blades */
+    float roughness;              /* of leaves, the root of GGX's alpha; minus that of a grass's blades, and
+                                     less 1 where these close over the ground */
 };
 
 #ifdef __STDC_VERSION__

@@ -239,13 +239,47 @@ static bool make_canopy_light(struct preparation *work, struct wd_gpu *gpu)
     return ok;
 }
 
+/* Leaf area over the ground that a layer is planted on, of one of its species: square metres a square metre. */
+static double leaf_layers(const struct wd_scene_layer *layer, const struct wd_scene_share *species,
+                          const struct wd_model *model, const struct wd_tree_model *grown)
+{
+    double shares = 0, tall = 0.5 * (double)(layer->height_m[0] + layer->height_m[1]);
+    double wide = 0.5 * (double)(layer->aspect[0] + layer->aspect[1]), scale = tall / (double)model->height_m;
+    double plants = layer->placement == WD_PLACE_CANOPY ? 1 : layer->density;
+    for (size_t i = 0; i < layer->species_count; i++)
+        shares += layer->species[i].share;
+    double per_m2 = plants * species->share / (shares * layer->spacing_m * layer->spacing_m);
+    return per_m2 * scale * scale * wide * wide * (double)grown->leaf_area_m2;
+}
+
+/* Grasses of a layer that is dense enough shade one another, however tall they are. */
+static const double CLOSED_LAYERS = 0.5;
+
+static bool closes_over_ground(const struct preparation *work, uint32_t index)
+{
+    const struct wd_scene *scene = work->params->scene;
+    const struct wd_model *model = &work->forest->host_models[index];
+    double layers = 0;
+    for (size_t i = 0; i < scene->layer_count && model->roughness < 0; i++) {
+        const struct wd_scene_layer *layer = &scene->layers[i];
+        for (size_t k = 0; k < layer->species_count; k++) {
+            const struct wd_scene_share *share = &layer->species[k];
+            if (wd_scene_find_species(scene, share->name) == (int)(index / work->forest->variants))
+                layers = fmax(layers, leaf_layers(layer, share, model, &work->grown[index]));
+        }
+    }
+    return layers >= CLOSED_LAYERS;
+}
+
 static bool make_lit_models(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
     size_t size = forest->model_count * sizeof(struct wd_lit_model);
     struct wd_lit_model *lit = wd_alloc_array(forest->model_count, sizeof *lit);
-    for (uint32_t i = 0; i < forest->model_count; i++)
+    for (uint32_t i = 0; i < forest->model_count; i++) {
         wd_variant_describe_light(&lit[i], &forest->host_models[i], &work->grown[i]);
+        lit[i].leaves.roughness -= closes_over_ground(work, i) ? 1.0f : 0.0f;
+    }
     const struct wd_buffer_params params = {.name = "light of models",
                                             .size = size,
                                             .memory = WD_MEMORY_DEVICE,
