@@ -1,0 +1,100 @@
+/* Grasses that close over the ground shade one another, tall ones, too. */
+#include <stdio.h>
+
+#include "suite.h"
+#include "weald/reference.h"
+
+enum { WIDTH = 64, HEIGHT = 48 };
+
+static struct suite suite;
+
+/* A bed of grass as tall as reeds, `spacing_m` apart, under clouds, from above its edge. */
+static const char *write_reeds(const char *spacing_m)
+{
+    char text[2048];
+    snprintf(text, sizeof text,
+             "{\"name\": \"reeds\", \"variants\": 2, \"terrain\": {\"kind\": \"flat\", \"size_m\": [16, 16]},\n"
+             " \"species\": {\"grass\": \"%s/species/grass.json\"},\n"
+             " \"layers\": [{\"species\": \"grass\", \"spacing_m\": %s, \"height_m\": [0.9, 1.1]}],\n"
+             " \"time\": {\"date\": \"2024-07-10\"}, \"sky\": {\"cover\": 1}, \"wind\": {\"speed_mps\": 0},\n"
+             " \"cameras\": [{\"name\": \"over\", \"position_m\": [8, 2, 3], \"look_at_m\": [8, 8, 0.4],\n"
+             "               \"fov_deg\": 30}]}",
+             suite.root, spacing_m);
+    assert_true(suite_write(&suite, "reeds.json", text));
+    return suite_path(&suite, "reeds.json");
+}
+
+static double mean_green(const struct wd_picture *picture)
+{
+    double sum = 0;
+    for (size_t at = 0; at < (size_t)WIDTH * HEIGHT; at++)
+        sum += (double)picture->color[3 * at + 1];
+    return sum / (WIDTH * HEIGHT);
+}
+
+static double traced(const struct wd_forest *forest, const struct wd_render_params *render)
+{
+    const struct wd_reference_params params = {.log = suite.log};
+    const struct wd_reference_picture_params trace = {.camera = render->camera,
+                                                      .width = WIDTH,
+                                                      .height = HEIGHT,
+                                                      .samples = 32,
+                                                      .layers = WD_LAYER_COLOR};
+    struct wd_reference *reference = NULL;
+    struct wd_picture picture = {0};
+    assert_int_equal(wd_reference_create(&reference, forest, &params), WD_OK);
+    assert_int_equal(wd_reference_render(reference, &trace, &picture), WD_OK);
+    double mean = mean_green(&picture);
+    wd_picture_finish(&picture);
+    wd_reference_destroy(&reference);
+    return mean;
+}
+
+/* Light of a method's picture over that of the path-traced one, less 1, in percent. */
+static void expect_light(const char *spacing_m, const char *method, double most_pct)
+{
+    struct wd_forest *forest = suite_forest(&suite, write_reeds(spacing_m));
+    struct wd_picture picture = {0};
+    assert_non_null(forest);
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, forest), WD_OK);
+    struct wd_render_params render = suite_params(forest, "over");
+    render.width = WIDTH;
+    render.height = HEIGHT;
+    render.samples = 4;
+    render.method = method;
+    render.layers = WD_LAYER_COLOR;
+    assert_int_equal(wd_renderer_render(suite.renderer, &render, &picture), WD_OK);
+    double pct = 100 * (mean_green(&picture) / traced(forest, &render) - 1);
+    print_message("reeds every %s m, %s: %+.1f %%\n", spacing_m, method, pct);
+    assert_true(pct > -most_pct && pct < most_pct);
+    wd_picture_finish(&picture);
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, suite.forest), WD_OK);
+    wd_forest_destroy(&forest);
+}
+
+/* Lit like plants that stand free, dense ones were 70 to 80 % too bright. */
+static void dense_reeds_shade_one_another(void **state)
+{
+    (void)state;
+    expect_light("0.45", "continuum", 15);
+    expect_light("0.45", "octree", 20);
+}
+
+static void tufts_stand_free(void **state)
+{
+    (void)state;
+    expect_light("1.5", "continuum", 15);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(dense_reeds_shade_one_another),
+        cmocka_unit_test(tufts_stand_free),
+    };
+    if (argc < 2 || !suite_init(&suite, argv[1]))
+        return 1;
+    int failed = cmocka_run_group_tests_name("sward", tests, NULL, NULL);
+    suite_finish(&suite);
+    return failed;
+}
