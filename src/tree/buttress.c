@@ -1,11 +1,14 @@
 #include "tree/buttress.h"
 
-enum { FIN_VERTICES = 5 };
+/* Vertices of a fin and the valley before it: a blade, or as few as show it, a wedge from valley to valley. */
+enum { BLADE_VERTICES = 5, WEDGE_VERTICES = 2, LEAST_BLADED = 12, LEAST_WEDGED = 5 };
 
 int wd_buttress_sides(const struct wd_species *species, int most)
 {
     int count = (int)species->buttress.count;
-    return count > 0 && most >= 12 ? FIN_VERTICES * count : most;
+    if (count == 0 || most < LEAST_WEDGED)
+        return most;
+    return count * (most >= LEAST_BLADED ? BLADE_VERTICES : WEDGE_VERTICES);
 }
 
 /* How far a fin reaches at height z: a concave slope from the ground to its own top. */
@@ -26,15 +29,20 @@ static float fin_reach_m(const struct wd_tree_form *form, int fin, float z_m, fl
 void wd_buttress_outline(const struct wd_tree_form *form, float z_m, float radius_m, int sides,
                          int i, float place[2])
 {
-    int count = (int)form->species->buttress.count, fin = i / FIN_VERTICES, at = i % FIN_VERTICES;
+    int count = (int)form->species->buttress.count, vertices = sides / count;
+    int fin = i / vertices, at = i % vertices;
     double turn = 2 * WD_PI * (double)i / (double)sides;
     double jitter = (double)wd_hash_unit(wd_hash3(form->key, 0xb07, (uint32_t)fin)) - 0.5;
     double axis = 2 * WD_PI * ((double)fin + 0.5 + 0.3 * jitter) / (double)count, share_d;
     float share, reach = fin_reach_m(form, fin, z_m, radius_m, &share) / radius_m;
     float thin = wd_clampf(0.05f * form->dbh_m / radius_m + 0.06f, 0.06f, 0.3f);
-    /* valley, root, tip, tip, root: along the fin and across it, in radii */
-    const float out[FIN_VERTICES] = {0, 0.97f, reach, reach, 0.97f};
-    const float side[FIN_VERTICES] = {0, -1.6f * thin, -0.6f * thin, 0.6f * thin, 1.6f * thin};
+    /* valley, root, tip, tip, root: along the fin and across it, in radii; of a wedge valley and tip */
+    float out[BLADE_VERTICES] = {0, 0.97f, reach, reach, 0.97f};
+    float side[BLADE_VERTICES] = {0, -1.6f * thin, -0.6f * thin, 0.6f * thin, 1.6f * thin};
+    if (vertices == WEDGE_VERTICES) {
+        out[1] = reach;
+        side[1] = 0;
+    }
     double ca = wd_dcos(axis), sa = wd_dsin(axis), ct = wd_dcos(turn), st = wd_dsin(turn);
     double fin_x = (double)out[at] * ca - (double)side[at] * sa;
     double fin_y = (double)out[at] * sa + (double)side[at] * ca;

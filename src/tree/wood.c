@@ -301,7 +301,7 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
         if (sides != tube.sides)
             set_circle(&tube, sides);
         tube.trunk = trunk;
-        tube.fins = trunk && sides > style->most_sides;
+        tube.fins = trunk && form->species->buttress.count > 0 && sides > style->most_sides;
         int count = trunk ? trunk_rings(skeleton, branch, form, style->node_step, rings)
                           : branch_rings(skeleton, branch, style->node_step, rings);
         count = drop_folds(rings, count);
