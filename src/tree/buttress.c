@@ -5,10 +5,8 @@ enum { BLADE_VERTICES = 5, WEDGE_VERTICES = 2, LEAST_BLADED = 12, LEAST_WEDGED =
 
 int wd_buttress_sides(const struct wd_species *species, int most)
 {
-    int count = (int)species->buttress.count;
-    if (count == 0 || most < LEAST_WEDGED)
-        return most;
-    return count * (most >= LEAST_BLADED ? BLADE_VERTICES : WEDGE_VERTICES);
+    int sides = (int)species->buttress.count * (most >= LEAST_BLADED ? BLADE_VERTICES : WEDGE_VERTICES);
+    return most >= LEAST_WEDGED && sides > most ? sides : most;
 }
 
 /* How far a fin reaches at height z: a concave slope from the ground to its own top. */

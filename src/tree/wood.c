@@ -258,10 +258,16 @@ static bool is_drawn(const struct wd_skeleton *skeleton, const struct wd_branch 
            skeleton->nodes[branch->first_node].radius_m >= style->least_radius_m;
 }
 
+static int round_sides(const struct wd_skeleton *skeleton, const struct wd_branch *branch,
+                       const struct wd_wood_style *style)
+{
+    return sides_of(skeleton->nodes[branch->first_node].radius_m, style->most_sides);
+}
+
 static int branch_sides(const struct wd_skeleton *skeleton, const struct wd_branch *branch,
                         const struct wd_species *species, const struct wd_wood_style *style)
 {
-    int sides = sides_of(skeleton->nodes[branch->first_node].radius_m, style->most_sides);
+    int sides = round_sides(skeleton, branch, style);
     return branch->order == WD_TRUNK ? wd_buttress_sides(species, sides) : sides;
 }
 
@@ -301,7 +307,7 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
         if (sides != tube.sides)
             set_circle(&tube, sides);
         tube.trunk = trunk;
-        tube.fins = trunk && form->species->buttress.count > 0 && sides > style->most_sides;
+        tube.fins = sides > round_sides(skeleton, branch, style);
         int count = trunk ? trunk_rings(skeleton, branch, form, style->node_step, rings)
                           : branch_rings(skeleton, branch, style->node_step, rings);
         count = drop_folds(rings, count);
