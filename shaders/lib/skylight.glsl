@@ -201,7 +201,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
 {
     vec3 n = facing.xyz, s = frame.leaf_scatter;
     /* Slanting rays meet more of the stand's leaves, and of the tree's own (below). */
-    float deep = min(shelter.under * UNDER_PER_LOG2, 1.0) * (1.0 - alone.share);
+    float deep = min(shelter.under * UNDER_PER_LOG2, 1.5) * (1.0 - alone.share);
     vec3 odd = mix(SKY_ODD(frame.sky_form, n), SKY_ODD(frame.sky_under, n), deep);
     vec3 even = mix(SKY_EVEN(frame.sky_form, n), SKY_EVEN(frame.sky_under, n), deep)
                 + frame.sky_form[6] * facing.w;

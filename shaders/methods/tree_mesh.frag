@@ -64,10 +64,8 @@ void detail_wood(inout wd_surface wood, float near)
 {
     wd_relief relief =
         look_relief(look_details, look_frame(wood.normal, in_place.xyz, in_uv.xy), in_uv);
-    float low = 1.0 - relief.rest;
     float moss = smoothstep(0.0, 0.3, in_place.w - 0.55 * relief.rest * (1.0 - 0.5 * in_place.w));
     wood.albedo = mix(wood.albedo, MOSS * (0.6 + 0.8 * relief.rest), moss);
-    wood.openness *= mix(1.0, 1.0 - 0.55 * low * low, near * (1.0 - moss));
     wood.normal = normalize(mix(wood.normal, relief.normal, near * (1.0 - 0.6 * moss)));
 }
 

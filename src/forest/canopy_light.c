@@ -299,7 +299,7 @@ static void settle_stand(struct work *work, size_t cell, struct sums sums)
     float apart = fminf(fmaxf(-logf(1 - cover) / sums.outline, 1), 2);
     stand->base_m += sums.base_m / sums.outline;
     stand->top_m = stand->base_m + deep_m;
-    stand->steep_per_m = sums.above * apart / deep_m;
+    stand->steep_per_m = sums.above * (1 + 0.2f * (apart - 1)) / deep_m;
     stand->level_per_m = sums.side / deep_m;
     stand->stems_per_m = sums.stem;
     work->highest_m = fmaxf(work->highest_m, stand->top_m);
@@ -373,7 +373,7 @@ static float ray_through(const struct work *work, size_t cell, const struct ray 
         if (0.5f * (low + high) < stand->ground_m - 2)
             return 0;
         float within = wd_minf(high, stand->top_m) - wd_maxf(low, stand->base_m);
-        float per_m = wd_mixf(stand->steep_per_m, stand->level_per_m, ray->level);
+        float per_m = stand->steep_per_m * ray->rise + stand->level_per_m * aslant;
         float below = wd_minf(high, stand->base_m) - wd_maxf(low, stand->ground_m);
         depth += (wd_maxf(within, 0) * per_m +
                   wd_maxf(below, 0) * stand->stems_per_m * aslant) / ray->rise;
