@@ -4,17 +4,7 @@
 
 #include "gpu/memory.h"
 #include "shared/forest.h"
-#include "tree/grow.h"
 #include "world/world.h"
-
-/* What a model's crown hides of what lies behind it, over the area of its outline: an ellipse, seen
- * from above and level. More than 1 where leaves reach far beyond the mean radius. */
-struct wd_crown_shade {
-    float above, side;
-    float stem; /* below the crown, over the crown's radius times its base's height */
-};
-/* The model has no leaves as triangles, before or after, unless it was imported. */
-struct wd_crown_shade wd_crown_shade_of(struct wd_tree_model *model);
 
 /* The field on the CPU: for each cell, of the light that an even sky sends to level ground from the
  * east, north, west and south, the share that arrives; and between which heights over the ground the
@@ -29,8 +19,7 @@ struct wd_canopy_field {
 
 struct wd_canopy_field_params {
     const struct wd_world *world;
-    const struct wd_model *models;       /* [species * variants + variant] */
-    const struct wd_crown_shade *shades; /* parallel */
+    const struct wd_model *models; /* [species * variants + variant] */
     uint32_t variants;
     unsigned threads;
 };

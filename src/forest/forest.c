@@ -24,7 +24,6 @@ struct preparation {
     struct wd_forest_device *forest;
     const struct wd_forest_device_params *params;
     struct wd_tree_model *grown; /* [model] */
-    struct wd_crown_shade *shades; /* [model] */
     uint8_t *looks;              /* WD_LOOK_BYTES a species */
     atomic_bool failed;
 };
@@ -211,23 +210,13 @@ static void set_leaf_scatter(struct preparation *work)
     }
 }
 
-static void shade_model(void *user, size_t index)
-{
-    struct preparation *work = user;
-    work->shades[index] = wd_crown_shade_of(&work->grown[index]);
-}
-
 static bool make_canopy_light(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
-    size_t slots = forest->model_count ? forest->model_count : 1;
     struct wd_canopy_field field;
-    work->shades = wd_alloc_array(slots, sizeof *work->shades);
-    wd_jobs_run(work->params->threads, forest->model_count, shade_model, work);
     wd_canopy_field_init(&field, &(struct wd_canopy_field_params){
                                      .world = forest->world,
                                      .models = forest->host_models,
-                                     .shades = work->shades,
                                      .variants = forest->variants,
                                      .threads = work->params->threads});
     forest->canopy_light_scale[0] = (float)(1 / (field.cell_m * field.width));
@@ -235,7 +224,6 @@ static bool make_canopy_light(struct preparation *work, struct wd_gpu *gpu)
     bool ok = wd_canopy_light_upload(&forest->canopy_light, gpu, &field);
     wd_canopy_field_finish(&field);
     set_leaf_scatter(work);
-    free(work->shades);
     return ok;
 }
 

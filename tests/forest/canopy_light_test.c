@@ -30,15 +30,16 @@ static struct wd_world stand_from(int from_m)
     return world;
 }
 
-static struct wd_model model = {.height_m = 20, .crown_base_m = 8, .roughness = 0.4f};
+/* Leaves hide 0.8 of the crown's outline from each side. */
+static struct wd_model model = {.height_m = 20, .crown_m = 6, .crown_base_m = 8, .roughness = 0.4f,
+                                .seen_m2 = {45.2f, 36.2f, 22.6f}};
 
 static struct wd_canopy_field field_of(const struct wd_world *world, unsigned threads)
 {
-    static const struct wd_crown_shade shade = {0.8f, 0.8f, 0.2f};
     struct wd_canopy_field field;
     wd_canopy_field_init(&field, &(struct wd_canopy_field_params){
-                                     .world = world, .models = &model, .shades = &shade,
-                                     .variants = 1, .threads = threads});
+                                     .world = world, .models = &model, .variants = 1,
+                                     .threads = threads});
     return field;
 }
 
@@ -170,48 +171,6 @@ static void herbs_are_apart(void **state)
     free(world.cover);
 }
 
-/* A fern is a dozen fronds, each of which spans half of it. */
-static void fronds_hide_what_they_span(void **state)
-{
-    (void)state;
-    const struct wd_grow_params params = {.seed = 3, .height_m = 0.8f};
-    struct wd_arena arena = {0};
-    struct wd_species fern;
-    struct wd_tree_model grown;
-    assert_true(wd_species_load(&fern, "species/fern.json", &arena, NULL));
-    assert_true(wd_tree_grow(&grown, &fern, &params, NULL));
-    wd_tree_model_drop_leaves(&grown);
-    struct wd_crown_shade shade = wd_crown_shade_of(&grown);
-    print_message("a fern hides %.2f of its outline\n", (double)shade.above);
-    assert_true(shade.above > 0.3f && shade.above < 1.2f);
-    assert_int_equal(grown.full.index_count, grown.full.wood_index_count);
-    wd_tree_model_finish(&grown);
-    wd_arena_finish(&arena);
-}
-
-/* A single level leaf of 2 x 2 m over 20 m: what it hides from above is its area, from the side
- * nothing. */
-static void crowns_hide_their_leaves(void **state)
-{
-    (void)state;
-    struct wd_tree_model leaf = {.height_m = 20, .crown_base_m = 10, .crown_radius_m = 2};
-    for (int k = 0; k < 4; k++) {
-        const struct wd_tree_vertex vertex = {
-            .position_m = {k == 1 || k == 2 ? 1 : -1, k >= 2 ? 1 : -1, 15}};
-        wd_tree_mesh_add_vertex(&leaf.full, &vertex);
-    }
-    wd_tree_mesh_add_triangle(&leaf.full, 0, 1, 2);
-    wd_tree_mesh_add_triangle(&leaf.full, 0, 2, 3);
-    leaf.full.min_m[0] = leaf.full.min_m[1] = -1;
-    leaf.full.max_m[0] = leaf.full.max_m[1] = 1;
-    leaf.full.min_m[2] = leaf.full.max_m[2] = 15;
-    struct wd_crown_shade shade = wd_crown_shade_of(&leaf);
-    assert_true(shade.above > 0 && shade.above * 3.14159f * 4 <= 4.0f);
-    assert_float_equal(shade.side, 0, 1e-6);
-    assert_float_equal(shade.stem, 0, 1e-6);
-    wd_tree_mesh_finish(&leaf.full);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -221,8 +180,6 @@ int main(void)
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(hills_hide_their_side),
         cmocka_unit_test(herbs_are_apart),
-        cmocka_unit_test(fronds_hide_what_they_span),
-        cmocka_unit_test(crowns_hide_their_leaves),
     };
     return cmocka_run_group_tests_name("canopy light", tests, NULL, NULL);
 }

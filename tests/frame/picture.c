@@ -59,9 +59,8 @@ static void make_cover(struct wd_world *world)
 static bool make_canopy_light(struct picture_test *test)
 {
     const struct wd_model none = {0};
-    const struct wd_crown_shade no_shade = {0};
     const struct wd_canopy_field_params params = {
-        .world = &test->world, .models = &none, .shades = &no_shade, .variants = 1, .threads = 1};
+        .world = &test->world, .models = &none, .variants = 1, .threads = 1};
     struct wd_canopy_field field;
     wd_canopy_field_init(&field, &params);
     test->forest.canopy_light_scale[0] = (float)(1 / (field.cell_m * field.width));
