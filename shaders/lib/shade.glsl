@@ -295,7 +295,7 @@ wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter she
     vec4 field = vec4(canopy_light_near(center + corner).xy, canopy_light_near(center - corner).zw);
     wd_alone alone = NOT_ALONE;
     alone.beside = field * field * through_herbs(herbs_above(shelter, height_m));
-    alone.share = smoothstep(0.15, 0.4, 0.25 * dot(open, open))
+    alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open))
                   * has_table(crown);
     alone.lets.xy = skylit.xy * wd_skylit_above(openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(openness);
@@ -331,7 +331,7 @@ vec3 leaves_albedo()
 
 /* Of its neighbours' leaves over a place, this power of their share hides the sky there. By path-traced stands of
  * five species, 5 and 8 m apart, under an even sky. */
-const float NEIGHBOURS_OVER = 0.85;
+const float NEIGHBOURS_OVER = 0.75;
 
 /* Leaves of a crown hide more of the sky overhead than of that at the horizon, which a clear one is bright at: by
  * how much brighter an upright face's is than an even sky's. Fitted to path-traced oaks, spruces and birches, of
@@ -353,7 +353,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     float over = pow(canopy_above(shelter.layer_m, place.rel.z - crown.foot_z), NEIGHBOURS_OVER);
     float from_above = smoothstep(0.15, 0.5, -pixel.direction.z) * (1.0 - shelter.within);
     from_above *= one_leaf ? has_table(crown) : 0.0;
-    alone.sides = exp2(mix(mix(0.4, 1.0, over), over, from_above) * log2(max(alone.beside, 1e-3)));
+    alone.sides = exp2(mix(1.0, over, from_above) * log2(max(alone.beside, 1e-3)));
     alone.known = mix(alone.share, 1.0, from_above);
     alone.side = mix(vec4(1.0), eye_side(-pixel.direction), one_leaf ? alone.share : 0.0);
     alone.lets.xy *= 1.0 + alone.share * (one_leaf ? LOW_SKY_LEAF : LOW_SKY_CLOUD) * brighter_low_sky();

@@ -62,7 +62,7 @@ float herbs_above(wd_shelter shelter, float height_m)
 
 /* An eye within a stand sees those leaves of a place that lie under the others there: by so many more of their
  * tree's own. By path-traced oaks and beeches. */
-const float BELOW_LEAVES = 0.18;
+const float BELOW_LEAVES = 0.26;
 
 /* On a tree: what its own leaves let through, and of what the stand lets down to the ground as much as
  * there are leaves of it higher up: what of it is above the whole tree, and neighbours beside it. The
@@ -120,7 +120,7 @@ const float NEAR_SUN = 0.7, OVER_HILLS = 0.6;
 
 /* Ways past a stand to the sky about the sun, which lies somewhat higher than a low sun, over the mean way of the
  * sky's light, times their sine. */
-const float WIDE_WAY = 0.65;
+const float WIDE_WAY = 0.75;
 
 /* The sun's own and that of the sky about it, on a surface that faces it. */
 vec3 sunlight()

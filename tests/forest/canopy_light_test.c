@@ -18,28 +18,30 @@ static float heights_m[4];
 static struct wd_world stand_from(int from_m)
 {
     struct wd_world world = {0};
-    world.terrain = (struct wd_terrain){.width = 2, .height = 2, .cell_m = SIDE_M,
-                                        .height_m = heights_m};
+    world.terrain =
+        (struct wd_terrain){.width = 2, .height = 2, .cell_m = SIDE_M, .height_m = heights_m};
     for (int y = 0; y < SIDE_M; y += SPACING_M)
         for (int x = from_m; x < SIDE_M; x += SPACING_M)
-            trees[world.tree_count++] =
-                (struct wd_tree){.x_mm = x * 1000 + 2500, .y_mm = y * 1000 + 2500,
-                                 .size = 2000u | 600u << 16};
+            trees[world.tree_count++] = (struct wd_tree){
+                .x_mm = x * 1000 + 2500, .y_mm = y * 1000 + 2500, .size = 2000u | 600u << 16};
     world.trees = trees;
     wd_cover_init(&world, 1);
     return world;
 }
 
 /* Leaves hide 0.8 of the crown's outline from each side. */
-static struct wd_model model = {.height_m = 20, .crown_m = 6, .crown_base_m = 8, .roughness = 0.4f,
+static struct wd_model model = {.height_m = 20,
+                                .crown_m = 6,
+                                .crown_base_m = 8,
+                                .roughness = 0.4f,
                                 .seen_m2 = {45.2f, 36.2f, 22.6f}};
 
 static struct wd_canopy_field field_of(const struct wd_world *world, unsigned threads)
 {
     struct wd_canopy_field field;
-    wd_canopy_field_init(&field, &(struct wd_canopy_field_params){
-                                     .world = world, .models = &model, .variants = 1,
-                                     .threads = threads});
+    wd_canopy_field_init(&field,
+                         &(struct wd_canopy_field_params){
+                             .world = world, .models = &model, .variants = 1, .threads = threads});
     return field;
 }
 
@@ -85,8 +87,8 @@ static void stands_are_dark_and_edges_are_not(void **state)
     free(world.cover);
 }
 
-/* Trees of one height are a layer from their crowns' base to their tops, herbs below them or not; crowns
- * reach into the next cell; lower trees under higher ones make it deeper. */
+/* Trees of one height are a layer from their crowns' base to their tops, herbs below them or not;
+ * crowns reach into the next cell; lower trees under higher ones make it deeper. */
 static void layers_are_as_high_as_their_trees(void **state)
 {
     (void)state;
@@ -132,8 +134,8 @@ static void hills_hide_their_side(void **state)
     for (int i = 0; i < SAMPLES * SAMPLES; i++)
         wall_m[i] = i % SAMPLES > 40 ? 100 : 0;
     struct wd_world world = stand_from(SIDE_M);
-    world.terrain = (struct wd_terrain){.width = SAMPLES, .height = SAMPLES, .cell_m = 4,
-                                        .height_m = wall_m, .max_m = 100};
+    world.terrain = (struct wd_terrain){
+        .width = SAMPLES, .height = SAMPLES, .cell_m = 4, .height_m = wall_m, .max_m = 100};
     struct wd_canopy_field field = field_of(&world, 1);
     const float *foot = at(&field, 140, 120), *far = at(&field, 20, 120);
     assert_true(foot[0] < 0.3f && foot[2] > 0.999f);
@@ -142,8 +144,8 @@ static void hills_hide_their_side(void **state)
     free(world.cover);
 }
 
-/* Herbs below a stand take nothing of what comes to them, and are told with their height; a sward, which
- * the ground's own openness knows, is not. */
+/* Herbs below a stand take nothing of what comes to them, and are told with their height; a sward,
+ * which the ground's own openness knows, is not. */
 static void herbs_are_apart(void **state)
 {
     (void)state;
