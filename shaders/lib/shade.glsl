@@ -295,8 +295,7 @@ wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter she
     vec4 field = vec4(canopy_light_near(center + corner).xy, canopy_light_near(center - corner).zw);
     wd_alone alone = NOT_ALONE;
     alone.beside = field * field * through_herbs(herbs_above(shelter, height_m));
-    alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open))
-                  * has_table(crown);
+    alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open)) * has_table(crown);
     alone.lets.xy = skylit.xy * wd_skylit_above(openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(openness);
     return alone;

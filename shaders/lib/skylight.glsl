@@ -61,7 +61,7 @@ float herbs_above(wd_shelter shelter, float height_m)
 }
 
 /* An eye within a stand sees those leaves of a place that lie under the others there: by so many more of their
- * tree's own. By path-traced oaks and beeches. */
+ * tree's own. By path-traced oaks and beeches, and bench/light.json from within. */
 const float BELOW_LEAVES = 0.26;
 
 /* On a tree: what its own leaves let through, and of what the stand lets down to the ground as much as
@@ -97,8 +97,9 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
 #define SKY_LEVELS(form, n) (form[0] + form[6] * (n.z * n.z) + SKY_ODD(form, n))
 
 /* Where a stand lets down 0.115 of an even sky's light, its rays come from as steep as in sky_under: one
- * over the log2. Path-traced stems in a closed forest under clouds get 0.24 of what the ground does. */
-const float UNDER_PER_LOG2 = -0.32;
+ * over the log2. Path-traced stems in a closed forest under clouds get 0.24 of what the ground does. In darker
+ * stands it comes more steeply still, at most by so much: by four stems of scenes/bench75k.json, `walk`. */
+const float UNDER_PER_LOG2 = -0.32, UNDER_MOST = 1.5;
 
 /* Irradiance of a surface and of its other side. Leaves scatter a share of what they stop, so that a
  * stand which lets t through if leaves were black lets t^s through, s the root of the share of light
@@ -201,7 +202,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
 {
     vec3 n = facing.xyz, s = frame.leaf_scatter;
     /* Slanting rays meet more of the stand's leaves, and of the tree's own (below). */
-    float deep = min(shelter.under * UNDER_PER_LOG2, 1.5) * (1.0 - alone.share);
+    float deep = min(shelter.under * UNDER_PER_LOG2, UNDER_MOST) * (1.0 - alone.share);
     vec3 odd = mix(SKY_ODD(frame.sky_form, n), SKY_ODD(frame.sky_under, n), deep);
     vec3 even = mix(SKY_EVEN(frame.sky_form, n), SKY_EVEN(frame.sky_under, n), deep)
                 + frame.sky_form[6] * facing.w;

@@ -5,9 +5,9 @@
 
 #include "base/jobs.h"
 #include "base/memory.h"
-#include "tree/vec.h"
 #include "shared/light.h"
 #include "shared/tree_pose.h"
+#include "tree/vec.h"
 
 static const float PI = 3.14159265f;
 

@@ -7,6 +7,8 @@
 #include "base/memory.h"
 #include "forest/canopy_light.h"
 #include "scene/species.h"
+#include "tree/coverage.h"
+#include "tree/grow.h"
 #include "world/cover.h"
 
 enum { SIDE_M = 240, SPACING_M = 5 };
@@ -173,6 +175,75 @@ static void herbs_are_apart(void **state)
     free(world.cover);
 }
 
+/* Deep in a wide stand, of each of four rings of the sky what crowns cover of the area across its
+ * rays, and a quarter more, stops them by Beer's law; cells of 8 m hold one tree or four of those
+ * that stand 5 m apart. */
+static void floors_get_what_crowns_do_not_cover(void **state)
+{
+    (void)state;
+    struct wd_world world = stand_from(0);
+    struct wd_canopy_field field = field_of(&world, 1);
+    const float *middle = at(&field, 0.5 * SIDE_M, 0.5 * SIDE_M);
+    const float *seen = model.seen_m2;
+    float wanted = 0;
+    for (int ring = 0; ring < 4; ring++) {
+        float rise = sqrtf(1 - ((float)ring + 0.5f) / 4);
+        float covered =
+            wd_seen_m2(seen[0], seen[1], seen[2], rise) / (SPACING_M * SPACING_M * rise);
+        wanted += expf(-1.25f * covered) / 4;
+    }
+    print_message("%.3f of the sky's light from the east, %.3f by Beer's law\n", (double)middle[0],
+                  (double)wanted);
+    for (int k = 0; k < 4; k++)
+        assert_float_equal(middle[k], wanted, 0.1f * wanted);
+    wd_canopy_field_finish(&field);
+    free(world.cover);
+}
+
+/* A fern is a dozen fronds, each of which spans half of it. */
+static void fronds_hide_what_they_span(void **state)
+{
+    (void)state;
+    const struct wd_grow_params params = {.seed = 3, .height_m = 0.8f};
+    struct wd_arena arena = {0};
+    struct wd_species fern;
+    struct wd_tree_model grown;
+    assert_true(wd_species_load(&fern, "species/fern.json", &arena, NULL));
+    assert_true(wd_tree_grow(&grown, &fern, &params, NULL));
+    wd_tree_model_add_leaves(&grown);
+    wd_tree_mesh_measure_seen(grown.seen_m2, &grown.full);
+    float radius_m = grown.crown_radius_m,
+          share = grown.seen_m2[2] / (3.14159f * radius_m * radius_m);
+    print_message("a fern hides %.2f of its outline\n", (double)share);
+    assert_true(share > 0.3f && share < 1.2f);
+    wd_tree_model_drop_leaves(&grown);
+    assert_int_equal(grown.full.index_count, grown.full.wood_index_count);
+    wd_tree_model_finish(&grown);
+    wd_arena_finish(&arena);
+}
+
+/* A single level leaf of 2 x 2 m over 15 m: what it hides from above is its area, from the side
+ * nothing. */
+static void crowns_hide_their_leaves(void **state)
+{
+    (void)state;
+    struct wd_tree_mesh leaf = {0};
+    float seen_m2[WD_GAIN_SIDES];
+    for (int k = 0; k < 4; k++) {
+        const struct wd_tree_vertex vertex = {
+            .position_m = {k == 1 || k == 2 ? 1 : -1, k >= 2 ? 1 : -1, 15}};
+        wd_tree_mesh_add_vertex(&leaf, &vertex);
+    }
+    wd_tree_mesh_add_triangle(&leaf, 0, 1, 2);
+    wd_tree_mesh_add_triangle(&leaf, 0, 2, 3);
+    wd_tree_mesh_update_bounds(&leaf);
+    wd_tree_mesh_measure_seen(seen_m2, &leaf);
+    assert_float_equal(seen_m2[2], 4, 0.1);
+    assert_float_equal(seen_m2[1], 4 * 0.7071, 0.1);
+    assert_float_equal(seen_m2[0], 0, 1e-6);
+    wd_tree_mesh_finish(&leaf);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -182,6 +253,9 @@ int main(void)
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(hills_hide_their_side),
         cmocka_unit_test(herbs_are_apart),
+        cmocka_unit_test(floors_get_what_crowns_do_not_cover),
+        cmocka_unit_test(fronds_hide_what_they_span),
+        cmocka_unit_test(crowns_hide_their_leaves),
     };
     return cmocka_run_group_tests_name("canopy light", tests, NULL, NULL);
 }
