@@ -40,6 +40,7 @@ static const struct figure {
     {"reference-mrays-s", bench_reference_rays},
     {"mean-colour-error-pct", bench_mean_colour},
     {"brf-error-pct", bench_reflectance},
+    {"stand-floor-error-pct", bench_stand_floor},
     {"shadow-cost-pct", bench_shadow_cost},
     {"wind-cost-pct", bench_wind_cost},
 };

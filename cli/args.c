@@ -81,7 +81,7 @@ static const struct cli_option option_table[] = {
     {"max-error", 0, "PX", CLI_KIND_REAL, AT(max_error_px), WD_LEAST_ERROR_PX, WD_MOST_ERROR_PX,
      PICTURE_COMMANDS,
      "error bound of continuum: mean distance of a crown's discs on screen, in pixels (default: 1.41, of "
-     "several samples 1)"},
+     "several samples 1 to 0.71)"},
     {"budget-ms", 0, "MS", CLI_KIND_REAL, AT(budget_ms), 0.1, 60000, PICTURE_COMMANDS,
      "hold the time of a frame by that error bound instead; films and views of continuum only"},
     {"option", 0, "NAME=VALUE", CLI_KIND_WORDS, AT(method_options), 0, 0, SCENE_COMMANDS,
@@ -105,6 +105,8 @@ static const struct cli_option option_table[] = {
      "check every use of Vulkan, end at the first error"},
     {"threads", 0, "N", CLI_KIND_WHOLE, AT(threads), 1, 1024, SCENE_COMMANDS | CLI_GROW | CLI_BENCH,
      "processor threads (default: one a processor); changes no picture"},
+    {"max-fps", 0, "N", CLI_KIND_REAL, AT(max_fps), 0.1, 1000, CLI_VIEW,
+     "draw at most so many frames a second, to leave the processor to others (default: the display's)"},
     {"single", 0, NULL, CLI_KIND_FLAG, AT(single), 0, 0, CLI_VIEW,
      "show each frame by itself: samples of frames before are not laid under it"},
     {"walk", 0, NULL, CLI_KIND_FLAG, AT(walk), 0, 0, CLI_VIEW,

@@ -50,7 +50,7 @@ struct cli_options {
     uint32_t size_px[2];
     uint32_t samples, frames, threads, bounces;
     uint32_t variants, max_trees, grow_seed;
-    double frames_per_second, time_s, max_error_px, budget_ms;
+    double frames_per_second, time_s, max_error_px, budget_ms, max_fps;
     double height_m, dbh_cm, age_years, openness, detail, month, distance_m; /* of grow */
     const char *season, *form, *clip, *layers;
     struct cli_words settings, method_options;

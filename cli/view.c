@@ -22,6 +22,7 @@ enum cli_status cli_view(struct cli_session *session)
         .height = options->size_px[1],
         .max_error_px = options->max_error_px,
         .budget_ms = options->budget_ms,
+        .max_fps = options->max_fps,
         .single = options->single,
         .walk = options->walk,
         .screenshot_dir = options->screenshots,

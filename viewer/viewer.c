@@ -263,6 +263,16 @@ static enum wd_result draw_frame(struct viewer_state *viewer)
     return state == VIEWER_SWAP_FAILED ? WD_ERROR_DEVICE : WD_OK;
 }
 
+/* Until the next frame is due, where there is a most of them. */
+static void keep_pace(const struct viewer_state *viewer)
+{
+    if (viewer->params->max_fps <= 0)
+        return;
+    double left_s = viewer->now_s + 1 / viewer->params->max_fps - viewer_seconds();
+    if (left_s > 0)
+        SDL_Delay((Uint32)(left_s * 1e3 + 0.5));
+}
+
 static enum wd_result run_loop(struct viewer_state *viewer)
 {
     const struct wd_viewer_params *params = viewer->params;
@@ -280,6 +290,7 @@ static enum wd_result run_loop(struct viewer_state *viewer)
             result = WD_ERROR_DEVICE;
         else if (!viewer->no_area)
             result = draw_frame(viewer);
+        keep_pace(viewer);
     }
     return result;
 }

@@ -13,6 +13,7 @@ struct wd_viewer_params {
     uint32_t width, height;     /* of the window; 0: 1280x720 */
     double max_error_px;        /* see struct wd_render_params; 0: the method's own */
     double budget_ms;           /* of a frame, held by the error; 0: none */
+    double max_fps;             /* frames a second at most; 0: as many as the display shows */
     bool single;                /* each frame by itself: nothing is accumulated */
     bool walk;                  /* begin on foot */
     const char *screenshot_dir; /* NULL: the working directory */

@@ -97,7 +97,7 @@ struct wd_render_params {
     enum wd_view_mode view;
     uint32_t layers;        /* wd_layer_bits wanted; 0: display */
     double max_error_px;    /* of continuum, WD_LEAST_ERROR_PX..WD_MOST_ERROR_PX; 0: by its option
-                               "density", or twice that where `samples` are more than 1. Mean distance, on
+                               "density", or 2 to 4 times that where `samples` are more than 1. Mean distance, on
                                screen, between the discs that stand for a crown's surface: what is finer
                                may be missing from a single sample. Trees less than about twice as wide are
                                drawn as one for several, and triangles of wood and pages of trees on demand

@@ -139,6 +139,7 @@ static void cascade_view(struct wd_view *cascade, const struct wd_view *view, co
     memcpy(cascade->eye_m, eye_m, sizeof cascade->eye_m);
     cascade->pixels_per_radian = view->pixels_per_radian;
     cascade->lod_scale = view->lod_scale;
+    cascade->samples = view->samples;
     const double *rows[3] = {box->right, box->up, box->toward};
     const double scale[3] = {1.0 / box->radius, 1.0 / box->radius, 1.0 / box->depth};
     for (int row = 0; row < 3; row++) {

@@ -142,7 +142,6 @@ static struct wd_tree_draw tree_draw_of(const struct recording *r, const struct 
         .view_mode = frame->params.view_mode,
         .page_budget = frame->params.page_budget,
         .max_error_px = frame->params.max_error_px,
-        .samples = frame->params.samples,
     };
 }
 
@@ -393,6 +392,7 @@ static void prepare_recording(struct recording *r, uint32_t index)
         .width = params->width,
         .height = params->height,
         .shadow_size = r->frame->targets.shadow_size,
+        .samples = params->samples,
         .sample_index = gathers ? r->frame->gathered.frames % GATHERED_OFFSETS : index,
         .sample_count = gathers ? GATHERED_OFFSETS : params->samples,
         .adds = index > 0,

@@ -156,7 +156,8 @@ void wd_perspective_map_init(struct wd_view *map, struct wd_frame_uniforms *unif
                             .width = params->size,
                             .height = params->size,
                             .pixels_per_radian = view->pixels_per_radian,
-                            .lod_scale = view->lod_scale};
+                            .lod_scale = view->lod_scale,
+                            .samples = view->samples};
     memcpy(map->eye_m, view->eye_m, sizeof map->eye_m);
     double sine = set_axes(&map->box, params, forward, up);
     struct bounds bounds;

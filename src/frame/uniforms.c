@@ -74,7 +74,8 @@ static void fill_camera(struct wd_frame_uniforms *uniforms, struct wd_view *view
                         struct wd_view *steady, const struct wd_uniforms_params *params)
 {
     const struct wd_scene *scene = params->forest->scene;
-    struct wd_view_params camera = {params->camera, params->width, params->height, NEAR_M, {0}};
+    struct wd_view_params camera = {
+        params->camera, params->width, params->height, NEAR_M, params->samples, {0}};
     struct exposure exposure = exposure_of(params->sample_index, params->sample_count);
     wd_view_init(steady, &camera);
     memcpy(uniforms->steady_clip_from_rel, steady->clip_from_rel, sizeof steady->clip_from_rel);
@@ -101,7 +102,7 @@ static void fill_previous(struct wd_frame_uniforms *uniforms,
 {
     struct wd_view previous;
     const struct wd_view_params camera = {
-        params->previous_camera, params->width, params->height, NEAR_M, {0}};
+        params->previous_camera, params->width, params->height, NEAR_M, params->samples, {0}};
     wd_view_init(&previous, &camera);
     float shift[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     for (int k = 0; k < 3; k++)

@@ -11,7 +11,8 @@ struct wd_uniforms_params {
     double time_s, previous_time_s;
     uint32_t width, height, shadow_size;
     uint32_t adds; /* as in struct wd_frame_uniforms */
-    uint32_t sample_index, sample_count;
+    uint32_t samples;                    /* of the picture */
+    uint32_t sample_index, sample_count; /* where the camera stands for this one */
     uint32_t view_mode;
     double calm_m; /* of struct wd_cascades_params */
     enum wd_shadow_maps maps;

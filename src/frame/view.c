@@ -71,7 +71,8 @@ void wd_view_init(struct wd_view *view, const struct wd_view_params *params)
     wd_camera_axes(&params->camera, right, forward, up);
     *view = (struct wd_view){.camera = params->camera,
                              .width = params->width,
-                             .height = params->height};
+                             .height = params->height,
+                             .samples = params->samples ? params->samples : 1};
     memcpy(view->eye_m, params->camera.position_m, sizeof view->eye_m);
     double half_height = tan(params->camera.fov_rad * 0.5);
     double half_width = half_height * params->width / params->height;

@@ -28,6 +28,7 @@ struct wd_view {
     float clip_from_rel[4][4];
     float pixels_per_radian;    /* of the picture: size on screen = size / distance * this */
     uint32_t width, height;
+    uint32_t samples;           /* pictures averaged into one: leaves thin out later for it */
     uint32_t cascade;           /* for shadow views: 0..WD_CASCADES - 1 */
     float lod_scale;            /* factor on the distances of the levels of detail, which are meant for
                                    pictures of 600 lines that are 60 degrees high: in larger ones and
@@ -48,6 +49,7 @@ struct wd_view_params {
     struct wd_camera camera;
     uint32_t width, height;
     float near_m;
+    uint32_t samples;   /* 0 counts as 1 */
     float offset_px[2]; /* of this sample within its pixel, -0.5..0.5 */
 };
 /* A camera's view. */

@@ -39,7 +39,8 @@ struct wd_level_rule wd_level_rule_of(const struct wd_forest_device *forest,
 float wd_leaf_pixels(const struct wd_forest_device *forest, const struct wd_view *view,
                      enum wd_tree_pass pass)
 {
-    float least_px = fmaxf((float)forest->scene->quality.leaf_px, 1e-6f);
+    float samples = (float)(view->samples ? view->samples : 1);
+    float least_px = fmaxf((float)forest->scene->quality.leaf_px / sqrtf(samples), 1e-6f);
     return (pass == WD_PASS_SHADOW ? 0.55f : 1) * view->pixels_per_radian *
            (WD_LEAF_WHOLE_PX / least_px);
 }

@@ -38,7 +38,6 @@ struct wd_tree_draw {
     uint32_t view_mode;             /* WD_MODE_* */
     uint32_t page_budget;           /* as in struct wd_frame_params */
     float max_error_px;             /* likewise */
-    uint32_t samples;               /* pictures averaged into one */
 };
 
 /* Whether trees that stand alone share draws. */

@@ -78,7 +78,7 @@ find_window() { window=$(xdotool search --onlyvisible --name '^weald: tiny' 2>/d
 start() {
     : >"$report"
     before=null
-    "$weald" view "$scratch/tiny.json" --gpu software --size 320x240 --report "$report" \
+    "$weald" view "$scratch/tiny.json" --gpu software --size 320x240 --max-fps 10 --report "$report" \
         --screenshots "$scratch/shots" "$@" >"$scratch/log" 2>&1 &
     viewer=$!
     within 60 find_window || fail "no window appears"
