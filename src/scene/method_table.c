@@ -48,8 +48,8 @@ static const struct wd_key continuum_keys[] = {
      "far again in part. 0: none.", .row = "continuum"},
     {"near_px", WD_KEY_DOUBLE, OPTION(continuum, near_px), 0, 1e6, "8",
      "So are trees whose mesh has triangles that would be so many pixels across if they were "
-     "squares; down to a quarter of that for plants of few triangles. In pictures of n samples that "
-     "are n^0.75 times smaller, up to 8. 0: none.", .row = "continuum"},
+     "squares; down to a quarter of that for plants of few triangles. In pictures of n samples "
+     "so many over n^0.75, an eighth at least. 0: none.", .row = "continuum"},
     {0},
 };
 static const struct wd_keys continuum_table = TABLE(continuum);

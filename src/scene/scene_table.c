@@ -190,8 +190,8 @@ static const struct wd_key quality_keys[] = {
     {"blend", WD_KEY_DOUBLE, IN(quality, blend), 0, 0.9, "0.25",
      "Share of a distance over which levels blend."},
     {"leaf_px", WD_KEY_DOUBLE, IN(quality, leaf_px), 0, 100, "3",
-     "Leaves of meshes that are shorter than this on screen thin out, in pictures of n samples shorter "
-     "than a root of n-th of it; 0: none do."},
+     "Leaves of meshes that are shorter than this on screen thin out; of pictures of n samples, shorter "
+     "than this over the root of n. 0: none do."},
     {"shadow_size", WD_KEY_INTEGER, IN(quality, shadow_size), 16, 16384, "2048",
      "Texels a side of a shadow cascade."},
     {"shadow_distance_m", WD_KEY_DOUBLE, IN(quality, shadow_distance_m), 1, 1e6, "2500",

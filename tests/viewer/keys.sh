@@ -75,10 +75,12 @@ hold_key() { # hold_key KEY SECONDS: and for two frames at least, however slow t
     xdotool keyup "$1"
 }
 find_window() { window=$(xdotool search --onlyvisible --name '^weald: tiny' 2>/dev/null | head -1) && [ -n "$window" ]; }
+# Few near meshes and frames: what is tested is the window.
 start() {
     : >"$report"
     before=null
-    "$weald" view "$scratch/tiny.json" --gpu software --size 320x240 --max-fps 10 --report "$report" \
+    "$weald" view "$scratch/tiny.json" --gpu software --size 320x240 --set quality.mesh_distance_m=2 \
+        --set quality.reduced_distance_m=4 --max-fps 5 --report "$report" \
         --screenshots "$scratch/shots" "$@" >"$scratch/log" 2>&1 &
     viewer=$!
     within 60 find_window || fail "no window appears"
@@ -214,6 +216,11 @@ ask
 holds '.gait == "walk" and .view == "lod" and .camera == "west" and .saved_cameras == 1' ||
     fail "options"
 echo "ok   options"
+remember
+sleep 1
+ask
+holds '.frames > $before.frames and .frames <= $before.frames + 12' || fail "five frames a second"
+echo "ok   five frames a second"
 xdotool key Escape
 ended 0 'Escape ends the viewer'
 
