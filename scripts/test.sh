@@ -18,6 +18,7 @@ export VK_DRIVER_FILES="$software" VK_ICD_FILENAMES="$software"
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+trap 'trap "" TERM; kill 0; exit 130' INT # what is started beside the tests knows no Ctrl-C
 step() { # step NAME COMMAND...: runs it, remembers a failure, goes on
     step_name=$1
     shift
