@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "frame/view.h"
+#include "methods/continuum_view.h"
 #include "methods/selection.h"
 
 static const struct wd_level_rule RULE = {60.0f, 200.0f, 0.25f, WD_LEVEL_MESH};
@@ -87,6 +88,35 @@ static void distances_follow_pixels(void **state)
     assert_true(scale_of(150, 60) == 1 && scale_of(600, 90) == 1);
 }
 
+/* Pictures of several samples resolve what is finer: leaves thin out later, and continuum draws meshes
+ * farther out, unless its error is bounded. */
+static void samples_show_finer_things(void **state)
+{
+    (void)state;
+    struct wd_scene scene = {.quality.leaf_px = 3, .methods.continuum = {.density = 0.5, .near_px = 8}};
+    const struct wd_forest_device forest = {.scene = &scene};
+    const struct wd_continuum_forest discs = {.coarsest_m = 1};
+    struct wd_view_params params = {.camera = {.fov_rad = 1}, .width = 800, .height = 600,
+                                    .near_m = 0.1f};
+    float leaf[3], reach[3], bounded[3];
+    for (int i = 0; i < 3; i++) {
+        struct wd_view view;
+        params.samples = i == 0 ? 1 : i == 1 ? 4 : 16;
+        wd_view_init(&view, &params);
+        struct wd_tree_draw draw = {.forest = &forest, .view = &view, .pass = WD_PASS_CAMERA};
+        leaf[i] = wd_leaf_pixels(&forest, &view, WD_PASS_CAMERA);
+        reach[i] = wd_continuum_near_rule(&draw, &discs).reach;
+        draw.max_error_px = 1.4142136f;
+        bounded[i] = wd_continuum_near_rule(&draw, &discs).reach;
+    }
+    assert_float_equal(leaf[1] / leaf[0], 2, 1e-5);
+    assert_float_equal(leaf[2] / leaf[0], 4, 1e-5);
+    assert_float_equal(reach[1] / reach[0], 2.828427, 1e-5);
+    assert_float_equal(reach[2] / reach[0], 8, 1e-4);
+    assert_float_equal(bounded[2] / bounded[0], 1, 1e-6);
+    assert_float_equal(bounded[0] / reach[0], 1, 1e-4);
+}
+
 static void ranges_that_touch_become_one(void **state)
 {
     (void)state;
@@ -110,6 +140,7 @@ int main(void)
         cmocka_unit_test(beyond_the_card_distance_there_are_cards_only),
         cmocka_unit_test(far_cascades_take_coarser_levels),
         cmocka_unit_test(distances_follow_pixels),
+        cmocka_unit_test(samples_show_finer_things),
         cmocka_unit_test(ranges_that_touch_become_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
