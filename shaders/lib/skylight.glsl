@@ -196,8 +196,9 @@ const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(1.0), v
 const float ALONG = 0.5;
 
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
- * unit, where a ray of the eye goes on to from one leaf. `past_trees`: the sun's share at the place. */
-wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float ground_share, float past_trees,
+ * unit, where a ray of the eye goes on to from one leaf, and log2 of what its own crown lets through that way.
+ * `past_trees`: the sun's share at the place. */
+wd_around light_around(vec4 facing, vec4 mirror, wd_shelter shelter, float ground_share, float past_trees,
                        wd_alone alone, float eye_z)
 {
     vec3 n = facing.xyz, s = frame.leaf_scatter;
@@ -250,10 +251,12 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     around.front += upward_front * (1.0 - up);
     around.back += upward_back * up;
     float up_mirror = 0.5 + 0.5 * mirror.z;
+    /* Seen from over a stand, what mirrors a way through its own crown is darker than the mean; from within, as
+     * the mean, of which the seen leaves are. */
     vec3 ahead = mix(SKY_LEVELS(frame.sky_form, mirror), SKY_LEVELS(frame.sky_under, mirror), deep);
     /* Past the stand, that way: rough wax looks higher, too, and where the eye looks into a gap, out of that. */
     float rise_along = mix(0.3 + 0.7 * max(mirror.z, 0.0), max(mirror.z, 0.05), shelter.within);
-    vec3 along = exp2(s * (log2(mean) * ALONG / rise_along));
+    vec3 along = exp2(s * (log2(mean) * ALONG / rise_along + mirror.w * (1.0 - shelter.within)));
     around.mirrored = max(ahead, vec3(0.0)) * mix(along, sky_front, alone.share)
                       + mix(upward_front, scattered, up_mirror);
     return around;
