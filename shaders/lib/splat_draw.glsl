@@ -52,7 +52,9 @@ wd_outline leaf_outline(float radius, vec2 along)
 {
     float long_px = radius * sqrt(0.375 * 3.14159265 / LEAF_WIDTH);
     along *= inversesqrt(max(dot(along, along), 1e-12));
-    return wd_outline(long_px * max(abs(along), LEAF_WIDTH * abs(along.yx)), along / long_px);
+    vec2 tip = abs(along), side = LEAF_WIDTH * tip.yx; /* where the outline reaches farthest is between */
+    vec2 bulge = side + tip * tip / max(4.0 * side, 1e-6);
+    return wd_outline(long_px * mix(tip, bulge, lessThan(tip, 2.0 * side)), along / long_px);
 }
 
 bool outline_holds(wd_outline outline, vec2 from)

@@ -329,6 +329,7 @@ void select_tree(uint index, float share, uint place)
     float all = max(float(model_word(model_index, WD_WORD_WOOD_COUNT)), 1.0);
     float missing = 1.0 - pow(float(triangles) / all, model_float(model_index, WD_WORD_WOOD_SPREAD));
     splats.wood_radius *= sqrt(max(missing, 0.0));
+    splats.radius *= sqrt(mix(model_float(model_index, WD_WORD_LEAF_PAST_BARK), 1.0, missing));
     uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
     splats.facing = model_facing(pose, toward);
     splats.sun = wd_sun_mix(model_toward(pose, frame.sun_direction));

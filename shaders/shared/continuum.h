@@ -91,10 +91,11 @@ struct wd_splat_model {
                                              were so many times as near */
     uint32_t wood_first;                  /* place of the first triangle among all corners */
     uint32_t wood_count, wood_corners;    /* triangles, those that show most first */
+    float leaf_past_bark;                 /* factor on leaves' gains where these are all the wood */
 };
-WD_STATIC_ASSERT_SIZE(wd_splat_model, 544);
+WD_STATIC_ASSERT_SIZE(wd_splat_model, 548);
 /* Its words, to be fetched one by one. */
-#define WD_SPLAT_MODEL_WORDS 136u
+#define WD_SPLAT_MODEL_WORDS 137u
 #define WD_WORD_WOOD_GAINS 0u
 #define WD_WORD_LEAF_GAINS 36u
 #define WD_WORD_LIGHT_GAINS 72u
@@ -109,6 +110,7 @@ WD_STATIC_ASSERT_SIZE(wd_splat_model, 544);
 #define WD_WORD_FINER 132u
 #define WD_WORD_WOOD_FIRST 133u
 #define WD_WORD_WOOD_COUNT 134u
+#define WD_WORD_LEAF_PAST_BARK 136u
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u

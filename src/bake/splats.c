@@ -427,10 +427,11 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     const float stratum = 1.0f / WD_SPLAT_STRATA;
     const struct wd_disc_class woody = {&wood, points->wood_area_m2, stratum};
     const struct wd_disc_class leafy = {&leaves, points->leaf_area_m2, 1 - stratum};
-    wd_disc_fit(&fits, &woody, &leafy, &model->full);
+    wd_disc_fit(&fits, &woody, &leafy, &model->full, &model->reduced);
     splats->model.wood = fits.wood;
     splats->model.leaf = fits.leaf;
     splats->model.light = fits.light;
+    splats->model.leaf_past_bark = 0.5f * (fits.past_bark[0] + fits.past_bark[1]);
     memcpy(splats->model.lower, fits.lower, sizeof fits.lower);
     wd_tree_points_finish(&leaves);
     wd_tree_points_finish(&wood);

@@ -69,12 +69,15 @@ struct wd_disc_fit {
     struct wd_point_gains wood, leaf; /* of their areas */
     struct wd_point_gains light;      /* of the openness to the sky of those that are seen */
     float lower[WD_GAIN_SIDES];       /* share of the leaves seen that show their lower side */
+    float past_bark[WD_GAIN_SIDES];   /* factors on leaves' gains where triangles stand for all wood */
 };
 
 /* Finds the gains with which discs of both classes together cover as many pixels as the mesh, and as
  * many of them with wood, on average over windows that begin anywhere. Counts are those of both
- * classes together. */
+ * classes together. `bark`: a mesh of the same tree whose wood is drawn as triangles in place of discs
+ * where the tree is near enough. */
 void wd_disc_fit(struct wd_disc_fit *fits, const struct wd_disc_class *wood,
-                 const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh);
+                 const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh,
+                 const struct wd_tree_mesh *bark);
 
 #endif

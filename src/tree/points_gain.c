@@ -11,7 +11,9 @@
 #include "shared/hash.h"
 #include "tree/shown.h"
 
-enum { FIRST_ROUNDS = 4, ROUNDS = 2, MOST_VIEWS = 3, MOST_WINDOWS = 48 };
+enum { FIRST_ROUNDS = 5, ROUNDS = 2, MOST_VIEWS = 6, MOST_WINDOWS = 48 };
+/* Of 2,048 discs, about as many as the smallest trees have whose bark is all there as triangles. */
+enum { AT_TRIANGLES = 8 };
 /* Discs much larger than their share of the surface would be a tree's only look. */
 static const float LEAST_GAIN = 0.02f, MOST_GAIN = 4;
 
@@ -20,15 +22,19 @@ struct plan {
     struct wd_faces faces[2];
     struct wd_facet *facets[MOST_VIEWS][2]; /* [view][class] */
     int view_count;
+    const struct wd_tree_mesh *bark;         /* whose wood are the triangles */
+    struct wd_silhouette barks[MOST_VIEWS];  /* as each view sees them */
     float scale;          /* pixels a metre */
     float nearer_m;       /* what nothing of the tree hides */
-    struct wd_shown mesh; /* over all views */
+    struct wd_shown meshes[MOST_VIEWS];
 };
 
-/* So many discs, of whatever size, in all views. */
+/* So many discs, of whatever size, in all views or every other one. */
 struct windows {
     struct wd_disc_window of[MOST_VIEWS][MOST_WINDOWS];
-    uint32_t count;   /* a view */
+    int first_view, step;
+    struct wd_shown mesh; /* over these views */
+    uint32_t count;       /* a view */
     size_t wanted[2]; /* discs of a class in each */
 };
 
@@ -46,16 +52,21 @@ static size_t disc_count(const struct plan *plan, int class, size_t count)
  * windows and views is known to 2 %. */
 static uint32_t window_count(size_t count)
 {
-    return count < 32 ? MOST_WINDOWS : count < 100 ? 16 : count < 1000 ? 4 : 1;
+    return count < 32 ? MOST_WINDOWS : count < 100 ? 16 : count < 1000 ? 6 : count < 5000 ? 2 : 1;
 }
 
-/* They begin anywhere. */
-static void windows_init(struct windows *windows, const struct plan *plan, size_t count)
+/* They begin anywhere. Counts look from other views by turns. */
+static void windows_init(struct windows *windows, const struct plan *plan, int k)
 {
+    size_t count = (size_t)WD_POINT_LEAST << k;
+    windows->step = plan->view_count > 1 ? 2 : 1;
+    windows->first_view = k % windows->step;
+    windows->mesh = (struct wd_shown){0};
     windows->count = window_count(count);
     for (int class = 0; class < 2; class++)
         windows->wanted[class] = disc_count(plan, class, count);
-    for (int view = 0; view < plan->view_count; view++)
+    for (int view = windows->first_view; view < plan->view_count; view += windows->step) {
+        wd_shown_add(&windows->mesh, &plan->meshes[view], 1);
         for (uint32_t i = 0; i < windows->count; i++) {
             uint32_t first = wd_hash2(i * MOST_VIEWS + (uint32_t)view, (uint32_t)count);
             struct wd_facet_run runs[2] = {0};
@@ -68,17 +79,18 @@ static void windows_init(struct windows *windows, const struct plan *plan, size_
             wd_disc_window_init(&windows->of[view][i], runs, wd_disc_close((float)count),
                                 plan->nearer_m);
         }
+    }
 }
 
 static void windows_finish(struct windows *windows, const struct plan *plan)
 {
-    for (int view = 0; view < plan->view_count; view++)
+    for (int view = windows->first_view; view < plan->view_count; view += windows->step)
         for (uint32_t i = 0; i < windows->count; i++)
             wd_disc_window_finish(&windows->of[view][i]);
 }
 
 static struct wd_shown show_discs(const struct plan *plan, const struct windows *windows,
-                                  const float gains[2])
+                                  const float gains[2], const struct wd_silhouette *before)
 {
     struct wd_shown sum = {0};
     float squared_m2[2] = {0};
@@ -86,9 +98,10 @@ static struct wd_shown show_discs(const struct plan *plan, const struct windows 
         if (windows->wanted[class])
             squared_m2[class] = gains[class] * plan->classes[class]->area_m2 / (float)WD_PI /
                                 (float)windows->wanted[class];
-    for (int view = 0; view < plan->view_count; view++)
+    for (int view = windows->first_view; view < plan->view_count; view += windows->step)
         for (uint32_t i = 0; i < windows->count; i++) {
-            struct wd_shown shown = wd_shown_discs(&windows->of[view][i], squared_m2, plan->scale);
+            struct wd_shown shown = wd_shown_discs(&windows->of[view][i], squared_m2, plan->scale,
+                                                   before ? &before[view] : NULL);
             wd_shown_add(&sum, &shown, 1.0 / windows->count);
         }
     return sum;
@@ -96,21 +109,37 @@ static struct wd_shown show_discs(const struct plan *plan, const struct windows 
 
 /* --- fitting ----------------------------------------------------------------------------- */
 
-static float nearer(float gain, double wanted, double found, float power)
+/* How what is shown grows with a gain: to which power. */
+struct growth {
+    float power[2];
+    float gains[2], shown[2]; /* of the round before; 0: none */
+};
+
+static float nearer(struct growth *growth, int class, float gain, double wanted, double found)
 {
+    float shown = (float)found, before = growth->shown[class], was = growth->gains[class];
+    if (before > 0 && shown > 0 && fabsf(gain / was - 1) > 0.02f) {
+        double power = wd_dlog((double)(shown / before)) / wd_dlog((double)(gain / was));
+        growth->power[class] = wd_clampf((float)power, 0.25f, 1);
+    }
+    growth->shown[class] = shown;
+    growth->gains[class] = gain;
     float ratio = found > 0 ? wd_clampf((float)(wanted / found), 0.5f, 2) : 2;
-    return wd_clampf(gain * wd_clampf(1 + power * (ratio - 1), 0.4f, 2.5f), LEAST_GAIN, MOST_GAIN);
+    float factor = wd_clampf(1 + (ratio - 1) / growth->power[class], 0.4f, 2.5f);
+    return wd_clampf(gain * factor, LEAST_GAIN, MOST_GAIN);
 }
 
-/* Coverage grows with about the root of a gain. Without leaves wood has to cover all. */
-static void fit(const struct plan *plan, const struct windows *windows, int rounds, float gains[2])
+/* Without leaves wood has to cover all. */
+static void fit(const struct plan *plan, const struct windows *windows, int rounds,
+                struct growth *growth, float gains[2])
 {
     bool leaves = plan->classes[1]->area_m2 > 0;
+    growth->shown[0] = growth->shown[1] = 0;
     for (int round = 0; round < rounds; round++) {
-        struct wd_shown discs = show_discs(plan, windows, gains);
-        gains[0] = nearer(gains[0], plan->mesh.wood, discs.wood, 1.2f);
+        struct wd_shown discs = show_discs(plan, windows, gains, NULL);
+        gains[0] = nearer(growth, 0, gains[0], windows->mesh.wood, discs.wood);
         if (leaves)
-            gains[1] = nearer(gains[1], plan->mesh.covered, discs.covered, 1.6f);
+            gains[1] = nearer(growth, 1, gains[1], windows->mesh.covered, discs.covered);
     }
 }
 
@@ -118,26 +147,74 @@ static void fit(const struct plan *plan, const struct windows *windows, int roun
 static float light_gain(const struct plan *plan, const struct windows *windows,
                         const float gains[2])
 {
-    struct wd_shown discs = show_discs(plan, windows, gains);
-    double wanted = plan->mesh.openness * discs.covered, found = discs.openness * plan->mesh.covered;
+    struct wd_shown discs = show_discs(plan, windows, gains, NULL);
+    const struct wd_shown *mesh = &windows->mesh;
+    double wanted = mesh->openness * discs.covered, found = discs.openness * mesh->covered;
     return found > 0 ? wd_clampf((float)(wanted / found), 0.5f, 2) : 1;
+}
+
+/* Triangles of bark do not stick out of leaves as discs do: factor on the gain of leaves' discs with which
+ * these and the triangles alone cover what the mesh does. */
+static float past_bark(const struct plan *plan, const float gains[2])
+{
+    double bark = 0;
+    float only_leaves[2] = {0, gains[1]};
+    struct growth growth = {.power = {1, 0.6f}};
+    struct windows *windows = wd_alloc(sizeof *windows);
+    struct plan bare = *plan;
+    struct wd_disc_class no_wood = {plan->classes[0]->discs, 0, plan->classes[0]->share};
+    bare.classes[0] = &no_wood;
+    windows_init(windows, &bare, AT_TRIANGLES);
+    for (int view = windows->first_view; view < plan->view_count; view += windows->step)
+        bark += (double)wd_silhouette_count(&plan->barks[view]);
+    for (int round = 0; round < FIRST_ROUNDS && gains[1] > 0; round++) {
+        struct wd_shown discs = show_discs(&bare, windows, only_leaves, plan->barks);
+        only_leaves[1] = nearer(&growth, 1, only_leaves[1], windows->mesh.covered,
+                                discs.covered + bark);
+    }
+    windows_finish(windows, &bare);
+    free(windows);
+    return only_leaves[1] / gains[1];
+}
+
+/* Windows leave chance in each count's gains, which change little from one to the next but where discs
+ * cease to be larger and nearer than their share (wd_disc_close). */
+static void smooth(float gains[WD_POINT_GAINS])
+{
+    float before = gains[0];
+    for (int k = 1; k < WD_POINT_GAINS - 1; k++) {
+        float here = gains[k];
+        bool even = wd_disc_close((float)(WD_POINT_LEAST << (k - 1))) ==
+                    wd_disc_close((float)(WD_POINT_LEAST << (k + 1)));
+        if (even)
+            gains[k] = 0.25f * (before + 2 * here + gains[k + 1]);
+        before = here;
+    }
 }
 
 /* From many discs to few: what suits twice as many is where to begin. */
 static void fit_side(const struct plan *plan, struct wd_disc_fit *fits, int side)
 {
     float gains[2] = {1, 1};
-    double leaves = plan->mesh.covered - plan->mesh.wood;
+    struct growth growth = {.power = {0.8f, 0.4f}};
+    struct wd_shown mesh = {0};
+    for (int view = 0; view < plan->view_count; view++)
+        wd_shown_add(&mesh, &plan->meshes[view], 1);
+    double leaves = mesh.covered - mesh.wood;
     struct windows *windows = wd_alloc(sizeof *windows);
     for (int k = WD_POINT_GAINS - 1; k >= 0; k--) {
-        windows_init(windows, plan, (size_t)WD_POINT_LEAST << k);
-        fit(plan, windows, k == WD_POINT_GAINS - 1 ? FIRST_ROUNDS : ROUNDS, gains);
+        windows_init(windows, plan, k);
+        fit(plan, windows, k == WD_POINT_GAINS - 1 ? FIRST_ROUNDS : ROUNDS, &growth, gains);
         fits->wood.gains[side][k] = gains[0];
         fits->leaf.gains[side][k] = gains[1];
         fits->light.gains[side][k] = light_gain(plan, windows, gains);
+        if (k == AT_TRIANGLES)
+            fits->past_bark[side] = leaves > 0 ? past_bark(plan, gains) : 1;
         windows_finish(windows, plan);
     }
-    fits->lower[side] = leaves > 0 ? (float)(plan->mesh.lower / leaves) : 0;
+    smooth(fits->wood.gains[side]);
+    smooth(fits->leaf.gains[side]);
+    fits->lower[side] = leaves > 0 ? (float)(mesh.lower / leaves) : 0;
     free(windows);
 }
 
@@ -147,15 +224,15 @@ static void look_from(struct plan *plan, const struct wd_tree_mesh *mesh, float 
     double elevation = (double)elevation_deg * WD_PI / 180;
     float level = (float)wd_dcos(elevation), up = (float)wd_dsin(elevation);
     plan->view_count = view_count;
-    plan->mesh = (struct wd_shown){0};
     for (int i = 0; i < view_count; i++) {
         struct wd_silhouette frame;
         double turn = 0.4 + 2 * WD_PI * i / view_count;
         wd_silhouette_init(&frame, mesh,
                            WD_V3(level * (float)wd_dcos(turn), level * (float)wd_dsin(turn), up));
-        struct wd_shown shown = wd_shown_mesh(&frame, mesh);
-        wd_shown_add(&plan->mesh, &shown, 1);
+        plan->meshes[i] = wd_shown_mesh(&frame, mesh);
         plan->scale = frame.scale;
+        wd_silhouette_cover(&frame, 1, plan->bark, 0, plan->bark->wood_index_count);
+        plan->barks[i] = frame;
         for (int class = 0; class < 2; class++)
             plan->facets[i][class] = wd_facets_of(&plan->faces[class], &frame);
     }
@@ -169,10 +246,12 @@ static void look_away(struct plan *plan)
 }
 
 void wd_disc_fit(struct wd_disc_fit *fits, const struct wd_disc_class *wood,
-                 const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh)
+                 const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh,
+                 const struct wd_tree_mesh *bark)
 {
     static const float elevations_deg[WD_GAIN_SIDES] = {4, 45, 90};
     struct plan plan = {.classes = {wood, leaves},
+                        .bark = bark,
                         .nearer_m = WD_DISC_NEARER * (mesh->max_m[0] - mesh->min_m[0])};
     for (int class = 0; class < 2; class++)
         wd_faces_init(&plan.faces[class], plan.classes[class]->discs);

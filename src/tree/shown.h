@@ -52,8 +52,9 @@ void wd_disc_window_init(struct wd_disc_window *window, const struct wd_facet_ru
 void wd_disc_window_finish(struct wd_disc_window *window);
 
 /* Drawn as the squares of equal area that shaders/lib/splat_draw.glsl draws. `squared_m2`: of the radii of
- * both classes, where a disc is seen as the mean face is; `scale`: pixels a metre. */
+ * both classes, where a disc is seen as the mean face is; `scale`: pixels a metre. What `before` covers hides
+ * them and is not counted; NULL: nothing does. */
 struct wd_shown wd_shown_discs(const struct wd_disc_window *window, const float squared_m2[2],
-                               float scale);
+                               float scale, const struct wd_silhouette *before);
 
 #endif

@@ -167,9 +167,12 @@ static inline uint32_t cover(uint64_t covered[WORDS][WD_SILHOUETTE], const struc
 
 WD_FOUR_TWICE
 struct wd_shown wd_shown_discs(const struct wd_disc_window *window, const float squared_m2[2],
-                               float scale)
+                               float scale, const struct wd_silhouette *before)
 {
     uint64_t covered[WORDS][WD_SILHOUETTE] = {0};
+    for (int y = 0; y < WD_SILHOUETTE && before; y++)
+        for (int i = 0; i < WD_SILHOUETTE / 8; i++)
+            covered[i / 8][y] |= (uint64_t)before->covered[y][i] << (i % 8 * 8);
     uint32_t counts[2] = {0}, openness = 0;
     for (size_t from = 0; from < window->count; from += BATCH) {
         struct squares squares;
