@@ -41,13 +41,6 @@ wd_crown_way crown_way(wd_crown crown, vec3 rel)
     return way;
 }
 
-/* log2 of what a crown's leaves let through on the way from a place until it ends. */
-float crown_lets_along(wd_crown crown, vec3 rel, vec3 toward)
-{
-    float path_m = wd_crown_path_m(rel - crown.center_rel, crown.radii_m, toward);
-    return -1.442695 * wd_crown_per_m(crown.radii_m) * path_m;
-}
-
 /* Metres from a place toward the sun until the card is left behind that stands for the tree in coarse shadow
  * maps: across the sun's rays, through the middle of its height. */
 float crown_card_m(wd_crown crown, vec3 rel)

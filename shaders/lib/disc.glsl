@@ -1,22 +1,30 @@
-/* What the normal target holds of a continuum's disc: the normal, folded to an octahedron, in R and G; in B
- * two bits of what is seen over eight of the share of the sun that its own tree lets through. */
+/* What the normal target holds of a single leaf, or of a continuum's disc of wood: the normal, folded to an octahedron,
+ * in R and G; in B what is seen and the share of the sun that its own tree lets through, in DISC_LIT_STEPS. */
 
 const uint DISC_WOOD = 0u;
-const uint DISC_LEAF_ABOVE = 1u; /* a leaf's upper side */
-const uint DISC_LEAF_BELOW = 2u;
+const uint DISC_LEAF_BELOW = 1u; /* a leaf's lower side */
+const uint DISC_LEAF_ABOVE = 2u; /* its upper side, and above this in DISC_MIRRORS_MOST steps the share of what its
+                                    wax mirrors that lies beyond its own tree */
+const uint DISC_MIRRORS_MOST = 15u;
+const float DISC_LIT_STEPS = 56.0, DISC_LIT_TOP = 55.0;
 
 vec4 disc_pack(vec3 normal, uint kind, float lit)
 {
     vec2 e = normal.xy / (abs(normal.x) + abs(normal.y) + abs(normal.z));
     vec2 folded = (1.0 - abs(e.yx)) * vec2(e.x < 0.0 ? -1.0 : 1.0, e.y < 0.0 ? -1.0 : 1.0);
     e = normal.z < 0.0 ? folded : e;
-    float share = floor(clamp(lit, 0.0, 1.0) * 255.0 + 0.5);
-    return vec4(e * 0.5 + 0.5, (float(kind << 8) + share) / 1023.0, 0.0);
+    float share = floor(clamp(lit, 0.0, 1.0) * DISC_LIT_TOP + 0.5);
+    return vec4(e * 0.5 + 0.5, (float(kind) * DISC_LIT_STEPS + share) / 1023.0, 0.0);
 }
 
 /* Of a leaf's mesh, whose shade the maps hold. */
 const float DISC_LIT_MESH = 1.0;
-const float DISC_LIT_LEAST = 1.0 / 255.0, DISC_LIT_MOST = 254.0 / 255.0;
+const float DISC_LIT_LEAST = 1.0 / DISC_LIT_TOP, DISC_LIT_MOST = 1.0 - DISC_LIT_LEAST;
+
+uint disc_above(float mirrors)
+{
+    return DISC_LEAF_ABOVE + uint(mirrors * float(DISC_MIRRORS_MOST) + 0.5);
+}
 
 /* `face`: across the leaf, out of the side that the eye sees; `normal` is turned as the path tracer turns
  * it. Where the sun is on one side of the leaf and on the other of that normal, none of its light goes
@@ -38,12 +46,24 @@ vec3 disc_normal(vec4 packed)
     return normalize(n);
 }
 
-uint disc_kind(vec4 packed)
+/* Its kind and what is lit of it, before they are told apart. */
+float disc_told(vec4 packed)
 {
-    return uint(packed.z * 1023.0 + 0.5) >> 8;
+    return floor(packed.z * 1023.0 + 0.5);
 }
 
-float disc_lit(vec4 packed)
+uint disc_kind(float told)
 {
-    return float(uint(packed.z * 1023.0 + 0.5) & 255u) * (1.0 / 255.0);
+    return uint((told + 0.5) * (1.0 / DISC_LIT_STEPS));
+}
+
+float disc_lit(float told)
+{
+    float steps = told - float(disc_kind(told)) * DISC_LIT_STEPS;
+    return steps < DISC_LIT_TOP ? steps * (1.0 / DISC_LIT_TOP) : DISC_LIT_MESH;
+}
+
+float disc_mirrors(uint kind)
+{
+    return float(max(kind, DISC_LEAF_ABOVE) - DISC_LEAF_ABOVE) * (1.0 / float(DISC_MIRRORS_MOST));
 }

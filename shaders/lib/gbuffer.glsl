@@ -17,12 +17,15 @@ wd_pixel gbuffer_pixel(ivec2 at, float depth)
     pixel.surface = texelFetch(gbuffer_surface, at, 0).x;
     bool disc = pixel.material == WD_MATERIAL_GROUND && pixel.surface != 0u;
     pixel_set_normal(pixel, disc ? disc_normal(normal) : normal.xyz * 2.0 - 1.0);
+    float told = disc_told(normal);
+    uint kind = disc_kind(told);
     if (disc)
-        pixel.material = disc_kind(normal) == DISC_WOOD ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF;
+        pixel.material = kind == DISC_WOOD ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF;
     else if (ALL_SINGLE)
         pixel.material = pixel.surface != 0u ? WD_MATERIAL_WOOD : WD_MATERIAL_GROUND;
-    pixel.lit = disc ? disc_lit(normal) : -1.0;
-    pixel.above = disc_kind(normal) == DISC_LEAF_ABOVE ? 1.0 : 0.0;
+    pixel.lit = disc ? disc_lit(told) : -1.0;
+    pixel.above = kind >= DISC_LEAF_ABOVE ? 1.0 : 0.0;
+    pixel.mirrors = disc_mirrors(kind);
     pixel_lay_snow(pixel);
     return pixel;
 }

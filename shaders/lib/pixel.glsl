@@ -19,6 +19,7 @@ struct wd_pixel {
     uint material;
     float lit;        /* share of the sun that a disc's own tree lets through; -1: not known */
     float above;      /* 1: the upper side of a disc's leaf */
+    float mirrors;    /* share of what its wax mirrors that lies beyond its tree; the rest: the tree's leaves */
     uint surface;     /* tree + 1, or 0 */
     float snow;       /* share of a tree's surface that lies under snow */
 };

@@ -14,6 +14,7 @@ struct wd_shelter {
     vec4 through;     /* the share of the sky's quarters that no leaf stops */
     float floor_mean; /* the mean of that on the ground */
     float under;      /* log2 of the share that leaves of the stand over the place let down */
+    float beside;     /* the same, of all leaves that lie higher: what a level way meets sooner */
     vec2 layer_m;     /* base and top of the stand's leaves over the ground */
     float herbs;      /* layers of herbs on the ground, */
     float herbs_m;    /* so high */
@@ -42,7 +43,7 @@ wd_shelter ground_shelter(wd_pixel pixel)
     shelter.within = 0.0;
     shelter.through = max(field * field, vec4(1e-3));
     shelter.floor_mean = dot(shelter.through, vec4(0.25));
-    shelter.under = log2(shelter.floor_mean);
+    shelter.under = shelter.beside = log2(shelter.floor_mean);
     shelter.through *= pixel.surface == 0u ? pixel.openness * through_herbs(shelter.herbs) : 1.0;
     return shelter;
 }
@@ -84,6 +85,7 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
     shelter.low = exp2(min(crown.foot_z - pixel.rel.z, 0.0));
     shelter.floor_herbs = log2(through_herbs(shelter.herbs));
     shelter.under *= mix(under, 1.0, herb);
+    shelter.beside *= mix(sqrt(above), 1.0, herb);
     return shelter;
 }
 
@@ -112,7 +114,7 @@ const float UNDER_PER_LOG2 = -0.32, UNDER_MOST = 1.5;
  * the ray would bring along its own way, is next to nothing there. */
 struct wd_around {
     vec3 front, back;
-    vec3 mirrored; /* of a surface that looks along `mirror` */
+    vec3 mirrored; /* over pi: what comes along `mirror` from beyond the tree */
 };
 
 /* The sky about the sun lies wide beside stems and far crowns, whose shadows it fills, but is hidden by the
@@ -196,9 +198,9 @@ const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(1.0), v
 const float ALONG = 0.5;
 
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
- * unit, where a ray of the eye goes on to from one leaf, and log2 of what its own crown lets through that way.
+ * unit, where a ray of the eye goes on to from one leaf.
  * `past_trees`: the sun's share at the place. */
-wd_around light_around(vec4 facing, vec4 mirror, wd_shelter shelter, float ground_share, float past_trees,
+wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float ground_share, float past_trees,
                        wd_alone alone, float eye_z)
 {
     vec3 n = facing.xyz, s = frame.leaf_scatter;
@@ -250,14 +252,15 @@ wd_around light_around(vec4 facing, vec4 mirror, wd_shelter shelter, float groun
                   + scattered * ((1.0 - up) * (1.0 - alone.share)) + again;
     around.front += upward_front * (1.0 - up);
     around.back += upward_back * up;
-    float up_mirror = 0.5 + 0.5 * mirror.z;
-    /* Seen from over a stand, what mirrors a way through its own crown is darker than the mean; from within, as
-     * the mean, of which the seen leaves are. */
-    vec3 ahead = mix(SKY_LEVELS(frame.sky_form, mirror), SKY_LEVELS(frame.sky_under, mirror), deep);
-    /* Past the stand, that way: rough wax looks higher, too, and where the eye looks into a gap, out of that. */
-    float rise_along = mix(0.3 + 0.7 * max(mirror.z, 0.0), max(mirror.z, 0.05), shelter.within);
-    vec3 along = exp2(s * (log2(mean) * ALONG / rise_along + mirror.w * (1.0 - shelter.within)));
-    around.mirrored = max(ahead, vec3(0.0)) * mix(along, sky_front, alone.share)
-                      + mix(upward_front, scattered, up_mirror);
+    /* The sky's mean about that way, and past the stand: rough wax looks higher, too, and where the eye looks
+     * into a gap, out of that. */
+    float up_mirror = smoothstep(-LOBE_SINE, LOBE_SINE, mirror.z), high = max(mirror.z, 0.0);
+    vec3 level = vec3(mirror.xy, high);
+    vec3 ahead = mix(SKY_LEVELS(frame.sky_form, level), SKY_LEVELS(frame.sky_under, level), deep) / (0.5 + 0.5 * high);
+    float rise_along = max(high, 0.1);
+    vec3 along = exp2(s * (shelter.beside * ALONG / rise_along));
+    float open = 0.5 * dot(alone.beside, faced_quarters(mirror.xy));
+    around.mirrored = mix(upward_front, max(ahead, vec3(0.0)) * mix(along, vec3(open), alone.share)
+                                            + scattered * (1.0 - alone.share), up_mirror);
     return around;
 }

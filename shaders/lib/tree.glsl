@@ -41,6 +41,13 @@ vec3 tree_normal(tree_pose pose, vec3 normal)
     return normalize(vec3(tree_turn(pose, normal.xy) * pose.up, normal.z * pose.across));
 }
 
+/* A direction of the world, seen from the model. */
+vec3 tree_toward(tree_pose pose, vec3 v)
+{
+    vec2 turned = vec2(pose.turn.x * v.x + pose.turn.y * v.y, pose.turn.x * v.y - pose.turn.y * v.x);
+    return normalize(vec3(pose.up * turned * pose.mirror, pose.across * v.z));
+}
+
 wd_wind tree_wind()
 {
     return wd_wind(frame.wind_speed_mps, frame.wind_gust, frame.wind_toward.x, frame.wind_toward.y);

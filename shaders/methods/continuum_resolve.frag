@@ -24,6 +24,7 @@ layout(set = 0, binding = 9) uniform usamplerBuffer lit;         /* ways that ar
 #include "lib/splat.glsl"
 #include "lib/view.glsl"
 #include "lib/disc.glsl"
+#include "lib/mirror.glsl"
 
 layout(location = 0) flat in vec4 in_right;
 layout(location = 1) flat in vec4 in_up;
@@ -40,6 +41,7 @@ struct wd_seen {
     vec3 albedo, normal, face;
     float openness;
     float lit; /* share of the sun that its tree lets through */
+    uint open; /* ways that it leaves open */
     bool wood;
 };
 
@@ -70,7 +72,8 @@ wd_seen seen_splat(uint id)
     seen.albedo = look_albedo(look);
     seen.openness = float(bitfieldExtract(look, int(WD_SPLAT_OPENNESS_BIT), 4))
                     * (1.0 / WD_SPLAT_OPENNESS_MOST);
-    seen.lit = wd_sun_lit(texelFetch(lit, int(index)).x, tree.sun);
+    seen.open = texelFetch(lit, int(index)).x;
+    seen.lit = wd_sun_lit(seen.open, tree.sun);
     seen.wood = (look >> WD_SPLAT_WOOD_BIT & 1u) != 0u;
     return seen;
 }
@@ -108,6 +111,7 @@ wd_seen seen_wood(uint id)
     seen.tree = tree;
     seen.normal = seen.albedo = vec3(0.0);
     seen.openness = seen.lit = 0.0;
+    seen.open = 0u;
     seen.face = vec3(0.0);
     for (uint k = 0u; k < 3u; k++) {
         vec4 tint = unpackUnorm4x8(corners[k].tint);
@@ -126,9 +130,10 @@ wd_seen seen_wood(uint id)
     return seen;
 }
 
-vec4 pack_splat(wd_seen seen, vec3 normal, vec3 face, bool below, vec3 eye)
+vec4 pack_splat(wd_seen seen, tree_pose pose, vec3 normal, vec3 face, bool below, vec3 eye)
 {
-    uint kind = seen.wood ? DISC_WOOD : below ? DISC_LEAF_BELOW : DISC_LEAF_ABOVE;
+    float beyond = mirrors_beyond(seen.open, pose, -eye, dot(normal, eye) < 0.0 ? -normal : normal, face);
+    uint kind = seen.wood ? DISC_WOOD : below ? DISC_LEAF_BELOW : disc_above(beyond);
     return disc_pack_seen(normal, below ? -face : face, eye, frame.sun_direction, kind,
                           clamp(seen.lit, DISC_LIT_LEAST, DISC_LIT_MOST));
 }
@@ -172,6 +177,6 @@ void main()
                       * (0.3 + 0.7 * seen.openness);
     out_albedo = vec4(seen.albedo, seen.openness);
     out_normal = WOOD != 0u ? vec4(normal * 0.5 + 0.5, float(WD_MATERIAL_WOOD) / 3.0)
-                            : pack_splat(seen, normal, face, below, eye);
+                            : pack_splat(seen, pose, normal, face, below, eye);
     out_surface = seen.tree.tree + 1u;
 }

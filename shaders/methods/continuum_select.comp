@@ -118,13 +118,6 @@ vec3 model_facing(tree_pose pose, vec3 v)
     return pose.across * vec3(pose.up * turned * pose.mirror, pose.across * v.z);
 }
 
-/* A direction of the world, seen from the model. */
-vec3 model_toward(tree_pose pose, vec3 v)
-{
-    vec2 turned = vec2(pose.turn.x * v.x + pose.turn.y * v.y, pose.turn.x * v.y - pose.turn.y * v.x);
-    return normalize(vec3(pose.up * turned * pose.mirror, pose.across * v.z));
-}
-
 /* Clip coordinates of an offset. */
 vec3 clip_of(vec4 column)
 {
@@ -332,8 +325,8 @@ void select_tree(uint index, float share, uint place)
     splats.radius *= sqrt(mix(model_float(model_index, WD_WORD_LEAF_PAST_BARK), 1.0, missing));
     uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
     splats.facing = model_facing(pose, toward);
-    splats.sun = wd_sun_mix(model_toward(pose, frame.sun_direction));
-    splats.eye = wd_sun_mix(model_toward(pose, toward));
+    splats.sun = wd_sun_mix(tree_toward(pose, frame.sun_direction));
+    splats.eye = wd_sun_mix(tree_toward(pose, toward));
     float close = wd_disc_close(each * float(WD_SPLAT_STRATA));
     splats.nearer_m = (1.0 - close) * WD_DISC_NEARER * model_float(model_index, WD_WORD_EXTENT_M)
                     * pose.across

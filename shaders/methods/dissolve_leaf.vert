@@ -4,6 +4,7 @@
 #include "shared/frame.h"
 #include "shared/dissolve.h"
 #include "shared/hash.h"
+#include "shared/sun_ways.h"
 
 layout(constant_id = 0) const uint SHADOW = 0u;
 
@@ -18,6 +19,7 @@ layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 #include "lib/trees.glsl"
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
+#include "lib/mirror.glsl"
 #include "lib/tree_mesh.glsl"
 
 void main()
@@ -32,10 +34,13 @@ void main()
     mesh_corner corner;
     corner.position_m = place.center_m + (v.position_m - place.center_m) * instance.scale;
     corner.normal = tree_vertex_normal(v);
+    corner.face = corner.normal;
     corner.uv = unpackHalf2x16(v.uv);
     corner.tint = unpackUnorm4x8(v.tint);
     corner.kind = v.kind;
     corner.name = uint(gl_VertexIndex);
+    corner.open = ~0u; /* on the whole as much as it sees of the sky */
+    corner.lets = corner.tint.a;
     wd_tree tree = tree_at(instance.tree);
     wd_model model = models[WD_TREE_SPECIES(tree) * push.variants
                             + WD_TREE_VARIANT(tree) % push.variants];

@@ -62,7 +62,7 @@ void main()
     pixel.material = card_material(leaf, in_more.z);
     pixel.surface = in_more.z;
     pixel.lit = -1.0;
-    pixel.above = 0.0;
+    pixel.above = pixel.mirrors = 0.0;
     pixel_lay_snow(pixel);
     float sun_share, ground_share;
     vec3 radiance = shade(pixel, uvec2(gl_FragCoord.xy), sun_share, ground_share);

@@ -4,6 +4,7 @@
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/hash.h"
+#include "shared/sun_ways.h"
 #include "shared/fall.h"
 
 layout(constant_id = 0) const uint SHADOW = 0u;
@@ -23,6 +24,7 @@ layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
 #define push mesh.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
+#include "lib/mirror.glsl"
 #include "lib/tree_mesh.glsl"
 
 #define GROWTH(table, k)                                                                           \
@@ -84,10 +86,13 @@ void main()
     vec3 shading = wd_leaf_shading(leaf.shading);
     vec3 own = turn * octahedral_decode(unpackSnorm2x16(v.normal));
     corner.normal = normalize(mix(shading, dot(own, shading) < 0.0 ? -own : own, mesh.own));
+    corner.face = axes.above;
     corner.uv = unpackHalf2x16(v.uv);
     corner.tint = unpackUnorm4x8(leaf.tint);
     corner.kind = (v.kind & ~0xffu) | min(WD_LEAF_FLEXIBILITY(leaf) + (v.kind & 0xffu), 255u);
     corner.name = mesh.first_name + index * mesh.corner_count + at;
+    corner.open = leaf.open;
+    corner.lets = 1.0;
     if (FALLS != 0u) {
         wd_leaf_fall fall = wd_leaf_fall_of(foot, model, wd_tree_pose_of(tree, model), tree_wind(),
                                             wd_hash2(index, wd_tree_random(tree)), frame.time_s);

@@ -15,6 +15,7 @@ layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 #include "lib/tree.glsl"
 #include "lib/look.glsl"
 #include "lib/disc.glsl"
+#include "lib/flat_mirrors.glsl"
 
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_uv;
@@ -74,8 +75,7 @@ vec4 pack_leaf(vec3 normal)
 {
     bool above = is_blade() && look_upper(in_uv.xy, (in_flat.y & 4u) != 0u);
     return disc_pack_seen(normal, look_face(in_place.xyz), -normalize(in_place.xyz),
-                          in_sun_show.xyz, above ? DISC_LEAF_ABOVE : DISC_LEAF_BELOW,
-                          DISC_LIT_MESH);
+                          in_sun_show.xyz, above ? disc_above(unpack_mirrors(in_flat.y)) : DISC_LEAF_BELOW, DISC_LIT_MESH);
 }
 
 void main()

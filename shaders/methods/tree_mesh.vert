@@ -3,6 +3,7 @@
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/hash.h"
+#include "shared/sun_ways.h"
 
 layout(constant_id = 0) const uint SHADOW = 0u;
 
@@ -17,6 +18,7 @@ layout(scalar, push_constant) uniform Push { wd_mesh_push mesh; };
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
 #define push mesh.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
+#include "lib/mirror.glsl"
 #include "lib/tree_mesh.glsl"
 
 void main()
@@ -29,9 +31,12 @@ void main()
     mesh_corner corner;
     corner.position_m = wd_box_place(mesh.box.feet, v.xy, v.z_kind);
     corner.normal = octahedral_decode(unpackSnorm2x16(v.normal));
+    corner.face = corner.normal;
     corner.uv = unpackHalf2x16(v.uv);
     corner.tint = unpackUnorm4x8(v.tint);
     corner.kind = v.z_kind >> 16;
     corner.name = uint(gl_VertexIndex);
+    corner.open = ~0u; /* on the whole as much as it sees of the sky */
+    corner.lets = corner.tint.a;
     tree_mesh_vertex(instance, tree, model, corner);
 }

@@ -3,6 +3,7 @@
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/hash.h"
+#include "shared/sun_ways.h"
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
@@ -16,6 +17,7 @@ layout(scalar, push_constant) uniform Push { wd_spray_push spray; };
 #include "lib/tree.glsl"
 #include "lib/tree_vertex.glsl"
 #define push spray.tree /* the libraries' name for it; lib/tree.glsl has others of its own */
+#include "lib/mirror.glsl"
 
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_uv;
@@ -50,13 +52,17 @@ void main()
     float bend = min(float(WD_LEAF_FLEXIBILITY(leaf) + (kind & 0xffu)) * (1.0 / 255.0), 1.0);
     at += normal * wd_wind_flutter(tree_wind(), bend, phase, frame.time_s);
     vec4 tint = unpackUnorm4x8(v.tint), leaf_tint = unpackUnorm4x8(leaf.tint);
+    vec3 direction = normalize(tree_foot_rel(tree) + at);
+    float beyond = mirrors_beyond(leaf.open, pose, direction, dot(normal, direction) > 0.0 ? -normal : normal,
+                                  tree_normal(pose, own));
     out_normal = normal;
     out_uv = vec3(unpackHalf2x16(v.uv), float(model.look_layer + wd_vertex_layer(kind)));
     out_tint = vec4(blade ? tint.rgb * leaf_tint.rgb * tree_tint(tree, model) : tint.rgb,
                     leaf_tint.a);
     out_flat = uvec3(instance.tree + 1u, (blade ? WD_MATERIAL_LEAF : WD_MATERIAL_WOOD)
                                              | (pose.mirror.x < 0.0 ? 4u : 0u)
-                                             | (frame.view_mode == WD_MODE_LOD ? 8u : 0u), 0u);
+                                             | (frame.view_mode == WD_MODE_LOD ? 8u : 0u)
+                                             | pack_mirrors(beyond), 0u);
     out_sun_show = vec4(frame.sun_direction, 1.0);
     out_place = vec4(tree_foot_rel(tree) + at, 0.0);
     gl_Position = frame.clip_from_rel * vec4(out_place.xyz, 1.0);

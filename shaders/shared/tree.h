@@ -81,7 +81,7 @@ WD_STATIC_ASSERT_SIZE(wd_packed_vertex, 20);
 
 /* A leaf, needle shoot or flower: where it stands and how it is turned. Its form is one of its
  * species (wd_leaf_vertex). On a large tree it stands for a twig with many: close to the camera
- * that twig is drawn instead (its leaves, or needles, of their real size). 20 bytes. */
+ * that twig is drawn instead (its leaves, or needles, of their real size). 24 bytes. */
 struct wd_tree_leaf {
     uint32_t xy;      /* of its foot, in the box of the tree's leaves */
     uint32_t z_size;  /* bits 0..15: z; 16..31: its length, the unit of its form, in steps */
@@ -92,8 +92,10 @@ struct wd_tree_leaf {
                          snorm; 16..23: flexibility; 24..29: how much it arches, 0..63;
                          30..31: which of its species' forms */
     uint32_t tint;    /* as wd_tree_vertex.tint */
+    uint32_t open;    /* a bit for each way of shared/sun_ways.h along which its tree leaves open what
+                         lies beyond; 0: not known yet (tree/sunlit.h) */
 };
-WD_STATIC_ASSERT_SIZE(wd_tree_leaf, 20);
+WD_STATIC_ASSERT_SIZE(wd_tree_leaf, 24);
 #define WD_LEAF_FORM(leaf) ((leaf).shading >> 30)
 #define WD_LEAF_ARCH(leaf) (WD_FLOAT(((leaf).shading >> 24) & 63u) * (1.0f / 63.0f))
 #define WD_LEAF_FLEXIBILITY(leaf) (((leaf).shading >> 16) & 0xffu)

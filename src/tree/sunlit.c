@@ -358,6 +358,35 @@ static float ratio(float of, float over, float seen)
     return over > 1e-4f * seen && over > 0 ? fminf(of / over, 8) : 1;
 }
 
+/* Leaves, too, by their middles. */
+static void add_leaves(struct wd_tree_points *points, const struct wd_tree_model *model)
+{
+    size_t all = points->count + model->leaf_count + model->flower_count;
+    points->points = wd_realloc(points->points, all * sizeof *points->points);
+    for (size_t i = points->count; i < all; i++) {
+        const struct wd_tree_leaf *leaf = &model->leaves[i - points->count];
+        struct wd_leaf_axes axes = wd_leaf_axes_of(leaf->turn);
+        struct wd_vec3 middle = wd_v3_mad(wd_leaf_foot(*leaf, model->leaf_box), axes.along,
+                                          0.5f * wd_leaf_size_m(*leaf, model->leaf_box));
+        points->points[i] = (struct wd_tree_point){
+            .position_m = {middle.x, middle.y, middle.z},
+            .face = wd_pack_normal((const float[3]){axes.above.x, axes.above.y, axes.above.z}),
+            .kind = WD_POINT_LEAF};
+    }
+    points->count = all;
+}
+
+/* Of points of the surface, and of all leaves. */
+static void light(struct wd_tree_points *points, struct wd_tree_model *model)
+{
+    size_t count = points->count;
+    add_leaves(points, model);
+    wd_tree_points_light(points, &model->full);
+    for (size_t i = count; i < points->count; i++)
+        model->leaves[i - count].open = points->lit[i];
+    points->count = count;
+}
+
 void wd_tree_sunlit_fit(struct wd_tree_model *model)
 {
     static const uint8_t any[4 * WD_LOOK_LAYERS] = {0};
@@ -379,7 +408,7 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
         uint32_t *seen = wd_alloc_array(points.count, sizeof *seen);
         uint32_t *low = wd_alloc_array(points.count, sizeof *low);
         fit->low = low;
-        wd_tree_points_light(&points, &model->full);
+        light(&points, model);
         wd_tree_points_open(seen, &points, &model->full, ways, EYES);
         wd_tree_points_open(low, &points, &model->full, low_ways, LOW_WAYS);
         struct shown *shown = wd_alloc_array(points.count, sizeof *shown);
