@@ -195,7 +195,7 @@ const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(1.0), v
 /* Of the ways past a stand to what a leaf of it mirrors, by how many leaves longer than the mean way of the
  * sky's light: 0.67 by chance, less for leaves that an eye sees through a gap. By path-traced stands under a high
  * sun and at dawn. */
-const float ALONG = 0.5;
+const float ALONG = 0.67;
 
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
  * unit, where a ray of the eye goes on to from one leaf.
@@ -258,7 +258,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 level = vec3(mirror.xy, high);
     vec3 ahead = mix(SKY_LEVELS(frame.sky_form, level), SKY_LEVELS(frame.sky_under, level), deep) / (0.5 + 0.5 * high);
     float rise_along = max(high, 0.1);
-    vec3 along = exp2(s * (shelter.beside * ALONG / rise_along));
+    vec3 along = 1.0 / (1.0 - s * (0.6931 * shelter.beside * ALONG / rise_along));
     float open = 0.5 * dot(alone.beside, faced_quarters(mirror.xy));
     around.mirrored = mix(upward_front, max(ahead, vec3(0.0)) * mix(along, vec3(open), alone.share)
                                             + scattered * (1.0 - alone.share), up_mirror);

@@ -387,6 +387,44 @@ static void light(struct wd_tree_points *points, struct wd_tree_model *model)
     points->count = count;
 }
 
+/* Share of an even sky's light on both sides of a flat leaf that its tree lets through. */
+static float sky_share(const struct fit *fit, uint32_t open, struct wd_vec3 face)
+{
+    float all = 0, comes = 0;
+    for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
+        float brings = fit->sky[way].brings * fabsf(wd_v3_dot(face, fit->sky[way].toward));
+        all += brings;
+        comes += brings * wd_sun_way_lit(open, way);
+    }
+    return comes / all;
+}
+
+/* How far a leaf is as open as its own ways say, which are few; the rest: as the crown about it. By path-traced
+ * crowns of 1,024 px (0: FLIP 0.396, 0.5: 0.373, 1: 0.389). */
+static const float OWN_OPENNESS = 0.5f;
+
+/* Leaves carry how open the crown is about them, and now their own share of that. The mean that an eye sees stays. */
+static void open_leaves(const struct fit *fit, struct wd_tree_model *model, const struct wd_tree_points *points,
+                        const uint32_t *seen, const struct shown *shown)
+{
+    float known = 0, own = 0;
+    for (size_t i = 0; i < points->count; i++)
+        for (uint32_t eye = 0; eye < EYES; eye++) {
+            if (!(seen[i] >> eye & 1) || !(points->points[i].kind & WD_POINT_LEAF))
+                continue;
+            float area = fabsf(wd_v3_dot(shown[i].face, fit->eyes[eye].toward));
+            known += area * shown[i].openness;
+            own += area * sky_share(fit, points->lit[i], shown[i].face);
+        }
+    float factor = own > 0 ? known / own : 1;
+    for (uint32_t i = 0; i < model->leaf_count + model->flower_count; i++) {
+        struct wd_tree_leaf *leaf = &model->leaves[i];
+        struct wd_vec3 above = wd_leaf_axes_of(leaf->turn).above;
+        float open = fminf(factor * sky_share(fit, leaf->open, above), 1), was = (float)(leaf->tint >> 24) / 255;
+        leaf->tint = (leaf->tint & 0xffffffu) | (uint32_t)(wd_mixf(was, open, OWN_OPENNESS) * 255 + 0.5f) << 24;
+    }
+}
+
 void wd_tree_sunlit_fit(struct wd_tree_model *model)
 {
     static const uint8_t any[4 * WD_LOOK_LAYERS] = {0};
@@ -416,6 +454,7 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
             shown[i] = shown_at(fit, &points, i);
         fit_curve(fit, &points, shown);
         send(fit, &points, seen, shown);
+        open_leaves(fit, model, &points, seen, shown);
         free(shown);
         free(seen);
         free(low);
