@@ -30,11 +30,11 @@ void main()
     wd_packed_vertex v = vertices[gl_VertexIndex];
     mesh_corner corner;
     corner.position_m = wd_box_place(mesh.box.feet, v.xy, v.z_kind);
-    corner.normal = octahedral_decode(unpackSnorm2x16(v.normal));
+    corner.normal = packed_vertex_normal(v);
     corner.face = corner.normal;
     corner.uv = unpackHalf2x16(v.uv);
-    corner.tint = unpackUnorm4x8(v.tint);
-    corner.kind = v.z_kind >> 16;
+    corner.tint = packed_vertex_tint(v);
+    corner.kind = WD_PACKED_KIND(v);
     corner.name = uint(gl_VertexIndex);
     corner.open = ~0u; /* on the whole as much as it sees of the sky */
     corner.lets = corner.tint.a;

@@ -34,13 +34,13 @@ void main()
                             + WD_TREE_VARIANT(tree) % push.variants];
     wd_tree_leaf leaf = leaves[instance.leaf];
     wd_packed_vertex v = vertices[gl_VertexIndex];
-    uint kind = v.z_kind >> 16;
+    uint kind = WD_PACKED_KIND(v);
     vec3 place = wd_box_place(spray.twig, v.xy, v.z_kind);
     bool blade = (kind & WD_VERTEX_LEAF) != 0u;
     wd_leaf_axes axes = wd_leaf_axes_of(leaf.turn);
     mat3 turn = mat3(axes.across, axes.along, axes.above);
     vec3 shading = wd_leaf_shading(leaf.shading);
-    vec3 own = turn * octahedral_decode(unpackSnorm2x16(v.normal));
+    vec3 own = turn * packed_vertex_normal(v);
     own = dot(own, shading) < 0.0 ? -own : own;
 
     tree_pose pose = tree_pose_of(tree, model);
@@ -51,7 +51,7 @@ void main()
     float phase = fract(wd_hash_unit(wd_hash1(instance.leaf)) + 0.31 * dot(place, vec3(1.0)));
     float bend = min(float(WD_LEAF_FLEXIBILITY(leaf) + (kind & 0xffu)) * (1.0 / 255.0), 1.0);
     at += normal * wd_wind_flutter(tree_wind(), bend, phase, frame.time_s);
-    vec4 tint = unpackUnorm4x8(v.tint), leaf_tint = unpackUnorm4x8(leaf.tint);
+    vec4 tint = packed_vertex_tint(v), leaf_tint = unpackUnorm4x8(leaf.tint);
     vec3 direction = normalize(tree_foot_rel(tree) + at);
     float beyond = mirrors_beyond(leaf.open, pose, direction, dot(normal, direction) > 0.0 ? -normal : normal,
                                   tree_normal(pose, own));

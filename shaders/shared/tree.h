@@ -71,13 +71,16 @@ WD_FUNC WD_VECTOR wd_box_place(WD_STRUCT wd_mesh_box box, uint32_t xy, uint32_t 
                  box.least_m[2] + box.step_m[2] * WD_FLOAT(z & 0xffffu));
 }
 
-/* A wd_tree_vertex as the device keeps it, in the box of its mesh. 20 bytes. */
+/* A wd_tree_vertex as the device keeps it, in the box of its mesh. 16 bytes. */
 struct wd_packed_vertex {
     uint32_t xy;
-    uint32_t z_kind; /* bits 0..15: z; 16..25: kind */
-    uint32_t normal, uv, tint; /* as in wd_tree_vertex */
+    uint32_t z_kind;      /* bits 0..15: z; 16..25: kind; 26..31: the tint's openness */
+    uint32_t uv;          /* as in wd_tree_vertex */
+    uint32_t normal_tint; /* bits 0..15: octahedral, two 8-bit snorm; above, in 5, 6 and 5: square roots of
+                             the tint's R, G, B */
 };
-WD_STATIC_ASSERT_SIZE(wd_packed_vertex, 20);
+WD_STATIC_ASSERT_SIZE(wd_packed_vertex, 16);
+#define WD_PACKED_KIND(vertex) ((vertex).z_kind >> 16 & WD_VERTEX_KIND)
 
 /* A leaf, needle shoot or flower: where it stands and how it is turned. Its form is one of its
  * species (wd_leaf_vertex). On a large tree it stands for a twig with many: close to the camera

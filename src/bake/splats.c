@@ -24,26 +24,13 @@ static uint32_t unorm16(float value, float min, float extent)
     return (uint32_t)(fminf(fmaxf(share, 0.0f), 1.0f) * 65535.0f + 0.5f);
 }
 
-static uint32_t snorm8(float value)
-{
-    return (uint32_t)(int32_t)lrintf(value * 127.0f) & 255u;
-}
-
-/* From 16 bits each to 8 (wd_pack_normal's octahedron). */
-static uint32_t normal8(uint32_t packed)
-{
-    float x = (float)(int16_t)(packed & 0xffffu) / 32767.0f;
-    float y = (float)(int16_t)(packed >> 16) / 32767.0f;
-    return snorm8(x) | snorm8(y) << 8;
-}
-
 static struct wd_splat splat_at(const struct wd_splat_model *model, const float position_m[3],
                                 uint32_t normal)
 {
     uint32_t axes[3];
     for (int k = 0; k < 3; k++)
         axes[k] = unorm16(position_m[k], model->min_m[k], model->extent_m[k]);
-    return (struct wd_splat){axes[0] | axes[1] << 16, axes[2] | normal8(normal) << 16};
+    return (struct wd_splat){axes[0] | axes[1] << 16, axes[2] | wd_normal8(normal) << 16};
 }
 
 /* A leaf's splat: four bits each of two coordinates of the way along the leaf in the box, which has no

@@ -379,12 +379,7 @@ static uint32_t pack_turn(struct wd_vec3 axis, struct wd_vec3 normal)
 static uint32_t pack_shading(struct wd_vec3 v)
 {
     const float normal[3] = {v.x, v.y, v.z};
-    uint32_t fine = wd_pack_normal(normal), packed = 0;
-    for (int i = 0; i < 2; i++) {
-        float part = (float)(int16_t)(fine >> (16 * i) & 0xffffu) / 32767;
-        packed |= ((uint32_t)((int32_t)(part * 127 + 128.5f) - 128) & 0xffu) << (8 * i);
-    }
-    return packed;
+    return wd_normal8(wd_pack_normal(normal));
 }
 
 struct wd_tree_leaf wd_leaf_pack(const struct wd_leaf_stand *place, const struct wd_leaf_box *box)

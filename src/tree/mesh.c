@@ -72,6 +72,21 @@ void wd_mesh_box_steps(uint32_t steps[3], const struct wd_mesh_box *box, const f
     }
 }
 
+static uint32_t part_of(float value, uint32_t most)
+{
+    return (uint32_t)(value * (float)most + 0.5f);
+}
+
+static uint32_t tint_part(const struct wd_tree_vertex *vertex, uint32_t part, uint32_t most)
+{
+    return part_of((float)(vertex->tint >> (8 * part) & 255) / 255, most);
+}
+
+static uint32_t root_part(const struct wd_tree_vertex *vertex, uint32_t part, uint32_t most)
+{
+    return part_of(sqrtf((float)(vertex->tint >> (8 * part) & 255) / 255), most);
+}
+
 struct wd_packed_vertex wd_vertex_pack(const struct wd_tree_vertex *vertex,
                                        const struct wd_mesh_box *box)
 {
@@ -79,10 +94,10 @@ struct wd_packed_vertex wd_vertex_pack(const struct wd_tree_vertex *vertex,
     wd_mesh_box_steps(steps, box, vertex->position_m);
     return (struct wd_packed_vertex){
         .xy = steps[0] | steps[1] << 16,
-        .z_kind = steps[2] | (vertex->kind & WD_VERTEX_KIND) << 16,
-        .normal = vertex->normal,
+        .z_kind = steps[2] | (vertex->kind & WD_VERTEX_KIND) << 16 | tint_part(vertex, 3, 63) << 26,
         .uv = vertex->uv,
-        .tint = vertex->tint,
+        .normal_tint = wd_normal8(vertex->normal) | root_part(vertex, 0, 31) << 16 |
+                       root_part(vertex, 1, 63) << 21 | root_part(vertex, 2, 31) << 27,
     };
 }
 

@@ -86,6 +86,17 @@ static inline void wd_unpack_normal(uint32_t packed, float normal[3])
     normal[2] = z / length;
 }
 
+/* From 16 bits a part to 8. */
+static inline uint32_t wd_normal8(uint32_t packed)
+{
+    uint32_t coarse = 0;
+    for (int i = 0; i < 2; i++) {
+        float part = (float)(int16_t)(packed >> (16 * i) & 0xffffu) / 32767;
+        coarse |= ((uint32_t)((int32_t)(part * 127 + 128.5f) - 128) & 0xffu) << (8 * i);
+    }
+    return coarse;
+}
+
 uint32_t wd_pack_uv(float u, float v);
 void wd_unpack_uv(uint32_t packed, float uv[2]);
 

@@ -275,15 +275,20 @@ static void packed_vertices_stay_in_their_box(void **state)
         const struct wd_tree_vertex vertex = {
             .position_m = {wd_random_range(&random, -10, 10), i % 2 ? -10 : 10,
                            wd_random_range(&random, -0.5f, 35)},
-            .normal = 1,
+            .normal = wd_pack_normal((const float[3]){0.6f, 0, 0.8f}),
             .uv = 2,
-            .tint = 3,
+            .tint = 0x80ff4010,
             .kind = WD_VERTEX_LEAF | 77,
         };
         const struct wd_packed_vertex packed = wd_vertex_pack(&vertex, &box);
         assert_near(wd_box_place(box, packed.xy, packed.z_kind), wd_v3_of(vertex.position_m), 4e-4f);
-        assert_int_equal(packed.z_kind >> 16, vertex.kind);
-        assert_int_equal(packed.normal + 10 * packed.uv + 100 * packed.tint, 321);
+        assert_int_equal(WD_PACKED_KIND(packed), vertex.kind);
+        assert_int_equal(packed.z_kind >> 26, 32);                   /* of 63: 0x80 of 255 */
+        assert_int_equal(packed.uv, 2);
+        assert_int_equal(packed.normal_tint & 0xffff, 54);           /* 0.6 / 1.4 of 127, 0 */
+        assert_int_equal(packed.normal_tint >> 16 & 31, 8);          /* the root of 0x10 / 255, of 31 */
+        assert_int_equal(packed.normal_tint >> 21 & 63, 32);         /* of 0x40 / 255, of 63 */
+        assert_int_equal(packed.normal_tint >> 27, 31);              /* of 1 */
     }
 }
 
