@@ -6,6 +6,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint BLOOM = 0u; /* 1: the lens spreads light */
+layout(constant_id = 1) const uint LIT = 1u;   /* 0: a view into the picture, without exposure and tone curve */
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame_block; };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D radiance_image;
@@ -34,15 +35,14 @@ void main()
         return;
     vec4 sum = imageLoad(radiance_image, at);
     vec3 color = sum.rgb / max(sum.a, 1.0);
-    if (frame.view_mode == WD_MODE_LIT) {
-        if (BLOOM != 0u)
-            color = mix(color, spread_light(at), push.bloom);
-        float exposure = frame.exposure > 0.0 ? frame.exposure : metered;
-        color = wd_tone_map(color * (exposure * push.exposure_scale));
-    }
-    color = clamp(color, 0.0, 1.0);
-    color = vec3(wd_display_encode(color.r), wd_display_encode(color.g),
-                 wd_display_encode(color.b));
+    if (BLOOM != 0u)
+        color = mix(color, spread_light(at), push.bloom);
+    float exposure = frame.exposure > 0.0 ? frame.exposure : metered;
+    if (LIT != 0u)
+        color = wd_tone_display(color * (exposure * push.exposure_scale));
+    else
+        color = vec3(wd_display_encode(min(color.r, 1.0)), wd_display_encode(min(color.g, 1.0)),
+                     wd_display_encode(min(color.b, 1.0)));
     /* half a step of noise either way hides the steps of 8 bits in skies */
     uint random = wd_hash2(uint(at.x), uint(at.y));
     vec3 dither = vec3(random & 0x3ffu, (random >> 10) & 0x3ffu, random >> 22) / 1023.0 - 0.5;

@@ -22,12 +22,12 @@ void wd_display_map_at(const float *color, uint32_t width, uint32_t height, floa
         for (uint32_t x = 0; x < width; x++) {
             size_t pixel = (size_t)y * width + x;
             struct wd_vec3 mapped =
-                wd_tone_map(wd_v3_scale(wd_v3_of(color + 3 * pixel), exposure));
-            const float linear[3] = {mapped.x, mapped.y, mapped.z};
+                wd_tone_display(wd_v3_scale(wd_v3_of(color + 3 * pixel), exposure));
+            const float shown[3] = {mapped.x, mapped.y, mapped.z};
             uint32_t random = wd_hash2(x, y); /* half a step of noise hides the steps of 8 bits */
             for (int k = 0; k < 3; k++) {
                 float dither = (float)(random >> (10 * k + (k == 2 ? 2 : 0)) & 0x3ffu) / 1023 - 0.5f;
-                float value = wd_display_encode(wd_clampf(linear[k], 0, 1)) * 255 + dither;
+                float value = shown[k] * 255 + dither;
                 display[4 * pixel + (size_t)k] = (uint8_t)(wd_clampf(value, 0, 255) + 0.5f);
             }
             display[4 * pixel + 3] = 255;

@@ -40,7 +40,7 @@ static bool init_meter(struct wd_post_pass *pass, struct wd_gpu *gpu)
            wd_buffer_init(&pass->histogram, gpu, &histogram);
 }
 
-static bool init_tonemap(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t bloom)
+static bool init_tonemap(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tone tone)
 {
     const struct wd_compute_params params = {
         .shader = SPIRV(tonemap_comp),
@@ -49,7 +49,7 @@ static bool init_tonemap(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint3
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .push_size = sizeof(struct wd_post_push),
-        .constants = {1, &bloom},
+        .constants = {2, (const uint32_t[]){tone == WD_TONE_BLOOM, tone != WD_TONE_VIEW}},
     };
     return wd_pipeline_init_compute(pipeline, gpu, &params);
 }
@@ -57,8 +57,9 @@ static bool init_tonemap(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint3
 bool wd_post_pass_init(struct wd_post_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_post_pass){0};
-    bool ok = init_meter(pass, gpu) && init_tonemap(&pass->tonemap[0], gpu, 0) &&
-              init_tonemap(&pass->tonemap[1], gpu, 1) && wd_bloom_pass_init(&pass->bloom, gpu);
+    bool ok = init_meter(pass, gpu) && wd_bloom_pass_init(&pass->bloom, gpu);
+    for (int tone = 0; tone < WD_TONE_KINDS && ok; tone++)
+        ok = init_tonemap(&pass->tonemap[tone], gpu, (enum wd_tone)tone);
     if (!ok)
         wd_post_pass_finish(pass, gpu);
     return ok;
@@ -68,8 +69,8 @@ void wd_post_pass_finish(struct wd_post_pass *pass, struct wd_gpu *gpu)
 {
     wd_pipeline_finish(&pass->meter, gpu);
     wd_pipeline_finish(&pass->exposure, gpu);
-    wd_pipeline_finish(&pass->tonemap[0], gpu);
-    wd_pipeline_finish(&pass->tonemap[1], gpu);
+    for (int tone = 0; tone < WD_TONE_KINDS; tone++)
+        wd_pipeline_finish(&pass->tonemap[tone], gpu);
     wd_bloom_pass_finish(&pass->bloom, gpu);
     wd_buffer_finish(&pass->histogram, gpu);
     *pass = (struct wd_post_pass){0};
@@ -98,7 +99,8 @@ void wd_post_pass_record(struct wd_post_pass *pass, struct wd_cmd *cmd,
     struct wd_targets *targets = params->targets;
     wd_cmd_use_image(cmd, &targets->radiance, WD_USE_COMPUTE_WRITE); /* stays a storage image */
     record_meter(pass, cmd, params);
-    if (params->bloom > 0.0f)
+    bool bloom = params->lit && params->bloom > 0.0f;
+    if (bloom)
         wd_bloom_pass_record(&pass->bloom, cmd, targets);
     wd_cmd_use_buffer(cmd, &pass->histogram, WD_USE_COMPUTE_READ);
     wd_cmd_discard_image(cmd, &targets->display, WD_USE_COMPUTE_WRITE);
@@ -106,9 +108,10 @@ void wd_post_pass_record(struct wd_post_pass *pass, struct wd_cmd *cmd,
         params->uniforms, WD_BIND_STORAGE_IMAGE(&targets->radiance),
         WD_BIND_STORAGE_IMAGE(&targets->display), WD_BIND_BUFFER(&pass->histogram),
         /* without bloom nobody reads the slot; it is filled all the same */
-        WD_BIND_BUFFER(params->bloom > 0.0f ? &pass->bloom.pyramid : &pass->histogram)};
+        WD_BIND_BUFFER(bloom ? &pass->bloom.pyramid : &pass->histogram)};
     const struct wd_post_push push = {exp2f(params->exposure_ev), params->bloom};
-    struct wd_pipeline *tonemap = &pass->tonemap[params->bloom > 0.0f];
+    struct wd_pipeline *tonemap =
+        &pass->tonemap[!params->lit ? WD_TONE_VIEW : bloom ? WD_TONE_BLOOM : WD_TONE_PLAIN];
     wd_cmd_bind(cmd, tonemap, bindings);
     wd_cmd_push(cmd, tonemap, &push, sizeof push);
     wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);

@@ -4,8 +4,10 @@
 
 #include "frame/passes/bloom.h"
 
+enum wd_tone { WD_TONE_PLAIN, WD_TONE_BLOOM, WD_TONE_VIEW, WD_TONE_KINDS }; /* VIEW: neither exposed nor toned */
+
 struct wd_post_pass {
-    struct wd_pipeline meter, exposure, tonemap[2]; /* [1: with bloom] */
+    struct wd_pipeline meter, exposure, tonemap[WD_TONE_KINDS];
     struct wd_bloom_pass bloom;
     struct wd_buffer histogram; /* struct wd_meter */
 };
@@ -18,6 +20,7 @@ struct wd_post_params {
     struct wd_binding uniforms; /* struct wd_frame_uniforms; exposure 0: by metering */
     float exposure_ev;          /* added to either */
     float bloom;                /* share of the light that the lens spreads */
+    bool lit;                   /* WD_MODE_LIT */
 };
 /* Turns targets->radiance into targets->display. View modes other than WD_MODE_LIT are encoded
  * without exposure and tone curve. */
