@@ -286,11 +286,22 @@ float has_table(wd_crown crown)
     return smoothstep(0.25, 0.35, crown.radii_m.z) * (1.0 - crown.sward);
 }
 
+/* How far from a crown's middle, east and north, its own leaves are no part of what the canopy's field tells, which
+ * spreads each tree over the cells about it. */
+float clear_of_crown_m(wd_crown crown)
+{
+    float clear_m = 0.0;
+#ifdef CANOPY_LIGHT
+    clear_m = min(1.25 / (push.canopy_scale.x * float(textureSize(CANOPY_LIGHT, 0).x)), 16.0);
+#endif
+    return max(1.1 * crown.radii_m.x, clear_m);
+}
+
 /* By the sky over the ground beside the crown, toward the sun: whether it stands free; and each quarter of its
  * sky where the crown is not before it. Low plants close over the ground, of which that knows nothing. */
 wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter shelter, float height_m)
 {
-    vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(1.1 * crown.radii_m.x);
+    vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(clear_of_crown_m(crown));
     vec2 sunward = center + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
     vec4 open = canopy_light_near(sunward);
     vec4 field = vec4(canopy_light_near(center + corner).xy, canopy_light_near(center - corner).zw);
