@@ -592,12 +592,13 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 sunlit = within * place.sides.x + transmitted * place.sides.y;
     alone.scattered = sunlight() * (pixel.surface == 0u ? 0.0 : sun_share)
                       * scattered_again(pixel.albedo * (1.0 + place.transmittance));
-    wd_around around = light_around(facing, wax_mirror(pixel.direction, pixel.normal), shelter, ground_share, past_trees, alone,
-                                    -pixel.direction.z);
+    wd_around around = light_around(facing, wax_mirror(pixel.direction, pixel.normal), shelter, ground_share,
+                                    past_trees, alone, -pixel.direction.z);
     /* Upright ground is where the world is cut off: before it lies bright haze, as the path tracer has it. */
     if (pixel.surface == 0u && abs(pixel.normal.z) < 0.01)
         around.front += 0.5 * frame.sky_irradiance;
     bool one_leaf = ALL_SINGLE || pixel.lit >= 0.0;
+    /* What wax mirrors of its own tree is as bright as the leaf itself about is. */
     vec3 own = within * (0.5 * (around.front + around.back) + 0.2 * sunlight() * sun_share);
     vec3 mirrored = mix(own, around.mirrored, pixel.mirrors);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),

@@ -192,9 +192,10 @@ struct wd_alone {
 
 const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(1.0), vec4(0.0), vec3(1.0), vec3(0.0));
 
-/* Of the ways past a stand to what a leaf of it mirrors, by how many leaves longer than the mean way of the
- * sky's light: 0.67 by chance, less for leaves that an eye sees through a gap. By path-traced stands under a high
- * sun and at dawn. */
+/* Of the ways past a stand to what a leaf of it mirrors, the leaves that they meet over those on the mean way of the
+ * sky's light, times their sine: 0.67, as of any ray. Stands are leaves and gaps: of ways that meet t leaves on
+ * average but now many and now few 1 / (1 + t) come through, not e^-t. By path-traced stands at 256 and 512 px a
+ * tree, what wax adds to a picture is 0.9 to 1.15 of the traced. */
 const float ALONG = 0.67;
 
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:

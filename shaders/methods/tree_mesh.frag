@@ -75,7 +75,8 @@ vec4 pack_leaf(vec3 normal)
 {
     bool above = is_blade() && look_upper(in_uv.xy, (in_flat.y & 4u) != 0u);
     return disc_pack_seen(normal, look_face(in_place.xyz), -normalize(in_place.xyz),
-                          in_sun_show.xyz, above ? disc_above(unpack_mirrors(in_flat.y)) : DISC_LEAF_BELOW, DISC_LIT_MESH);
+                          in_sun_show.xyz,
+                          above ? disc_above(unpack_mirrors(in_flat.y)) : DISC_LEAF_BELOW, DISC_LIT_MESH);
 }
 
 void main()

@@ -359,7 +359,7 @@ static void record_display(const struct recording *r)
         .uniforms = r->uniforms,
         .bloom = (float)r->frame->params.forest->scene->lens.bloom,
         .exposure_ev = (float)r->frame->params.forest->scene->quality.exposure_ev,
-        .lit = r->frame->params.view_mode == WD_MODE_LIT,
+        .view_mode = r->frame->params.view_mode,
     };
     wd_cmd_scope_begin(r->cmd, "post");
     wd_post_pass_record(&r->frame->post, r->cmd, &post);

@@ -5,7 +5,8 @@
 #include "tree/grow.h"
 
 /* Fills model->sunlit from what of the full mesh, which has its leaves, the eye and the sun see from 16 and
- * from 32 sides: each leaf reflects or transmits by its own face and normal, as the path tracer's does. */
+ * from 32 sides: each leaf reflects or transmits by its own face and normal, as the path tracer's does. Tells
+ * each of model->leaves which ways its tree leaves open, and how open it is by these. To be called once. */
 void wd_tree_sunlit_fit(struct wd_tree_model *model);
 
 #endif

@@ -12,7 +12,9 @@
 #include "base/memory.h"
 #include "bake/growth_cache.h"
 #include "bake/splats.h"
+#include "shared/sun_ways.h"
 #include "tree/import.h"
+#include "tree/sunlit.h"
 
 struct fixture {
     char directory[64];
@@ -83,12 +85,31 @@ static void assert_same_model(const struct wd_tree_model *a, const struct wd_tre
     assert_true(a->age_years == b->age_years && a->leaf_area_m2 == b->leaf_area_m2);
 }
 
+/* Leaves outside see most of the sky, those within little. */
+static void assert_leaves_know_their_sky(const struct wd_tree_model *model)
+{
+    uint32_t open = 0, most = 0, least = WD_SUN_WAYS;
+    for (uint32_t i = 0; i < model->leaf_count; i++) {
+        uint32_t ways = (uint32_t)__builtin_popcount(model->leaves[i].open);
+        open += ways;
+        most = ways > most ? ways : most;
+        least = ways < least ? ways : least;
+    }
+    double share = (double)open / model->leaf_count / WD_SUN_WAYS;
+    assert_true(share > 0.15 && share < 0.75);
+    assert_true(most > 26 && least < 4);
+}
+
 static void a_kept_tree_is_the_grown_tree(void **state)
 {
     struct fixture *f = *state;
     struct wd_tree_model grown, first, kept;
     uint64_t key, again;
     assert_true(wd_variant_grow(&grown, &f->scene, 1, NULL));
+    wd_tree_sunlit_fit(&grown); /* leaves learn how open they are, and their triangles by them */
+    wd_tree_model_drop_leaves(&grown);
+    wd_tree_model_add_leaves(&grown);
+    assert_leaves_know_their_sky(&grown);
     assert_true(wd_growth_get(&first, &key, &f->cache, &f->scene, 1, NULL));
     char *path = file_of(f, "growth", key);
     assert_int_equal(access(path, R_OK), 0);

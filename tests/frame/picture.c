@@ -158,7 +158,8 @@ static void record(struct picture_test *test, struct wd_cmd *cmd, struct wd_bind
     if (test->velocity_px.buffer)
         wd_light_pass_record_velocity(&test->light, cmd, &light, &test->velocity_px);
     wd_cmd_scope_end(cmd);
-    const struct wd_post_params post = {&test->targets, uniforms, 0};
+    const struct wd_post_params post = {
+        .targets = &test->targets, .uniforms = uniforms, .view_mode = test->view_mode};
     wd_cmd_scope_begin(cmd, "post");
     wd_post_pass_record(&test->post, cmd, &post);
     wd_cmd_scope_end(cmd);

@@ -99,7 +99,7 @@ void wd_post_pass_record(struct wd_post_pass *pass, struct wd_cmd *cmd,
     struct wd_targets *targets = params->targets;
     wd_cmd_use_image(cmd, &targets->radiance, WD_USE_COMPUTE_WRITE); /* stays a storage image */
     record_meter(pass, cmd, params);
-    bool bloom = params->lit && params->bloom > 0.0f;
+    bool lit = params->view_mode == WD_MODE_LIT, bloom = lit && params->bloom > 0.0f;
     if (bloom)
         wd_bloom_pass_record(&pass->bloom, cmd, targets);
     wd_cmd_use_buffer(cmd, &pass->histogram, WD_USE_COMPUTE_READ);
@@ -111,7 +111,7 @@ void wd_post_pass_record(struct wd_post_pass *pass, struct wd_cmd *cmd,
         WD_BIND_BUFFER(bloom ? &pass->bloom.pyramid : &pass->histogram)};
     const struct wd_post_push push = {exp2f(params->exposure_ev), params->bloom};
     struct wd_pipeline *tonemap =
-        &pass->tonemap[!params->lit ? WD_TONE_VIEW : bloom ? WD_TONE_BLOOM : WD_TONE_PLAIN];
+        &pass->tonemap[!lit ? WD_TONE_VIEW : bloom ? WD_TONE_BLOOM : WD_TONE_PLAIN];
     wd_cmd_bind(cmd, tonemap, bindings);
     wd_cmd_push(cmd, tonemap, &push, sizeof push);
     wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);

@@ -20,7 +20,7 @@ struct wd_post_params {
     struct wd_binding uniforms; /* struct wd_frame_uniforms; exposure 0: by metering */
     float exposure_ev;          /* added to either */
     float bloom;                /* share of the light that the lens spreads */
-    bool lit;                   /* WD_MODE_LIT */
+    uint32_t view_mode;         /* WD_MODE_* */
 };
 /* Turns targets->radiance into targets->display. View modes other than WD_MODE_LIT are encoded
  * without exposure and tone curve. */
