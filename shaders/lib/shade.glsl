@@ -433,7 +433,8 @@ const float MAP_TELLS = 0.5;
 
 /* Needles and leaves of a spray stand closer than a map's texels, which then hold others than the one that is
  * seen: of those about as far toward the sun as it is, half would shade it. Nearer than this nothing does where
- * the eye tells them from one another. By path-traced sprays of spruce and beech 9 m off. */
+ * the eye tells them from one another; of broad leaves it sees how they shade each other from close by, too. By
+ * path-traced sprays of spruce and beech 9 m off and by the gallery's leaves. */
 const float NEEDLES_AHEAD_M = 0.03;
 
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
@@ -445,7 +446,9 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, float hot,
     if (pixel.lit <= 0.0 || pixel.lit >= 1.0) {
         float told = map_tells_leaves(cascade, crown.sward);
         place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, 1.0, told);
-        place.ahead_m += NEEDLES_AHEAD_M * told * (1.0 - smoothstep(0.015, 0.05, pixel_m));
+        float broad = smoothstep(0.4, 0.8, place.transmittance.y); /* needles let little through */
+        float apart = (1.0 - smoothstep(0.015, 0.05, pixel_m)) * mix(1.0, smoothstep(0.002, 0.006, pixel_m), broad);
+        place.ahead_m += NEEDLES_AHEAD_M * told * apart;
         return;
     }
     float tall_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
