@@ -418,7 +418,7 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     splats->model.wood = fits.wood;
     splats->model.leaf = fits.leaf;
     splats->model.light = fits.light;
-    /* most are seen level or from half above; the two differ little */
+    /* trees near enough for triangles are seen level or from half above */
     splats->model.leaf_past_bark = 0.5f * (fits.past_bark[0] + fits.past_bark[1]);
     memcpy(splats->model.lower, fits.lower, sizeof fits.lower);
     wd_tree_points_finish(&leaves);
