@@ -5,6 +5,8 @@
 #include "shared/hash.h"
 #include "shared/sun_ways.h"
 
+layout(constant_id = 0) const uint SHADOW = 0u;
+
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
@@ -65,5 +67,6 @@ void main()
                                              | pack_mirrors(beyond), 0u);
     out_sun_show = vec4(frame.sun_direction, 1.0);
     out_place = vec4(tree_foot_rel(tree) + at, 0.0);
-    gl_Position = frame.clip_from_rel * vec4(out_place.xyz, 1.0);
+    gl_Position = SHADOW != 0u ? shadow_clip(push.cascade, out_place.xyz)
+                               : frame.clip_from_rel * vec4(out_place.xyz, 1.0);
 }

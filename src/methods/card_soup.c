@@ -77,7 +77,7 @@ static bool init_draw(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
     if (pass == WD_PASS_SHADOW) {
         params.fragment = (struct wd_spirv)SPIRV(card_soup_shadow_frag);
         params.color_count = 0;
-        params.depth_bias_slope = -1.0f; /* reversed depth: away from the sun is down */
+        params.depth_bias_slope = WD_SHADOW_SLOPE;
     }
     return wd_pipeline_init_graphics(pipeline, gpu, &params);
 }

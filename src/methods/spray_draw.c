@@ -14,11 +14,14 @@ static const uint32_t tree_spray_vert[] =
 static const uint32_t tree_spray_frag[] =
 #include "tree_mesh.frag.inc"
     ;
+static const uint32_t tree_spray_shadow_frag[] =
+#include "tree_mesh_shadow.frag.inc"
+    ;
 
-bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tree_pass pass)
 {
-    static const uint32_t constants[] = {0, 1};
-    const struct wd_graphics_params params = {
+    const uint32_t constants[] = {pass == WD_PASS_SHADOW, 1};
+    struct wd_graphics_params params = {
         .vertex = {tree_spray_vert, sizeof tree_spray_vert, "tree_spray.vert"},
         .fragment = {tree_spray_frag, sizeof tree_spray_frag, "tree_mesh.frag"},
         .bindings = {8,
@@ -35,6 +38,12 @@ bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
         .depth_format = WD_DEPTH_FORMAT,
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
+    if (pass == WD_PASS_SHADOW) {
+        params.fragment = (struct wd_spirv){tree_spray_shadow_frag, sizeof tree_spray_shadow_frag,
+                                            "tree_mesh_shadow.frag"};
+        params.color_count = 0;
+        params.depth_bias_slope = WD_SHADOW_SLOPE;
+    }
     return wd_pipeline_init_graphics(pipeline, gpu, &params);
 }
 
@@ -135,12 +144,13 @@ static void draw_range(const struct wd_tree_draw *draw, const struct wd_twig_ran
          .offset = (VkDeviceSize)range->first_leaf * sizeof(struct wd_tree_leaf),
          .size = (VkDeviceSize)range->leaf_count * sizeof(struct wd_tree_leaf)}};
     const struct wd_spray_push push = {
-        .tree = {.variants = forest->variants, .level = WD_LEVEL_MESH},
+        .tree = {.variants = forest->variants, .cascade = draw->view->cascade, .level = WD_LEVEL_MESH},
         .leaves = range->box,
         .twig = mesh->box,
     };
-    wd_cmd_bind(draw->cmd, &draw->pipelines->spray, bindings);
-    wd_cmd_push(draw->cmd, &draw->pipelines->spray, &push, sizeof push);
+    const struct wd_pipeline *pipeline = &draw->pipelines->spray[draw->pass];
+    wd_cmd_bind(draw->cmd, pipeline, bindings);
+    wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
     wd_cmd_bind_indices_of(draw->cmd, &forest->meshes.indices, mesh->index_type);
     wd_cmd_draw_indexed(draw->cmd,
                         &(VkDrawIndexedIndirectCommand){mesh->index_count, (uint32_t)gather->count,

@@ -48,7 +48,7 @@ static void set_targets(struct wd_graphics_params *params, enum wd_tree_pass pas
         params->color_formats[1] = WD_NORMAL_FORMAT;
         params->color_formats[2] = WD_SURFACE_FORMAT;
     } else {
-        params->depth_bias_slope = -1.0f; /* reversed depth: away from the sun is down */
+        params->depth_bias_slope = WD_SHADOW_SLOPE;
     }
 }
 
@@ -112,9 +112,10 @@ bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *
     const struct wd_spirv wood = SPIRV(tree_mesh_vert);
     *pipelines = (struct wd_tree_pipelines){0};
     bool ok = init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, wood, 1, 0) &&
-              init_leaves(pipelines, gpu, 0) && wd_spray_pipeline_init(&pipelines->spray, gpu);
+              init_leaves(pipelines, gpu, 0);
     for (int pass = WD_PASS_CAMERA; ok && pass <= WD_PASS_SHADOW; pass++)
-        ok = init_mesh(&pipelines->mesh[pass], gpu, pass, wood, 0, 0);
+        ok = init_mesh(&pipelines->mesh[pass], gpu, pass, wood, 0, 0) &&
+             wd_spray_pipeline_init(&pipelines->spray[pass], gpu, pass);
     if (!ok)
         wd_tree_pipelines_finish(pipelines, gpu);
     return ok;
@@ -136,9 +137,9 @@ bool wd_tree_pipelines_prepare(struct wd_tree_pipelines *pipelines, struct wd_gp
 void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
     wd_pipeline_finish(&pipelines->mesh_detail, gpu);
-    wd_pipeline_finish(&pipelines->spray, gpu);
     for (int i = 0; i < 2; i++) {
         wd_pipeline_finish(&pipelines->mesh[i], gpu);
+        wd_pipeline_finish(&pipelines->spray[i], gpu);
         for (int falls = 0; falls < 2; falls++) {
             wd_pipeline_finish(&pipelines->leaf[i][falls], gpu);
             wd_pipeline_finish(&pipelines->leaf_listed[i][falls], gpu);
@@ -480,7 +481,7 @@ void wd_tree_draw_selection(const struct wd_tree_draw *draw, struct wd_selection
                             enum wd_draw_grouping grouping)
 {
     wd_selection_sort(selection, draw->forest->model_count);
-    bool sprays = draw->pass == WD_PASS_CAMERA;
+    bool sprays = draw->pass == WD_PASS_CAMERA || draw->view->cascade < WD_LEAF_CASCADES;
     float spray_scale = sprays ? wd_spray_scale(draw, selection) : 0;
     draw_meshes(draw, selection, grouping, spray_scale);
     if (sprays)

@@ -5,6 +5,9 @@
 #include "frame/targets.h"
 #include "methods/selection.h"
 
+/* Bias of shadow maps' depth by the slope. Depth is reversed: away from the sun is down. */
+#define WD_SHADOW_SLOPE (-1.0f)
+
 struct wd_draw_stats {
     uint64_t draw_calls, triangles;
     uint64_t trees[3]; /* by WD_LEVEL_*; a tree that blends counts at both levels */
@@ -16,7 +19,7 @@ struct wd_tree_pipelines {
     struct wd_pipeline mesh_detail; /* full meshes for the camera */
     struct wd_pipeline leaf[2][2], leaf_listed[2][2]; /* by whether they hang or fall; of full meshes
                                                          those that the view may show */
-    struct wd_pipeline spray;       /* leaves close by as twigs */
+    struct wd_pipeline spray[2];    /* leaves close by as twigs */
     struct wd_pipeline card_range[2], card_listed[2];
 };
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu);
