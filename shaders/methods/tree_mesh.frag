@@ -57,7 +57,9 @@ void detail_leaf(inout wd_surface leaf, float near)
     float lit = dot(face, in_sun_show.xyz);
     float through = mix(1.0, 2.0 * relief.rest, near * smoothstep(0.05, -0.05, lit));
     leaf.albedo *= through;
-    vec3 veins = (0.8 * near) * (relief.normal - face);
+    /* Seen or lit at a flat angle, veins hide their own far sides. */
+    float seen_lit = min(abs(dot(leaf.normal, normalize(in_place.xyz))), abs(dot(leaf.normal, in_sun_show.xyz)));
+    vec3 veins = (0.8 * near * smoothstep(0.0, 0.6, seen_lit)) * (relief.normal - face);
     leaf.normal = normalize(leaf.normal + (dot(face, leaf.normal) < 0.0 ? -veins : veins));
 }
 
