@@ -591,7 +591,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     }
     sun_share = place.own * ground_share * past_trees;
     vec3 transmitted = pixel.albedo * place.transmittance * place.body;
-    vec3 within = (pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo)) * place.body;
+    vec3 blade = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
+    vec3 within = blade * place.body;
     vec3 sunlit = within * place.sides.x + transmitted * place.sides.y;
     alone.scattered = sunlight() * (pixel.surface == 0u ? 0.0 : sun_share)
                       * scattered_again(pixel.albedo * (1.0 + place.transmittance));
@@ -602,7 +603,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         around.front += 0.5 * frame.sky_irradiance;
     bool one_leaf = ALL_SINGLE || pixel.lit >= 0.0;
     /* What wax mirrors of its own tree is as bright as the leaf itself about is. */
-    vec3 own = within * (0.5 * (around.front + around.back) + 0.2 * sunlight() * sun_share);
+    vec3 own = blade * (0.5 * (around.front + around.back) + 0.2 * sunlight() * sun_share);
     vec3 mirrored = mix(own, around.mirrored, pixel.mirrors);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
