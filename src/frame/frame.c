@@ -89,7 +89,9 @@ enum { FINE_SAMPLES = 8, FINE_TEXELS = 2048 };
 static uint32_t shadow_size_of(const struct wd_frame_params *params)
 {
     uint32_t size = (uint32_t)params->forest->scene->quality.shadow_size;
-    return params->samples < FINE_SAMPLES || size > FINE_TEXELS / 2 ? size : 2 * size;
+    if (params->samples < FINE_SAMPLES || size >= FINE_TEXELS)
+        return size;
+    return 2 * size < FINE_TEXELS ? 2 * size : FINE_TEXELS;
 }
 
 bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *params)

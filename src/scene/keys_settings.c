@@ -16,7 +16,9 @@ static const char *text_of_root(const struct wd_keys *table, const json_t *root,
                                 char *buffer, size_t size)
 {
     const char *found = json_string_value(json_object_get(root, key));
-    for (const struct wd_key *at = table->keys; !found && at->name; at++) {
+    if (found)
+        return found;
+    for (const struct wd_key *at = table->keys; at->name; at++) {
         if (strcmp(at->name, key) != 0 || !at->fallback || at->fallback[0] != '"')
             continue;
         size_t length = strlen(at->fallback) - 2;
@@ -24,9 +26,9 @@ static const char *text_of_root(const struct wd_keys *table, const json_t *root,
             return NULL;
         memcpy(buffer, at->fallback + 1, length);
         buffer[length] = '\0';
-        found = buffer;
+        return buffer;
     }
-    return found;
+    return NULL;
 }
 
 /* The path before "=", with every "@key" replaced. */

@@ -17,15 +17,18 @@ static char *read_whole(const char *path, size_t *size)
     FILE *file = fopen(path, "rb");
     char *bytes = NULL;
     long length = -1;
-    if (file && fseek(file, 0, SEEK_END) == 0)
+    *size = 0;
+    if (!file)
+        return NULL;
+    if (fseek(file, 0, SEEK_END) == 0)
         length = ftell(file);
     if (length >= 0 && fseek(file, 0, SEEK_SET) == 0)
         bytes = malloc((size_t)length + 1);
-    *size = bytes ? fread(bytes, 1, (size_t)length, file) : 0;
-    if (bytes)
+    if (bytes) {
+        *size = fread(bytes, 1, (size_t)length, file);
         bytes[*size] = '\0';
-    if (file)
-        fclose(file);
+    }
+    fclose(file);
     return bytes;
 }
 
