@@ -243,6 +243,7 @@ static void finish_large(struct parse *parse)
     uint32_t *own = malloc((count + 1) * sizeof *own);
     if (!own)
         give_up(parse, "has more triangles than fit into memory");
+    /* cppcheck-suppress nullPointerRedundantCheck; give_up does not return */
     memcpy(own, indices, count * sizeof *own);
     meshopt_generateShadowIndexBuffer(indices, own, count, vertices, parse->header.vertex_count,
                                       sizeof *vertices, sizeof *vertices);
