@@ -20,8 +20,8 @@ static const char *write_beech(double away_m)
              " \"sun\": {\"azimuth_deg\": 0, \"elevation_deg\": 50}, \"sky\": {\"strength\": 0.0001},\n"
              " \"wind\": {\"speed_mps\": 0},\n"
              " \"cameras\": [{\"name\": \"at\", \"position_m\": [30, %g, 5.5], \"look_at_m\": [30, 30, 5.5],\n"
-             "               \"fov_deg\": %g}]}",
-             suite.root, 30 - away_m, 6.0);
+             "               \"fov_deg\": 6}]}",
+             suite.root, 30 - away_m);
     assert_true(suite_write(&suite, "twigs.csv", "x_m,y_m,species,height_m\n30,30,beech,9\n"));
     assert_true(suite_write(&suite, "twigs.json", text));
     return suite_path(&suite, "twigs.json");
