@@ -460,7 +460,7 @@ const float NEEDLES_AHEAD_M = 0.03;
 void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, float hot, uint cascade)
 {
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
-    if (pixel.lit <= 0.0 || pixel.lit >= 1.0) {
+    if (!is_disc(pixel)) {
         float told = map_tells_leaves(cascade, crown.sward);
         place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, 1.0, told);
         float broad = smoothstep(0.4, 0.8, place.transmittance.y); /* needles let little through */

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "output/exr.h"
-#include "weald/reference.h"
 
 enum { WIDTH = 64, HEIGHT = 32 };
 
@@ -86,18 +85,12 @@ static struct means drawn(const char *map, const char *camera, const char *setti
 static struct means traced(const char *map, const char *setting)
 {
     struct wd_forest *forest = NULL;
-    struct wd_reference *reference = NULL;
     struct wd_picture picture = {0};
     assert_int_equal(open_forest(&forest, map, setting), WD_OK);
-    const struct wd_reference_params params = {.log = suite.log};
-    assert_int_equal(wd_reference_create(&reference, forest, &params), WD_OK);
-    struct wd_reference_picture_params trace = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT,
-                                                .samples = 8,
-                                                .layers = WD_LAYER_COLOR | WD_LAYER_DEPTH};
-    assert_int_equal(wd_forest_get_camera(forest, "over", &trace.camera), WD_OK);
-    assert_int_equal(wd_reference_render(reference, &trace, &picture), WD_OK);
+    struct wd_render_params render = suite_params(forest, "over");
+    render.layers = WD_LAYER_COLOR | WD_LAYER_DEPTH;
+    suite_trace(&suite, forest, &render, 8, &picture);
     struct means means = means_of(&picture);
-    wd_reference_destroy(&reference);
     wd_forest_destroy(&forest);
     wd_picture_finish(&picture);
     return means;

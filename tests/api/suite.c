@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "weald/reference.h"
+
 static void remember(void *user, enum wd_log_level level, const char *message)
 {
     struct suite *suite = user;
@@ -146,4 +148,19 @@ struct wd_render_params suite_params(const struct wd_forest *forest, const char 
     struct wd_render_params params = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT};
     assert_int_equal(wd_forest_get_camera(forest, camera, &params.camera), WD_OK);
     return params;
+}
+
+void suite_trace(const struct suite *suite, const struct wd_forest *forest,
+                 const struct wd_render_params *render, uint32_t paths, struct wd_picture *picture)
+{
+    const struct wd_reference_params params = {.log = suite->log};
+    const struct wd_reference_picture_params trace = {.camera = render->camera,
+                                                      .width = render->width,
+                                                      .height = render->height,
+                                                      .samples = paths,
+                                                      .layers = render->layers};
+    struct wd_reference *reference = NULL;
+    assert_int_equal(wd_reference_create(&reference, forest, &params), WD_OK);
+    assert_int_equal(wd_reference_render(reference, &trace, picture), WD_OK);
+    wd_reference_destroy(&reference);
 }

@@ -2,7 +2,6 @@
 #include <stdio.h>
 
 #include "suite.h"
-#include "weald/reference.h"
 
 enum { WIDTH = 64, HEIGHT = 48 };
 
@@ -34,19 +33,10 @@ static double mean_green(const struct wd_picture *picture)
 
 static double traced(const struct wd_forest *forest, const struct wd_render_params *render)
 {
-    const struct wd_reference_params params = {.log = suite.log};
-    const struct wd_reference_picture_params trace = {.camera = render->camera,
-                                                      .width = WIDTH,
-                                                      .height = HEIGHT,
-                                                      .samples = 32,
-                                                      .layers = WD_LAYER_COLOR};
-    struct wd_reference *reference = NULL;
     struct wd_picture picture = {0};
-    assert_int_equal(wd_reference_create(&reference, forest, &params), WD_OK);
-    assert_int_equal(wd_reference_render(reference, &trace, &picture), WD_OK);
+    suite_trace(&suite, forest, render, 32, &picture);
     double mean = mean_green(&picture);
     wd_picture_finish(&picture);
-    wd_reference_destroy(&reference);
     return mean;
 }
 
