@@ -107,11 +107,11 @@ static float camera_density(const struct wd_tree_draw *draw)
 
 /* Pictures of several samples tell discs from leaves farther off than pixels alone do: FLIP of trees of 256 px
  * falls from 0.25 to 0.18 with 16 of them. Up to so many times as far, for that many. */
-static const float MOST_FARTHER = 8.0f;
+static const float MOST_FARTHER = 10.0f;
 
 static float near_farther(const struct wd_tree_draw *draw)
 {
-    return fminf(powf(free_samples(draw), 0.75f), MOST_FARTHER);
+    return fminf(powf(free_samples(draw), 0.83f), MOST_FARTHER);
 }
 
 /* The nearest cascades hold the leaves that the camera sees as meshes; the others hold crowns. */

@@ -46,10 +46,10 @@ static const struct wd_key continuum_keys[] = {
     {"near_leaves_m", WD_KEY_DOUBLE, OPTION(continuum, near_leaves_m), 0, 1000, "1.5",
      "Trees whose crowns are nearer than this, in metres, are drawn leaf by leaf; up to a quarter as "
      "far again in part. 0: none.", .row = "continuum"},
-    {"near_px", WD_KEY_DOUBLE, OPTION(continuum, near_px), 0, 1e6, "8",
+    {"near_px", WD_KEY_DOUBLE, OPTION(continuum, near_px), 0, 1e6, "10",
      "So are trees whose mesh has triangles that would be so many pixels across if they were "
      "squares; down to a quarter of that for plants of few triangles. In pictures of n samples "
-     "so many over n^0.75, an eighth at least. 0: none.", .row = "continuum"},
+     "so many over n^0.83, a tenth at least. 0: none.", .row = "continuum"},
     {0},
 };
 static const struct wd_keys continuum_table = TABLE(continuum);
