@@ -454,6 +454,10 @@ const float MAP_TELLS = 0.5;
  * path-traced sprays of spruce and beech 9 m off and by the gallery's leaves. */
 const float NEEDLES_AHEAD_M = 0.03;
 
+/* From within a stand an eye sees, past discs, some that lie higher in their crowns, under more of the sky, than the
+ * leaves that it would see: share of their skylight that these have. By path-traced crowns of three dark stands. */
+const float PAST_DISCS = 0.8;
+
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
  * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
  * Leaves of meshes (lit 1) are in the nearest maps as they are. 0: none goes on to the eye. */
@@ -564,7 +568,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     wd_shelter shelter = ground_shelter(pixel);
     wd_alone alone = NOT_ALONE;
     vec4 facing = vec4(pixel.normal, 0.0);
-    float hot = 1.0;
+    float hot = 1.0, past_discs = 1.0;
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u) {
         wd_tree tree = tree_at(pixel.surface - 1u);
         uint index = WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
@@ -587,6 +591,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
                      alone.share * place.cloud);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
         light_past_neighbours(alone, pixel, crown, shelter, place);
+        past_discs = is_disc(pixel) ? mix(1.0, PAST_DISCS, shelter.within * (1.0 - alone.share)) : 1.0;
     } else {
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);
@@ -624,7 +629,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 mirrored = mix(own, around.mirrored, pixel.mirrors);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
-    vec3 skylit = around.front * within + sheen * place.waxed + around.back * transmitted;
+    vec3 skylit = past_discs * (around.front * within + sheen * place.waxed + around.back * transmitted);
     float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
     float wide_way = pow(dot(frame.sunward, shelter.through), WIDE_WAY / (max(frame.sun_direction.z, 0.0) + 0.2));
     float about_sun = mix(wide_way, leaf_way, pixel.surface == 0u ? 0.0 : NEAR_SUN);

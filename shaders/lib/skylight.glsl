@@ -198,6 +198,14 @@ const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(1.0), v
  * tree, what wax adds to a picture is 0.88 to 1.19 of the traced. */
 const float ALONG = 0.67;
 
+/* Leaves stand in crowns and light the insides of these first: of what they scatter of the sun far less comes down
+ * a dark stand than through an even layer, but where they absorb little of it. Share that does where less than an
+ * eighth of the sky is left, by path-traced floors and stems of three stands, one of them in autumn. */
+vec3 out_of_crowns(vec3 scatter, float mean)
+{
+    return exp2(max(9.0 * scatter - 7.5, vec3(0.0)) * min(log2(mean) + 3.0, 0.0));
+}
+
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
  * unit, where a ray of the eye goes on to from one leaf.
  * `past_trees`: the sun's share at the place. */
@@ -234,7 +242,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 sun = sunlight() * (rise * ground_share);
     vec3 diffuse = exp2(s * log2(mean));
     vec3 between = (sqrt(diffuse * beam) * 2.0 + 0.5 * (diffuse + beam)) * (1.0 / 3.0);
-    vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between;
+    vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between * out_of_crowns(s, mean);
     vec3 with_scattered = sun * mix(beam, past_trees, shelter.low) + scattered;
     float covered = 1.0 - shelter.floor_mean;
     vec3 deep_albedo = (1.0 - s) / (1.0 + s);
