@@ -458,6 +458,12 @@ const float NEEDLES_AHEAD_M = 0.03;
  * leaves that it would see: share of their skylight that these have. By path-traced crowns of three dark stands. */
 const float PAST_DISCS = 0.8;
 
+float sky_past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
+{
+    float dark = min(UNDER_PER_LOG2 * log2(shelter.floor_mean), 1.0) * shelter.within * (1.0 - alone.share);
+    return is_disc(pixel) ? mix(1.0, PAST_DISCS, dark) : 1.0;
+}
+
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
  * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
  * Leaves of meshes (lit 1) are in the nearest maps as they are. 0: none goes on to the eye. */
@@ -591,7 +597,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
                      alone.share * place.cloud);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
         light_past_neighbours(alone, pixel, crown, shelter, place);
-        past_discs = is_disc(pixel) ? mix(1.0, PAST_DISCS, shelter.within * (1.0 - alone.share)) : 1.0;
+        past_discs = sky_past_discs(pixel, shelter, alone);
     } else {
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);

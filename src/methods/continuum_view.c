@@ -111,7 +111,7 @@ static const float MOST_FARTHER = 10.0f;
 
 static float near_farther(const struct wd_tree_draw *draw)
 {
-    return fminf(powf(free_samples(draw), 0.83f), MOST_FARTHER);
+    return fminf(powf(free_samples(draw), 0.87f), MOST_FARTHER);
 }
 
 /* The nearest cascades hold the leaves that the camera sees as meshes; the others hold crowns. */

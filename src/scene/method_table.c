@@ -49,7 +49,7 @@ static const struct wd_key continuum_keys[] = {
     {"near_px", WD_KEY_DOUBLE, OPTION(continuum, near_px), 0, 1e6, "10",
      "So are trees whose mesh has triangles that would be so many pixels across if they were "
      "squares; down to a quarter of that for plants of few triangles. In pictures of n samples "
-     "so many over n^0.83, a tenth at least. 0: none.", .row = "continuum"},
+     "so many over n^0.87, a tenth at least. 0: none.", .row = "continuum"},
     {0},
 };
 static const struct wd_keys continuum_table = TABLE(continuum);

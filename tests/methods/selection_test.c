@@ -111,8 +111,8 @@ static void samples_show_finer_things(void **state)
     }
     assert_float_equal(leaf[1] / leaf[0], 2, 1e-5);
     assert_float_equal(leaf[2] / leaf[0], 4, 1e-5);
-    assert_float_equal(reach[1] / reach[0], 3.160165, 1e-5);
-    assert_float_equal(reach[2] / reach[0], 9.986644, 1e-4);
+    assert_float_equal(reach[1] / reach[0], 3.340352, 1e-5);
+    assert_float_equal(reach[2] / reach[0], 10, 1e-4);
     assert_float_equal(bounded[2] / bounded[0], 1, 1e-6);
     assert_float_equal(bounded[0] / reach[0], 1, 1e-4);
 }
