@@ -41,6 +41,7 @@ static const struct figure {
     {"mean-colour-error-pct", bench_mean_colour},
     {"brf-error-pct", bench_reflectance},
     {"stand-floor-error-pct", bench_stand_floor},
+    {"stand-light-error-pct", bench_stand_light},
     {"shadow-cost-pct", bench_shadow_cost},
     {"wind-cost-pct", bench_wind_cost},
 };

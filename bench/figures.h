@@ -26,6 +26,7 @@ bool bench_reference_rays(const char *gpu);
 bool bench_mean_colour(const char *gpu);
 bool bench_reflectance(const char *gpu);
 bool bench_stand_floor(const char *gpu);
+bool bench_stand_light(const char *gpu);
 bool bench_shadow_cost(const char *gpu);
 bool bench_wind_cost(const char *gpu);
 bool bench_continuum_frame(const char *gpu);

@@ -574,7 +574,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     wd_shelter shelter = ground_shelter(pixel);
     wd_alone alone = NOT_ALONE;
     vec4 facing = vec4(pixel.normal, 0.0);
-    float hot = 1.0, past_discs = 1.0;
+    float hot = 1.0;
     if ((PARTS & WD_PART_TREES) != 0u && pixel.surface != 0u) {
         wd_tree tree = tree_at(pixel.surface - 1u);
         uint index = WD_TREE_SPECIES(tree) * push.variants + WD_TREE_VARIANT(tree) % push.variants;
@@ -597,7 +597,6 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
                      alone.share * place.cloud);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
         light_past_neighbours(alone, pixel, crown, shelter, place);
-        past_discs = sky_past_discs(pixel, shelter, alone);
     } else {
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);
@@ -635,7 +634,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 mirrored = mix(own, around.mirrored, pixel.mirrors);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
-    vec3 skylit = past_discs * (around.front * within + sheen * place.waxed + around.back * transmitted);
+    vec3 skylit = sky_past_discs(pixel, shelter, alone) *
+                  (around.front * within + sheen * place.waxed + around.back * transmitted);
     float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + 0.2) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);

@@ -96,7 +96,7 @@ expect 0 '12 frames' render "$tiny" -o "$out/whole.mp4" --path fly --frames 12 -
 for _ in $(seq 20); do # a busy machine may let a film finish before it is killed
     rm -f "$out/killed.mp4"
     start killed.mp4 12 --fps 3
-    await begun "$out/killed.mp4"
+    check 'frames are kept' await begun "$out/killed.mp4"
     kill -KILL "$pid"
     wait "$pid" 2>/dev/null
     [ -e "$out/killed.mp4" ] || break
