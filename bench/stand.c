@@ -1,5 +1,5 @@
-/* Light within stands, at places of each, drawn over traced: of an even sky without a sun on their floors, and of
- * their own sun and sky on floors, stems and crowns. */
+/* Light within stands, at places of each, drawn over traced: of an even sky without a sun on their
+ * floors, and of their own sun and sky on floors, stems and crowns. */
 #include "figures.h"
 
 #include <math.h>
@@ -47,7 +47,8 @@ struct painters {
     struct wd_reference *reference;
 };
 
-static bool painters_init(struct painters *painters, const char *scene, const char *const *settings, const char *gpu)
+static bool painters_init(struct painters *painters, const char *scene, const char *const *settings,
+                          const char *gpu)
 {
     const struct wd_forest_params forest_params = {.scene_path = scene, .settings = settings};
     const struct wd_renderer_params renderer_params = {.gpu = gpu};
@@ -94,12 +95,14 @@ static bool add_place(const struct painters *painters, const struct stand *stand
     return ok;
 }
 
-static bool compare_stand(const struct stand *stand, const char *sky, const char *gpu, double *worst)
+static bool compare_stand(const struct stand *stand, const char *sky, const char *gpu,
+                          double *worst)
 {
     char file[256];
     snprintf(file, sizeof file, "sky.file=%s", sky);
-    const char *const settings[] = {file, "sky.sun=scene", "sun.strength=0", "sun.elevation_deg=35",
-                                    "fog.visibility_m=1000000", NULL};
+    const char *const settings[] = {
+        file, "sky.sun=scene", "sun.strength=0", "sun.elevation_deg=35", "fog.visibility_m=1000000",
+        NULL};
     struct painters painters;
     double sums[2] = {0, 0};
     bool ok = painters_init(&painters, stand->scene, settings, gpu);
@@ -150,15 +153,15 @@ bool bench_stand_floor(const char *gpu)
 enum { FLOOR, STEMS, CROWNS, PARTS };
 static const char *const part_names[PARTS] = {"floor", "stems", "crowns"};
 static const double UP_RAD = 0.15, STEMS_M = 3.5, FAR_M = 25;
-enum { PATHS = 32 };
+enum { WIDE = 4 * WIDTH, HIGH = 4 * HEIGHT, PATHS = 3 }; /* many places tell more than many paths */
 
 /* Sums of a part's light and its pixels. */
 struct part {
     double light[3], pixels;
 };
 
-/* What a pixel of a tree or of the ground is a part of; PARTS: of none. Trees count where they are looked at
- * level. */
+/* What a pixel of a tree or of the ground is a part of; PARTS: of none. Trees count where they are
+ * looked at level. */
 static int part_of(const struct wd_picture *picture, size_t pixel, bool down)
 {
     double depth_m = (double)picture->depth_m[pixel];
@@ -184,8 +187,8 @@ static void add_parts(struct part parts[PARTS], const struct wd_picture *picture
 }
 
 /* Both by rays through the middles of pixels, so that what a pixel is called is what it shows. */
-static bool add_view(const struct painters *painters, const struct stand *stand, int view, struct part drawn[PARTS],
-                     struct part traced[PARTS])
+static bool add_view(const struct painters *painters, const struct stand *stand, int view,
+                     struct part drawn[PARTS], struct part traced[PARTS])
 {
     bool down = view < PLACES;
     struct wd_camera camera = camera_at(painters->forest, stand, view % PLACES);
@@ -194,10 +197,17 @@ static bool add_view(const struct painters *painters, const struct stand *stand,
         camera.yaw_rad = 6.283185307179586 * fmod(0.6180339887 * view, 1);
     }
     const uint32_t layers = WD_LAYER_COLOR | WD_LAYER_DEPTH | WD_LAYER_TREE_ID;
-    const struct wd_render_params draw = {.camera = camera, .width = 2 * WIDTH, .height = 2 * HEIGHT,
-                                          .samples = 1, .method = "continuum", .layers = layers};
-    const struct wd_reference_picture_params trace = {.camera = camera, .width = WIDTH, .height = HEIGHT,
-                                                      .samples = PATHS, .places = WD_REFERENCE_MIDDLES,
+    const struct wd_render_params draw = {.camera = camera,
+                                          .width = WIDE,
+                                          .height = HIGH,
+                                          .samples = 1,
+                                          .method = "continuum",
+                                          .layers = layers};
+    const struct wd_reference_picture_params trace = {.camera = camera,
+                                                      .width = WIDE,
+                                                      .height = HIGH,
+                                                      .samples = PATHS,
+                                                      .places = WD_REFERENCE_MIDDLES,
                                                       .layers = layers};
     struct wd_picture picture = {0}, truth = {0};
     bool ok = wd_renderer_render(painters->renderer, &draw, &picture) == WD_OK &&
@@ -223,11 +233,12 @@ static bool compare_light(const struct stand *stand, const char *gpu, double *wo
     for (int i = 0; ok && i < PARTS; i++) {
         printf("%-32s %-7s", stand->scene, part_names[i]);
         for (int k = 0; k < 3; k++) {
-            double ratio = drawn[i].light[k] / drawn[i].pixels * traced[i].pixels / traced[i].light[k];
+            double ratio =
+                drawn[i].light[k] / drawn[i].pixels * traced[i].pixels / traced[i].light[k];
             printf(" %.2f", ratio);
             *worst = fmax(*worst, 100 * fabs(ratio - 1));
         }
-        printf("\n");
+        printf("  pixels %.3f\n", drawn[i].pixels / traced[i].pixels);
     }
     fflush(stdout);
     return ok;
@@ -237,7 +248,9 @@ bool bench_stand_light(const char *gpu)
 {
     double worst = 0;
     bool ok = true;
-    printf("%d places, looked at from above and level, red, green, blue, drawn by continuum over traced with %d paths\n",
+    printf("%d places, looked at from above and level: red, green, blue and pixels, drawn by "
+           "continuum over traced\n"
+           "with %d paths a pixel\n",
            PLACES, PATHS);
     for (size_t i = 0; ok && i < sizeof stands / sizeof *stands; i++)
         ok = compare_light(&stands[i], gpu, &worst);

@@ -86,7 +86,7 @@ float leaf_roughness(wd_lit_leaves model)
 wd_lit_leaves lit_leaves(int model)
 {
     vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
-    return wd_lit_leaves(a.x, a.y, a.zw, b.xyz, b.w);
+    return wd_lit_leaves(a.x, a.y, floatBitsToUint(a.z), a.w, b.xyz, b.w);
 }
 
 vec2 sunlit_of_pair(uint here, uint turn_on, wd_sunlit_mix at)
@@ -299,7 +299,7 @@ float clear_of_crown_m(wd_crown crown)
 
 /* By the sky over the ground beside the crown, toward the sun: whether it stands free; and each quarter of its
  * sky where the crown is not before it. Low plants close over the ground, of which that knows nothing. */
-wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter shelter, float height_m)
+wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter shelter, float height_m)
 {
     vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(clear_of_crown_m(crown));
     vec2 sunward = center + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
@@ -308,8 +308,9 @@ wd_alone crown_alone(wd_crown crown, float openness, vec4 skylit, wd_shelter she
     wd_alone alone = NOT_ALONE;
     alone.beside = field * field * through_herbs(herbs_above(shelter, height_m));
     alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open)) * has_table(crown);
-    alone.lets.xy = skylit.xy * wd_skylit_above(openness);
-    alone.lets.zw = skylit.zw * wd_skylit_below(openness);
+    alone.lets.xy = skylit.xy * wd_skylit_above(pixel.openness);
+    alone.lets.zw = skylit.zw * wd_skylit_below(pixel.openness);
+    alone.leaf = pixel.material >= WD_MATERIAL_LEAF ? smoothstep(0.5, 1.0, crown.radii_m.z) : 0.0;
     return alone;
 }
 
@@ -454,14 +455,15 @@ const float MAP_TELLS = 0.5;
  * path-traced sprays of spruce and beech 9 m off and by the gallery's leaves. */
 const float NEEDLES_AHEAD_M = 0.03;
 
-/* From within a stand an eye sees, past discs, some that lie higher in their crowns, under more of the sky, than the
- * leaves that it would see: share of their skylight that these have. By path-traced crowns of three dark stands. */
-const float PAST_DISCS = 0.8;
+/* From within the darkest stands an eye sees, past discs, some that lie higher in their crowns, under more of the sun
+ * and the sky, than the leaves that it would see: share of their light that these have, the sun's and the sky's. By
+ * path-traced crowns of three stands, one of them so dark. */
+const vec2 PAST_DISCS = vec2(0.75, 0.78);
 
-float sky_past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
+vec2 past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
 {
-    float dark = min(UNDER_PER_LOG2 * log2(shelter.floor_mean), 1.0) * shelter.within * (1.0 - alone.share);
-    return is_disc(pixel) ? mix(1.0, PAST_DISCS, dark) : 1.0;
+    float stand = is_disc(pixel) ? shelter.within * (1.0 - alone.share) : 0.0;
+    return mix(vec2(1.0), PAST_DISCS, stand * darkest_stand(shelter));
 }
 
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
@@ -540,7 +542,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float mapped = 0.75 * fine;
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
-    shade_by_crown(place, crown, model.sun_curve, pixel.openness, free,
+    shade_by_crown(place, crown, unpackHalf2x16(model.sun_curve), pixel.openness, free,
                    pixel.lit >= 1.0 ? sunlit.x : 1.0, cascade);
     place.own *= mix(1.0, card ? sward_tufts_lit() : 1.0, sward);
     shade_by_map(place, 0.75 - 0.375 * sward, fine);
@@ -562,6 +564,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
     place.sheet = fine > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
     light_disc(place, pixel, crown, model, hot * mix(1.0, free_disc_light(eye).x, free), cascade);
+    place.transmittance *= mix(model.through_below, 1.0, place.waxed);
     return place;
 }
 
@@ -588,11 +591,11 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         uint seen_as = pixel.lit >= 0.0 ? WD_SKYLIT_LEAVES : WD_SKYLIT_CLOUDS;
         vec4 skylit = skylit_of(model_at, mixed, pixel.material >= WD_MATERIAL_LEAF ? seen_as : WD_SKYLIT_WOOD);
         wd_crown crown = crown_of(tree, model);
-        alone = crown_alone(crown, pixel.openness, skylit, shelter, pixel.rel.z - crown.foot_z);
+        alone = crown_alone(pixel, crown, skylit, shelter, pixel.rel.z - crown.foot_z);
         if (pixel.material >= WD_MATERIAL_LEAF)
             place = leaf_place(pixel, crown, model, alone.share, sunlit, mixed.hot, cascade);
         else
-            place = wood_place(pixel, crown, model.sun_curve, alone.share, sunlit.y, cascade);
+            place = wood_place(pixel, crown, unpackHalf2x16(model.sun_curve), alone.share, sunlit.y, cascade);
         facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction),
                      alone.share * place.cloud);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
@@ -616,7 +619,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         float stand = min(dot(frame.sunward, shelter.through) / own, 1.0);
         past_trees = mix(past_trees, pow(stand, beam) / hot, out_of_maps);
     }
-    sun_share = place.own * ground_share * past_trees;
+    vec2 past = past_discs(pixel, shelter, alone);
+    sun_share = place.own * ground_share * past_trees * past.x;
     vec3 transmitted = pixel.albedo * place.transmittance * place.body;
     vec3 blade = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
     vec3 within = blade * place.body;
@@ -634,8 +638,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 mirrored = mix(own, around.mirrored, pixel.mirrors);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
-    vec3 skylit = sky_past_discs(pixel, shelter, alone) *
-                  (around.front * within + sheen * place.waxed + around.back * transmitted);
+    vec3 skylit = past.y * (around.front * within + sheen * place.waxed + around.back * transmitted);
     float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + 0.2) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);

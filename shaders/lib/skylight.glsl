@@ -63,7 +63,7 @@ float herbs_above(wd_shelter shelter, float height_m)
 
 /* An eye within a stand sees those leaves of a place that lie under the others there: by so many more of their
  * tree's own. By path-traced oaks and beeches, and bench/light.json from within. */
-const float BELOW_LEAVES = 0.26;
+const float BELOW_LEAVES = 0.08;
 
 /* On a tree: what its own leaves let through, and of what the stand lets down to the ground as much as
  * there are leaves of it higher up: what of it is above the whole tree, and neighbours beside it. The
@@ -125,11 +125,17 @@ const float NEAR_SUN = 0.7, OVER_HILLS = 0.6;
  * sky's light, times their sine. */
 const float WIDE_WAY = 0.75;
 
-/* Of stands that leave less than a sixth of the sky, gaps are few and steep, and ways from their floor to a low sun
+/* 0 of stands that leave a sixth of the sky and more, 1 of those that leave a sixteenth. */
+float darkest_stand(wd_shelter shelter)
+{
+    return smoothstep(2.5, 4.0, -log2(shelter.floor_mean));
+}
+
+/* Of such dark stands, gaps are few and steep, and ways from their floor to a low sun
  * meet more yet: by so much, by path-traced floors of scenes/bench75k.json. */
 float floor_way(wd_shelter shelter)
 {
-    return 1.0 + 0.45 * smoothstep(2.5, 4.0, -log2(shelter.floor_mean));
+    return 1.0 + 0.45 * darkest_stand(shelter);
 }
 
 /* The sun's own and that of the sky about it, on a surface that faces it. */
@@ -195,15 +201,18 @@ struct wd_alone {
     vec4 lets;    /* of light from above to the side that is seen and to the other, then from below */
     vec3 again;   /* times as much as without what its leaves scatter of that */
     vec3 scattered; /* irradiance of each side by what the crown's own leaves scatter of the sun */
+    float leaf; /* 1: of a leaf of a crown; 0: of wood, herbs and the ground */
 };
 
-const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(1.0), vec4(0.0), vec3(1.0), vec3(0.0));
+const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(1.0), vec4(0.0), vec3(1.0), vec3(0.0),
+                                   0.0);
 
 /* Of the ways past a stand to what a leaf of it mirrors, the leaves that they meet over those on the mean way of the
  * sky's light, times their sine: 0.67, as of any ray. Stands are leaves and gaps: of ways that meet t leaves on
  * average but now many and now few 1 / (1 + t) come through, not e^-t. By path-traced stands at 256 and 512 px a
- * tree, what wax adds to a picture is 0.88 to 1.19 of the traced. */
-const float ALONG = 0.67;
+ * tree, what wax adds to a picture is 0.88 to 1.19 of the traced. From within, below the crowns that it looks into,
+ * an eye sees wax that mirrors these: 0.9 to 1.17 in three stands. */
+const float ALONG = 0.67, ALONG_WITHIN = 1.5;
 
 /* Leaves stand in crowns and light the insides of these first: of what they scatter of the sun far less comes down
  * a dark stand than through an even layer, but where they absorb little of it. Share that does where less than an
@@ -212,6 +221,10 @@ vec3 out_of_crowns(vec3 scatter, float mean)
 {
     return exp2(max(9.0 * scatter - 7.5, vec3(0.0)) * min(log2(mean) + 3.0, 0.0));
 }
+
+/* Leaves lie next to others of their crown, which send them more of what they scatter than an even layer would and
+ * than stems get: so many times as much. By path-traced crowns of three stands, one of them in autumn. */
+const float NEXT_LEAVES = 1.8;
 
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
  * unit, where a ray of the eye goes on to from one leaf.
@@ -230,11 +243,13 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 reach = sky_level(through) / max(open_sky, vec3(1e-12))
                  * mix(vec3(1.0), frame.sky_under_tint, deep);
     float mean = dot(shelter.through, vec4(0.25));
-    /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer. What an eye
-     * over the stand sees of upright faces looks out of a gap. */
+    /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer and to path-traced
+     * crowns from within. What an eye over the stand sees of upright faces looks out of a gap. */
     float own = min(mean * exp2(-shelter.under), 1.0), own4 = own * own * own * own;
-    float upright = mix(0.40 + 0.45 * own + 0.15 * own4, 1.0, smoothstep(0.15, 0.5, eye_z));
-    vec3 gain = exp2((s - 1.0) * log2(mean)), sky = reach * gain * mix(upright, 1.0, abs(n.z));
+    float upright = mix(0.33 + 0.52 * own + 0.15 * own4, 1.0, smoothstep(0.15, 0.5, eye_z));
+    float near = mix(1.0, NEXT_LEAVES, alone.leaf);
+    vec3 gain = mix(vec3(1.0), exp2((s - 1.0) * log2(mean)), near);
+    vec3 sky = reach * gain * mix(upright, 1.0, abs(n.z));
     vec4 bright = quarters_bright(), faced = faced_quarters(n.xy);
     float flat_on = min(sqrt(n.z * n.z + facing.w), 1.0);
     vec3 beside_front = alone.again * sky_faced(alone.sides, bright * faced, flat_on)
@@ -249,7 +264,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 sun = sunlight() * (rise * ground_share);
     vec3 diffuse = exp2(s * log2(mean));
     vec3 between = (sqrt(diffuse * beam) * 2.0 + 0.5 * (diffuse + beam)) * (1.0 / 3.0);
-    vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between * out_of_crowns(s, mean);
+    vec3 scattered = sun * (s - 1.0) * (longer * 0.6931 * log2(mean)) * between * (near * out_of_crowns(s, mean));
     vec3 with_scattered = sun * mix(beam, past_trees, shelter.low) + scattered;
     float covered = 1.0 - shelter.floor_mean;
     vec3 deep_albedo = (1.0 - s) / (1.0 + s);
@@ -274,7 +289,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 level = vec3(mirror.xy, high);
     vec3 ahead = mix(SKY_LEVELS(frame.sky_form, level), SKY_LEVELS(frame.sky_under, level), deep) / (0.5 + 0.5 * high);
     float rise_along = max(high, 0.1);
-    vec3 along = 1.0 / (1.0 - s * (0.6931 * shelter.beside * ALONG / rise_along));
+    vec3 along = 1.0 / (1.0 - s * (0.6931 * shelter.beside * mix(ALONG, ALONG_WITHIN, shelter.within) / rise_along));
     float open = 0.5 * dot(alone.beside, faced_quarters(mirror.xy));
     around.mirrored = mix(upward_front, max(ahead, vec3(0.0)) * mix(along, vec3(open), alone.share)
                                             + scattered * (1.0 - alone.share), up_mirror);

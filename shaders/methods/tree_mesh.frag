@@ -47,6 +47,12 @@ vec3 seen_side()
     return vec3(in_uv.xy, in_uv.z + (back ? float(WD_LOOK_LEAF_BACK - WD_LOOK_LEAF) : 0.0));
 }
 
+/* What comes through the place of a leaf, over what comes through all of it. */
+float vein_through(float rest)
+{
+    return rest / max(textureLod(look_details, vec3(0.5, 0.5, seen_side().z), 16.0).a, 0.05);
+}
+
 /* A leaf as the sheet that it is: its lower side, its veins on top of how it is turned to the light, and
  * where the sun shines through, what comes through. */
 void detail_leaf(inout wd_surface leaf, float near)
@@ -55,7 +61,7 @@ void detail_leaf(inout wd_surface leaf, float near)
     wd_relief relief =
         look_relief(look_details, look_frame(face, in_place.xyz, in_uv.xy), seen_side());
     float lit = dot(face, in_sun_show.xyz);
-    float through = mix(1.0, 2.0 * relief.rest, near * smoothstep(0.05, -0.05, lit));
+    float through = mix(1.0, vein_through(relief.rest), near * smoothstep(0.05, -0.05, lit));
     leaf.albedo *= through;
     /* Seen or lit at a flat angle, veins hide their own far sides. */
     float seen_lit = min(abs(dot(leaf.normal, normalize(in_place.xyz))), abs(dot(leaf.normal, in_sun_show.xyz)));

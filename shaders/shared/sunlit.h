@@ -57,8 +57,10 @@ WD_FUNC uint32_t wd_sunlit_place(uint32_t eye_ring, uint32_t sun_ring, uint32_t 
  * once. */
 struct wd_lit_leaves {
     float crown_base_m, height_m; /* as of struct wd_model */
-    WD_VEC2(sun_curve);           /* of wd_crown_lit */
-    WD_VEC3(transmittance);       /* of a leaf over its albedo, linear */
+    uint32_t sun_curve;           /* of wd_crown_lit: two half floats */
+    float through_below;          /* transmittance of the lower side over that of the upper: leaves let through as
+                                     much either way, and their lower side is paler */
+    WD_VEC3(transmittance);       /* of a leaf over its upper side's albedo, linear */
     float roughness;              /* of leaves, the root of GGX's alpha; minus that of a grass's blades, and
                                      less 1 where these close over the ground */
 };

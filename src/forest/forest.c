@@ -265,7 +265,8 @@ static bool make_lit_models(struct preparation *work, struct wd_gpu *gpu)
     size_t size = forest->model_count * sizeof(struct wd_lit_model);
     struct wd_lit_model *lit = wd_alloc_array(forest->model_count, sizeof *lit);
     for (uint32_t i = 0; i < forest->model_count; i++) {
-        wd_variant_describe_light(&lit[i], &forest->host_models[i], &work->grown[i]);
+        wd_variant_describe_light(&lit[i], &forest->scene->species[i / forest->variants], &forest->host_models[i],
+                                  &work->grown[i]);
         lit[i].leaves.roughness -= closes_over_ground(work, i) ? 1.0f : 0.0f;
     }
     const struct wd_buffer_params params = {.name = "light of models",

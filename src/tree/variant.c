@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tree/look.h"
+#include "tree/look_map.h"
 
 /* The middle of its part of the range. */
 static float variant_height(const struct wd_species *species, uint32_t variant, uint32_t variants)
@@ -109,13 +110,25 @@ static void pack_skylit(uint32_t *texels, const struct wd_tree_model *grown)
     }
 }
 
-void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_model *model,
-                               const struct wd_tree_model *grown)
+/* As look maps have it: the same light comes through from both sides. */
+static float through_below(const struct wd_species *species)
+{
+    float upper[3], lower[3];
+    if (species->imported)
+        return 1;
+    wd_look_color(species, WD_LOOK_LEAF, upper);
+    wd_look_color(species, WD_LOOK_LEAF_BACK, lower);
+    return upper[1] / fmaxf(lower[1], 1e-3f);
+}
+
+void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species *species,
+                               const struct wd_model *model, const struct wd_tree_model *grown)
 {
     lit->leaves = (struct wd_lit_leaves){
         .crown_base_m = model->crown_base_m,
         .height_m = model->height_m,
-        .sun_curve = {grown->sun_curve[0], grown->sun_curve[1]},
+        .sun_curve = wd_pack_uv(grown->sun_curve[0], grown->sun_curve[1]),
+        .through_below = through_below(species),
         .transmittance = {model->transmittance[0], model->transmittance[1], model->transmittance[2]},
         .roughness = model->roughness,
     };

@@ -21,8 +21,8 @@ bool wd_variant_grow(struct wd_tree_model *model, const struct wd_scene *scene, 
 void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, uint32_t index,
                          const struct wd_tree_model *grown);
 
-/* And what its light follows from. */
-void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_model *model,
-                               const struct wd_tree_model *grown);
+/* And what its light follows from. `species`: of the model. */
+void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species *species,
+                               const struct wd_model *model, const struct wd_tree_model *grown);
 
 #endif
