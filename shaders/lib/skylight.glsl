@@ -62,8 +62,14 @@ float herbs_above(wd_shelter shelter, float height_m)
 }
 
 /* An eye within a stand sees those leaves of a place that lie under the others there: by so many more of their
- * tree's own. By path-traced oaks and beeches, and bench/light.json from within. */
-const float BELOW_LEAVES = 0.08;
+ * tree's own, looking down and looking up. By path-traced oaks and beeches, and three stands from within. */
+const float BELOW_LEAVES = 0.26, BELOW_LEAVES_UP = 0.08;
+
+/* `direction_z`: of the way from the eye. */
+float looks_up(float direction_z)
+{
+    return smoothstep(-0.2, 0.2, direction_z);
+}
 
 /* On a tree: what its own leaves let through, and of what the stand lets down to the ground as much as
  * there are leaves of it higher up: what of it is above the whole tree, and neighbours beside it. The
@@ -77,7 +83,8 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
     float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
     float over = crown.sward * wd_crown_per_m(crown.radii_m) * sward_depth_m(crown, pixel.rel);
     shelter.within = 1.0 - smoothstep(0.5, 1.0, -crown.foot_z / max(shelter.layer_m.y, 1.0));
-    float own = pow(max(pixel.openness, 1e-2), 1.0 + BELOW_LEAVES * shelter.within * (1.0 - herb));
+    float below = mix(BELOW_LEAVES, BELOW_LEAVES_UP, looks_up(pixel.direction.z));
+    float own = pow(max(pixel.openness, 1e-2), 1.0 + below * shelter.within * (1.0 - herb));
     float under = mix(higher, 1.0, above);
     vec4 stand = own * exp2(under * log2(shelter.through));
     shelter.through = mix(stand, shelter.through * own * exp(-0.7 * over), herb);
@@ -223,7 +230,8 @@ vec3 out_of_crowns(vec3 scatter, float mean)
 }
 
 /* Leaves lie next to others of their crown, which send them more of what they scatter than an even layer would and
- * than stems get: so many times as much. By path-traced crowns of three stands, one of them in autumn. */
+ * than stems get: of leaves that an eye below looks up to, so many times as much. By path-traced crowns of three
+ * stands, one of them in autumn. */
 const float NEXT_LEAVES = 1.8;
 
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
@@ -246,8 +254,9 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer and to path-traced
      * crowns from within. What an eye over the stand sees of upright faces looks out of a gap. */
     float own = min(mean * exp2(-shelter.under), 1.0), own4 = own * own * own * own;
-    float upright = mix(0.33 + 0.52 * own + 0.15 * own4, 1.0, smoothstep(0.15, 0.5, eye_z));
-    float near = mix(1.0, NEXT_LEAVES, alone.leaf);
+    float low = mix(0.40, 0.33, looks_up(-eye_z));
+    float upright = mix(low + (0.85 - low) * own + 0.15 * own4, 1.0, smoothstep(0.15, 0.5, eye_z));
+    float near = mix(1.0, NEXT_LEAVES, alone.leaf * looks_up(-eye_z));
     vec3 gain = mix(vec3(1.0), exp2((s - 1.0) * log2(mean)), near);
     vec3 sky = reach * gain * mix(upright, 1.0, abs(n.z));
     vec4 bright = quarters_bright(), faced = faced_quarters(n.xy);
