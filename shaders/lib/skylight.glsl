@@ -254,9 +254,9 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     /* Upright, less: low rays meet more leaves; numbers fitted to the integral over an even layer and to path-traced
      * crowns from within. What an eye over the stand sees of upright faces looks out of a gap. */
     float own = min(mean * exp2(-shelter.under), 1.0), own4 = own * own * own * own;
-    float low = mix(0.40, 0.33, looks_up(-eye_z));
+    float up_to = looks_up(-eye_z), low = mix(0.40, 0.33, up_to);
     float upright = mix(low + (0.85 - low) * own + 0.15 * own4, 1.0, smoothstep(0.15, 0.5, eye_z));
-    float near = mix(1.0, NEXT_LEAVES, alone.leaf * looks_up(-eye_z));
+    float near = mix(1.0, NEXT_LEAVES, alone.leaf * up_to);
     vec3 gain = mix(vec3(1.0), exp2((s - 1.0) * log2(mean)), near);
     vec3 sky = reach * gain * mix(upright, 1.0, abs(n.z));
     vec4 bright = quarters_bright(), faced = faced_quarters(n.xy);
@@ -298,7 +298,8 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 level = vec3(mirror.xy, high);
     vec3 ahead = mix(SKY_LEVELS(frame.sky_form, level), SKY_LEVELS(frame.sky_under, level), deep) / (0.5 + 0.5 * high);
     float rise_along = max(high, 0.1);
-    vec3 along = 1.0 / (1.0 - s * (0.6931 * shelter.beside * mix(ALONG, ALONG_WITHIN, shelter.within) / rise_along));
+    float ways = 0.6931 * mix(ALONG, ALONG_WITHIN, shelter.within * up_to);
+    vec3 along = 1.0 / (1.0 - s * (shelter.beside * ways / rise_along));
     float open = 0.5 * dot(alone.beside, faced_quarters(mirror.xy));
     around.mirrored = mix(upward_front, max(ahead, vec3(0.0)) * mix(along, vec3(open), alone.share)
                                             + scattered * (1.0 - alone.share), up_mirror);

@@ -101,7 +101,7 @@ static void check_light(const char *part, const struct sum *drawn, const struct 
 static const struct stand dark = {"scenes/bench75k.json", {300, 300}, 400};
 static const struct stand light = {"bench/light.json", {460, 250}, 180};
 
-/* 1.00 to 1.03 of the traced; 1.36 in red if leaves scatter the sun down as an even layer does and
+/* 0.98 to 0.99 of the traced; 1.36 in red if leaves scatter the sun down as an even layer does and
  * the sky about the sun comes by as short a way as in lighter stands. */
 static void a_dark_floor_is_as_bright_as_traced(void **state)
 {
