@@ -153,14 +153,17 @@ static void look_at_crowns(const struct stand *stand, struct sum *drawn, struct 
     painters_finish(&painters);
 }
 
+/* 0.93 to 0.99 of the traced; 1.20 in red if leaves let through a share of the side that is seen
+ * and what lies lower in crowns is lit as what lies higher. */
 static void crowns_from_within_are_as_bright_as_traced(void **state)
 {
     (void)state;
     struct sum drawn = {0}, traced = {0};
     look_at_crowns(&dark, &drawn, &traced);
-    check_light("crowns of a dark stand", &drawn, &traced, 1.25);
+    check_light("crowns of a dark stand", &drawn, &traced, 1.13);
 }
 
+/* 0.985; 0.935 if discs are as large from below as from above. */
 static void crowns_from_within_hide_as_much_of_the_sky_as_traced(void **state)
 {
     (void)state;
