@@ -1,5 +1,6 @@
-/* continuum against the path-traced truth: its error where trees are 1 to 1,024 pixels tall, beside that
- * of the truth's own noise, and how much more its pictures change from frame to frame than the truth's. */
+/* continuum against the path-traced truth: its error where trees are 1 to 1,024 pixels tall, beside
+ * that of the truth's own noise, and how much more its pictures change from frame to frame than the
+ * truth's. */
 #include "figures.h"
 
 #include <math.h>
@@ -8,29 +9,21 @@
 #include <string.h>
 
 #include "weald/compare.h"
-#include "weald/reference.h"
+#include "painters.h"
 
 static const char *const SCENE = "scenes/bench75k.json";
 enum { SAMPLES = 16 };
 
 /* Drawn and traced, of one forest. */
 struct pair {
-    struct wd_forest *forest;
-    struct wd_renderer *renderer;
-    struct wd_reference *reference;
+    struct painters by;
     struct wd_picture drawn, traced, half;
 };
 
 static bool pair_open(struct pair *pair, const char *gpu)
 {
-    const struct wd_forest_params forest = {.scene_path = SCENE};
-    const struct wd_renderer_params renderer = {.gpu = gpu};
-    const struct wd_reference_params reference = {0};
     *pair = (struct pair){0};
-    return wd_forest_create(&pair->forest, &forest) == WD_OK &&
-           wd_renderer_create(&pair->renderer, &renderer) == WD_OK &&
-           wd_renderer_set_forest(pair->renderer, pair->forest) == WD_OK &&
-           wd_reference_create(&pair->reference, pair->forest, &reference) == WD_OK;
+    return painters_init(&pair->by, SCENE, NULL, gpu);
 }
 
 static void pair_close(struct pair *pair)
@@ -38,9 +31,7 @@ static void pair_close(struct pair *pair)
     wd_picture_finish(&pair->drawn);
     wd_picture_finish(&pair->traced);
     wd_picture_finish(&pair->half);
-    wd_reference_destroy(&pair->reference);
-    wd_renderer_destroy(&pair->renderer);
-    wd_forest_destroy(&pair->forest);
+    painters_finish(&pair->by);
 }
 
 struct shot {
@@ -60,7 +51,7 @@ static bool trace_half(struct pair *pair, const struct shot *shot, uint32_t stre
                                                       .stream = stream,
                                                       .layers = LAYERS};
     wd_picture_finish(picture);
-    return wd_reference_render(pair->reference, &trace, picture) == WD_OK;
+    return wd_reference_render(pair->by.reference, &trace, picture) == WD_OK;
 }
 
 static bool shoot(struct pair *pair, const struct shot *shot)
@@ -72,7 +63,7 @@ static bool shoot(struct pair *pair, const struct shot *shot)
                                           .method = "continuum",
                                           .layers = LAYERS};
     wd_picture_finish(&pair->drawn);
-    return wd_renderer_render(pair->renderer, &draw, &pair->drawn) == WD_OK &&
+    return wd_renderer_render(pair->by.renderer, &draw, &pair->drawn) == WD_OK &&
            trace_half(pair, shot, 0, &pair->traced) && trace_half(pair, shot, 1, &pair->half);
 }
 
@@ -89,15 +80,16 @@ static bool join_halves(struct pair *pair, double *noise)
     return true;
 }
 
-/* --- error by height in pixels ----------------------------------------------------------------- */
+/* --- error by height in pixels -----------------------------------------------------------------
+ */
 
-/* Pictures of trees this tall and less show dozens of them; of larger ones, parts of a crown, and one place
- * tells little of others. */
+/* Pictures of trees this tall and less show dozens of them; of larger ones, parts of a crown, and
+ * one place tells little of others. */
 enum { MANY_TREES_PX = 64, PLACES = 4 };
 static const double places_m[PLACES][2] = {{500, 500}, {400, 400}, {600, 600}, {400, 600}};
 
-/* Toward a place of the square kilometre, 30 degrees down, so far off that trees of the mean height have
- * so many pixels. */
+/* Toward a place of the square kilometre, 30 degrees down, so far off that trees of the mean height
+ * have so many pixels. */
 static struct shot shot_of_height(const struct wd_forest *forest, int tall_px,
                                   const double place_m[2])
 {
@@ -126,7 +118,7 @@ static bool measure_height(struct pair *pair, int tall_px, struct height_error *
     int places = tall_px > MANY_TREES_PX ? PLACES : 1;
     *mean = (struct height_error){0};
     for (int i = 0; i < places; i++) {
-        const struct shot shot = shot_of_height(pair->forest, tall_px, places_m[i]);
+        const struct shot shot = shot_of_height(pair->by.forest, tall_px, places_m[i]);
         struct wd_comparison found;
         double noise;
         if (!shoot(pair, &shot) || !join_halves(pair, &noise) ||
@@ -165,7 +157,8 @@ bool bench_continuum_flip(const char *gpu)
     return ok;
 }
 
-/* --- change from frame to frame ---------------------------------------------------------------- */
+/* --- change from frame to frame ----------------------------------------------------------------
+ */
 
 enum { WIDTH = 96, HEIGHT = 56, BLOCK = 4, BLOCKS = WIDTH / BLOCK * (HEIGHT / BLOCK), STEPS = 5 };
 static const double STEP_M = 0.25;
@@ -198,7 +191,7 @@ static bool add_view(struct pair *pair, const char *view, double changes[2])
     struct shot shot = {.width = WIDTH, .height = HEIGHT, .paths = 256};
     struct blocks drawn[2], traced[2];
     double own[2] = {0.0, 0.0};
-    if (wd_forest_get_camera(pair->forest, view, &shot.camera) != WD_OK)
+    if (wd_forest_get_camera(pair->by.forest, view, &shot.camera) != WD_OK)
         return false;
     for (int step = 0; step < STEPS; step++) {
         int now = step % 2;

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "weald/reference.h"
+#include "painters.h"
 
 static const char scene[] = "bench/light.json";
 
@@ -70,12 +70,6 @@ static double print_view(const char *light, const char *view, const struct sums 
     return worst;
 }
 
-struct painters {
-    struct wd_forest *forest;
-    struct wd_renderer *renderer;
-    struct wd_reference *reference;
-};
-
 static bool compare_view(const struct painters *painters, const char *light, const char *view,
                          double *worst)
 {
@@ -93,8 +87,7 @@ static bool compare_view(const struct painters *painters, const char *light, con
     struct sums drawn_sums = {0}, traced_sums = {0};
     bool ok = wd_forest_get_camera(painters->forest, view, &trace.camera) == WD_OK;
     draw.camera = trace.camera;
-    ok = ok && wd_renderer_render(painters->renderer, &draw, &drawn) == WD_OK &&
-         wd_reference_render(painters->reference, &trace, &traced) == WD_OK;
+    ok = ok && painters_paint(painters, &draw, &trace, &drawn, &traced);
     if (ok) {
         add_picture(&drawn_sums, &drawn, &traced);
         add_picture(&traced_sums, &traced, &traced);
@@ -107,20 +100,11 @@ static bool compare_view(const struct painters *painters, const char *light, con
 
 static bool compare_light(const struct light *light, const char *gpu, double *worst)
 {
-    const struct wd_forest_params forest_params = {.scene_path = scene,
-                                                   .settings = light->settings};
-    const struct wd_renderer_params renderer_params = {.gpu = gpu};
-    const struct wd_reference_params reference_params = {0};
-    struct painters painters = {0};
-    bool ok = wd_forest_create(&painters.forest, &forest_params) == WD_OK &&
-              wd_renderer_create(&painters.renderer, &renderer_params) == WD_OK &&
-              wd_renderer_set_forest(painters.renderer, painters.forest) == WD_OK &&
-              wd_reference_create(&painters.reference, painters.forest, &reference_params) == WD_OK;
+    struct painters painters;
+    bool ok = painters_init(&painters, scene, light->settings, gpu);
     for (size_t i = 0; ok && i < sizeof views / sizeof *views; i++)
         ok = compare_view(&painters, light->name, views[i], worst);
-    wd_renderer_destroy(&painters.renderer);
-    wd_reference_destroy(&painters.reference);
-    wd_forest_destroy(&painters.forest);
+    painters_finish(&painters);
     return ok;
 }
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "weald/reference.h"
+#include "painters.h"
 
 enum { SIDE = 64, TRACED_SAMPLES = 24, DRAWN_SAMPLES = 8, ANGLES = 11 };
 
@@ -42,10 +42,9 @@ static double luminance(const struct wd_picture *picture)
     return sum / (double)pixels;
 }
 
-static bool measure_angle(const struct wd_forest *forest, struct wd_renderer *renderer,
-                          struct wd_reference *reference, double angle_deg, double *worst)
+static bool measure_angle(const struct painters *painters, double angle_deg, double *worst)
 {
-    struct wd_camera camera = camera_at(forest, angle_deg);
+    struct wd_camera camera = camera_at(painters->forest, angle_deg);
     const struct wd_render_params draw = {.camera = camera,
                                           .width = SIDE,
                                           .height = SIDE,
@@ -58,8 +57,7 @@ static bool measure_angle(const struct wd_forest *forest, struct wd_renderer *re
                                                       .samples = TRACED_SAMPLES,
                                                       .layers = WD_LAYER_COLOR};
     struct wd_picture drawn = {0}, traced = {0};
-    bool ok = wd_renderer_render(renderer, &draw, &drawn) == WD_OK &&
-              wd_reference_render(reference, &trace, &traced) == WD_OK;
+    bool ok = painters_paint(painters, &draw, &trace, &drawn, &traced);
     if (ok) {
         double a = luminance(&drawn), b = luminance(&traced), error = 100 * (a / b - 1);
         printf("%6.0f %9.5f %9.5f %+7.1f %%\n", angle_deg, a, b, error);
@@ -72,25 +70,16 @@ static bool measure_angle(const struct wd_forest *forest, struct wd_renderer *re
 
 bool bench_reflectance(const char *gpu)
 {
-    const struct wd_forest_params forest_params = {.scene_path = "bench/canopy.json"};
-    const struct wd_renderer_params renderer_params = {.gpu = gpu};
-    const struct wd_reference_params reference_params = {0};
-    struct wd_forest *forest = NULL;
-    struct wd_renderer *renderer = NULL;
-    struct wd_reference *reference = NULL;
+    struct painters painters;
     double worst = 0;
-    bool ok = wd_forest_create(&forest, &forest_params) == WD_OK &&
-              wd_renderer_create(&renderer, &renderer_params) == WD_OK &&
-              wd_renderer_set_forest(renderer, forest) == WD_OK &&
-              wd_reference_create(&reference, forest, &reference_params) == WD_OK;
+    bool ok = painters_init(&painters, "bench/canopy.json", NULL, gpu);
     if (ok)
-        printf("degrees from the zenith (sun at 40), luminance drawn and traced, drawn over traced\n");
+        printf(
+            "degrees from the zenith (sun at 40), luminance drawn and traced, drawn over traced\n");
     for (int i = 0; ok && i < ANGLES; i++)
-        ok = measure_angle(forest, renderer, reference, angles_deg[i], &worst);
+        ok = measure_angle(&painters, angles_deg[i], &worst);
     if (ok)
         printf("brf-error-pct %.1f %%\n", worst);
-    wd_renderer_destroy(&renderer);
-    wd_reference_destroy(&reference);
-    wd_forest_destroy(&forest);
+    painters_finish(&painters);
     return ok;
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "weald/reference.h"
+#include "painters.h"
 
 enum { WIDTH = 64, HEIGHT = 48, TRACED_SAMPLES = 64, DRAWN_SAMPLES = 4, PLACES = 12 };
 static const double EYE_M = 1.7, DOWN_RAD = 1.309, FOV_RAD = 1.222;
@@ -41,32 +41,6 @@ static struct wd_camera camera_at(const struct wd_forest *forest, const struct s
                               .fov_rad = FOV_RAD};
 }
 
-struct painters {
-    struct wd_forest *forest;
-    struct wd_renderer *renderer;
-    struct wd_reference *reference;
-};
-
-static bool painters_init(struct painters *painters, const char *scene, const char *const *settings,
-                          const char *gpu)
-{
-    const struct wd_forest_params forest_params = {.scene_path = scene, .settings = settings};
-    const struct wd_renderer_params renderer_params = {.gpu = gpu};
-    const struct wd_reference_params reference_params = {0};
-    *painters = (struct painters){0};
-    return wd_forest_create(&painters->forest, &forest_params) == WD_OK &&
-           wd_renderer_create(&painters->renderer, &renderer_params) == WD_OK &&
-           wd_renderer_set_forest(painters->renderer, painters->forest) == WD_OK &&
-           wd_reference_create(&painters->reference, painters->forest, &reference_params) == WD_OK;
-}
-
-static void painters_finish(struct painters *painters)
-{
-    wd_renderer_destroy(&painters->renderer);
-    wd_reference_destroy(&painters->reference);
-    wd_forest_destroy(&painters->forest);
-}
-
 /* --- floors under an even sky --------------------------------------------------------------- */
 
 static bool add_place(const struct painters *painters, const struct stand *stand, int place,
@@ -84,8 +58,7 @@ static bool add_place(const struct painters *painters, const struct stand *stand
                                                       .samples = TRACED_SAMPLES,
                                                       .layers = WD_LAYER_COLOR};
     struct wd_picture drawn = {0}, traced = {0};
-    bool ok = wd_renderer_render(painters->renderer, &draw, &drawn) == WD_OK &&
-              wd_reference_render(painters->reference, &trace, &traced) == WD_OK;
+    bool ok = painters_paint(painters, &draw, &trace, &drawn, &traced);
     if (ok) {
         sums[0] += luminance(&drawn);
         sums[1] += luminance(&traced);
@@ -210,8 +183,7 @@ static bool add_view(const struct painters *painters, const struct stand *stand,
                                                       .places = WD_REFERENCE_MIDDLES,
                                                       .layers = layers};
     struct wd_picture picture = {0}, truth = {0};
-    bool ok = wd_renderer_render(painters->renderer, &draw, &picture) == WD_OK &&
-              wd_reference_render(painters->reference, &trace, &truth) == WD_OK;
+    bool ok = painters_paint(painters, &draw, &trace, &picture, &truth);
     if (ok) {
         add_parts(drawn, &picture, down);
         add_parts(traced, &truth, down);
