@@ -345,11 +345,13 @@ vec3 leaves_albedo()
  * see, and one toward the sun discs that are lit where these are in each other's shade: factors on the sun's light
  * and on the sky's. By path-traced oaks, beeches, spruces and birches, from 4 and 40 degrees above, under suns 0 to
  * 150 degrees from the eye. */
-vec2 free_disc_light(vec3 eye)
+vec2 free_disc_light(vec3 eye, wd_crown crown)
 {
+    float tree = smoothstep(0.5, 1.0, crown.radii_m.z); /* few leaves of a herb lie behind others */
     float from_above = smoothstep(0.1, 0.6, eye.z);
     float backlit = smoothstep(-0.2, -0.8, dot(eye, frame.sun_direction));
-    return vec2(mix(0.97, 1.1, from_above) * mix(1.0, 0.78, backlit), mix(1.05, 1.15, from_above));
+    vec2 of_tree = vec2(mix(0.97, 1.1, from_above) * mix(1.0, 0.78, backlit), mix(1.05, 1.15, from_above));
+    return mix(vec2(1.0), of_tree, tree);
 }
 
 bool is_disc(wd_pixel pixel)
@@ -385,7 +387,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.known = mix(alone.share, 1.0, from_above);
     alone.side = mix(vec4(1.0), eye_side(-pixel.direction), one_leaf ? alone.share : 0.0);
     alone.lets.xy *= 1.0 + alone.share * (one_leaf ? LOW_SKY_LEAF : LOW_SKY_CLOUD) * brighter_low_sky();
-    alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction).y, alone.share) : 1.0;
+    alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown).y, alone.share) : 1.0;
     alone.again = scattered_on(pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance)
                                                                   : leaves_albedo());
 }
@@ -563,7 +565,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
     place.sheet = fine > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
-    light_disc(place, pixel, crown, model, hot * mix(1.0, free_disc_light(eye).x, free), cascade);
+    light_disc(place, pixel, crown, model, hot * mix(1.0, free_disc_light(eye, crown).x, free), cascade);
     place.transmittance *= mix(model.through_below, 1.0, place.waxed);
     return place;
 }

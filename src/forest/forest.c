@@ -259,6 +259,21 @@ static bool closes_over_ground(const struct preparation *work, uint32_t index)
     return layers >= CLOSED_LAYERS;
 }
 
+/* What wd_lit_leaves tells of grasses by its roughness: -1 less where they close over the ground; as of other
+ * plants where none do, so that tufts stand free. */
+static void tell_swards(struct wd_lit_model *lit, const struct preparation *work)
+{
+    uint32_t count = work->forest->model_count;
+    bool sward = false;
+    for (uint32_t i = 0; i < count; i++) {
+        bool closes = closes_over_ground(work, i);
+        lit[i].leaves.roughness -= closes ? 1.0f : 0.0f;
+        sward |= closes;
+    }
+    for (uint32_t i = 0; i < count && !sward; i++)
+        lit[i].leaves.roughness = fabsf(lit[i].leaves.roughness);
+}
+
 static bool make_lit_models(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
@@ -267,8 +282,8 @@ static bool make_lit_models(struct preparation *work, struct wd_gpu *gpu)
     for (uint32_t i = 0; i < forest->model_count; i++) {
         wd_variant_describe_light(&lit[i], &forest->scene->species[i / forest->variants], &forest->host_models[i],
                                   &work->grown[i]);
-        lit[i].leaves.roughness -= closes_over_ground(work, i) ? 1.0f : 0.0f;
     }
+    tell_swards(lit, work);
     const struct wd_buffer_params params = {.name = "light of models",
                                             .size = size,
                                             .memory = WD_MEMORY_DEVICE,
