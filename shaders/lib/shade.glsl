@@ -642,7 +642,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
     vec3 skylit = past.y * (around.front * within + sheen * place.waxed + around.back * transmitted);
     float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
-    float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + 0.2) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
+    float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);
     float about_sun = mix(wide_way, leaf_way, pixel.surface == 0u ? 0.0 : NEAR_SUN);
     vec3 from_sun = frame.sun_irradiance * sun_share + frame.circumsolar * about_sun;
