@@ -154,11 +154,13 @@ static const float DISC_TEXEL_M = 0.07f;
 
 /* Texels, each way, for one of the splats' own. Beyond the cascades of leaves there are crowns. Two in the
  * second would spare a tenth of a walk's frame, but at 256 px FLIP is 0.016 more. */
-static uint32_t disc_texels(const struct wd_view *view)
+static uint32_t disc_texels(const struct wd_tree_draw *draw)
 {
+    const struct wd_view *view = draw->view;
+    float largest_m = DISC_TEXEL_M / sqrtf(free_samples(draw));
     uint32_t texels = view->cascade < WD_LEAF_CASCADES ? 1 : 2;
     while (view->cascade == 0 && texels < 4 &&
-           2.0f * (float)texels <= DISC_TEXEL_M * wd_texels_per_m(view))
+           2.0f * (float)texels <= largest_m * wd_texels_per_m(view))
         texels *= 2;
     return view->width % texels ? 1 : texels;
 }
@@ -171,7 +173,7 @@ static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw 
         (float)draw->forest->scene->methods.continuum.shadow_density * detail * detail;
     values->min_splats = WD_SPLAT_STRATA;
     values->cascade_records = cascade_records(values->tree_capacity, draw->forest->world->tree_count);
-    values->texels = disc_texels(view);
+    values->texels = disc_texels(draw);
     values->width /= values->texels;
     values->height /= values->texels;
     values->pixels = wd_texels_per_m(view) / (float)values->texels;
