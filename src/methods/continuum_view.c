@@ -153,12 +153,15 @@ static uint32_t cascade_records(uint32_t capacity, size_t trees)
 static const float DISC_TEXEL_M = 0.07f;
 
 /* Texels, each way, for one of the splats' own. Beyond the cascades of leaves there are crowns. Two in the
- * second would spare a tenth of a walk's frame, but at 256 px FLIP is 0.016 more. */
+ * second would spare a tenth of a walk's frame, but at 256 px FLIP is 0.016 more. Pictures of
+ * some samples, whose maps are drawn once, have one. */
+static const float SOME_SAMPLES = 4.0f;
+
 static uint32_t disc_texels(const struct wd_tree_draw *draw)
 {
     const struct wd_view *view = draw->view;
-    float largest_m = DISC_TEXEL_M / sqrtf(free_samples(draw));
-    uint32_t texels = view->cascade < WD_LEAF_CASCADES ? 1 : 2;
+    float samples = free_samples(draw), largest_m = DISC_TEXEL_M / sqrtf(samples);
+    uint32_t texels = view->cascade < WD_LEAF_CASCADES || samples >= SOME_SAMPLES ? 1 : 2;
     while (view->cascade == 0 && texels < 4 &&
            2.0f * (float)texels <= largest_m * wd_texels_per_m(view))
         texels *= 2;
