@@ -21,6 +21,7 @@ struct wd_shelter {
     float low;        /* 1: on the ground, whose light comes from right beside the place; 0: far over it */
     float floor_herbs; /* log2 of the share of light that herbs between leave the ground */
     float within;      /* 1: the eye is below the stand's tops, 0: over them */
+    float snow;        /* share of the ground that lies under it */
 };
 
 /* Skylight past herbs that have so many layers over a place. Slanting rays meet more of them, but leaves let
@@ -41,6 +42,7 @@ wd_shelter ground_shelter(wd_pixel pixel)
     shelter.low = 0.0;
     shelter.floor_herbs = 0.0;
     shelter.within = 0.0;
+    shelter.snow = wd_snow_mean(pixel.rel.z + float(frame.camera_mm[2]) * 0.001);
     shelter.through = max(field * field, vec4(1e-3));
     shelter.floor_mean = dot(shelter.through, vec4(0.25));
     shelter.under = shelter.beside = log2(shelter.floor_mean);
@@ -279,6 +281,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 deep_albedo = (1.0 - s) / (1.0 + s);
     vec3 floor_albedo = mix(deep_albedo, mix(frame.grass, frame.litter, covered),
                             exp2(2.0 * s * shelter.floor_herbs));
+    floor_albedo = mix(floor_albedo, WD_SNOW_ALBEDO, shelter.snow);
     vec3 below = mix(deep_albedo, floor_albedo, exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
     vec3 upward = below * (open_sky * sky + with_scattered);
     vec3 beside = alone.again * floor_albedo * (sky_level(alone.beside) + sun);

@@ -1,4 +1,4 @@
-/* snow.h: fresh snow on what trees are made of. Shaders declare `frame` before they include this. */
+/* snow.h: snow on what trees are made of, and how much of it lies around them. Shaders declare `frame` before they include this. */
 #ifndef WD_SHARED_SNOW_H
 #define WD_SHARED_SNOW_H
 
@@ -23,6 +23,15 @@ WD_FUNC float wd_snow_share_on(WD_FRAME_IN WD_VECTOR rel, WD_VECTOR normal, floa
     float edge = WD_MIX(0.28f, 0.10f, fine);
     return WD_FRAME(snow) * WD_SMOOTH(0.45f - edge, 0.45f + edge, pad)
            * WD_SMOOTH(-0.05f, 0.35f, normal.z);
+}
+
+/* Mean share of level ground under snow, so high over the world's zero: of wd_snow_share
+ * (shared/ground_cover.h), which is patches. */
+WD_FUNC float wd_snow_mean(WD_FRAME_IN float height_m)
+{
+    float above_line = WD_SMOOTH(-160.0f, 160.0f, height_m + 54.0f - WD_FRAME(snow_line_m));
+    float fresh = WD_SMOOTH(-0.35f, 0.85f, 1.6f * WD_FRAME(snow) - 0.45f);
+    return WD_MAX(above_line, WD_FRAME(snow) > 0.0f ? fresh : 0.0f);
 }
 
 #endif

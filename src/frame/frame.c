@@ -84,7 +84,7 @@ static bool prepare_pipelines(struct wd_frame *frame)
 
 /* Pictures of so many samples draw their shadow maps once for all of these, and show finer shadows than one
  * sample does: their maps are twice as wide, up to so many texels. FLIP of trees of 256 px falls by 0.016. */
-enum { FINE_SAMPLES = 8, FINE_TEXELS = 2048 };
+enum { FINE_SAMPLES = 4, FINE_TEXELS = 2048 };
 
 static uint32_t shadow_size_of(const struct wd_frame_params *params)
 {

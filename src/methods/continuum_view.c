@@ -136,7 +136,7 @@ struct wd_near_rule wd_continuum_near_rule(const struct wd_tree_draw *draw,
     if (options->near_px > 0.0)
         rule.reach = draw->view->pixels_per_radian * wd_continuum_detail(draw) *
                      near_farther(draw) / (float)options->near_px;
-    if (draw->pass == WD_PASS_SHADOW && draw->view->cascade == 0)
+    if (draw->pass == WD_PASS_SHADOW && draw->view->cascade == 0 && free_samples(draw) < 4.0f)
         rule.reach *= FIRST_REACH;
     rule.farthest_m = fmaxf(rule.leaves_m, rule.reach * forest->coarsest_m);
     return rule;
