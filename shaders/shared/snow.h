@@ -1,4 +1,5 @@
-/* snow.h: snow on what trees are made of, and how much of it lies around them. Shaders declare `frame` before they include this. */
+/* snow.h: snow on what trees are made of, and how much of it lies around them. Shaders declare `frame`
+ * before they include this. */
 #ifndef WD_SHARED_SNOW_H
 #define WD_SHARED_SNOW_H
 

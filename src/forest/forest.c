@@ -279,10 +279,9 @@ static bool make_lit_models(struct preparation *work, struct wd_gpu *gpu)
     struct wd_forest_device *forest = work->forest;
     size_t size = forest->model_count * sizeof(struct wd_lit_model);
     struct wd_lit_model *lit = wd_alloc_array(forest->model_count, sizeof *lit);
-    for (uint32_t i = 0; i < forest->model_count; i++) {
+    for (uint32_t i = 0; i < forest->model_count; i++)
         wd_variant_describe_light(&lit[i], &forest->scene->species[i / forest->variants], &forest->host_models[i],
                                   &work->grown[i]);
-    }
     tell_swards(lit, work);
     const struct wd_buffer_params params = {.name = "light of models",
                                             .size = size,

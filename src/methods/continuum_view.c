@@ -120,7 +120,10 @@ static bool holds_leaves(const struct wd_view *view)
     return view->cascade < WD_LEAF_CASCADES && !view->box.calm;
 }
 
-/* Of the reach of meshes in the first cascade: it is for what lies close by; crowns farther off have
+/* Pictures of so many samples have finer maps: one set is drawn for all of them. */
+static const float FINE_SAMPLES = 4.0f;
+
+/* Of the reach of meshes in the first cascade of others: it is for what lies close by; crowns farther off have
  * penumbras wider than discs. With all of it walks cost a tenth more, with a quarter an understory's FLIP
  * is 0.05 more, with this 0.002. */
 static const float FIRST_REACH = 0.5f;
@@ -136,7 +139,7 @@ struct wd_near_rule wd_continuum_near_rule(const struct wd_tree_draw *draw,
     if (options->near_px > 0.0)
         rule.reach = draw->view->pixels_per_radian * wd_continuum_detail(draw) *
                      near_farther(draw) / (float)options->near_px;
-    if (draw->pass == WD_PASS_SHADOW && draw->view->cascade == 0 && free_samples(draw) < 4.0f)
+    if (draw->pass == WD_PASS_SHADOW && draw->view->cascade == 0 && free_samples(draw) < FINE_SAMPLES)
         rule.reach *= FIRST_REACH;
     rule.farthest_m = fmaxf(rule.leaves_m, rule.reach * forest->coarsest_m);
     return rule;
@@ -153,15 +156,12 @@ static uint32_t cascade_records(uint32_t capacity, size_t trees)
 static const float DISC_TEXEL_M = 0.07f;
 
 /* Texels, each way, for one of the splats' own. Beyond the cascades of leaves there are crowns. Two in the
- * second would spare a tenth of a walk's frame, but at 256 px FLIP is 0.016 more. Pictures of
- * some samples, whose maps are drawn once, have one. */
-static const float SOME_SAMPLES = 4.0f;
-
+ * second would spare a tenth of a walk's frame, but at 256 px FLIP is 0.016 more. */
 static uint32_t disc_texels(const struct wd_tree_draw *draw)
 {
     const struct wd_view *view = draw->view;
     float samples = free_samples(draw), largest_m = DISC_TEXEL_M / sqrtf(samples);
-    uint32_t texels = view->cascade < WD_LEAF_CASCADES || samples >= SOME_SAMPLES ? 1 : 2;
+    uint32_t texels = view->cascade < WD_LEAF_CASCADES || samples >= FINE_SAMPLES ? 1 : 2;
     while (view->cascade == 0 && texels < 4 &&
            2.0f * (float)texels <= largest_m * wd_texels_per_m(view))
         texels *= 2;
