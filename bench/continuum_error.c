@@ -1,6 +1,6 @@
 /* continuum against the path-traced truth: its error where trees are 1 to 1,024 pixels tall, beside
- * that of the truth's own noise, and how much more its pictures change from frame to frame than the
- * truth's. */
+ * that of the truth's own noise and of as many paths as it has samples, and how much more its
+ * pictures change from frame to frame than the truth's. */
 #include "figures.h"
 
 #include <math.h>
@@ -41,17 +41,20 @@ struct shot {
 
 static const uint32_t LAYERS = WD_LAYER_COLOR | WD_LAYER_TREE_ID;
 
-static bool trace_half(struct pair *pair, const struct shot *shot, uint32_t stream,
-                       struct wd_picture *picture)
+/* Streams of random numbers. */
+enum { FIRST_HALF, OTHER_HALF, AS_MANY };
+
+static bool trace(struct pair *pair, const struct shot *shot, uint32_t paths, uint32_t stream,
+                  struct wd_picture *picture)
 {
-    const struct wd_reference_picture_params trace = {.camera = shot->camera,
-                                                      .width = shot->width,
-                                                      .height = shot->height,
-                                                      .samples = shot->paths / 2,
-                                                      .stream = stream,
-                                                      .layers = LAYERS};
+    const struct wd_reference_picture_params params = {.camera = shot->camera,
+                                                       .width = shot->width,
+                                                       .height = shot->height,
+                                                       .samples = paths,
+                                                       .stream = stream,
+                                                       .layers = LAYERS};
     wd_picture_finish(picture);
-    return wd_reference_render(pair->by.reference, &trace, picture) == WD_OK;
+    return wd_reference_render(pair->by.reference, &params, picture) == WD_OK;
 }
 
 static bool shoot(struct pair *pair, const struct shot *shot)
@@ -64,7 +67,8 @@ static bool shoot(struct pair *pair, const struct shot *shot)
                                           .layers = LAYERS};
     wd_picture_finish(&pair->drawn);
     return wd_renderer_render(pair->by.renderer, &draw, &pair->drawn) == WD_OK &&
-           trace_half(pair, shot, 0, &pair->traced) && trace_half(pair, shot, 1, &pair->half);
+           trace(pair, shot, shot->paths / 2, FIRST_HALF, &pair->traced) &&
+           trace(pair, shot, shot->paths / 2, OTHER_HALF, &pair->half);
 }
 
 /* Makes `traced` the mean of both halves. `noise`: FLIP between the halves. What is left in
@@ -110,6 +114,7 @@ static struct shot shot_of_height(const struct wd_forest *forest, int tall_px,
 
 struct height_error {
     double flip, noise, coverage_pct, tree_pct;
+    double traced; /* FLIP of as many paths as samples are drawn */
 };
 
 /* Means over the places. */
@@ -119,13 +124,16 @@ static bool measure_height(struct pair *pair, int tall_px, struct height_error *
     *mean = (struct height_error){0};
     for (int i = 0; i < places; i++) {
         const struct shot shot = shot_of_height(pair->by.forest, tall_px, places_m[i]);
-        struct wd_comparison found;
+        struct wd_comparison found, traced;
         double noise;
         if (!shoot(pair, &shot) || !join_halves(pair, &noise) ||
-            wd_picture_compare(&found, &pair->traced, &pair->drawn, NULL, NULL) != WD_OK)
+            !trace(pair, &shot, SAMPLES, AS_MANY, &pair->half) ||
+            wd_picture_compare(&found, &pair->traced, &pair->drawn, NULL, NULL) != WD_OK ||
+            wd_picture_compare(&traced, &pair->traced, &pair->half, NULL, NULL) != WD_OK)
             return false;
         mean->flip += found.flip / places;
         mean->noise += noise / places;
+        mean->traced += traced.flip / places;
         mean->coverage_pct += found.coverage_bias_pct / places;
         mean->tree_pct += found.tree_bias_pct / places;
     }
@@ -135,7 +143,7 @@ static bool measure_height(struct pair *pair, int tall_px, struct height_error *
 bool bench_continuum_flip(const char *gpu)
 {
     struct pair pair;
-    double sum = 0.0, noises = 0.0;
+    double sum = 0.0, noises = 0.0, traced = 0.0;
     int count = 0;
     bool ok = pair_open(&pair, gpu);
     for (int tall_px = 1; ok && tall_px <= 1024; tall_px *= 2, count++) {
@@ -143,17 +151,20 @@ bool bench_continuum_flip(const char *gpu)
         ok = measure_height(&pair, tall_px, &found);
         if (!ok)
             break;
-        printf("trees of %4d px: FLIP %.3f (noise of each half of the paths %.3f), coverage "
-               "%+5.1f %%, radiance of trees %+5.1f %%\n",
-               tall_px, found.flip, found.noise, found.coverage_pct, found.tree_pct);
+        printf("trees of %4d px: FLIP %.3f (traced with %d paths %.3f, halves of the truth %.3f), "
+               "coverage %+5.1f %%, radiance of trees %+5.1f %%\n",
+               tall_px, found.flip, SAMPLES, found.traced, found.noise, found.coverage_pct,
+               found.tree_pct);
         fflush(stdout);
         sum += found.flip;
         noises += found.noise;
+        traced += found.traced;
     }
     pair_close(&pair);
     if (ok)
-        printf("mean FLIP between two halves of the paths %.3f\ncontinuum-flip %.3f FLIP\n",
-               noises / count, sum / count);
+        printf("mean FLIP between two halves of the truth %.3f, of %d paths %.3f\n"
+               "continuum-flip %.3f FLIP\n",
+               noises / count, SAMPLES, traced / count, sum / count);
     return ok;
 }
 
