@@ -71,7 +71,7 @@ static bool write_scene(struct bias_stand *stand, const char *species)
                        "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40},\n"
                        "\"wind\": {\"speed_mps\": 0}, \"fog\": {\"visibility_m\": 10000000},\n"
                        "\"quality\": {\"shadow_distance_m\": %g}}\n",
-                side, side, root, species, 1.2 * EYE_HEIGHTS * stand->height_m);
+                side, side, root, species, 1.45 * EYE_HEIGHTS * stand->height_m);
     }
     ok = (!trees || fclose(trees) == 0) && (!scene || fclose(scene) == 0) && ok;
     if (!ok)

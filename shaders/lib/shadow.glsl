@@ -31,14 +31,15 @@ mat4 shadow_from_rel(uint cascade)
                 shadow_column(3u, cascade));
 }
 
-/* The cascade for a distance along the view axis; WD_CASCADES beyond the last. Slices overlap by a
- * tenth, and noise picks one of both, so that no seam shows. */
+/* The cascade for a distance along the view axis; WD_CASCADES beyond the last. Where slices overlap
+ * noise picks one of both, so that no seam shows. */
 uint shadow_cascade(float axis_m, float noise)
 {
-    float at_m = axis_m / (0.9 + 0.1 * noise);
     uint cascade = 0u;
-    for (uint i = 0u; i < WD_CASCADES; i++)
-        cascade += uint(at_m >= frame.cascades[i][WD_CASCADE_FAR_M]);
+    for (uint i = 0u; i < WD_CASCADES; i++) {
+        float end_m = frame.cascades[i][WD_CASCADE_FAR_M] - (1.0 - noise) * frame.cascades[i][WD_CASCADE_FADE_M];
+        cascade += uint(axis_m >= end_m);
+    }
     return cascade;
 }
 

@@ -27,6 +27,7 @@
 #define WD_CASCADE_FAR_M 0   /* distance from the camera at which it ends */
 #define WD_CASCADE_TEXEL_M 1 /* size of a texel on the ground, over w */
 #define WD_CASCADE_DEPTH_M 2 /* depth range that z 0..1 spans, over w */
+#define WD_CASCADE_FADE_M 3  /* so far before its end the next begins */
 
 /* values of view_mode: as enum wd_view_mode of weald/renderer.h */
 #define WD_MODE_LIT 0

@@ -7,12 +7,16 @@
 
 /* A cascade ends at this share of the next one's distance. */
 static const double CASCADE_RATIO = 0.28;
-/* The farthest ground seen is counted in steps of this, so that a moving camera seldom changes it. */
-static const double FARTHEST_STEP = 1.1;
+/* The nearest and the farthest seen are counted in steps of these, so that a moving camera seldom changes
+ * them; in smaller ones, so many from one to the other, where a long lens sees them close together. */
+static const double NEAREST_STEP = 1.5, FARTHEST_STEP = 1.1, STEPS_BETWEEN = 8.0;
 /* Through a long lens a slice is a rod: where a square about it is smaller than this share of the
  * sphere, the map holds that. Its size is counted in steps, too. */
 static const double LENS_SHARE = 0.7;
 static const double SIZE_STEP = 1.1;
+/* Slices overlap where one fades into the next: by a share of the way to the first's end, where it is
+ * thin by one of itself. */
+static const double FADE = 0.1, FADE_THIN = 0.15;
 /* Look-ups of what lies at a slice's edge. */
 static const double LOOK_MARGIN_M = 0.2;
 /* Cascades of leaves are not calm where anything is seen from nearer than this, or through a longer lens from
@@ -160,26 +164,33 @@ static void cascade_view(struct wd_view *cascade, const struct wd_view *view, co
     cascade->frustum.count = 5;
 }
 
-/* Where cascade i ends: a fixed ratio between neighbours, drawn out so that the first begins at the
- * nearest thing seen; that is counted in whole steps, so that a moving camera seldom changes it. */
-static double split_end(const struct wd_cascades_params *params, int i)
+/* Metres that the camera sees, as cascades share them out. */
+struct seen {
+    double near, far;
+};
+
+static struct seen seen_range(const struct wd_cascades_params *params)
 {
     double first = params->distance_m * pow(CASCADE_RATIO, WD_CASCADES);
-    if (params->nearest_m <= first)
-        return params->distance_m * pow(CASCADE_RATIO, WD_CASCADES - 1 - i);
-    double step = floor(log(params->nearest_m / first) / log(1.5));
-    double near = fmin(first * pow(1.5, step), 0.5 * params->distance_m);
-    return near * pow(params->distance_m / near, (i + 1.0) / WD_CASCADES);
+    double near = fmin(params->nearest_m, 0.99 * params->distance_m);
+    double far = fmin(params->farthest_m, params->distance_m);
+    double step = pow(fmax(far / fmax(near, first), 1.001), 1.0 / STEPS_BETWEEN);
+    double near_step = log(fmin(step, NEAREST_STEP)), far_step = log(fmin(step, FARTHEST_STEP));
+    struct seen seen = {first, params->distance_m};
+    if (near > first)
+        seen.near = first * exp(near_step * floor(log(near / first) / near_step));
+    if (far < params->distance_m)
+        seen.far = fmax(exp(far_step * ceil(log(far) / far_step)), 2.0 * params->near_m);
+    seen.far = fmax(seen.far, fmax(near, seen.near) * exp(far_step));
+    return seen;
 }
 
-/* The same, but for the last no farther than the ground where the camera looks down on it. */
-static double cascade_end(const struct wd_cascades_params *params, int i)
+/* Where cascade i ends: a fixed ratio between neighbours, drawn out so that the first begins at the
+ * nearest thing seen; but for the last no farther than the ground where the camera looks down on it. */
+static double cascade_end(const struct wd_cascades_params *params, const struct seen *seen, int i)
 {
-    double end = split_end(params, i);
-    if (i + 1 == WD_CASCADES || (double)params->farthest_m >= end)
-        return end;
-    double seen = pow(FARTHEST_STEP, ceil(log(params->farthest_m) / log(FARTHEST_STEP)));
-    return fmin(end, fmax(seen, fmax(2.0 * params->near_m, 1.2 * params->nearest_m)));
+    double end = seen->near * pow(params->distance_m / seen->near, (i + 1.0) / WD_CASCADES);
+    return i + 1 == WD_CASCADES ? params->distance_m : fmin(end, seen->far);
 }
 
 /* What stands before the plane, or throws its shadow of length `shadow_m` across it. The plane counts
@@ -270,9 +281,10 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
     double half_height = tan(params->view->camera.fov_rad * 0.5);
     double half_width = half_height * params->view->width / params->view->height;
     double corner = 1.0 / sqrt(1.0 + half_height * half_height + half_width * half_width);
-    double near = fmax(params->near_m, corner * params->nearest_m);
+    const struct seen seen = seen_range(params);
+    double near = fmax(params->near_m, corner * fmin(params->nearest_m, params->distance_m));
     for (int i = 0; i < WD_CASCADES; i++) {
-        double far = cascade_end(params, i);
+        double far = cascade_end(params, &seen, i);
         cascades[i] = (struct wd_view){
             .width = params->size, .height = params->size, .cascade = (uint32_t)i};
         const struct wd_cascade_box *box = &cascades[i].box;
@@ -293,6 +305,8 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
         uniforms->cascades[i][WD_CASCADE_FAR_M] = (float)far;
         uniforms->cascades[i][WD_CASCADE_TEXEL_M] = (float)(2.0 * box->radius / params->size);
         uniforms->cascades[i][WD_CASCADE_DEPTH_M] = (float)box->depth;
-        near = far * 0.9; /* slices overlap where one fades into the next */
+        double fade_m = fmin(FADE * far, FADE_THIN * (far - near));
+        uniforms->cascades[i][WD_CASCADE_FADE_M] = (float)fade_m;
+        near = fmax(far - fade_m, near);
     }
 }

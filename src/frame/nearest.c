@@ -7,8 +7,37 @@
 struct search {
     const struct wd_forest_device *forest;
     const struct wd_view *view;
+    double ray_min[3], ray_max[3]; /* of the view's rays, as long as reaches a metre along its axis */
     float nearest_m;
 };
+
+static void find_rays(struct search *search)
+{
+    const struct wd_view *view = search->view;
+    double right[3], forward[3], up[3];
+    double half_height = tan(view->camera.fov_rad * 0.5);
+    double half_width = half_height * view->width / view->height;
+    wd_camera_axes(&view->camera, right, forward, up);
+    for (int k = 0; k < 3; k++) {
+        double beside = half_width * fabs(right[k]) + half_height * fabs(up[k]);
+        search->ray_min[k] = forward[k] - beside;
+        search->ray_max[k] = forward[k] + beside;
+    }
+}
+
+/* Metres along the axis before which no ray of the view comes to a box, whose places are counted from
+ * the eye. Through a long lens a box that reaches far to the eye's side is seen far off. */
+static double way_to_box(const struct search *search, const float min[3], const float max[3])
+{
+    double way_m = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double toward = min[k] > 0.0f ? search->ray_max[k] : -search->ray_min[k];
+        double gap_m = fmax(fmax((double)min[k], (double)-max[k]), 0.0);
+        if (gap_m > 0.0)
+            way_m = fmax(way_m, toward > 0.0 ? gap_m / toward : HUGE_VAL);
+    }
+    return way_m;
+}
 
 /* Distance to a box of the local frame if the view may see it, else more than any found so far. */
 static float seen_distance(const struct search *search, const double min_m[3], const double max_m[3])
@@ -20,7 +49,7 @@ static float seen_distance(const struct search *search, const double min_m[3], c
         float outside = fmaxf(fmaxf(min[k], -max[k]), 0.0f);
         squared += outside * outside;
     }
-    float distance = sqrtf(squared);
+    float distance = fmaxf(sqrtf(squared), (float)way_to_box(search, min, max));
     if (distance >= search->nearest_m ||
         wd_frustum_box(&search->view->frustum, min, max) == WD_OUTSIDE)
         return INFINITY;
@@ -85,7 +114,8 @@ static void search_ground(struct search *search, uint32_t level, uint32_t column
 
 float wd_nearest_seen(const struct wd_forest_device *forest, const struct wd_view *view)
 {
-    struct search search = {forest, view, 1e9f};
+    struct search search = {.forest = forest, .view = view, .nearest_m = 1e9f};
+    find_rays(&search);
     if (forest->ground.level_count)
         search_ground(&search, forest->ground.level_count - 1, 0, 0);
     if (forest->world->octree.count)
@@ -103,14 +133,16 @@ enum { RAYS_A_SIDE = 5, MOST_STEPS = 512 };
 static double ray_to_ground(const struct wd_terrain *terrain, const double eye_m[3],
                             const double ray[3])
 {
-    double way_m = 0.0;
+    double way_m = 0.0, was_m = 0.0, was_above_m = 0.0;
     for (int i = 0; i < MOST_STEPS; i++) {
         double x_m = eye_m[0] + way_m * ray[0], y_m = eye_m[1] + way_m * ray[1];
         if (!wd_terrain_contains(terrain, x_m, y_m))
             return INFINITY;
         double above_m = eye_m[2] + way_m * ray[2] - (double)wd_terrain_height(terrain, x_m, y_m);
-        if (above_m <= 0.0)
-            return way_m;
+        if (above_m <= 0.0) /* between both places as on a slope */
+            return way_m - (way_m - was_m) * above_m / fmin(above_m - was_above_m, -1e-9);
+        was_m = way_m;
+        was_above_m = above_m;
         way_m += fmax(0.5 * above_m, 0.25 * terrain->cell_m);
     }
     return INFINITY;

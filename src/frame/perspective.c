@@ -135,8 +135,10 @@ static void set_planes(struct wd_view *map)
 
 static void set_uniforms(struct wd_frame_uniforms *uniforms, const struct wd_view *map, float far_m)
 {
-    for (int i = 0; i < WD_CASCADES; i++)
+    for (int i = 0; i < WD_CASCADES; i++) {
         uniforms->cascades[i][WD_CASCADE_FAR_M] = far_m;
+        uniforms->cascades[i][WD_CASCADE_FADE_M] = 0.0f;
+    }
     for (int column = 0; column < 4; column++) {
         const float *clip = map->clip_from_rel[column];
         const float texture[4] = {0.5f * (clip[0] + clip[3]), 0.5f * (clip[1] + clip[3]), clip[2],
