@@ -388,8 +388,8 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.side = mix(vec4(1.0), eye_side(-pixel.direction), one_leaf ? alone.share : 0.0);
     alone.lets.xy *= 1.0 + alone.share * (one_leaf ? LOW_SKY_LEAF : LOW_SKY_CLOUD) * brighter_low_sky();
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown).y, alone.share) : 1.0;
-    alone.again = scattered_on(pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance)
-                                                                  : leaves_albedo());
+    alone.again = mix(vec3(1.0), scattered_on(pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance)
+                                                                  : leaves_albedo()), smoothstep(0.5, 1.0, crown.radii_m.z));
 }
 
 /* Mean normal of the sides of leaves that the eye sees (wd_leaves_seen_up), and how far their z spread, squared. */
@@ -527,6 +527,10 @@ float sward_tufts_lit()
     return mix(0.4, 1.0, smoothstep(0.2, 0.75, frame.sun_direction.z));
 }
 
+/* Leaves of herbs lie in one another's shade and flat, where those of crowns lie every way: so much of what the wax
+ * of many would mirror goes on to the eye. By path-traced ferns and tufts that stand free. */
+const float HERB_SHINES = 0.4;
+
 /* Near, the maps hold each leaf and the crown's depth adds little. Far, the crown is left behind before the
  * map is asked, and depth along the sun says where in it how much of the light is left. Of a tree that stands
  * free the model's own table says how much of that on all of it goes to this eye: of a cloud of leaves
@@ -560,7 +564,9 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
     place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WAX * 0.39;
     place.coat = WAX * mix(1.85, 1.05, smoothstep(0.0, 0.64, eye.z)); /* of path-traced rows under an even sky */
-    place.gloss = (place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
+    float shines = mix(mix(HERB_SHINES, 1.0, smoothstep(0.5, 1.0, crown.radii_m.z)), 1.0, place.sward);
+    place.coat *= shines;
+    place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
