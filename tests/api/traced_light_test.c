@@ -1,0 +1,150 @@
+/* Light on a few trees beside the path tracer's, where it has been wrong before. */
+#include <math.h>
+#include <stdio.h>
+
+#include "suite.h"
+#include "weald/compare.h"
+
+static struct suite suite;
+
+/* Of one species on level ground, seen by `camera`. */
+struct shown {
+    const char *species, *trees, *size_m, *keys, *camera;
+    uint32_t samples;
+};
+
+/* Light of trees and of the ground that lies in their shadow, over the path tracer's, less 100. */
+struct light {
+    double trees_pct, shade_pct;
+};
+
+static double green(const struct wd_picture *picture, size_t i)
+{
+    return (double)picture->color[3 * i + 1];
+}
+
+/* Ground that has less than half of the light of all. */
+static double shade_pct(const struct wd_picture *drawn, const struct wd_picture *traced)
+{
+    size_t pixels = (size_t)traced->width * traced->height;
+    double mean = 0, sums[2] = {0};
+    for (size_t i = 0; i < pixels; i++)
+        mean += green(traced, i) / (double)pixels;
+    for (size_t i = 0; i < pixels; i++) {
+        bool shade = !traced->tree_id[i] && !drawn->tree_id[i] && green(traced, i) < 0.5 * mean;
+        sums[0] += shade ? green(drawn, i) : 0;
+        sums[1] += shade ? green(traced, i) : 0;
+    }
+    return 100 * (sums[0] / fmax(sums[1], 1e-9) - 1);
+}
+
+static struct light against_traced(const struct shown *shown)
+{
+    char text[2048], trees[1024];
+    struct wd_picture drawn = {0}, traced = {0};
+    struct wd_comparison found;
+    snprintf(text, sizeof text,
+             "{\"name\": \"traced\", \"variants\": 2, \"terrain\": {\"kind\": \"flat\", \"size_m\": %s},\n"
+             " \"species\": {\"tree\": \"%s/species/%s.json\"},\n"
+             " \"inventories\": [{\"file\": \"traced.csv\", \"frame\": \"local\"}],\n"
+             " \"wind\": {\"speed_mps\": 0}, %s, \"cameras\": [{\"name\": \"at\", %s}]}",
+             shown->size_m, suite.root, shown->species, shown->keys, shown->camera);
+    snprintf(trees, sizeof trees, "x_m,y_m,species,height_m\n%s", shown->trees);
+    assert_true(suite_write(&suite, "traced.csv", trees));
+    assert_true(suite_write(&suite, "traced.json", text));
+    struct wd_forest *forest = suite_forest(&suite, suite_path(&suite, "traced.json"));
+    assert_non_null(forest);
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, forest), WD_OK);
+    struct wd_render_params render = suite_params(forest, "at");
+    render.width = 64;
+    render.height = 48;
+    render.samples = shown->samples;
+    render.method = "continuum";
+    render.layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID;
+    assert_int_equal(wd_renderer_render(suite.renderer, &render, &drawn), WD_OK);
+    suite_trace(&suite, forest, &render, 64, &traced);
+    assert_int_equal(wd_picture_compare(&found, &traced, &drawn, NULL, &suite.log), WD_OK);
+    const struct light light = {found.tree_bias_pct, shade_pct(&drawn, &traced)};
+    print_message("light of trees %+.1f %%, of shaded ground %+.1f %%\n", light.trees_pct, light.shade_pct);
+    wd_picture_finish(&drawn);
+    wd_picture_finish(&traced);
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, suite.forest), WD_OK);
+    wd_forest_destroy(&forest);
+    return light;
+}
+
+/* A beech 4 m off, before the sun, without the sky: leaves close to the eye are drawn as twigs, and shade one
+ * another as these do. +22 %, and +55 by the shadows of the leaves that stand for the twigs. */
+static void twigs_throw_their_own_shadows(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "beech", .trees = "30,30,tree,9\n", .size_m = "[60, 60]", .samples = 8,
+        .keys = "\"sun\": {\"azimuth_deg\": 0, \"elevation_deg\": 50}, \"sky\": {\"strength\": 0.0001}",
+        .camera = "\"position_m\": [30, 26, 5.5], \"look_at_m\": [30, 30, 5.5], \"fov_deg\": 6"});
+    assert_true(found.trees_pct > -35 && found.trees_pct < 35);
+}
+
+/* An oak 1,500 m off throws a shadow with edges: +3 %, and +18 of a smudge by maps that begin near the eye. */
+static void long_lenses_show_shadows(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "oak", .trees = "1500,1500,tree,18\n", .size_m = "[3000, 3000]", .samples = 1,
+        .keys = "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40}",
+        .camera = "\"position_m\": [1500, 350, 970], \"look_at_m\": [1506, 1506, 6], \"fov_deg\": 1"});
+    assert_true(fabs(found.shade_pct) < 10);
+}
+
+static const char *const STAND = "26,30,tree,14\n34,30,tree,15\n26,38,tree,13\n34,38,tree,14\n";
+#define FROM_AFAR "\"position_m\": [30, -30, 8], \"look_at_m\": [30, 30, 8], \"fov_deg\": 20"
+
+/* Under a low sun: +3 %, and -4 with what grass sends up. */
+static void snow_lights_trees_from_below(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "spruce", .trees = STAND, .size_m = "[60, 60]", .samples = 8,
+        .keys = "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 20}, \"ground\": {\"snow\": 1}",
+        .camera = FROM_AFAR});
+    assert_true(found.trees_pct > -2 && found.trees_pct < 9);
+}
+
+/* Maples in October, under clouds: +2 %, and -3 where those of open stands scatter as an even layer of leaves. */
+static void pale_leaves_light_each_other(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "maple", .trees = STAND, .size_m = "[60, 60]", .samples = 8,
+        .keys = "\"time\": {\"date\": \"2024-10-12\"}, \"sky\": {\"cover\": 1}",
+        .camera = FROM_AFAR});
+    assert_true(found.trees_pct > -1.5 && found.trees_pct < 7);
+}
+
+/* Of grass: +8 %, and half as bright where they are lit as in a sward. */
+static void tufts_stand_free(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "grass", .trees = "29,30,tree,0.8\n30,30,tree,0.8\n31,30,tree,0.8\n30,31,tree,0.8\n",
+        .size_m = "[60, 60]", .samples = 8,
+        .keys = "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40}",
+        .camera = "\"position_m\": [30, 24, 1.6], \"look_at_m\": [30, 30, 0.4], \"fov_deg\": 18"});
+    assert_true(fabs(found.trees_pct) < 15);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(twigs_throw_their_own_shadows),
+        cmocka_unit_test(long_lenses_show_shadows),
+        cmocka_unit_test(snow_lights_trees_from_below),
+        cmocka_unit_test(pale_leaves_light_each_other),
+        cmocka_unit_test(tufts_stand_free),
+    };
+    if (argc < 2 || !suite_init(&suite, argv[1]))
+        return 1;
+    int failed = cmocka_run_group_tests_name("traced_light", tests, NULL, NULL);
+    suite_finish(&suite);
+    return failed;
+}
