@@ -471,7 +471,7 @@ vec2 past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
  * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
  * Leaves of meshes (lit 1) are in the nearest maps as they are. 0: none goes on to the eye. */
-void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, float hot, uint cascade)
+void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, float free, float hot, uint cascade)
 {
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
     if (!is_disc(pixel)) {
@@ -487,18 +487,18 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, float hot,
     float discs = 0.6 * crown.radii_m.x * tall_m / (pixel_m * pixel_m); /* about as many */
     float known = wd_disc_close(discs) * map_holds_leaves(cascade, 1.0);
     float tree_m = (1.0 - crown.sward) * min(0.5, 0.5 * tall_m); /* its own tree is in `lit` */
-    float ahead_m = (cascade < WD_LEAF_CASCADES ? 0.0 : place.ahead_m) + tree_m + texel_m;
+    float ahead_m = place.ahead_m * (cascade < WD_LEAF_CASCADES ? free : 1.0) + tree_m + texel_m;
     place.own = mix(pixel.lit * hot, 1.0, known * mix(MAP_TELLS, 1.0, crown.sward));
     place.ahead_m = mix(ahead_m, pixel_m, known);
 }
 
 /* A disc of a leaf is lit as the leaf that it is. */
-void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float hot,
+void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float free, float hot,
                 uint cascade)
 {
     if (!ALL_SINGLE && pixel.lit < 0.0)
         return;
-    shade_disc(place, pixel, crown, hot, cascade);
+    shade_disc(place, pixel, crown, free, hot, cascade);
     place.normal = pixel.normal;
     place.cloud = 0.0;
     float cosine = dot(pixel.normal, frame.sun_direction);
@@ -571,7 +571,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
     place.sheet = fine > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
-    light_disc(place, pixel, crown, model, hot * mix(1.0, free_disc_light(eye, crown).x, free), cascade);
+    light_disc(place, pixel, crown, model, free, hot * mix(1.0, free_disc_light(eye, crown).x, free), cascade);
     place.transmittance *= mix(model.through_below, 1.0, place.waxed);
     return place;
 }
