@@ -302,7 +302,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 level = vec3(mirror.xy, high);
     vec3 ahead = mix(SKY_LEVELS(frame.sky_form, level), SKY_LEVELS(frame.sky_under, level), deep) / (0.5 + 0.5 * high);
     float rise_along = max(high, 0.1);
-    float ways = 0.6931 * mix(ALONG, ALONG_WITHIN, shelter.within * up_to);
+    float ways = 0.6931 * mix(ALONG, ALONG_WITHIN, shelter.within * max(up_to, 1.0 - alone.leaf));
     vec3 along = 1.0 / (1.0 - s * (shelter.beside * ways / rise_along));
     float open = 0.5 * dot(alone.beside, faced_quarters(mirror.xy));
     around.mirrored = mix(upward_front, max(ahead, vec3(0.0)) * mix(along, vec3(open), alone.share)
