@@ -9,7 +9,7 @@
 #include "suite.h"
 
 /* Bounds lie a little above what was measured of light against the full mesh as drawn, with cast shadows:
- * full -0.6 %, reduced -3.6, cards -4.7, splats -2.7. The mesh itself is -2.4 % of the path-traced one. */
+ * full -0.6 %, reduced -3.6, cards -4.7, splats -0.6. The mesh itself is -2.4 % of the path-traced one. */
 static const struct bound {
     const char *form;
     double coverage_pct, radiance_pct;
