@@ -8,8 +8,6 @@
 
 static const float NEAR_M = 0.1f;
 
-/* Height of the film, which together with the field of view gives the focal length. */
-
 /* What sample i of a picture stands for: a place in the pixel, on the lens and in the time that the
  * shutter is open, each -0.5..0.5. */
 struct exposure {
