@@ -169,13 +169,22 @@ struct seen {
     double near, far;
 };
 
+/* The logarithm of a step no larger than either: halves of the first, so that it seldom changes itself. */
+static double log_step(double largest, double wanted)
+{
+    double step = log(largest);
+    while (step > log(wanted))
+        step *= 0.5;
+    return step;
+}
+
 static struct seen seen_range(const struct wd_cascades_params *params)
 {
     double first = params->distance_m * pow(CASCADE_RATIO, WD_CASCADES);
     double near = fmin(params->nearest_m, 0.99 * params->distance_m);
     double far = fmin(params->farthest_m, params->distance_m);
     double step = pow(fmax(far / fmax(near, first), 1.001), 1.0 / STEPS_BETWEEN);
-    double near_step = log(fmin(step, NEAREST_STEP)), far_step = log(fmin(step, FARTHEST_STEP));
+    double near_step = log_step(NEAREST_STEP, step), far_step = log_step(FARTHEST_STEP, step);
     struct seen seen = {first, params->distance_m};
     if (near > first)
         seen.near = first * exp(near_step * floor(log(near / first) / near_step));

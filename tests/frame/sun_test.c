@@ -242,6 +242,33 @@ static void test_cascades_of_moved_eyes(void **state)
     }
 }
 
+/* What is nearest and farthest moves with every frame of a flight; where slices end seldom does. */
+static void test_cascades_that_end_in_steps(void **state)
+{
+    (void)state;
+    struct wd_view view, cascades[WD_CASCADES];
+    struct wd_frame_uniforms uniforms = sun_at(240, 38);
+    const struct wd_view_params camera = {.camera = {.position_m = {0, 0, 900}, .pitch_rad = -0.7, .fov_rad = 0.02},
+                                          .width = 320, .height = 180, .near_m = 0.1f};
+    float ends[WD_CASCADES] = {0};
+    int changes = 0;
+    wd_view_init(&view, &camera);
+    for (int i = 0; i < 100; i++) {
+        struct wd_cascades_params params = {.view = &view, .distance_m = 5000, .near_m = 0.1f,
+                                            .nearest_m = 1380 + 0.05f * (float)i, .farthest_m = 1420 + 0.06f * (float)i,
+                                            .size = 1024, .max_z_m = 30, .max_height_m = 20};
+        memcpy(params.sun_direction, uniforms.sun_direction, sizeof params.sun_direction);
+        wd_cascades_init(cascades, &uniforms, &params);
+        assert_true(uniforms.cascades[0][WD_CASCADE_FAR_M] > params.nearest_m);
+        assert_true(uniforms.cascades[0][WD_CASCADE_TEXEL_M] < 0.12f);
+        for (int c = 0; c < WD_CASCADES; c++) {
+            changes += ends[c] != uniforms.cascades[c][WD_CASCADE_FAR_M];
+            ends[c] = uniforms.cascades[c][WD_CASCADE_FAR_M];
+        }
+    }
+    assert_true(changes <= 4 * WD_CASCADES);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -249,6 +276,7 @@ int main(void)
         cmocka_unit_test(test_nightfall), cmocka_unit_test(test_horizon),
         cmocka_unit_test(test_sun_field), cmocka_unit_test(test_wind), cmocka_unit_test(test_walls),
         cmocka_unit_test(test_cascades_of_moved_eyes),
+        cmocka_unit_test(test_cascades_that_end_in_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
