@@ -10,6 +10,8 @@
 #include "scene/species.h"
 
 enum { MAX_TREES = 256, EYE_HEIGHTS = 120 /* away */ };
+/* Beyond 0.7 of the distance of shadows the canopy's mean begins to stand for them. */
+static const double SHADOWS_OVER_EYE = 1.45;
 
 #define MESHES "quality.mesh_distance_m=1000000", "quality.reduced_distance_m=1000000"
 #define REDUCED "quality.mesh_distance_m=0", "quality.reduced_distance_m=1000000"
@@ -71,7 +73,7 @@ static bool write_scene(struct bias_stand *stand, const char *species)
                        "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40},\n"
                        "\"wind\": {\"speed_mps\": 0}, \"fog\": {\"visibility_m\": 10000000},\n"
                        "\"quality\": {\"shadow_distance_m\": %g}}\n",
-                side, side, root, species, 1.45 * EYE_HEIGHTS * stand->height_m);
+                side, side, root, species, SHADOWS_OVER_EYE * EYE_HEIGHTS * stand->height_m);
     }
     ok = (!trees || fclose(trees) == 0) && (!scene || fclose(scene) == 0) && ok;
     if (!ok)

@@ -25,6 +25,12 @@ wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
     return crown;
 }
 
+/* 1 of a tree or shrub, 0 of a herb: few of a herb's leaves lie behind others. */
+float is_tree(wd_crown crown)
+{
+    return smoothstep(0.5, 1.0, crown.radii_m.z);
+}
+
 /* Metres of leaves over a place in a sward. */
 float sward_depth_m(wd_crown crown, vec3 rel)
 {

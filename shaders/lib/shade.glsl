@@ -310,7 +310,7 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open)) * has_table(crown);
     alone.lets.xy = skylit.xy * wd_skylit_above(pixel.openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(pixel.openness);
-    alone.leaf = pixel.material >= WD_MATERIAL_LEAF ? smoothstep(0.5, 1.0, crown.radii_m.z) : 0.0;
+    alone.leaf = pixel.material >= WD_MATERIAL_LEAF ? is_tree(crown) : 0.0;
     return alone;
 }
 
@@ -347,11 +347,10 @@ vec3 leaves_albedo()
  * 150 degrees from the eye. */
 vec2 free_disc_light(vec3 eye, wd_crown crown)
 {
-    float tree = smoothstep(0.5, 1.0, crown.radii_m.z); /* few leaves of a herb lie behind others */
     float from_above = smoothstep(0.1, 0.6, eye.z);
     float backlit = smoothstep(-0.2, -0.8, dot(eye, frame.sun_direction));
     vec2 of_tree = vec2(mix(0.97, 1.1, from_above) * mix(1.0, 0.78, backlit), mix(1.05, 1.15, from_above));
-    return mix(vec2(1.0), of_tree, tree);
+    return mix(vec2(1.0), of_tree, is_tree(crown));
 }
 
 bool is_disc(wd_pixel pixel)
@@ -388,8 +387,8 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.side = mix(vec4(1.0), eye_side(-pixel.direction), one_leaf ? alone.share : 0.0);
     alone.lets.xy *= 1.0 + alone.share * (one_leaf ? LOW_SKY_LEAF : LOW_SKY_CLOUD) * brighter_low_sky();
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown).y, alone.share) : 1.0;
-    alone.again = mix(vec3(1.0), scattered_on(pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance)
-                                                                  : leaves_albedo()), smoothstep(0.5, 1.0, crown.radii_m.z));
+    vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
+    alone.again = mix(vec3(1.0), scattered_on(leaf), is_tree(crown));
 }
 
 /* Mean normal of the sides of leaves that the eye sees (wd_leaves_seen_up), and how far their z spread, squared. */
@@ -564,7 +563,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
     place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WAX * 0.39;
     place.coat = WAX * mix(1.85, 1.05, smoothstep(0.0, 0.64, eye.z)); /* of path-traced rows under an even sky */
-    float shines = mix(mix(HERB_SHINES, 1.0, smoothstep(0.5, 1.0, crown.radii_m.z)), 1.0, place.sward);
+    float shines = mix(HERB_SHINES, 1.0, max(is_tree(crown), place.sward));
     place.coat *= shines;
     place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));

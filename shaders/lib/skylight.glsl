@@ -82,7 +82,7 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
     float top_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
     float above = canopy_above(shelter.layer_m, rel.z - crown.foot_z);
     float higher = canopy_above(shelter.layer_m, top_m);
-    float herb = 1.0 - smoothstep(0.5, 1.0, crown.radii_m.z);
+    float herb = 1.0 - is_tree(crown);
     float over = crown.sward * wd_crown_per_m(crown.radii_m) * sward_depth_m(crown, pixel.rel);
     shelter.within = 1.0 - smoothstep(0.5, 1.0, -crown.foot_z / max(shelter.layer_m.y, 1.0));
     float below = mix(BELOW_LEAVES, BELOW_LEAVES_UP, looks_up(pixel.direction.z));

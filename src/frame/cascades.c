@@ -164,9 +164,9 @@ static void cascade_view(struct wd_view *cascade, const struct wd_view *view, co
     cascade->frustum.count = 5;
 }
 
-/* Metres that the camera sees, as cascades share them out. */
+/* Metres that the camera sees: what is nearest, and both ends as cascades share them out. */
 struct seen {
-    double near, far;
+    double nearest, near, far;
 };
 
 /* The logarithm of a step no larger than either: halves of the first, so that it seldom changes itself. */
@@ -181,11 +181,11 @@ static double log_step(double largest, double wanted)
 static struct seen seen_range(const struct wd_cascades_params *params)
 {
     double first = params->distance_m * pow(CASCADE_RATIO, WD_CASCADES);
-    double near = fmin(params->nearest_m, 0.99 * params->distance_m);
+    double near = fmin(params->nearest_m, 0.99 * params->distance_m); /* slices have a depth */
     double far = fmin(params->farthest_m, params->distance_m);
     double step = pow(fmax(far / fmax(near, first), 1.001), 1.0 / STEPS_BETWEEN);
     double near_step = log_step(NEAREST_STEP, step), far_step = log_step(FARTHEST_STEP, step);
-    struct seen seen = {first, params->distance_m};
+    struct seen seen = {near, first, params->distance_m};
     if (near > first)
         seen.near = first * exp(near_step * floor(log(near / first) / near_step));
     if (far < params->distance_m)
@@ -291,7 +291,7 @@ void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_unif
     double half_width = half_height * params->view->width / params->view->height;
     double corner = 1.0 / sqrt(1.0 + half_height * half_height + half_width * half_width);
     const struct seen seen = seen_range(params);
-    double near = fmax(params->near_m, corner * fmin(params->nearest_m, params->distance_m));
+    double near = fmax(params->near_m, corner * seen.nearest);
     for (int i = 0; i < WD_CASCADES; i++) {
         double far = cascade_end(params, &seen, i);
         cascades[i] = (struct wd_view){

@@ -74,7 +74,7 @@ static struct light against_traced(const struct shown *shown)
 }
 
 /* A beech 4 m off, before the sun, without the sky: leaves close to the eye are drawn as twigs, and shade one
- * another as these do. +22 %, and +55 by the shadows of the leaves that stand for the twigs. */
+ * another as these do. +27 % (another beech +22, and +55 by the shadows of the leaves that stand for the twigs). */
 static void twigs_throw_their_own_shadows(void **state)
 {
     (void)state;
