@@ -51,8 +51,11 @@ float splat_tree_nearer_m(usamplerBuffer table, uint index)
 /* Stratum (x) of the tree's splat number `at`, and which of that stratum's window it is (y). */
 uvec2 splat_turn(wd_splat_tree tree, uint at)
 {
-    uint turn = uint((float(at) + 0.5) / float(WD_TREE_STRATA(tree))); /* exact: at is less than 2^17 */
-    return uvec2(at - turn * WD_TREE_STRATA(tree), turn);
+    uint strata = WD_TREE_STRATA(tree);
+    uint turn = uint((float(at) + 0.5) / float(strata)); /* exact: at is less than 2^17 */
+    uint of_turn = at - turn * strata;
+    bool wood = of_turn + WD_TREE_WOOD_LAST(tree) >= strata;
+    return uvec2(wood ? WD_LEAF_STRATA : WD_TREE_FIRST_STRATUM(tree) + of_turn, turn);
 }
 
 /* Index among all splats of the one in turn. */

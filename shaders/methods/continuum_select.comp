@@ -180,6 +180,33 @@ uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint mode
     return strata;
 }
 
+/* Trees this tall may reach out of the view by whole strata. */
+const float STRATA_PX = 100.0;
+
+/* Whether nothing of a stratum of leaves is in the view, or shades what is seen. */
+bool stratum_is_outside(wd_tree tree, vec3 foot, vec3 sway, float up, uint model, uint stratum)
+{
+    float bend_m = length(sway) + 0.5, reach = WD_TREE_CROWN_M(tree) * 0.75 + bend_m;
+    float bottom_m = stratum + 1u < WD_LEAF_STRATA
+                         ? model_float(model, WD_WORD_STRATA_TOP_M + stratum + 1u)
+                         : model_float(model, WD_WORD_MIN_M + 2u);
+    float top_m = model_float(model, WD_WORD_STRATA_TOP_M + stratum);
+    vec3 low = foot + vec3(-reach, -reach, bottom_m * up - bend_m);
+    vec3 high = foot + vec3(reach, reach, top_m * up + bend_m);
+    return box_is_outside(low, high) || box_shades_nothing(low, high);
+}
+
+/* The first of the strata of leaves that may be in the view, and the one after the last. */
+uvec2 strata_in_view(wd_tree tree, vec3 foot, vec3 sway, float up, uint model, uint end)
+{
+    uvec2 range = uvec2(0u, end);
+    while (range.x + 1u < range.y && stratum_is_outside(tree, foot, sway, up, model, range.x))
+        range.x++;
+    while (range.x + 1u < range.y && stratum_is_outside(tree, foot, sway, up, model, range.y - 1u))
+        range.y--;
+    return range;
+}
+
 uint item_count(uint count)
 {
     return (count + WD_ITEM_SPLATS - 1u) / WD_ITEM_SPLATS;
@@ -363,7 +390,13 @@ void select_tree(uint index, float share, uint place)
     splats.lower = packUnorm4x8(vec4(model_vec3(model_index, WD_WORD_LOWER_OVER_UPPER) * 0.25, 0.0));
     vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
                              : vec2(0.0);
-    splats.strata = strata | uint(close * 15.0 + 0.5) << 4 | model.look_layer << 8;
+    uint wood_last = strata > WD_LEAF_STRATA ? 1u : 0u;
+    uvec2 leaves = uvec2(0u, strata - wood_last);
+    if (tall_px > STRATA_PX && share >= 1.0)
+        leaves = strata_in_view(tree, foot, sway, pose.up, model_index, leaves.y);
+    strata = leaves.y - leaves.x + wood_last;
+    splats.strata = strata | uint(close * 15.0 + 0.5) << 4 | leaves.x << 8 | wood_last << 11
+                  | model.look_layer << 12;
     fill_rows(splats, pose, model_index, foot, slope);
     splats.sway = clip_of(view.clip_from_rel * vec4(sway, 0.0));
 

@@ -240,8 +240,9 @@ struct wd_splat_tree {
     uint32_t first_splat;  /* of the model */
     uint32_t offset;       /* bits 0..12: of the window in each stratum; bit 31: of wood, from its
                               second half */
-    uint32_t strata;       /* bits 0..3: of how many, from the top, it has splats; 4..7: WD_DISC_CLOSE,
-                              in fifteenths; 8..31: the layer of its bark among looks */
+    uint32_t strata;       /* bits 0..3: of how many it has splats; 4..7: WD_DISC_CLOSE, in fifteenths;
+                              8..10: the first of them; 11: the last is that of wood; 12..31: the layer
+                              of its bark among looks */
     uint32_t first_wood;   /* of the model: wood_first */
     uint32_t turn;         /* cosine and sine of the tree's yaw, half floats */
     uint32_t shape;        /* 1 or -1 mirrored, vertical over horizontal scale, half floats */
@@ -254,7 +255,9 @@ WD_STATIC_ASSERT_SIZE(wd_splat_tree, 128);
 #define WD_SPLAT_TREE_TEXELS 8
 #define WD_TREE_STRATA(tree) ((tree).strata & 0xfu)
 #define WD_TREE_CLOSE(tree) (WD_FLOAT((tree).strata >> 4 & 0xfu) * (1.0f / 15.0f))
-#define WD_TREE_BARK(tree) ((tree).strata >> 8)
+#define WD_TREE_FIRST_STRATUM(tree) ((tree).strata >> 8 & 0x7u)
+#define WD_TREE_WOOD_LAST(tree) ((tree).strata >> 11 & 1u)
+#define WD_TREE_BARK(tree) ((tree).strata >> 12)
 
 /* Splats of its strata in turn, or triangles of its wood. */
 struct wd_splat_item {
