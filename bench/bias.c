@@ -10,6 +10,9 @@
 #include "scene/species.h"
 
 enum { MAX_TREES = 256, EYE_HEIGHTS = 120 /* away */ };
+/* The ground is a strip about the row, in spacings: a square as long as the row has so large cells of canopy that
+ * each tree would stand in a wood. */
+enum { GROUND_LONG = MAX_TREES + 16, GROUND_WIDE = 32 };
 /* Beyond 0.7 of the distance of shadows the canopy's mean begins to stand for them. */
 static const double SHADOWS_OVER_EYE = 1.45;
 
@@ -59,12 +62,12 @@ static bool write_scene(struct bias_stand *stand, const char *species)
     snprintf(stand->scene, sizeof stand->scene, "%s/scene.json", stand->folder);
     FILE *trees = fopen(path, "w"), *scene = fopen(stand->scene, "w");
     bool ok = trees && scene;
-    double side = 2 * MAX_TREES * stand->spacing_m;
+    double long_m = GROUND_LONG * stand->spacing_m, wide_m = GROUND_WIDE * stand->spacing_m;
     if (ok) {
         fprintf(trees, "x_m,y_m,species,height_m\n");
         for (int i = 0; i < MAX_TREES; i++)
             fprintf(trees, "%.2f,%.2f,tree,%.2f\n",
-                    0.5 * side + (i - 0.5 * (MAX_TREES - 1)) * stand->spacing_m, 0.5 * side,
+                    0.5 * long_m + (i - 0.5 * (MAX_TREES - 1)) * stand->spacing_m, 0.5 * wide_m,
                     stand->height_m);
         fprintf(scene, "{\"name\": \"lod\", \"variants\": 2,\n"
                        "\"terrain\": {\"kind\": \"flat\", \"size_m\": [%g, %g], \"cell_m\": 100},\n"
@@ -73,7 +76,7 @@ static bool write_scene(struct bias_stand *stand, const char *species)
                        "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40},\n"
                        "\"wind\": {\"speed_mps\": 0}, \"fog\": {\"visibility_m\": 10000000},\n"
                        "\"quality\": {\"shadow_distance_m\": %g}}\n",
-                side, side, root, species, SHADOWS_OVER_EYE * EYE_HEIGHTS * stand->height_m);
+                long_m, wide_m, root, species, SHADOWS_OVER_EYE * EYE_HEIGHTS * stand->height_m);
     }
     ok = (!trees || fclose(trees) == 0) && (!scene || fclose(scene) == 0) && ok;
     if (!ok)
@@ -105,12 +108,12 @@ static struct wd_render_params view_of(const struct bias_stand *stand, int heigh
     params.width = (uint32_t)ceil(wide * pixels_per_m / zoom) * (uint32_t)zoom;
     params.height = (uint32_t)ceil(tall * pixels_per_m / zoom) * (uint32_t)zoom;
     double between = tree_counts[height] * stretches[height] % 2 ? 0.5 : 0; /* trees at the middle */
-    double middle = (MAX_TREES + between) * stand->spacing_m +
+    double middle = (0.5 * GROUND_LONG + between) * stand->spacing_m +
                     (stretch - 0.5 * (stretches[height] - 1)) * stretch_m;
     double x = shift_x / pixels_per_m;
     double y = shift_y / pixels_per_m;
     params.camera = (struct wd_camera){
-        .position_m = {middle + x, MAX_TREES * stand->spacing_m - distance * cos(elevation) - y * sin(elevation),
+        .position_m = {middle + x, 0.5 * GROUND_WIDE * stand->spacing_m - distance * cos(elevation) - y * sin(elevation),
                        0.5 * stand->height_m + distance * sin(elevation) + y * cos(elevation)},
         .pitch_rad = -elevation,
         .fov_rad = 2 * atan(0.5 * params.height / pixels_per_m / distance),

@@ -86,7 +86,13 @@ float leaf_roughness(wd_lit_leaves model)
 wd_lit_leaves lit_leaves(int model)
 {
     vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
-    return wd_lit_leaves(a.x, a.y, floatBitsToUint(a.z), a.w, b.xyz, b.w);
+    return wd_lit_leaves(a.x, a.y, floatBitsToUint(a.z), floatBitsToUint(a.w), b.xyz, b.w);
+}
+
+vec3 paler_below(wd_lit_leaves model)
+{
+    return vec3(model.paler & 1023u, model.paler >> 10 & 1023u, model.paler >> 20 & 1023u)
+           * (WD_PALER_MOST / WD_PALER_STEPS);
 }
 
 vec2 sunlit_of_pair(uint here, uint turn_on, wd_sunlit_mix at)
@@ -211,6 +217,8 @@ struct wd_place {
     float own;          /* share of the sun left after the tree's own leaves */
     float ahead_m;      /* how far toward the sun to go before asking the maps */
     vec2 sides;         /* share of the sun reflected and transmitted toward the eye */
+    vec3 reflects;      /* albedo of the leaves that reflect the sun over the albedo of all that are seen, */
+    vec3 reflects_sky;  /* and of those that reflect the sky's light */
     vec3 transmittance; /* over albedo */
     float gloss;
     float coat;         /* share of light from everywhere that wax mirrors: of one leaf, light about the
@@ -231,6 +239,7 @@ wd_place ground_place(wd_pixel pixel)
     place.own = 1.0;
     place.ahead_m = 0.0;
     place.sides = vec2(facing_lit(pixel.facing), 0.0);
+    place.reflects = place.reflects_sky = vec3(1.0);
     place.transmittance = vec3(0.0);
     place.gloss = 0.0;
     place.coat = 0.0;
@@ -349,7 +358,7 @@ vec2 free_disc_light(vec3 eye, wd_crown crown)
 {
     float from_above = smoothstep(0.1, 0.6, eye.z);
     float backlit = smoothstep(-0.2, -0.8, dot(eye, frame.sun_direction));
-    vec2 of_tree = vec2(mix(0.97, 1.1, from_above) * mix(1.0, 0.78, backlit), mix(1.05, 1.15, from_above));
+    vec2 of_tree = vec2(mix(0.92, 0.99, from_above) * mix(1.0, 0.78, backlit), mix(1.05, 1.12, from_above));
     return mix(vec2(1.0), of_tree, is_tree(crown));
 }
 
@@ -508,6 +517,37 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), leaf_roughness(model));
 }
 
+/* The mean sine at which what reflects the sky's light to an eye has it. */
+const float SKY_SINE = 0.55;
+
+/* A pixel of many leaves has the mean colour of the sides that are seen. Of these, light from above is reflected for
+ * the most part by upper ones, which are less pale, and comes through lower ones. By the albedo of a lower side goes
+ * what it lets through, too, less the more it is the paler in green (look maps). What light stands have was fitted
+ * by how green they are: this gives them its hue alone. */
+void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, float free)
+{
+    vec3 paler = paler_below(model);
+    float through_below = 1.0 / max(paler.g, 1e-3), as_seen = mix(through_below, 1.0, place.waxed);
+    place.reflects = place.reflects_sky = vec3(1.0);
+    if (!ALL_SINGLE && pixel.lit < 0.0) {
+        bool level = pixel.material == WD_MATERIAL_CARD && push.level_cards != 0u;
+        float eye = -pixel.direction.z, sun = frame.sun_direction.z;
+        bool any_way = (model.paler & WD_PALER_ANY_WAY) != 0u;
+        vec3 lower = vec3(wd_lower_sides(level ? 0.0 : eye), wd_lower_sides(eye + sun), wd_lower_sides(eye + SKY_SINE));
+        lower = any_way ? vec3(0.5) : lower;
+        float upper = any_way ? 0.5 : 1.0 / (1.0 + exp(3.0 * (sun - eye)));
+        vec3 all = 1.0 / mix(vec3(1.0), paler, lower.x);
+        place.reflects = mix(vec3(1.0), paler, lower.y) * all;
+        place.reflects_sky = mix(vec3(1.0), paler, lower.z) * all;
+        vec3 through = mix(paler * through_below, vec3(1.0), upper) * all;
+        place.reflects *= mix(1.0 / place.reflects.g, 1.0, free);
+        place.reflects_sky *= mix(1.0 / place.reflects_sky.g, 1.0, free);
+        place.transmittance *= through * mix(as_seen / through.g, 1.0, free);
+    } else {
+        place.transmittance *= as_seen;
+    }
+}
+
 /* Wood within a crown is in its shade as leaves are. */
 wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, float factor,
                     uint cascade)
@@ -529,6 +569,10 @@ float sward_tufts_lit()
 /* Leaves of herbs lie in one another's shade and flat, where those of crowns lie every way: so much of what the wax
  * of many would mirror goes on to the eye. By path-traced ferns and tufts that stand free. */
 const float HERB_SHINES = 0.4;
+
+/* Pictures of a model have pixels as wide as leaves, past whose edges too many are lit: by rays through models of four
+ * species 1.00 to 1.08 times as many. */
+const float CLOUD_SUN = 0.95;
 
 /* Near, the maps hold each leaf and the crown's depth adds little. Far, the crown is left behind before the
  * map is asked, and depth along the sun says where in it how much of the light is left. Of a tree that stands
@@ -554,7 +598,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     vec3 outward = crown_normal(crown, place.rel);
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), near);
-    place.sides = mix(mix(blades * sunlit_seen(eye, crown), sunlit, free), blades, mapped);
+    place.sides = mix(mix(blades * sunlit_seen(eye, crown), CLOUD_SUN * sunlit, free), blades, mapped);
     place.transmittance = model.transmittance;
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
     place.body = 1.0 - WAX_CLOUD * place.waxed * (1.0 - sward);
@@ -571,7 +615,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
     place.sheet = fine > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
     light_disc(place, pixel, crown, model, free, hot * mix(1.0, free_disc_light(eye, crown).x, free), cascade);
-    place.transmittance *= mix(model.through_below, 1.0, place.waxed);
+    tell_sides(place, pixel, model, free);
     return place;
 }
 
@@ -631,7 +675,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 transmitted = pixel.albedo * place.transmittance * place.body;
     vec3 blade = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
     vec3 within = blade * place.body;
-    vec3 sunlit = within * place.sides.x + transmitted * place.sides.y;
+    vec3 sunlit = within * place.reflects * place.sides.x + transmitted * place.sides.y;
     alone.scattered = sunlight() * (pixel.surface == 0u ? 0.0 : sun_share)
                       * scattered_again(pixel.albedo * (1.0 + place.transmittance));
     wd_around around = light_around(facing, wax_mirror(pixel.direction, pixel.normal), shelter, ground_share,
@@ -645,7 +689,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 mirrored = mix(own, around.mirrored, pixel.mirrors);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
-    vec3 skylit = past.y * (around.front * within + sheen * place.waxed + around.back * transmitted);
+    vec3 skylit = past.y * (around.front * within * place.reflects_sky + sheen * place.waxed + around.back * transmitted);
     float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);

@@ -33,6 +33,20 @@ WD_FUNC float wd_leaves_seen_up(float eye)
     return 1.6f * eye / (1.0f + 1.3f * WD_ABS(eye));
 }
 
+/* Three ratios up to WD_PALER_MOST in ten bits each, and a bit of leaves of which as many lie with the one side up as
+ * with the other. */
+#define WD_PALER_MOST 8.0f
+#define WD_PALER_STEPS 1023.0f
+#define WD_PALER_ANY_WAY 0x40000000u
+
+/* Share of lower sides among the leaves of a crown that turn one side to a way, or the same side to two ways: by the
+ * sine of its elevation, or by the sum of both. Of oaks, beeches, birches, hazels and ferns, counted by rays. */
+WD_FUNC float wd_lower_sides(float sine)
+{
+    float rest = 0.5f * WD_EXP(-2.9f * WD_ABS(sine));
+    return sine < 0.0f ? 1.0f - rest : rest;
+}
+
 #define WD_SUNLIT_TURNS 7u
 #define WD_SUNLIT_PLACES 112u /* WD_SUN_RINGS * WD_SUN_RINGS * WD_SUNLIT_TURNS */
 /* Of leaves as a cloud: reflected and transmitted over a lit wall; of single leaves and of wood: factors on
@@ -58,8 +72,7 @@ WD_FUNC uint32_t wd_sunlit_place(uint32_t eye_ring, uint32_t sun_ring, uint32_t 
 struct wd_lit_leaves {
     float crown_base_m, height_m; /* as of struct wd_model */
     uint32_t sun_curve;           /* of wd_crown_lit: two half floats */
-    float through_below;          /* transmittance of the lower side over that of the upper: leaves let through as
-                                     much either way, and their lower side is paler */
+    uint32_t paler;               /* WD_PALER_*: albedo of leaves' lower sides over that of the upper ones */
     WD_VEC3(transmittance);       /* of a leaf over its upper side's albedo, linear */
     float roughness;              /* of leaves, the root of GGX's alpha; minus that of a grass's blades, and
                                      less 1 where these close over the ground */

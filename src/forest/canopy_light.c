@@ -13,7 +13,7 @@ static const float PI = 3.14159265f;
 
 /* --- the stand ----------------------------------------------------------------------------- */
 
-enum { MOST_CELLS = 384, STEEPNESSES = 4, QUARTERS = 4, SIDES = 3 };
+enum { CELLS_A_SIDE = 384 /* of a square */, MOST_CELLS = 4096 /* a side */, STEEPNESSES = 4, QUARTERS = 4, SIDES = 3 };
 
 /* Crowns of a cell as a layer of leaves over the ground. */
 struct stand {
@@ -285,7 +285,8 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
     const struct wd_world *world = params->world;
     double x_m = wd_terrain_extent_x_m(&world->terrain);
     double y_m = wd_terrain_extent_y_m(&world->terrain);
-    double cell_m = fmax(LEAST_CELL_M, fmax(x_m, y_m) / MOST_CELLS);
+    double cell_m = fmax(sqrt(x_m * y_m) / CELLS_A_SIDE, fmax(x_m, y_m) / MOST_CELLS);
+    cell_m = fmax(cell_m, LEAST_CELL_M);
     *field = (struct wd_canopy_field){.width = (uint32_t)ceil(x_m / cell_m),
                                       .height = (uint32_t)ceil(y_m / cell_m),
                                       .cell_m = cell_m};

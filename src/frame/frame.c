@@ -324,7 +324,8 @@ static void record_light(const struct recording *r)
         &frame->targets, frame->params.forest,
         &r->view,        &r->values,
         r->uniforms,     blends(r) ? WD_OVERLAY_OVER : WD_OVERLAY_NONE,
-        leaves_of(frame->params.method)};
+        leaves_of(frame->params.method),
+        !frame->params.method->eye_pictures};
     if (blends(r))
         record_blend(r, &light);
     wd_cmd_scope_begin(r->cmd, "light");

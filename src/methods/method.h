@@ -17,6 +17,7 @@ struct wd_method {
     /* Whether the camera's view has the ground before trees are drawn; after them, what they hide of
      * it is not shaded. */
     enum wd_ground_order { WD_GROUND_FIRST, WD_GROUND_LAST } ground;
+    bool eye_pictures; /* what it shows of trees besides meshes was pictured as the eye sees it; cards, level */
     bool single_leaves; /* each leaf in the camera's view says how it lies (shaders/lib/disc.glsl) */
     size_t state_size; /* bytes of what one renderer keeps for it; zeroed before `init` */
     /* Pipelines and the like. On failure `finish` is called all the same. */

@@ -47,6 +47,7 @@ static void views_draw(void *state, const struct wd_tree_draw *draw)
 const struct wd_method wd_method_views = {
     .name = "views",
     .cards = true,
+    .eye_pictures = true,
     .state_size = sizeof(struct wd_view_trees),
     .init = views_init,
     .finish = views_finish,

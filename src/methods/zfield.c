@@ -76,6 +76,7 @@ static void zfield_draw(void *state, const struct wd_tree_draw *draw)
 const struct wd_method wd_method_zfield = {
     .name = "zfield",
     .cards = true,
+    .eye_pictures = true,
     .state_size = sizeof(struct zfield),
     .init = zfield_init,
     .finish = zfield_finish,

@@ -110,15 +110,19 @@ static void pack_skylit(uint32_t *texels, const struct wd_tree_model *grown)
     }
 }
 
-/* As look maps have it: the same light comes through from both sides. */
-static float through_below(const struct wd_species *species)
+static uint32_t paler_below(const struct wd_species *species)
 {
-    float upper[3], lower[3];
-    if (species->imported)
-        return 1;
-    wd_look_color(species, WD_LOOK_LEAF, upper);
-    wd_look_color(species, WD_LOOK_LEAF_BACK, lower);
-    return upper[1] / fmaxf(lower[1], 1e-3f);
+    float upper[3] = {1, 1, 1}, lower[3] = {1, 1, 1};
+    if (!species->imported) {
+        wd_look_color(species, WD_LOOK_LEAF, upper);
+        wd_look_color(species, WD_LOOK_LEAF_BACK, lower);
+    }
+    uint32_t packed = species->leaf.shape == WD_LEAF_NEEDLES ? WD_PALER_ANY_WAY : 0;
+    for (int k = 0; k < 3; k++) {
+        float ratio = fminf(lower[k] / fmaxf(upper[k], 1e-3f), WD_PALER_MOST);
+        packed |= (uint32_t)(ratio * (WD_PALER_STEPS / WD_PALER_MOST) + 0.5f) << (10 * k);
+    }
+    return packed;
 }
 
 void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species *species,
@@ -128,7 +132,7 @@ void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species
         .crown_base_m = model->crown_base_m,
         .height_m = model->height_m,
         .sun_curve = wd_pack_uv(grown->sun_curve[0], grown->sun_curve[1]),
-        .through_below = through_below(species),
+        .paler = paler_below(species),
         .transmittance = {model->transmittance[0], model->transmittance[1], model->transmittance[2]},
         .roughness = model->roughness,
     };

@@ -11,6 +11,7 @@ static struct suite suite;
 struct shown {
     const char *species, *trees, *size_m, *keys, *camera;
     uint32_t samples;
+    const char *method; /* NULL: continuum */
 };
 
 /* Light of trees and of the ground that lies in their shadow, over the path tracer's, less 100. */
@@ -59,7 +60,7 @@ static struct light against_traced(const struct shown *shown)
     render.width = 64;
     render.height = 48;
     render.samples = shown->samples;
-    render.method = "continuum";
+    render.method = shown->method ? shown->method : "continuum";
     render.layers = WD_LAYER_COLOR | WD_LAYER_TREE_ID;
     assert_int_equal(wd_renderer_render(suite.renderer, &render, &drawn), WD_OK);
     suite_trace(&suite, forest, &render, 64, &traced);
@@ -133,6 +134,19 @@ static void tufts_stand_free(void **state)
     assert_true(fabs(found.trees_pct) < 15);
 }
 
+/* Maples as cards, whose texels mix leaves' upper sides with paler lower ones: what reflects light from above are
+ * upper ones for the most part. -2 %, and +6 where it is both. */
+static void cards_reflect_as_upper_sides(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "maple", .trees = STAND, .size_m = "[60, 60]", .samples = 8, .method = "octree",
+        .keys = "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40}, "
+                "\"quality\": {\"mesh_distance_m\": 0, \"reduced_distance_m\": 0}",
+        .camera = FROM_AFAR});
+    assert_true(found.trees_pct > -6 && found.trees_pct < 4);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -141,6 +155,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(snow_lights_trees_from_below),
         cmocka_unit_test(pale_leaves_light_each_other),
         cmocka_unit_test(tufts_stand_free),
+        cmocka_unit_test(cards_reflect_as_upper_sides),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;

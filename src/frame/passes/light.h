@@ -41,6 +41,7 @@ struct wd_light_params {
     struct wd_binding uniforms;            /* the same, on the device */
     enum wd_overlay { WD_OVERLAY_NONE, WD_OVERLAY_OVER } overlay; /* whether targets->overlay counts */
     enum wd_leaf_kinds leaves;
+    bool level_cards; /* not wd_method.eye_pictures */
 };
 
 /* What shading needs besides the frame's uniforms: for methods that light trees by themselves. All
