@@ -108,6 +108,34 @@ static void nothing_seen_is_left_out(void **state)
     frame_test_finish(&test);
 }
 
+/* A view a third as high is the middle of the whole one: of trees that reach out of it what lies above and below is
+ * left out, and nothing else. */
+static void a_lower_view_is_part_of_a_higher(void **state)
+{
+    (void)state;
+    struct frame_test test;
+    struct frame_picture whole, part;
+    frame_test_init(&test, root, 0);
+    struct wd_scene_camera *camera = &test.scene.cameras[WALK];
+    frame_test_draw(&test, "continuum", WALK, &whole);
+    double rad = 0.017453292519943295;
+    camera->fov_deg = 2 / rad * atan(tan(0.5 * rad * camera->fov_deg) / 3);
+    test.height = whole.height / 3;
+    wd_frame_drop_forest(&test.frame);
+    frame_test_draw(&test, "continuum", WALK, &part);
+    size_t other = 0, trees = 0, first = pixels_of(&part);
+    for (size_t i = 0; i < pixels_of(&part); i++) {
+        trees += part.surface[i] != 0;
+        other += part.surface[i] != whole.surface[first + i];
+    }
+    print_message("%zu of %zu pixels differ\n", other, pixels_of(&part));
+    assert_true(trees > pixels_of(&part) / 4);
+    assert_in_range(other, 0, pixels_of(&part) / 200);
+    frame_picture_finish(&whole);
+    frame_picture_finish(&part);
+    frame_test_finish(&test);
+}
+
 /* Before the stem of the tallest tree, near enough that it hides what stands behind. */
 static struct wd_scene_camera camera_at_stem(const struct frame_test *test)
 {
@@ -335,6 +363,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(every_tree_is_in_one_cluster_and_its_bounds),
         cmocka_unit_test(two_passes_give_the_picture_of_one),
         cmocka_unit_test(nothing_seen_is_left_out),
+        cmocka_unit_test(a_lower_view_is_part_of_a_higher),
         cmocka_unit_test(a_jump_leaves_nothing_out),
         cmocka_unit_test(splats_go_only_where_leaves_stand),
         cmocka_unit_test(near_leaves_are_the_mesh),

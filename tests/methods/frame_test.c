@@ -75,7 +75,7 @@ void frame_test_draw(struct frame_test *test, const char *method, uint32_t camer
         .method = wd_method_find(method),
         .camera = camera_of(&test->scene.cameras[camera]),
         .width = 320,
-        .height = 240,
+        .height = test->height ? test->height : 240,
         .samples = 1,
         .page_budget = test->page_budget,
         .max_error_px = test->max_error_px,

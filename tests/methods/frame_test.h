@@ -14,6 +14,7 @@ struct frame_test {
     uint32_t page_budget; /* as in struct wd_frame_params */
     float max_error_px;   /* likewise */
     double time_s; /* of the wind, in the frames to come */
+    uint32_t height; /* of pictures; 0: 240 */
 };
 
 /* Opens the scene of the API's tests; `root` is the source folder. `disabled`: wd_gpu_feature bits
