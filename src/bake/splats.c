@@ -115,7 +115,8 @@ static void find_tops(const struct wd_tree_points *points, uint32_t leaf, uint32
 }
 
 /* Fills one stratum with the points of its kind between the heights, in their order and round
- * again, and `drawn` with the points themselves, `step` apart. False where there are none. */
+ * again, and `drawn` with the points themselves, `step` apart. What is lit of them is for light_discs: their
+ * number among `points` stands for it. False where there are none. */
 static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *points,
                          uint32_t leaf, uint32_t stratum, float top, float bottom,
                          struct wd_tree_points *drawn, uint32_t step)
@@ -129,7 +130,7 @@ static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *
             point->position_m[2] <= bottom)
             continue;
         drawn->points[used * step + stratum] = *point;
-        drawn->lit[used * step + stratum] = lit[used] = points->lit[i];
+        drawn->lit[used * step + stratum] = lit[used] = (uint32_t)i;
         to[used] = leaf_at(&splats->model, point);
         looks[used++] = point_look(point);
     }
@@ -340,7 +341,7 @@ static bool fill_wood(struct wd_splats *splats, uint32_t half, const struct wd_t
         uint32_t chosen = which[order[i % count]];
         const struct wd_tree_point *point = &points->points[chosen];
         drawn->points[i] = *point;
-        drawn->lit[i] = splats->lit[first + i] = points->lit[chosen];
+        drawn->lit[i] = splats->lit[first + i] = chosen;
         splats->splats[first + i] = splat_at(&splats->model, point->position_m, point->face);
         splats->looks[first + i] = point_look(point);
     }
@@ -397,6 +398,35 @@ static void fill_wood_halves(struct wd_splats *splats, const struct wd_tree_poin
     free(keep);
 }
 
+static void tell_lit(uint32_t *which, size_t count, const uint32_t *lit)
+{
+    for (size_t i = 0; i < count; i++)
+        which[i] = lit[which[i]];
+}
+
+/* Of points that are discs; most of the others are none. */
+static void light_discs(struct wd_splats *splats, const struct wd_tree_points *points,
+                        const struct wd_tree_mesh *mesh, struct wd_tree_points *leaves, struct wd_tree_points *wood)
+{
+    struct wd_tree_points some = {.points = wd_alloc_array(points->count, sizeof *some.points)};
+    uint32_t *lit = wd_alloc_array(points->count, sizeof *lit);
+    bool *is_disc = wd_alloc_array(points->count, sizeof *is_disc);
+    for (size_t i = 0; i < WD_SPLATS; i++)
+        is_disc[splats->lit[i]] = true;
+    for (size_t i = 0; i < points->count; i++)
+        if (is_disc[i])
+            some.points[some.count++] = points->points[i];
+    wd_tree_points_light(&some, mesh);
+    for (size_t i = 0, at = 0; i < points->count; i++)
+        lit[i] = is_disc[i] ? some.lit[at++] : 0;
+    tell_lit(splats->lit, WD_SPLATS, lit);
+    tell_lit(leaves->lit, leaves->count, lit);
+    tell_lit(wood->lit, wood->count, lit);
+    wd_tree_points_finish(&some);
+    free(is_disc);
+    free(lit);
+}
+
 static void make_discs(struct wd_splats *splats, const struct wd_tree_points *points,
                        const struct wd_tree_model *model)
 {
@@ -410,6 +440,7 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     make_wood(splats, &model->reduced, order);
     fill_leaves(splats, points, &leaves);
     fill_wood_halves(splats, points, model, &sides, order, &wood);
+    light_discs(splats, points, &model->full, &leaves, &wood);
     struct wd_disc_fit fits;
     const float stratum = 1.0f / WD_SPLAT_STRATA;
     const struct wd_disc_class woody = {&wood, points->wood_area_m2, stratum};
@@ -436,7 +467,6 @@ bool wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
     *splats = (struct wd_splats){0};
     if (!wd_tree_points_build(&points, &model->full, look, POINTS))
         return wd_error(log, "a tree of %.1f m has no surface to draw", (double)model->height_m);
-    wd_tree_points_light(&points, &model->full);
     splats->splats = wd_alloc_array(WD_SPLATS, sizeof *splats->splats);
     splats->looks = wd_alloc_array(WD_SPLATS, sizeof *splats->looks);
     splats->lit = wd_alloc_array(WD_SPLATS, sizeof *splats->lit);

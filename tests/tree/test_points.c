@@ -406,6 +406,69 @@ static void plates_shade_what_is_below(void **state)
     wd_tree_mesh_finish(&mesh);
 }
 
+/* Möller and Trumbore 1997 */
+static bool ray_meets(struct wd_vec3 from, struct wd_vec3 way, const struct wd_vec3 corners[3])
+{
+    struct wd_vec3 u = wd_v3_sub(corners[1], corners[0]), v = wd_v3_sub(corners[2], corners[0]);
+    struct wd_vec3 p = wd_v3_cross(way, v), off = wd_v3_sub(from, corners[0]), q = wd_v3_cross(off, u);
+    float over = 1 / wd_v3_dot(u, p), b = wd_v3_dot(off, p) * over, c = wd_v3_dot(way, q) * over;
+    return b >= 0 && c >= 0 && b + c <= 1 && wd_v3_dot(v, q) * over > 5e-4f;
+}
+
+static bool is_open(const struct wd_tree_mesh *mesh, const struct wd_tree_point *point, struct wd_vec3 way)
+{
+    for (uint32_t i = 0; i < mesh->index_count; i += 3) {
+        struct wd_vec3 corners[3];
+        for (uint32_t k = 0; k < 3; k++)
+            corners[k] = wd_v3_of(mesh->vertices[mesh->indices[i + k]].position_m);
+        if (ray_meets(wd_v3_of(point->position_m), way, corners))
+            return false;
+    }
+    return true;
+}
+
+/* Splinters of any size as close to one another as may be. */
+static void add_splinters(struct wd_tree_mesh *mesh, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        float size_m = 0.02f + 0.6f * wd_hash_unit(wd_hash2(i, 1));
+        for (uint32_t k = 0; k < 3; k++) {
+            struct wd_tree_vertex vertex = {.kind = WD_VERTEX_LEAF};
+            for (uint32_t axis = 0; axis < 3; axis++)
+                vertex.position_m[axis] = 2 * wd_hash_unit(wd_hash2(i, 10 + axis)) +
+                                          size_m * wd_hash_unit(wd_hash3(i, k, 20 + axis));
+            wd_tree_mesh_add_vertex(mesh, &vertex);
+        }
+        wd_tree_mesh_add_triangle(mesh, 3 * i, 3 * i + 1, 3 * i + 2);
+    }
+}
+
+/* Any of 32 ways at any of the points: by pictures with pixels as wide as leaves one in fifteen was wrong. */
+static void rays_find_the_same_ways_open(void **state)
+{
+    (void)state;
+    static const uint8_t rgba[4 * WD_LOOK_LAYERS];
+    const struct wd_point_look look = {rgba, 1};
+    struct wd_tree_points points;
+    struct wd_tree_mesh mesh = {0};
+    uint32_t open = 0, differ = 0;
+    add_splinters(&mesh, 400);
+    wd_tree_mesh_update_bounds(&mesh);
+    assert_true(wd_tree_points_build(&points, &mesh, &look, 700));
+    wd_tree_points_light(&points, &mesh);
+    for (size_t i = 0; i < points.count; i++)
+        for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
+            bool is = is_open(&mesh, &points.points[i], wd_sun_way(way));
+            open += is;
+            differ += is != (points.lit[i] >> way & 1);
+        }
+    const uint32_t all = (uint32_t)points.count * WD_SUN_WAYS;
+    assert_true(open > all / 10 && open < all - all / 10);
+    assert_true(differ < all / 1000);
+    wd_tree_points_finish(&points);
+    wd_tree_mesh_finish(&mesh);
+}
+
 static void broken_meshes_give_none_or_few(void **state)
 {
     (void)state;
@@ -448,6 +511,7 @@ int main(void)
         cmocka_unit_test(discs_cover_what_the_mesh_covers),
         cmocka_unit_test(ways_mix_their_neighbours),
         cmocka_unit_test(plates_shade_what_is_below),
+        cmocka_unit_test(rays_find_the_same_ways_open),
         cmocka_unit_test(broken_meshes_give_none_or_few),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
