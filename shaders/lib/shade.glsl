@@ -6,6 +6,7 @@
 const float PER_PI = 0.318309886;
 
 #include "lib/wax.glsl"
+#include "shared/wax.h"
 #include "lib/skylight.glsl"
 
 /* --- leaves --------------------------------------------------------------------------------- */
@@ -49,16 +50,16 @@ float sunlit_seen(vec3 eye, wd_crown crown)
 struct wd_sunlit_mix {
     uint place, eye_ring;
     float eye, sun, turn;
-    float hot;
+    vec2 hot;
 };
 
-/* The eye sees past a leaf's edge what the sun reaches past it, if both come nearly the same way: more than
- * the table's pictures tell, whose pixels are as wide as leaves. By path-traced rows of six species under
- * suns 0 to 60 degrees from the eye. */
-float hot_spot(float cosine)
+/* The eye sees past a leaf's edge what the sun reaches past it, if both come nearly the same way: more than the table
+ * tells between its ways (x), and than discs do, whose own few ways are mixed (y). By path-traced rows of six species
+ * under suns 0 to 60 degrees from the eye. */
+vec2 hot_spot(float cosine)
 {
     float apart = angle_of(cosine);
-    return 1.0 + 0.36 * exp(-9.5 * apart) + 0.23 * exp(-2.6 * apart);
+    return 1.0 + vec2(0.28, 0.36) * exp(-9.5 * apart) + vec2(0.0, 0.10) * exp(-2.6 * apart);
 }
 
 wd_sunlit_mix sunlit_mix(vec3 eye)
@@ -86,7 +87,7 @@ float leaf_roughness(wd_lit_leaves model)
 wd_lit_leaves lit_leaves(int model)
 {
     vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
-    return wd_lit_leaves(a.x, a.y, floatBitsToUint(a.z), floatBitsToUint(a.w), b.xyz, b.w);
+    return wd_lit_leaves(a.x, floatBitsToUint(a.y), floatBitsToUint(a.z), floatBitsToUint(a.w), b.xyz, b.w);
 }
 
 vec3 paler_below(wd_lit_leaves model)
@@ -112,7 +113,7 @@ vec2 sunlit_of(int model, wd_sunlit_mix at)
                  + sunlit_of_pair(low.z, low.w, at) * (at.eye - both)
                  + sunlit_of_pair(high.x, high.y, at) * (at.sun - both)
                  + sunlit_of_pair(high.z, high.w, at) * both;
-    return known * at.hot;
+    return known * at.hot.x;
 }
 
 /* `first`: of leaves or of wood. */
@@ -153,18 +154,10 @@ vec2 leaf_blade(vec3 facing, vec3 eye, float plain)
     return 0.5 * vec2(root + mean, root - mean) * mix(vec2(same, 1.0 - same), vec2(1.0), plain);
 }
 
-/* Of light along the normal, a leaf's wax mirrors this (refractive index 1.4), and 1.6 times as much of
- * light from everywhere. A leaf's albedo holds what its surface reflects: what comes from within is
- * less. Leaves of every direction mirror pi / 8 of it to any side. Only upper sides shine. */
-const float WAX = 0.028;
-
-/* The flatter wax is looked at, the more it mirrors (Schlick 1994) and the less comes out through it of the
- * light from within: 1 - WAX times this. */
-float grazing(float cosine)
-{
-    float rest = 1.0 - cosine, rest2 = rest * rest;
-    return rest2 * rest2 * rest;
-}
+/* A leaf's albedo holds what its surface reflects: what comes from within is less. Of light from everywhere wax
+ * mirrors 1.6 times as much as of light along the normal, leaves of every direction pi / 8 of that to any side. Only
+ * upper sides shine. What comes out through wax of the light from within is less the flatter it is looked at: 1 - WD_WAX
+ * times wd_grazing. */
 
 /* Its mean over leaves of every direction, by how much of them is seen. */
 const float WAX_CLOUD = 1.0 / 21.0;
@@ -185,7 +178,7 @@ float leaf_gloss(wd_pixel pixel, float roughness, float near)
  * angle to it has this cosine: most of what is ahead. */
 float wax_ahead(float cosine)
 {
-    return (1.0 - WAX) * grazing(sqrt(max(0.5 + 0.5 * cosine, 0.0)));
+    return (1.0 - WD_WAX) * wd_grazing(sqrt(max(0.5 + 0.5 * cosine, 0.0)));
 }
 
 /* Light of a layer's leaves whose way up through others is `over` times the mean way to the next one:
@@ -204,7 +197,7 @@ vec3 sward_sheen(vec3 direction, float over, float open)
     vec3 ahead = vec3(direction.xy * inversesqrt(dot(direction.xy, direction.xy) + 1e-6), 0.0);
     float flat_on = 1.0 - min(abs(direction.z), 1.0);
     vec3 horizon = SKY_EVEN(frame.sky_form, ahead) + SKY_ODD(frame.sky_form, ahead);
-    return open * (0.5 * WAX * through_layer(over) * frame.sky_irradiance
+    return open * (0.5 * WD_WAX * through_layer(over) * frame.sky_irradiance
                    + 0.26 * flat_on * flat_on * flat_on * exp(-over) * max(horizon, vec3(0.0)));
 }
 
@@ -223,7 +216,8 @@ struct wd_place {
     float gloss;
     float coat;         /* share of light from everywhere that wax mirrors: of one leaf, light about the
                            mirrored ray; of many, light that falls on them */
-    float waxed;        /* share of upper sides among leaves seen */
+    float waxed;        /* share of upper sides among leaves seen, */
+    vec2 waxed_lit;     /* and among those that reflect the sun and the sky's light */
     float body;         /* share of the light from within that their wax lets out toward the eye */
     float sward;        /* 1: a blade in a sward, */
     float over;         /* under so many layers of others */
@@ -244,6 +238,7 @@ wd_place ground_place(wd_pixel pixel)
     place.gloss = 0.0;
     place.coat = 0.0;
     place.waxed = 0.0;
+    place.waxed_lit = vec2(0.0);
     place.body = 1.0;
     place.sward = 0.0;
     place.over = 0.0;
@@ -336,7 +331,7 @@ vec3 scattered_again(vec3 leaf)
  * again and again: a photon that a leaf has scattered meets another one by this chance (Smolander and Stenberg
  * 2005). Rows of oaks, maples and spruces ask for 0.45, path-traced; birches and maples on a shore in October, which
  * are 1.8 times as bright in red as by the first meeting alone, for 0.65. */
-const float FREE_RECOLLISION = 0.55;
+const float FREE_RECOLLISION = 0.47;
 
 vec3 scattered_on(vec3 leaf)
 {
@@ -351,14 +346,12 @@ vec3 leaves_albedo()
 }
 
 /* Of a tree that stands free, an eye from above sees discs that lie deeper among its leaves than the leaves it would
- * see, and one toward the sun discs that are lit where these are in each other's shade: factors on the sun's light
- * and on the sky's. By path-traced oaks, beeches, spruces and birches, from 4 and 40 degrees above, under suns 0 to
- * 150 degrees from the eye. */
+ * see: factors on the sun's light and on the sky's. By path-traced rows of six species, from 4 and 40 degrees above,
+ * under suns 0 to 136 degrees from the eye. */
 vec2 free_disc_light(vec3 eye, wd_crown crown)
 {
     float from_above = smoothstep(0.1, 0.6, eye.z);
-    float backlit = smoothstep(-0.2, -0.8, dot(eye, frame.sun_direction));
-    vec2 of_tree = vec2(mix(0.92, 0.99, from_above) * mix(1.0, 0.78, backlit), mix(1.05, 1.12, from_above));
+    vec2 of_tree = vec2(mix(1.0, 1.07, from_above), mix(1.0, 1.06, from_above));
     return mix(vec2(1.0), of_tree, is_tree(crown));
 }
 
@@ -375,6 +368,9 @@ const float NEIGHBOURS_OVER = 0.75;
  * how much brighter an upright face's is than an even sky's. Fitted to path-traced oaks, spruces and birches, of
  * single leaves and of clouds. */
 const float LOW_SKY_LEAF = 0.12, LOW_SKY_CLOUD = 0.23;
+
+/* What of the sky's light a free tree sends to an eye, over what its table tells: by path-traced rows of six species. */
+const float SKY_OVER_TABLE = 1.13;
 
 float brighter_low_sky()
 {
@@ -395,6 +391,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.known = mix(alone.share, 1.0, from_above);
     alone.side = mix(vec4(1.0), eye_side(-pixel.direction), one_leaf ? alone.share : 0.0);
     alone.lets.xy *= 1.0 + alone.share * (one_leaf ? LOW_SKY_LEAF : LOW_SKY_CLOUD) * brighter_low_sky();
+    alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, alone.share * is_tree(crown));
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown).y, alone.share) : 1.0;
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
     alone.again = mix(vec3(1.0), scattered_on(leaf), is_tree(crown));
@@ -421,18 +418,18 @@ void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float open
     place.ahead_m = mix(path_m, left_m, free) + cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
 }
 
-/* `mapped` of their shade is in the shadow map, which holds leaves as far as `fine` says. */
-void shade_by_map(inout wd_place place, float mapped, float fine)
+/* Maps' texels are as wide as leaves and twigs, past whose edges too much of the sun comes: of that, what reaches the
+ * leaves of a tree that stands free; a low eye sees the more of their edges. By path-traced rows of four species. */
+float map_lets(vec3 eye)
 {
-    place.own = mix(place.own, 1.0, mapped * fine);
-    place.ahead_m *= 1.0 - fine;
+    return mix(0.84, 0.93, smoothstep(0.1, 0.6, eye.z));
 }
 
-/* GGX (Walter et al. 2007), with the shadowing of facets by each other. */
-float ggx_hidden(float cosine, float alpha2)
+/* `mapped` of their shade is in the shadow map, which holds leaves as far as `fine` says and lets so much through. */
+void shade_by_map(inout wd_place place, float mapped, float fine, float lets)
 {
-    float square = max(cosine * cosine, 1e-6);
-    return 0.5 * (sqrt(1.0 + alpha2 * (1.0 - square) / square) - 1.0);
+    place.own = mix(place.own, lets, mapped * fine);
+    place.ahead_m *= 1.0 - fine;
 }
 
 /* What the wax of one leaf mirrors of the sun, over a lit wall. */
@@ -440,11 +437,8 @@ float leaf_coat(vec3 normal, vec3 eye, float roughness)
 {
     float toward_eye = max(dot(normal, eye), 0.05), lit = dot(normal, frame.sun_direction);
     vec3 half_way = normalize(eye + frame.sun_direction);
-    float alpha = roughness * roughness, alpha2 = alpha * alpha, along = dot(normal, half_way);
-    float spread = along * along * (alpha2 - 1.0) + 1.0;
-    float mirrored = WAX + (1.0 - WAX) * grazing(max(dot(half_way, eye), 0.0));
-    float open = 1.0 + ggx_hidden(toward_eye, alpha2) + ggx_hidden(lit, alpha2);
-    return lit <= 0.0 ? 0.0 : mirrored * alpha2 / (spread * spread * open * 4.0 * toward_eye);
+    float alpha = roughness * roughness;
+    return lit <= 0.0 ? 0.0 : wd_wax_mirrors(toward_eye, lit, dot(normal, half_way), dot(half_way, eye), alpha * alpha);
 }
 
 /* What the wax of one leaf mirrors of even light about the mirrored ray: GGX's facets, and the more the
@@ -452,7 +446,7 @@ float leaf_coat(vec3 normal, vec3 eye, float roughness)
 float leaf_coat_around(float toward_eye, float roughness)
 {
     float flat_on = exp2(0.294 - 5.41 * roughness - toward_eye * (3.46 + 6.49 * toward_eye));
-    return WAX * (1.1 - 0.45 * roughness) + flat_on;
+    return WD_WAX * (1.1 - 0.45 * roughness) + flat_on;
 }
 
 /* How much of a disc's shade the map is left to tell: its look-up leaves out the leaves next to the place. By
@@ -476,10 +470,20 @@ vec2 past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
     return mix(vec2(1.0), PAST_DISCS, stand * darkest_stand(shelter));
 }
 
-/* What of the sun a disc's own tree leaves it: what is known of ways through that. A map that holds
- * leaves tells more where discs are as near as they are; a disc may lie a pixel behind its leaf then.
- * Leaves of meshes (lit 1) are in the nearest maps as they are. 0: none goes on to the eye. */
-void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, float free, float hot, uint cascade)
+/* Where trees show so many discs or fewer, a pixel's share of the sun is the mean that its depth in the crown leaves,
+ * which samples need not find; where they show so many or more, each disc's own. */
+const float FEW_DISCS = 100.0, MANY_DISCS = 400.0;
+
+/* In stands, where crowns reach into one another, the map is asked from so far on of the way out of the own one, and
+ * tells some of its shade again: factors on each disc's own share of the sun and on the mean. Where there is no map, a
+ * stand's cover stands for the shade that these make up for. By path-traced stands of bench75k and of beeches. */
+const float STAND_WAY = 0.4, STAND_NO_MAP = 1.25;
+const vec2 STAND_DISC_SUN = vec2(1.12, 1.03);
+
+/* What of the sun a disc's own tree leaves it: what is known of ways through that. `sun`: factors on each disc's share
+ * and on the mean by depth. A map that holds leaves tells more where discs are as near as they are; a disc may lie a
+ * pixel behind its leaf then. Leaves of meshes (lit 1) are in the nearest maps as they are. 0: none goes on to the eye. */
+void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2 sun, uint cascade)
 {
     float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
     if (!is_disc(pixel)) {
@@ -494,25 +498,29 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, float free
     float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
     float discs = 0.6 * crown.radii_m.x * tall_m / (pixel_m * pixel_m); /* about as many */
     float known = wd_disc_close(discs) * map_holds_leaves(cascade, 1.0);
+    float path_m = wd_crown_path_m(place.rel - crown.center_rel, crown.radii_m, frame.sun_direction);
+    float mean = wd_crown_lit(wd_crown_through(crown.radii_m, path_m, pixel.openness), curve.x, curve.y);
+    float singly = mix(1.0, smoothstep(FEW_DISCS, MANY_DISCS, discs), is_tree(crown));
+    float lit = mix(mean * sun.y, pixel.lit * sun.x, singly);
     float tree_m = (1.0 - crown.sward) * min(0.5, 0.5 * tall_m); /* its own tree is in `lit` */
-    float ahead_m = place.ahead_m * (cascade < WD_LEAF_CASCADES ? free : 1.0) + tree_m + texel_m;
-    place.own = mix(pixel.lit * hot, 1.0, known * mix(MAP_TELLS, 1.0, crown.sward));
+    float ahead_m = place.ahead_m * (cascade < WD_LEAF_CASCADES ? mix(STAND_WAY, 1.0, free) : 1.0) + tree_m + texel_m;
+    place.own = mix(lit, 1.0, known * mix(MAP_TELLS, 1.0, crown.sward));
     place.ahead_m = mix(ahead_m, pixel_m, known);
 }
 
 /* A disc of a leaf is lit as the leaf that it is. */
-void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float free, float hot,
+void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float free, vec2 sun,
                 uint cascade)
 {
     if (!ALL_SINGLE && pixel.lit < 0.0)
         return;
-    shade_disc(place, pixel, crown, free, hot, cascade);
+    shade_disc(place, pixel, crown, unpackHalf2x16(model.sun_curve), free, sun, cascade);
     place.normal = pixel.normal;
     place.cloud = 0.0;
     float cosine = dot(pixel.normal, frame.sun_direction);
     place.sides = vec2(max(cosine, 0.0), max(-cosine, 0.0));
     place.waxed = pixel.above;
-    place.body = 1.0 - pixel.above * (1.0 - crown.sward) * grazing(abs(dot(pixel.normal, pixel.direction)));
+    place.body = 1.0 - pixel.above * (1.0 - crown.sward) * wd_grazing(abs(dot(pixel.normal, pixel.direction)));
     place.gloss = leaf_coat(pixel.normal, -pixel.direction, leaf_roughness(model)) * pixel.above;
     place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), leaf_roughness(model));
 }
@@ -529,12 +537,14 @@ void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, float
     vec3 paler = paler_below(model);
     float through_below = 1.0 / max(paler.g, 1e-3), as_seen = mix(through_below, 1.0, place.waxed);
     place.reflects = place.reflects_sky = vec3(1.0);
+    place.waxed_lit = vec2(place.waxed);
     if (!ALL_SINGLE && pixel.lit < 0.0) {
         bool level = pixel.material == WD_MATERIAL_CARD && push.level_cards != 0u;
         float eye = -pixel.direction.z, sun = frame.sun_direction.z;
         bool any_way = (model.paler & WD_PALER_ANY_WAY) != 0u;
         vec3 lower = vec3(wd_lower_sides(level ? 0.0 : eye), wd_lower_sides(eye + sun), wd_lower_sides(eye + SKY_SINE));
         lower = any_way ? vec3(0.5) : lower;
+        place.waxed = any_way ? mix(place.waxed, 0.5, free) : place.waxed;
         float upper = any_way ? 0.5 : 1.0 / (1.0 + exp(3.0 * (sun - eye)));
         vec3 all = 1.0 / mix(vec3(1.0), paler, lower.x);
         place.reflects = mix(vec3(1.0), paler, lower.y) * all;
@@ -543,19 +553,23 @@ void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, float
         place.reflects *= mix(1.0 / place.reflects.g, 1.0, free);
         place.reflects_sky *= mix(1.0 / place.reflects_sky.g, 1.0, free);
         place.transmittance *= through * mix(as_seen / through.g, 1.0, free);
+        place.waxed_lit = mix(place.waxed_lit, 1.0 - lower.yz, free);
     } else {
         place.transmittance *= as_seen;
     }
 }
 
-/* Wood within a crown is in its shade as leaves are. */
-wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, float factor,
-                    uint cascade)
+/* Wood within a crown is in its shade as leaves are. Where a pixel shows branches that lie this way and that, which its
+ * short mean normal tells, those of a tree that stands free are lit as its table says. */
+wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2 sunlit, uint cascade)
 {
     wd_place place = ground_place(pixel);
-    shade_by_crown(place, crown, curve, pixel.openness, free, factor, cascade);
+    float fine = map_holds_leaves(cascade, free);
+    float many = smoothstep(1.0, 0.8, length(pixel.facing)) * (1.0 - fine);
+    shade_by_crown(place, crown, curve, pixel.openness, free, mix(sunlit.x, 1.0, many), cascade);
+    place.sides.x = mix(place.sides.x, sunlit.y, many * free);
     place.own = pixel.lit < 0.0 ? place.own : pixel.lit;
-    shade_by_map(place, pixel.lit < 0.0 ? 1.0 : 0.0, map_holds_leaves(cascade, free));
+    shade_by_map(place, pixel.lit < 0.0 ? 1.0 : 0.0, fine, 1.0);
     return place;
 }
 
@@ -569,10 +583,6 @@ float sward_tufts_lit()
 /* Leaves of herbs lie in one another's shade and flat, where those of crowns lie every way: so much of what the wax
  * of many would mirror goes on to the eye. By path-traced ferns and tufts that stand free. */
 const float HERB_SHINES = 0.4;
-
-/* Pictures of a model have pixels as wide as leaves, past whose edges too many are lit: by rays through models of four
- * species 1.00 to 1.08 times as many. */
-const float CLOUD_SUN = 0.95;
 
 /* Near, the maps hold each leaf and the crown's depth adds little. Far, the crown is left behind before the
  * map is asked, and depth along the sun says where in it how much of the light is left. Of a tree that stands
@@ -594,29 +604,40 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     shade_by_crown(place, crown, unpackHalf2x16(model.sun_curve), pixel.openness, free,
                    pixel.lit >= 1.0 ? sunlit.x : 1.0, cascade);
     place.own *= mix(1.0, card ? sward_tufts_lit() : 1.0, sward);
-    shade_by_map(place, 0.75 - 0.375 * sward, fine);
+    shade_by_map(place, 0.75 - 0.375 * sward, fine, mix(1.0, map_lets(eye), free));
     vec3 outward = crown_normal(crown, place.rel);
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), near);
-    place.sides = mix(mix(blades * sunlit_seen(eye, crown), CLOUD_SUN * sunlit, free), blades, mapped);
+    place.sides = mix(mix(blades * sunlit_seen(eye, crown), sunlit, free), blades, mapped);
     place.transmittance = model.transmittance;
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
     place.body = 1.0 - WAX_CLOUD * place.waxed * (1.0 - sward);
     place.sward = sward;
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
-    place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WAX * 0.39;
-    place.coat = WAX * mix(1.85, 1.05, smoothstep(0.0, 0.64, eye.z)); /* of path-traced rows under an even sky */
+    place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WD_WAX * 0.39;
+    place.coat = WD_WAX * mix(1.85, 1.05, smoothstep(0.0, 0.64, eye.z)); /* of path-traced rows under an even sky */
     float shines = mix(HERB_SHINES, 1.0, max(is_tree(crown), place.sward));
     place.coat *= shines;
     place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
+    vec2 wax = unpackHalf2x16(model.cloud_wax);
+    float mirrors = WD_WAX * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
+    place.gloss = mix(place.gloss, shines * mirrors * (place.sides.x + place.sides.y), free);
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
     place.sheet = fine > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
-    light_disc(place, pixel, crown, model, free, hot * mix(1.0, free_disc_light(eye, crown).x, free), cascade);
+    vec2 in_stands = mix(vec2(1.0), STAND_DISC_SUN, is_tree(crown));
+    vec2 on_discs = vec2(hot, sunlit.x) * mix(in_stands, vec2(free_disc_light(eye, crown).x, 1.0), free);
+    light_disc(place, pixel, crown, model, free, on_discs, cascade);
     tell_sides(place, pixel, model, free);
     return place;
+}
+
+/* What leaves reflect from within: a measured albedo holds what the wax of upper sides mirrors, too. */
+vec3 within_wax(vec3 albedo, float waxed)
+{
+    return albedo - waxed * min(vec3(WD_WAX), 0.75 * albedo);
 }
 
 /* `sun_share` is what of the sun reaches the place, `ground_share` what the ground leaves of it. */
@@ -635,18 +656,19 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         int model_at = int(index * WD_LIT_MODEL_TEXELS);
         wd_lit_leaves model = lit_leaves(model_at);
         wd_sunlit_mix mixed = sunlit_mix(-pixel.direction);
-        hot = mixed.hot;
-        bool singly = pixel.lit >= 1.0 || pixel.material < WD_MATERIAL_LEAF;
-        mixed.place += singly ? WD_SUNLIT_PLACES : 0u;
+        hot = mixed.hot.y;
+        bool leaf = pixel.material >= WD_MATERIAL_LEAF;
+        uint leaves = ALL_SINGLE || pixel.lit >= 0.0 ? WD_SUNLIT_LEAVES : WD_SUNLIT_CLOUDS;
+        mixed.place += (leaf ? leaves : WD_SUNLIT_WOOD) * WD_SUNLIT_PLACES;
         vec2 sunlit = sunlit_of(model_at, mixed);
         uint seen_as = pixel.lit >= 0.0 ? WD_SKYLIT_LEAVES : WD_SKYLIT_CLOUDS;
-        vec4 skylit = skylit_of(model_at, mixed, pixel.material >= WD_MATERIAL_LEAF ? seen_as : WD_SKYLIT_WOOD);
+        vec4 skylit = skylit_of(model_at, mixed, leaf ? seen_as : WD_SKYLIT_WOOD);
         wd_crown crown = crown_of(tree, model);
         alone = crown_alone(pixel, crown, skylit, shelter, pixel.rel.z - crown.foot_z);
-        if (pixel.material >= WD_MATERIAL_LEAF)
-            place = leaf_place(pixel, crown, model, alone.share, sunlit, mixed.hot, cascade);
+        if (leaf)
+            place = leaf_place(pixel, crown, model, alone.share, sunlit, hot, cascade);
         else
-            place = wood_place(pixel, crown, unpackHalf2x16(model.sun_curve), alone.share, sunlit.y, cascade);
+            place = wood_place(pixel, crown, unpackHalf2x16(model.sun_curve), alone.share, sunlit, cascade);
         facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction),
                      alone.share * place.cloud);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
@@ -668,14 +690,16 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         float beam = 0.67 / max(frame.sun_direction.z, 0.05);
         float own = pixel.surface == 0u ? 1.0 : max(pixel.openness, 1e-2);
         float stand = min(dot(frame.sunward, shelter.through) / own, 1.0);
-        past_trees = mix(past_trees, pow(stand, beam) / hot, out_of_maps);
+        float without = pixel.surface == 0u ? 1.0 : hot * mix(1.0, STAND_NO_MAP, alone.leaf * (1.0 - alone.share));
+        past_trees = mix(past_trees, pow(stand, beam) / without, out_of_maps);
     }
     vec2 past = past_discs(pixel, shelter, alone);
     sun_share = place.own * ground_share * past_trees * past.x;
     vec3 transmitted = pixel.albedo * place.transmittance * place.body;
-    vec3 blade = pixel.albedo - place.waxed * min(vec3(WAX), 0.75 * pixel.albedo);
-    vec3 within = blade * place.body;
-    vec3 sunlit = within * place.reflects * place.sides.x + transmitted * place.sides.y;
+    vec3 blade = within_wax(pixel.albedo, place.waxed);
+    vec3 within_sun = within_wax(pixel.albedo * place.reflects, place.waxed_lit.x) * place.body;
+    vec3 within_sky = within_wax(pixel.albedo * place.reflects_sky, place.waxed_lit.y) * place.body;
+    vec3 sunlit = within_sun * place.sides.x + transmitted * place.sides.y;
     alone.scattered = sunlight() * (pixel.surface == 0u ? 0.0 : sun_share)
                       * scattered_again(pixel.albedo * (1.0 + place.transmittance));
     wd_around around = light_around(facing, wax_mirror(pixel.direction, pixel.normal), shelter, ground_share,
@@ -689,7 +713,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 mirrored = mix(own, around.mirrored, pixel.mirrors);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
-    vec3 skylit = past.y * (around.front * within * place.reflects_sky + sheen * place.waxed + around.back * transmitted);
+    vec3 skylit = past.y * (around.front * within_sky + sheen * place.waxed + around.back * transmitted);
     float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);

@@ -43,15 +43,18 @@ WD_FUNC float wd_leaves_seen_up(float eye)
  * sine of its elevation, or by the sum of both. Of oaks, beeches, birches, hazels and ferns, counted by rays. */
 WD_FUNC float wd_lower_sides(float sine)
 {
-    float rest = 0.5f * WD_EXP(-2.9f * WD_ABS(sine));
-    return sine < 0.0f ? 1.0f - rest : rest;
+    return sine < 0.0f ? 1.0f - 0.59f * WD_EXP(1.7f * sine) : 0.41f * WD_EXP(-2.4f * sine);
 }
 
 #define WD_SUNLIT_TURNS 7u
 #define WD_SUNLIT_PLACES 112u /* WD_SUN_RINGS * WD_SUN_RINGS * WD_SUNLIT_TURNS */
 /* Of leaves as a cloud: reflected and transmitted over a lit wall; of single leaves and of wood: factors on
- * what of the sun is left to each. */
-#define WD_SUNLIT_KINDS 4u
+ * what of the sun is left to each; of wood as a cloud: reflected over a lit wall. */
+#define WD_SUNLIT_KINDS 5u
+/* The same as texels: two kinds each. */
+#define WD_SUNLIT_CLOUDS 0u
+#define WD_SUNLIT_LEAVES 1u
+#define WD_SUNLIT_WOOD 2u /* single, and as a cloud */
 
 /* Index of the ring below a sine (bits 0..7) and how near the next one is, in 1/65535 above. */
 WD_FUNC uint32_t wd_sunlit_ring(float sine_of)
@@ -70,7 +73,8 @@ WD_FUNC uint32_t wd_sunlit_place(uint32_t eye_ring, uint32_t sun_ring, uint32_t 
 /* What light asks of a model, fetched as texels of four words: software devices do that for all lanes at
  * once. */
 struct wd_lit_leaves {
-    float crown_base_m, height_m; /* as of struct wd_model */
+    float crown_base;             /* height of the lowest living branch, of the tree's */
+    uint32_t cloud_wax;           /* two half floats, as of struct wd_tree_model */
     uint32_t sun_curve;           /* of wd_crown_lit: two half floats */
     uint32_t paler;               /* WD_PALER_*: albedo of leaves' lower sides over that of the upper ones */
     WD_VEC3(transmittance);       /* of a leaf over its upper side's albedo, linear */
@@ -86,14 +90,14 @@ struct wd_lit_leaves {
 
 struct wd_lit_model {
     WD_LIT_LEAVES_STRUCT leaves;
-    /* A texel for each wd_sunlit_place, of light reflected and transmitted, then as many of single leaves and
-     * wood: two half floats of that place, of a turn on, of a ring of the eye on, and of both on. */
-    uint32_t sunlit[2 * WD_SUNLIT_PLACES * 4];
+    /* A texel for each wd_sunlit_place and of each WD_SUNLIT_CLOUDS .. WD_SUNLIT_WOOD: two half floats of that place,
+     * of a turn on, of a ring of the eye on, and of both on. */
+    uint32_t sunlit[3 * WD_SUNLIT_PLACES * 4];
     uint32_t skylit[WD_SKYLIT_PLACES * 4]; /* two half floats each: of a place, and of a ring on */
 };
-WD_STATIC_ASSERT_SIZE(wd_lit_model, 3808);
+WD_STATIC_ASSERT_SIZE(wd_lit_model, 5600);
 #define WD_LIT_LEAVES_TEXELS 2u
-#define WD_LIT_SKYLIT_TEXEL 226u
-#define WD_LIT_MODEL_TEXELS 238u
+#define WD_LIT_SKYLIT_TEXEL 338u
+#define WD_LIT_MODEL_TEXELS 350u
 
 #endif

@@ -1,19 +1,9 @@
 #include "reference/scatter.h"
 
+#include "shared/wax.h"
 #include "tree/vec.h"
 
 static const float PI = 3.14159265f;
-
-/* The cuticle: refractive index 1.4 (Bousquet et al. 2005, Remote Sensing of Environment 98,
- * measured 1.3 to 1.5 on laurel, beech and hazel leaves). */
-static const float COAT_REFLECTANCE = 0.028f;
-
-/* Schlick 1994 */
-static float fresnel(float cosine)
-{
-    float x = 1 - fminf(fmaxf(cosine, 0), 1), x2 = x * x;
-    return COAT_REFLECTANCE + (1 - COAT_REFLECTANCE) * x2 * x2 * x;
-}
 
 /* A leaf's measured albedo holds what its surface reflects; the rest is what comes from within. */
 static struct wd_vec3 inner_albedo(const struct wd_surface *surface)
@@ -21,25 +11,19 @@ static struct wd_vec3 inner_albedo(const struct wd_surface *surface)
     struct wd_vec3 a = surface->albedo;
     if (!surface->glossy)
         return a;
-    float rest = 1 / (1 - COAT_REFLECTANCE);
-    return WD_V3(fmaxf(a.x - COAT_REFLECTANCE, 0.25f * a.x) * rest,
-                 fmaxf(a.y - COAT_REFLECTANCE, 0.25f * a.y) * rest,
-                 fmaxf(a.z - COAT_REFLECTANCE, 0.25f * a.z) * rest);
+    float rest = 1 / (1 - WD_WAX);
+    return WD_V3(fmaxf(a.x - WD_WAX, 0.25f * a.x) * rest,
+                 fmaxf(a.y - WD_WAX, 0.25f * a.y) * rest,
+                 fmaxf(a.z - WD_WAX, 0.25f * a.z) * rest);
 }
 
 static struct wd_vec3 inner_transmittance(const struct wd_surface *surface)
 {
-    float rest = surface->glossy ? 1 / (1 - COAT_REFLECTANCE) : 1;
+    float rest = surface->glossy ? 1 / (1 - WD_WAX) : 1;
     return wd_v3_scale(surface->transmittance, rest);
 }
 
 /* --- the coat: GGX (Walter et al. 2007) ---------------------------------------------------- */
-
-static float ggx_lambda(float cosine, float alpha)
-{
-    float c2 = fmaxf(cosine * cosine, 1e-6f);
-    return 0.5f * (sqrtf(1 + alpha * alpha * (1 - c2) / c2) - 1);
-}
 
 static float coat_toward(struct wd_vec3 normal, float alpha, struct wd_vec3 eye,
                          struct wd_vec3 light)
@@ -48,11 +32,7 @@ static float coat_toward(struct wd_vec3 normal, float alpha, struct wd_vec3 eye,
     if (ne <= 0 || nl <= 0)
         return 0;
     struct wd_vec3 half_way = wd_v3_unit(wd_v3_add(eye, light));
-    float nh = wd_v3_dot(normal, half_way), a2 = alpha * alpha;
-    float spread = nh * nh * (a2 - 1) + 1;
-    float distribution = a2 / (PI * spread * spread);
-    float masked = 1 / (1 + ggx_lambda(ne, alpha) + ggx_lambda(nl, alpha));
-    return fresnel(wd_v3_dot(half_way, eye)) * distribution * masked / (4 * ne);
+    return wd_wax_mirrors(ne, nl, wd_v3_dot(normal, half_way), wd_v3_dot(half_way, eye), alpha * alpha) / PI;
 }
 
 /* Two directions that with `normal` make a right-handed frame (Duff et al. 2017). */
@@ -94,9 +74,9 @@ static bool sample_coat(struct wd_scattered *scattered, const struct wd_surface 
     scattered->direction =
         wd_v3_unit(wd_v3_add(wd_v3_add(wd_v3_scale(s, mirrored.x), wd_v3_scale(t, mirrored.y)),
                              wd_v3_scale(n, mirrored.z)));
-    float in = ggx_lambda(own.z, surface->coat_alpha);
-    float masked = (1 + in) / (1 + in + ggx_lambda(mirrored.z, surface->coat_alpha));
-    float weight = fresnel(em) * masked / chosen;
+    float alpha2 = surface->coat_alpha * surface->coat_alpha, in = wd_facets_hidden(own.z, alpha2);
+    float masked = (1 + in) / (1 + in + wd_facets_hidden(mirrored.z, alpha2));
+    float weight = wd_wax(em) * masked / chosen;
     scattered->weight = WD_V3(weight, weight, weight);
     return wd_v3_dot(scattered->direction, surface->flat) > 0;
 }
@@ -110,7 +90,7 @@ struct wd_vec3 wd_scatter_toward(const struct wd_surface *surface, struct wd_vec
     bool same_side = wd_v3_dot(surface->flat, light) > 0;
     float coat = 0, within = 1;
     if (surface->glossy) {
-        within = 1 - fresnel(wd_v3_dot(surface->normal, eye));
+        within = 1 - wd_wax(wd_v3_dot(surface->normal, eye));
         coat = same_side ? coat_toward(surface->normal, surface->coat_alpha, eye, light) : 0;
     }
     struct wd_vec3 color = {0, 0, 0};
@@ -149,7 +129,7 @@ struct lobes {
 static struct lobes lobes_of(const struct wd_surface *surface, struct wd_vec3 eye)
 {
     struct lobes lobes = {.albedo = inner_albedo(surface), .through = inner_transmittance(surface)};
-    lobes.fresnel = surface->glossy ? fresnel(wd_v3_dot(surface->normal, eye)) : 0;
+    lobes.fresnel = surface->glossy ? wd_wax(wd_v3_dot(surface->normal, eye)) : 0;
     float reflected = mean_of(lobes.albedo), transmitted = mean_of(lobes.through);
     float inner = (1 - lobes.fresnel) * (reflected + transmitted);
     lobes.coat = lobes.fresnel > 0 ? lobes.fresnel / (lobes.fresnel + inner) : 0;
@@ -211,9 +191,10 @@ struct wd_scatter_density wd_scatter_density_of(const struct wd_surface *surface
         return density;
     /* chosen by visible facets: without what hides light on its way in, and whatever it reflects */
     struct wd_vec3 half_way = wd_v3_unit(wd_v3_add(eye, light));
-    float in = ggx_lambda(wd_v3_dot(surface->normal, eye), surface->coat_alpha);
-    float out = ggx_lambda(wd_v3_dot(surface->normal, light), surface->coat_alpha);
-    density.per_sr += lobes.coat * coat / fresnel(wd_v3_dot(half_way, eye)) * (1 + in + out) /
+    float alpha2 = surface->coat_alpha * surface->coat_alpha;
+    float in = wd_facets_hidden(wd_v3_dot(surface->normal, eye), alpha2);
+    float out = wd_facets_hidden(wd_v3_dot(surface->normal, light), alpha2);
+    density.per_sr += lobes.coat * coat / wd_wax(wd_v3_dot(half_way, eye)) * (1 + in + out) /
                       (1 + in);
     density.scattered = wd_v3_add(density.scattered, WD_V3(coat, coat, coat));
     return density;

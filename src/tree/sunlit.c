@@ -5,7 +5,8 @@
 
 #include "base/memory.h"
 #include "shared/crown.h"
-#include "tree/points.h"
+#include "shared/wax.h"
+#include "tree/leaves_open.h"
 
 enum { POINTS = 4096, EYES = 16, STEPS = 16, LOW_WAYS = 8 };
 
@@ -39,25 +40,18 @@ static const float LOW_OFF = 0.11f;
 static const float ring_share[WD_SUN_RINGS] = {0.374f, 0.354f, 0.213f, 0.059f};
 static const float low_ring_share[] = {0.374f, 0.354f, 0.272f};
 
-/* A way of an even sky or even ground, and what it brings to what faces it, over what all bring to level
- * ground. */
-struct sky_way {
-    struct wd_vec3 toward;
-    float brings;
-};
-
-static void place_sky_ways(struct sky_way ways[WD_SUN_WAYS + LOW_WAYS])
+static void place_sky_ways(struct wd_sky_way ways[WD_SUN_WAYS + LOW_WAYS])
 {
     uint32_t i = 0;
     for (uint32_t ring = 0; ring < WD_SUN_RINGS; ring++)
         for (uint32_t k = 0; k < WD_SUN_RING_COUNT(ring); k++, i++)
-            ways[i] = (struct sky_way){wd_sun_way(i),
+            ways[i] = (struct wd_sky_way){wd_sun_way(i),
                                        2 * ring_share[ring] / (float)WD_SUN_RING_COUNT(ring)};
     for (uint32_t ring = 0; ring < sizeof low_on_ring / sizeof low_on_ring[0]; ring++)
         for (uint32_t k = 0; k < low_on_ring[ring]; k++, i++) {
             float rad = 6.2831853f * ((float)k + LOW_OFF * (float)(1 + ring)) / (float)low_on_ring[ring];
             float sine = WD_SUN_RING_SINE(ring), level = sqrtf(1 - sine * sine);
-            ways[i] = (struct sky_way){WD_V3(level * cosf(rad), level * sinf(rad), -sine),
+            ways[i] = (struct wd_sky_way){WD_V3(level * cosf(rad), level * sinf(rad), -sine),
                                        2 * low_ring_share[ring] / (float)low_on_ring[ring]};
         }
 }
@@ -74,7 +68,9 @@ struct sent {
     float sides[2];        /* reflected and transmitted, */
     float leaf;            /* the same by depth, of the leaf's own place and side */
     float pictured, card;  /* area of leaves in pictures on cards, and that by depth of the card's place */
-    float wood, wood_deep; /* of the wood seen, and the same by depth */
+    float wood, wood_deep; /* of the wood seen, and the same by depth; */
+    float wood_left;       /* its area by depth */
+    float mirrored;        /* by the wax of leaves */
 };
 
 struct fit {
@@ -82,7 +78,7 @@ struct fit {
     struct wd_vec3 suns[WD_SUN_WAYS];
     struct wd_vec3 middle_m, radii_m; /* of the crown */
     float curve[2];                   /* of wd_crown_lit */
-    struct sky_way sky[WD_SUN_WAYS + LOW_WAYS];
+    struct wd_sky_way sky[WD_SUN_WAYS + LOW_WAYS];
     const uint32_t *low;              /* of each point, the open ways of those from below */
     struct sent sent[EYES][WD_SUN_WAYS];
     struct skylit skylit[WD_SKYLIT_PLACES];
@@ -124,11 +120,20 @@ struct shown {
     uint32_t lit, low;
 };
 
+/* Upper sides have a mean leaf's roughness. */
+static float wax_mirrors(struct wd_vec3 normal, struct wd_vec3 eye, struct wd_vec3 sun)
+{
+    const float alpha2 = 0.0625f;
+    struct wd_vec3 half_way = wd_v3_unit(wd_v3_add(eye, sun));
+    return wd_wax_mirrors(fmaxf(wd_v3_dot(normal, eye), 0.05f), wd_v3_dot(normal, sun), wd_v3_dot(normal, half_way),
+                          wd_v3_dot(half_way, eye), alpha2);
+}
+
 static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
 {
     struct wd_vec3 toward = fit->eyes[eye].toward, face = point->face, normal = point->normal;
     turn_to_eye(&face, &normal, toward);
-    float area = wd_v3_dot(face, toward);
+    float area = wd_v3_dot(face, toward), area_above = wd_v3_dot(point->face, toward);
     for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
         struct sent *sent = &fit->sent[eye][way];
         struct wd_vec3 sun = fit->suns[way];
@@ -138,6 +143,8 @@ static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
         sent->seen += area;
         sent->sides[behind] += side * wd_sun_way_lit(point->lit, way);
         sent->leaf += side * point->left[way];
+        if (area_above > 0 && !behind && cosine > 0 && wd_sun_way_lit(point->lit, way) > 0)
+            sent->mirrored += area * wax_mirrors(normal, toward, sun);
     }
 }
 
@@ -177,6 +184,7 @@ static void send_wood(struct fit *fit, const struct shown *point, uint32_t eye)
         float side = area * fmaxf(wd_v3_dot(point->normal, fit->suns[way]), 0);
         sent->wood += side * wd_sun_way_lit(point->lit, way);
         sent->wood_deep += side * point->left[way];
+        sent->wood_left += area * point->left[way];
     }
 }
 
@@ -318,6 +326,27 @@ static void send(struct fit *fit, const struct wd_tree_points *points, const uin
     }
 }
 
+/* Least squares, each way by how much of its light is seen. */
+static void fit_wax(float wax[2], const struct fit *fit)
+{
+    double n = 0, sx = 0, sxx = 0, sy = 0, sxy = 0;
+    for (uint32_t eye = 0; eye < EYES; eye++)
+        for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
+            const struct sent *sent = &fit->sent[eye][way];
+            float sides = sent->sides[0] + sent->sides[1];
+            if (sides <= 1e-4f * sent->seen)
+                continue;
+            double weight = (double)(sides / sent->seen), y = (double)(sent->mirrored / (sides * WD_WAX));
+            double x = (double)wd_cloud_wax_rise(wd_v3_dot(fit->eyes[eye].toward, fit->suns[way]));
+            n += weight, sx += weight * x, sxx += weight * x * x;
+            sy += weight * y, sxy += weight * x * y;
+        }
+    double spread = n * sxx - sx * sx;
+    double rise = spread > 1e-9 * n * n ? fmax((n * sxy - sx * sy) / spread, 0) : 0;
+    wax[0] = n > 0 ? (float)fmax((sy - rise * sx) / n, 0) : 0;
+    wax[1] = (float)rise;
+}
+
 static void add_sent(struct sent *sum, const struct sent *sent, float weight)
 {
     sum->seen += weight * sent->seen;
@@ -328,6 +357,7 @@ static void add_sent(struct sent *sum, const struct sent *sent, float weight)
     sum->leaf += weight * sent->leaf;
     sum->wood += weight * sent->wood;
     sum->wood_deep += weight * sent->wood_deep;
+    sum->wood_left += weight * sent->wood_left;
 }
 
 /* Steps of half a turn between an eye and a way of the sun. */
@@ -358,71 +388,14 @@ static float ratio(float of, float over, float seen)
     return over > 1e-4f * seen && over > 0 ? fminf(of / over, 8) : 1;
 }
 
-/* Leaves, too, by their middles. */
-static void add_leaves(struct wd_tree_points *points, const struct wd_tree_model *model)
-{
-    size_t all = points->count + model->leaf_count + model->flower_count;
-    points->points = wd_realloc(points->points, all * sizeof *points->points);
-    for (size_t i = points->count; i < all; i++) {
-        const struct wd_tree_leaf *leaf = &model->leaves[i - points->count];
-        struct wd_leaf_axes axes = wd_leaf_axes_of(leaf->turn);
-        struct wd_vec3 middle = wd_v3_mad(wd_leaf_foot(*leaf, model->leaf_box), axes.along,
-                                          0.5f * wd_leaf_size_m(*leaf, model->leaf_box));
-        points->points[i] = (struct wd_tree_point){
-            .position_m = {middle.x, middle.y, middle.z},
-            .face = wd_pack_normal((const float[3]){axes.above.x, axes.above.y, axes.above.z}),
-            .kind = WD_POINT_LEAF};
-    }
-    points->count = all;
-}
-
-/* Of points of the surface, and of all leaves. */
-static void light(struct wd_tree_points *points, struct wd_tree_model *model)
+/* Points of the surface, and with them all leaves. */
+static void light(struct wd_tree_points *points, struct wd_tree_model *model, const struct fit *fit)
 {
     size_t count = points->count;
-    add_leaves(points, model);
+    wd_leaves_open_add(points, model);
     wd_tree_points_light(points, &model->full);
-    for (size_t i = count; i < points->count; i++)
-        model->leaves[i - count].open = points->lit[i];
+    wd_leaves_open_set(model, points, count, fit->sky);
     points->count = count;
-}
-
-/* Share of an even sky's light on both sides of a flat leaf that its tree lets through. */
-static float sky_share(const struct fit *fit, uint32_t open, struct wd_vec3 face)
-{
-    float all = 0, comes = 0;
-    for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
-        float brings = fit->sky[way].brings * fabsf(wd_v3_dot(face, fit->sky[way].toward));
-        all += brings;
-        comes += brings * wd_sun_way_lit(open, way);
-    }
-    return comes / all;
-}
-
-/* How far a leaf is as open as its own ways say, which are few; the rest: as the crown about it. By path-traced
- * crowns of 1,024 px (0: FLIP 0.396, 0.5: 0.373, 1: 0.389). */
-static const float OWN_OPENNESS = 0.5f;
-
-/* Leaves carry how open the crown is about them, and now their own share of that. The mean that an eye sees stays. */
-static void open_leaves(const struct fit *fit, struct wd_tree_model *model, const struct wd_tree_points *points,
-                        const uint32_t *seen, const struct shown *shown)
-{
-    float known = 0, own = 0;
-    for (size_t i = 0; i < points->count; i++)
-        for (uint32_t eye = 0; eye < EYES; eye++) {
-            if (!(seen[i] >> eye & 1) || !(points->points[i].kind & WD_POINT_LEAF))
-                continue;
-            float area = fabsf(wd_v3_dot(shown[i].face, fit->eyes[eye].toward));
-            known += area * shown[i].openness;
-            own += area * sky_share(fit, points->lit[i], shown[i].face);
-        }
-    float factor = own > 0 ? known / own : 1;
-    for (uint32_t i = 0; i < model->leaf_count + model->flower_count; i++) {
-        struct wd_tree_leaf *leaf = &model->leaves[i];
-        struct wd_vec3 above = wd_leaf_axes_of(leaf->turn).above;
-        float open = fminf(factor * sky_share(fit, leaf->open, above), 1), was = (float)(leaf->tint >> 24) / 255;
-        leaf->tint = (leaf->tint & 0xffffffu) | (uint32_t)(wd_mixf(was, open, OWN_OPENNESS) * 255 + 0.5f) << 24;
-    }
 }
 
 void wd_tree_sunlit_fit(struct wd_tree_model *model)
@@ -446,7 +419,7 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
         uint32_t *seen = wd_alloc_array(points.count, sizeof *seen);
         uint32_t *low = wd_alloc_array(points.count, sizeof *low);
         fit->low = low;
-        light(&points, model);
+        light(&points, model, fit);
         wd_tree_points_open(seen, &points, &model->full, ways, EYES);
         wd_tree_points_open(low, &points, &model->full, low_ways, LOW_WAYS);
         struct shown *shown = wd_alloc_array(points.count, sizeof *shown);
@@ -454,12 +427,12 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
             shown[i] = shown_at(fit, &points, i);
         fit_curve(fit, &points, shown);
         send(fit, &points, seen, shown);
-        open_leaves(fit, model, &points, seen, shown);
         free(shown);
         free(seen);
         free(low);
     }
     memcpy(model->sun_curve, fit->curve, sizeof fit->curve);
+    fit_wax(model->cloud_wax, fit);
     wd_tree_points_finish(&points);
     for (uint32_t k = 0; k < WD_SUNLIT_PLACES; k++) {
         uint32_t turn = k % WD_SUNLIT_TURNS, rings = k / WD_SUNLIT_TURNS;
@@ -469,6 +442,7 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
         model->sunlit[k][1] = ratio(sum.sides[1], card, sum.seen);
         model->sunlit[k][2] = ratio(sum.sides[0] + sum.sides[1], sum.leaf, sum.seen);
         model->sunlit[k][3] = ratio(sum.wood, sum.wood_deep, sum.seen);
+        model->sunlit[k][4] = ratio(sum.wood, sum.wood_left, sum.seen);
     }
     for (uint32_t k = 0; k < WD_SKYLIT_PLACES * WD_SKYLIT_KINDS; k++) {
         uint32_t place = k / WD_SKYLIT_KINDS, kind = k % WD_SKYLIT_KINDS;

@@ -129,14 +129,15 @@ void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species
                                const struct wd_model *model, const struct wd_tree_model *grown)
 {
     lit->leaves = (struct wd_lit_leaves){
-        .crown_base_m = model->crown_base_m,
-        .height_m = model->height_m,
+        .crown_base = model->crown_base_m / model->height_m,
+        .cloud_wax = wd_pack_uv(grown->cloud_wax[0], grown->cloud_wax[1]),
         .sun_curve = wd_pack_uv(grown->sun_curve[0], grown->sun_curve[1]),
         .paler = paler_below(species),
         .transmittance = {model->transmittance[0], model->transmittance[1], model->transmittance[2]},
         .roughness = model->roughness,
     };
-    pack_sunlit(lit->sunlit, grown, 0);
-    pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES, grown, 2);
+    pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * WD_SUNLIT_CLOUDS, grown, 0);
+    pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * WD_SUNLIT_LEAVES, grown, 2);
+    pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * WD_SUNLIT_WOOD, grown, 3);
     pack_skylit(lit->skylit, grown);
 }
