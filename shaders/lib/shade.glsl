@@ -370,7 +370,7 @@ const float NEIGHBOURS_OVER = 0.75;
 const float LOW_SKY_LEAF = 0.12, LOW_SKY_CLOUD = 0.23;
 
 /* What of the sky's light a free tree sends to an eye, over what its table tells: by path-traced rows of six species. */
-const float SKY_OVER_TABLE = 1.13;
+const float SKY_OVER_TABLE = 1.1;
 
 float brighter_low_sky()
 {
@@ -584,6 +584,10 @@ float sward_tufts_lit()
  * of many would mirror goes on to the eye. By path-traced ferns and tufts that stand free. */
 const float HERB_SHINES = 0.4;
 
+/* Of wd_tree_model.cloud_wax, where light comes from behind the eye: of oaks, beeches and birches. Needles have wax on few
+ * of the sides that are seen. */
+const float BROAD_LEAVES_WAX = 0.49;
+
 /* Near, the maps hold each leaf and the crown's depth adds little. Far, the crown is left behind before the
  * map is asked, and depth along the sun says where in it how much of the light is left. Of a tree that stands
  * free the model's own table says how much of that on all of it goes to this eye: of a cloud of leaves
@@ -623,6 +627,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     vec2 wax = unpackHalf2x16(model.cloud_wax);
     float mirrors = WD_WAX * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
     place.gloss = mix(place.gloss, shines * mirrors * (place.sides.x + place.sides.y), free);
+    place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), free);
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;

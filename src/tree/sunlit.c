@@ -10,8 +10,8 @@
 
 enum { POINTS = 4096, EYES = 16, STEPS = 16, LOW_WAYS = 8 };
 
-/* Eyes stand on the sun's rings, between its ways: seen through the same picture as lit, all that an eye
- * saw would be lit. */
+/* Eyes stand on the sun's rings, between its ways: of what an eye sees that looks along one of these, all
+ * would be lit. */
 static const uint32_t eyes_on_ring[WD_SUN_RINGS] = {6, 5, 4, 1};
 static const float EYE_OFF = 0.04f, EYE_HIGHEST_SINE = 0.9976f;
 
