@@ -14,7 +14,7 @@ static const struct bound {
     const char *form;
     double coverage_pct, radiance_pct;
     bool traced;
-} bounds[] = {{"full", 2.5, 3, false}, {"reduced", 2.5, 4.5, true}, {"cards", 3, 7, true}, {"splats", 3, 3, true}};
+} bounds[] = {{"full", 2.5, 3, false}, {"reduced", 2.5, 7, true}, {"cards", 3, 7, true}, {"splats", 3, 3, true}};
 
 enum { PX_32 = 2, FROM_ABOVE = 1 };
 

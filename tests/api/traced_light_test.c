@@ -147,6 +147,19 @@ static void cards_reflect_as_upper_sides(void **state)
     assert_true(found.trees_pct > -6 && found.trees_pct < 4);
 }
 
+/* Oaks as cards against the sun, without a sky: what comes through leaves, and what their wax mirrors, most of it ahead.
+ * +11 %, and -21 where their wax is dull. */
+static void crowns_shine_against_the_light(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "oak", .trees = STAND, .size_m = "[60, 60]", .samples = 8, .method = "octree",
+        .keys = "\"sun\": {\"azimuth_deg\": 0, \"elevation_deg\": 40}, \"sky\": {\"strength\": 0.0001}, "
+                "\"quality\": {\"mesh_distance_m\": 0, \"reduced_distance_m\": 0}",
+        .camera = FROM_AFAR});
+    assert_true(found.trees_pct > -10 && found.trees_pct < 16);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -156,6 +169,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(pale_leaves_light_each_other),
         cmocka_unit_test(tufts_stand_free),
         cmocka_unit_test(cards_reflect_as_upper_sides),
+        cmocka_unit_test(crowns_shine_against_the_light),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;
