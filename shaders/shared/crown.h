@@ -53,7 +53,7 @@ WD_FUNC float wd_crown_path_m(WD_VECTOR from_middle_m, WD_VECTOR radii_m, WD_VEC
  * cloud, what sees little of the sky sees little of the sun. */
 WD_FUNC float wd_crown_through(WD_VECTOR radii_m, float path_m, float openness)
 {
-    return WD_EXP(-wd_crown_per_m(radii_m) * path_m) * WD_MIN(openness * 1.2f, 1.0f);
+    return WD_EXP(-wd_crown_per_m(radii_m) * path_m) * WD_MIN(openness * 1.27f, 1.0f);
 }
 
 /* Of places where the crown's depth leaves that share, so many are lit: leaves stand in clumps, and what is
