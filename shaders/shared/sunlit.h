@@ -40,7 +40,7 @@ WD_FUNC float wd_leaves_seen_up(float eye)
 #define WD_PALER_ANY_WAY 0x40000000u
 
 /* Share of lower sides among the leaves of a crown that turn one side to a way, or the same side to two ways: by the
- * sine of its elevation, or by the sum of both. Of oaks, beeches, birches, hazels and ferns, counted by rays. */
+ * sine of its elevation, or by the sum of both. Of oaks, beeches, birches, maples and hazels, counted by rays. */
 WD_FUNC float wd_lower_sides(float sine)
 {
     return sine < 0.0f ? 1.0f - 0.59f * WD_EXP(1.7f * sine) : 0.41f * WD_EXP(-2.4f * sine);

@@ -219,7 +219,6 @@ static inline void see(struct four_seen *seen, wd_four at[3][3])
     seen->last[1] = seen->last[1] | edge; /* -1 */
 }
 
-
 /* Of eight points from `i` on those that triangle `t` stands before, -1. Returns whether there are any. */
 static inline bool find_hidden(eight_ints *hidden, const struct picture *picture, uint32_t i,
                                const struct four_seen *seen, int t)

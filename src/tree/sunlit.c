@@ -45,14 +45,13 @@ static void place_sky_ways(struct wd_sky_way ways[WD_SUN_WAYS + LOW_WAYS])
     uint32_t i = 0;
     for (uint32_t ring = 0; ring < WD_SUN_RINGS; ring++)
         for (uint32_t k = 0; k < WD_SUN_RING_COUNT(ring); k++, i++)
-            ways[i] = (struct wd_sky_way){wd_sun_way(i),
-                                       2 * ring_share[ring] / (float)WD_SUN_RING_COUNT(ring)};
+            ways[i] = (struct wd_sky_way){wd_sun_way(i), 2 * ring_share[ring] / (float)WD_SUN_RING_COUNT(ring)};
     for (uint32_t ring = 0; ring < sizeof low_on_ring / sizeof low_on_ring[0]; ring++)
         for (uint32_t k = 0; k < low_on_ring[ring]; k++, i++) {
             float rad = 6.2831853f * ((float)k + LOW_OFF * (float)(1 + ring)) / (float)low_on_ring[ring];
             float sine = WD_SUN_RING_SINE(ring), level = sqrtf(1 - sine * sine);
             ways[i] = (struct wd_sky_way){WD_V3(level * cosf(rad), level * sinf(rad), -sine),
-                                       2 * low_ring_share[ring] / (float)low_on_ring[ring]};
+                                          2 * low_ring_share[ring] / (float)low_on_ring[ring]};
         }
 }
 
@@ -79,7 +78,8 @@ struct fit {
     struct wd_vec3 middle_m, radii_m; /* of the crown */
     float curve[2];                   /* of wd_crown_lit */
     struct wd_sky_way sky[WD_SUN_WAYS + LOW_WAYS];
-    const uint32_t *low;              /* of each point, the open ways of those from below */
+    const uint32_t *views;            /* of each point, which of the eyes see it, then which of the ways from
+                                         below are open */
     struct sent sent[EYES][WD_SUN_WAYS];
     struct skylit skylit[WD_SKYLIT_PLACES];
 };
@@ -196,7 +196,7 @@ static struct shown shown_at(const struct fit *fit, const struct wd_tree_points 
     wd_unpack_normal(point->normal, normal);
     struct shown shown = {wd_v3_sub(wd_v3_of(point->position_m), fit->middle_m), wd_v3_of(face),
                           wd_v3_of(normal), (float)(point->albedo >> 24) / 255, {0},
-                          points->lit[i], fit->low[i]};
+                          points->lit[i], fit->views[i] >> EYES};
     for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
         shown.left[way] = wd_crown_through(
             fit->radii_m, wd_crown_path_m(shown.place, fit->radii_m, fit->suns[way]),
@@ -308,20 +308,19 @@ static void fit_curve(struct fit *fit, const struct wd_tree_points *points,
     fit->curve[0] = n > 0 ? (float)exp((sy - (double)fit->curve[1] * sx) / n) : 1;
 }
 
-static void send(struct fit *fit, const struct wd_tree_points *points, const uint32_t *seen,
-                 const struct shown *all)
+static void send(struct fit *fit, const struct wd_tree_points *points, const struct shown *all)
 {
     for (size_t i = 0; i < points->count; i++) {
         struct shown shown = all[i];
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
             shown.left[way] = wd_crown_lit(shown.left[way], fit->curve[0], fit->curve[1]);
-        send_skylight(fit, &shown, seen[i], !(points->points[i].kind & WD_POINT_LEAF));
+        send_skylight(fit, &shown, fit->views[i], !(points->points[i].kind & WD_POINT_LEAF));
         if (points->points[i].kind & WD_POINT_LEAF)
-            send_cards(fit, &shown, seen[i], (uint32_t)i);
+            send_cards(fit, &shown, fit->views[i], (uint32_t)i);
         for (uint32_t eye = 0; eye < EYES; eye++)
-            if (seen[i] >> eye & 1 && points->points[i].kind & WD_POINT_LEAF)
+            if (fit->views[i] >> eye & 1 && points->points[i].kind & WD_POINT_LEAF)
                 send_leaf(fit, &shown, eye);
-            else if (seen[i] >> eye & 1)
+            else if (fit->views[i] >> eye & 1)
                 send_wood(fit, &shown, eye);
     }
 }
@@ -404,7 +403,7 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
     const struct wd_point_look look = {any, 1};
     struct wd_tree_points points;
     struct fit *fit = wd_alloc(sizeof *fit);
-    struct wd_vec3 ways[EYES], low_ways[LOW_WAYS];
+    struct wd_vec3 ways[EYES + LOW_WAYS];
     memset(fit, 0, sizeof *fit);
     place_eyes(fit->eyes);
     place_sky_ways(fit->sky);
@@ -414,22 +413,19 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
     for (uint32_t i = 0; i < EYES; i++)
         ways[i] = fit->eyes[i].toward;
     for (uint32_t i = 0; i < LOW_WAYS; i++)
-        low_ways[i] = fit->sky[WD_SUN_WAYS + i].toward;
+        ways[EYES + i] = fit->sky[WD_SUN_WAYS + i].toward;
     if (wd_tree_points_build(&points, &model->full, &look, POINTS)) {
-        uint32_t *seen = wd_alloc_array(points.count, sizeof *seen);
-        uint32_t *low = wd_alloc_array(points.count, sizeof *low);
-        fit->low = low;
+        uint32_t *views = wd_alloc_array(points.count, sizeof *views);
+        fit->views = views;
         light(&points, model, fit);
-        wd_tree_points_open(seen, &points, &model->full, ways, EYES);
-        wd_tree_points_open(low, &points, &model->full, low_ways, LOW_WAYS);
+        wd_tree_points_open(views, &points, &model->full, ways, EYES + LOW_WAYS);
         struct shown *shown = wd_alloc_array(points.count, sizeof *shown);
         for (size_t i = 0; i < points.count; i++)
             shown[i] = shown_at(fit, &points, i);
         fit_curve(fit, &points, shown);
-        send(fit, &points, seen, shown);
+        send(fit, &points, shown);
         free(shown);
-        free(seen);
-        free(low);
+        free(views);
     }
     memcpy(model->sun_curve, fit->curve, sizeof fit->curve);
     fit_wax(model->cloud_wax, fit);

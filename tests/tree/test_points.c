@@ -463,6 +463,7 @@ static void rays_find_the_same_ways_open(void **state)
             differ += is != (points.lit[i] >> way & 1);
         }
     const uint32_t all = (uint32_t)points.count * WD_SUN_WAYS;
+    print_message("%u of %u ways are not as rays tell\n", differ, all);
     assert_true(open > all / 10 && open < all - all / 10);
     assert_true(differ < all / 1000);
     wd_tree_points_finish(&points);
