@@ -167,11 +167,13 @@ void main()
     vec3 normal = tree_normal(pose, seen.normal), eye = -normalize(pixel_ray(ivec2(at)));
     vec3 face = WOOD != 0u ? normal : tree_normal(pose, seen.face);
     bool below = dot(face, eye) < 0.0;
-    vec3 lower = unpackUnorm4x8(seen.tree.lower).rgb * 4.0;
+    vec4 lower = unpackUnorm4x8(seen.tree.lower) * vec4(4.0, 4.0, 4.0, 2.0);
     if (!seen.wood)
-        seen.albedo = min(seen.albedo * tint.rgb * (below ? lower : vec3(1.0)), 1.0);
+        seen.albedo = min(seen.albedo * tint.rgb * (below ? lower.rgb : vec3(1.0)), 1.0);
     if (WOOD == 0u)
-        seen.openness = min(seen.openness * tint.a, 1.0);
+        seen.openness = min(seen.openness * (seen.wood ? lower.a : tint.a), 1.0);
+    if (WOOD == 0u && seen.wood)
+        seen.lit *= lower.a;
     if (frame.view_mode == WD_MODE_LOD)
         seen.albedo = (seen.wood ? vec3(0.5, 0.3, 0.1) : vec3(0.1, 0.6, 0.15))
                       * (0.3 + 0.7 * seen.openness);

@@ -280,6 +280,13 @@ uint leaf_tint(wd_tree tree, uint model, float count, float sine)
     return packUnorm4x8(vec4(tint, light) * 0.5);
 }
 
+/* Factors of the colour of leaves' lower sides and of the light of wood. */
+uint lower_tint(uint model, float count, float sine)
+{
+    float light = gain_of(model, WD_WORD_WOOD_LIGHT_GAINS, gain_place(count), sine);
+    return packUnorm4x8(vec4(model_vec3(model, WD_WORD_LOWER_OVER_UPPER) * 0.25, light * 0.5));
+}
+
 /* Triangles of wood for a tree that tall: few of the largest while it is small. In a cascade twigs, which
  * discs stand for then, are lost in the penumbra. */
 uint wood_triangles(uint model, float tall_px)
@@ -299,6 +306,12 @@ vec2 slope_under(vec3 foot, float wide_m)
  * leaves lie close and discs, larger and fewer, leave more holes: areas grow by so much. By path-traced crowns of
  * three stands, of which a twentieth to a tenth was missing. */
 const float FROM_BELOW = 0.3;
+
+/* Windows begin at multiples of this power of two, where they are spread best. */
+uint window_step(float each)
+{
+    return clamp(2u << findMSB(uint(ceil(each))), WD_LEAST_WINDOW_STEP, WD_WINDOW_STEP);
+}
 
 /* `share` of the trees around stand for all: a tree is drawn as wide as the ground that it stands for
  * asks, as high as it is, and its splats grow with it. `place`: bit of the masks of put_off. */
@@ -352,8 +365,12 @@ void select_tree(uint index, float share, uint place)
     uint triangles = wood ? wood_triangles(model_index, tall_px) : 0u;
     /* Discs stand for the wood that is not there as triangles: few large ones are most of it. */
     float all = max(float(model_word(model_index, WD_WORD_WOOD_COUNT)), 1.0);
-    float missing = 1.0 - pow(float(triangles) / all, model_float(model_index, WD_WORD_WOOD_SPREAD));
-    splats.wood_radius *= sqrt(max(missing, 0.0));
+    float spread = model_float(model_index, WD_WORD_WOOD_SPREAD);
+    float missing = 1.0 - pow(float(triangles) / all, spread);
+    float without_thick = 1.0 - pow(min(0.5, float(WD_THICK_TRIANGLES) / all), spread);
+    float thin = triangles > 0u ? min(missing / max(without_thick, 1e-3), 1.0) : 0.0;
+    thin = mix(1.0, model_float(model_index, WD_WORD_THIN_WOOD), thin);
+    splats.wood_radius *= sqrt(max(missing, 0.0) * thin);
     splats.radius *= sqrt(mix(model_float(model_index, WD_WORD_LEAF_PAST_BARK), 1.0, missing));
     splats.radius *= sqrt(1.0 + (ORTHOGRAPHIC != 0u ? 0.0 : FROM_BELOW * smoothstep(0.0, 0.5, -toward.z)));
     uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
@@ -381,13 +398,13 @@ void select_tree(uint index, float share, uint place)
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
     splats.first_wood = model_word(model_index, WD_WORD_WOOD_FIRST);
-    splats.offset = (wd_hash_mix(random) * WD_WINDOW_STEP + frame.sample_index * uint(ceil(each)))
+    splats.offset = (wd_hash_mix(random) * window_step(each) + frame.sample_index * uint(ceil(each)))
                     & (WD_STRATUM_SPLATS - 1u);
     splats.offset |= wood ? 0x80000000u : 0u;
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
     splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);
-    splats.lower = packUnorm4x8(vec4(model_vec3(model_index, WD_WORD_LOWER_OVER_UPPER) * 0.25, 0.0));
+    splats.lower = lower_tint(model_index, each * float(WD_SPLAT_STRATA), toward.z);
     vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
                              : vec2(0.0);
     uint wood_last = strata > WD_LEAF_STRATA ? 1u : 0u;

@@ -18,7 +18,9 @@
 #define WD_SPLATS 65536u
 #define WD_SPLAT_STRATA 8u
 #define WD_STRATUM_SPLATS (WD_SPLATS / WD_SPLAT_STRATA)
-/* Trees' windows begin at multiples of this: few places, which small trees read again and again. */
+/* Trees' windows begin at multiples of these, of few discs and of many: few places, which small trees read again
+ * and again, but not so few that their chance is a species' look. */
+#define WD_LEAST_WINDOW_STEP 8u
 #define WD_WINDOW_STEP 128u
 #define WD_LEAF_STRATA (WD_SPLAT_STRATA - 1u)
 /* The stratum of wood: half of it of all wood; half without what the first triangles of wood show,
@@ -72,11 +74,14 @@ struct wd_splat_corner {
 };
 WD_STATIC_ASSERT_SIZE(wd_splat_corner, 16);
 #define WD_WOOD_TRIANGLES 2u
+/* The smallest trees that have triangles of bark have so many of the largest, but no more than half of all. */
+#define WD_THICK_TRIANGLES 38u
 #define WD_WOOD_BITS 21u
 
 struct wd_splat_model {
     WD_GAINS_STRUCT wood, leaf; /* what keeps the mesh's coverage */
-    WD_GAINS_STRUCT light;      /* and the openness of what is seen */
+    WD_GAINS_STRUCT light;      /* and the openness of the leaves that are seen, */
+    WD_GAINS_STRUCT wood_light; /* and of the wood */
     WD_VEC3(min_m);
     WD_VEC3(extent_m);
     float leaf_area_m2, wood_area_m2;     /* of the surface that the splats stand for */
@@ -92,25 +97,28 @@ struct wd_splat_model {
     uint32_t wood_first;                  /* place of the first triangle among all corners */
     uint32_t wood_count, wood_corners;    /* triangles, those that show most first */
     float leaf_past_bark;                 /* factor on leaves' gains where these are all the wood */
+    float thin_wood;                      /* and on those of discs of wood where the first triangles are drawn */
 };
-WD_STATIC_ASSERT_SIZE(wd_splat_model, 548);
+WD_STATIC_ASSERT_SIZE(wd_splat_model, 696);
 /* Its words, to be fetched one by one. */
-#define WD_SPLAT_MODEL_WORDS 137u
+#define WD_SPLAT_MODEL_WORDS 174u
 #define WD_WORD_WOOD_GAINS 0u
 #define WD_WORD_LEAF_GAINS 36u
 #define WD_WORD_LIGHT_GAINS 72u
-#define WD_WORD_MIN_M 108u
-#define WD_WORD_EXTENT_M 111u
-#define WD_WORD_LEAF_AREA_M2 114u
-#define WD_WORD_WOOD_AREA_M2 115u
-#define WD_WORD_STRATA_TOP_M 116u
-#define WD_WORD_LOWER_OVER_UPPER 124u
-#define WD_WORD_WOOD_SPREAD 130u
-#define WD_WORD_GRAIN 131u
-#define WD_WORD_FINER 132u
-#define WD_WORD_WOOD_FIRST 133u
-#define WD_WORD_WOOD_COUNT 134u
-#define WD_WORD_LEAF_PAST_BARK 136u
+#define WD_WORD_WOOD_LIGHT_GAINS 108u
+#define WD_WORD_MIN_M 144u
+#define WD_WORD_EXTENT_M 147u
+#define WD_WORD_LEAF_AREA_M2 150u
+#define WD_WORD_WOOD_AREA_M2 151u
+#define WD_WORD_STRATA_TOP_M 152u
+#define WD_WORD_LOWER_OVER_UPPER 160u
+#define WD_WORD_WOOD_SPREAD 166u
+#define WD_WORD_GRAIN 167u
+#define WD_WORD_FINER 168u
+#define WD_WORD_WOOD_FIRST 169u
+#define WD_WORD_WOOD_COUNT 170u
+#define WD_WORD_LEAF_PAST_BARK 172u
+#define WD_WORD_THIN_WOOD 173u
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u
@@ -247,7 +255,8 @@ struct wd_splat_tree {
     uint32_t turn;         /* cosine and sine of the tree's yaw, half floats */
     uint32_t shape;        /* 1 or -1 mirrored, vertical over horizontal scale, half floats */
     uint32_t tint;         /* half of each factor of the leaves' colour and of openness, unorm 8 */
-    uint32_t lower;        /* a fourth of each factor of the colour of lower sides, unorm 8 */
+    uint32_t lower;        /* a fourth of each factor of the colour of lower sides, and half of that of the light
+                              of wood, unorm 8 */
     uint32_t sun, eye;     /* wd_sun_mix of where they are, seen from the model */
     float nearer_m;        /* discs that nothing of the tree hides are drawn so much nearer */
 };

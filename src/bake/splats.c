@@ -170,10 +170,10 @@ struct sized {
     uint32_t triangle;
 };
 
-/* As many of N as are drawn where the first are (shaders/methods/continuum_select.comp). */
 static uint32_t first_triangles(uint32_t count)
 {
-    return count / 2 < 38 ? count / 2 : 38;
+    const uint32_t most = WD_THICK_TRIANGLES;
+    return count / 2 < most ? count / 2 : most;
 }
 
 static int larger_first(const void *a, const void *b)
@@ -263,7 +263,8 @@ static void fill_wood_triangles(struct wd_splats *splats, const struct wd_tree_m
     free(number);
 }
 
-static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
+/* Returns the share of the bark that is seen which the first triangles do not show. */
+static float make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
                       const struct sized *order)
 {
     const uint32_t most = (1u << WD_WOOD_BITS) / 3 - 1; /* that can be named; what shows least goes */
@@ -279,6 +280,7 @@ static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
     }
     float spread = large > 0 ? logf(large / all) / logf((float)first / (float)count) : 1;
     splats->model.wood_spread = fminf(fmaxf(spread, 0.05f), 1.0f);
+    return all > 0 ? 1 - large / all : 1;
 }
 
 /* Mean colour of a look's texels that show. */
@@ -379,22 +381,20 @@ static void keep_thin(bool *keep, const struct wd_tree_points *points,
     free(corners);
 }
 
-/* `wood` gets the points of all of it, the stratum's first half. */
+/* `wood` gets the points of all of it, the stratum's first half, `thin` those of the other. */
 static void fill_wood_halves(struct wd_splats *splats, const struct wd_tree_points *points,
                              const struct wd_tree_model *model, const struct wd_tree_sides *sides,
-                             const struct sized *order, struct wd_tree_points *wood)
+                             const struct sized *order, struct wd_tree_points *wood, struct wd_tree_points *thin)
 {
     bool *keep = wd_alloc_array(points->count, sizeof *keep);
-    struct wd_tree_points thin = room_for(WD_WOOD_SPLATS);
     uint32_t first = first_triangles(model->reduced.wood_index_count / 3);
     keep_seen(keep, points, sides);
     fill_wood(splats, 0, points, keep, wood);
     keep_thin(keep, points, &model->reduced, order, first);
-    if (!fill_wood(splats, 1, points, keep, &thin)) {
+    if (!fill_wood(splats, 1, points, keep, thin)) {
         keep_seen(keep, points, sides);
-        fill_wood(splats, 1, points, keep, &thin);
+        fill_wood(splats, 1, points, keep, thin);
     }
-    wd_tree_points_finish(&thin);
     free(keep);
 }
 
@@ -406,7 +406,7 @@ static void tell_lit(uint32_t *which, size_t count, const uint32_t *lit)
 
 /* Of points that are discs; most of the others are none. */
 static void light_discs(struct wd_splats *splats, const struct wd_tree_points *points,
-                        const struct wd_tree_mesh *mesh, struct wd_tree_points *leaves, struct wd_tree_points *wood)
+                        const struct wd_tree_mesh *mesh, struct wd_tree_points discs[3])
 {
     struct wd_tree_points some = {.points = wd_alloc_array(points->count, sizeof *some.points)};
     uint32_t *lit = wd_alloc_array(points->count, sizeof *lit);
@@ -420,8 +420,8 @@ static void light_discs(struct wd_splats *splats, const struct wd_tree_points *p
     for (size_t i = 0, at = 0; i < points->count; i++)
         lit[i] = is_disc[i] ? some.lit[at++] : 0;
     tell_lit(splats->lit, WD_SPLATS, lit);
-    tell_lit(leaves->lit, leaves->count, lit);
-    tell_lit(wood->lit, wood->count, lit);
+    for (int class = 0; class < 3; class++)
+        tell_lit(discs[class].lit, discs[class].count, lit);
     wd_tree_points_finish(&some);
     free(is_disc);
     free(lit);
@@ -432,28 +432,31 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
 {
     size_t leaf_count = (size_t)WD_LEAF_STRATA * WD_STRATUM_SPLATS;
     uint32_t triangles = model->reduced.wood_index_count / 3;
-    struct wd_tree_points leaves = room_for(leaf_count), wood = room_for(WD_WOOD_SPLATS);
+    struct wd_tree_points discs[3] = {room_for(WD_WOOD_SPLATS), room_for(leaf_count), room_for(WD_WOOD_SPLATS)};
     struct sized *order = wd_alloc_array(triangles + 1, sizeof *order);
     struct wd_tree_sides sides;
     wd_tree_sides_init(&sides, &model->full);
     order_wood(order, triangles, model, &sides);
-    make_wood(splats, &model->reduced, order);
-    fill_leaves(splats, points, &leaves);
-    fill_wood_halves(splats, points, model, &sides, order, &wood);
-    light_discs(splats, points, &model->full, &leaves, &wood);
+    float thin_share = make_wood(splats, &model->reduced, order);
+    fill_leaves(splats, points, &discs[1]);
+    fill_wood_halves(splats, points, model, &sides, order, &discs[0], &discs[2]);
+    light_discs(splats, points, &model->full, discs);
     struct wd_disc_fit fits;
     const float stratum = 1.0f / WD_SPLAT_STRATA;
-    const struct wd_disc_class woody = {&wood, points->wood_area_m2, stratum};
-    const struct wd_disc_class leafy = {&leaves, points->leaf_area_m2, 1 - stratum};
-    wd_disc_fit(&fits, &woody, &leafy, &model->full, &model->reduced);
+    const struct wd_disc_class woody = {&discs[0], points->wood_area_m2, stratum};
+    const struct wd_disc_class leafy = {&discs[1], points->leaf_area_m2, 1 - stratum};
+    const struct wd_disc_class thin = {&discs[2], points->wood_area_m2, stratum};
+    wd_disc_fit(&fits, &woody, &leafy, &thin, thin_share, &model->full, &model->reduced);
     splats->model.wood = fits.wood;
     splats->model.leaf = fits.leaf;
     splats->model.light = fits.light;
+    splats->model.wood_light = fits.wood_light;
     /* trees near enough for triangles are seen level or from half above */
     splats->model.leaf_past_bark = 0.5f * (fits.past_bark[0] + fits.past_bark[1]);
+    splats->model.thin_wood = 0.5f * (fits.thin[0] + fits.thin[1]);
     memcpy(splats->model.lower, fits.lower, sizeof fits.lower);
-    wd_tree_points_finish(&leaves);
-    wd_tree_points_finish(&wood);
+    for (int class = 0; class < 3; class++)
+        wd_tree_points_finish(&discs[class]);
     wd_tree_sides_finish(&sides);
     free(order);
 }

@@ -18,6 +18,7 @@
 WORD_IS(wood, WD_WORD_WOOD_GAINS);
 WORD_IS(leaf, WD_WORD_LEAF_GAINS);
 WORD_IS(light, WD_WORD_LIGHT_GAINS);
+WORD_IS(wood_light, WD_WORD_WOOD_LIGHT_GAINS);
 WORD_IS(min_m, WD_WORD_MIN_M);
 WORD_IS(extent_m, WD_WORD_EXTENT_M);
 WORD_IS(leaf_area_m2, WD_WORD_LEAF_AREA_M2);
@@ -29,6 +30,8 @@ WORD_IS(grain, WD_WORD_GRAIN);
 WORD_IS(finer, WD_WORD_FINER);
 WORD_IS(wood_first, WD_WORD_WOOD_FIRST);
 WORD_IS(wood_count, WD_WORD_WOOD_COUNT);
+WORD_IS(leaf_past_bark, WD_WORD_LEAF_PAST_BARK);
+WORD_IS(thin_wood, WD_WORD_THIN_WOOD);
 
 /* --- clusters ---------------------------------------------------------------------------- */
 

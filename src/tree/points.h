@@ -67,17 +67,19 @@ struct wd_disc_class {
  * wd_point_gains. */
 struct wd_disc_fit {
     struct wd_point_gains wood, leaf; /* of their areas */
-    struct wd_point_gains light;      /* of the openness to the sky of those that are seen */
+    struct wd_point_gains light, wood_light; /* of the openness to the sky of leaves and wood that are seen */
     float lower[WD_GAIN_SIDES];       /* share of the leaves seen that show their lower side */
     float past_bark[WD_GAIN_SIDES];   /* factors on leaves' gains where triangles stand for all wood */
+    float thin[WD_GAIN_SIDES];        /* and on wood's where they stand for the thick */
 };
 
 /* Finds the gains with which discs of both classes together cover as many pixels as the mesh, and as
  * many of them with wood, on average over windows that begin anywhere. Counts are those of both
  * classes together. `bark`: a mesh of the same tree whose wood is drawn as triangles in place of discs
- * where the tree is near enough. */
+ * where the tree is near enough; before that its largest triangles do, and `thin` discs for `thin_share` of the
+ * wood that is seen. */
 void wd_disc_fit(struct wd_disc_fit *fits, const struct wd_disc_class *wood,
-                 const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh,
-                 const struct wd_tree_mesh *bark);
+                 const struct wd_disc_class *leaves, const struct wd_disc_class *thin, float thin_share,
+                 const struct wd_tree_mesh *mesh, const struct wd_tree_mesh *bark);
 
 #endif

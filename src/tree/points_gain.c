@@ -12,15 +12,17 @@
 #include "tree/shown.h"
 
 enum { FIRST_ROUNDS = 5, ROUNDS = 2, MOST_VIEWS = 6, MOST_WINDOWS = 48 };
-/* Of 2,048 discs, about as many as the smallest trees have whose bark is all there as triangles. */
-enum { AT_TRIANGLES = 8 };
+/* Of 256 discs, about as many as the smallest trees have whose thick wood is there as triangles, and of 2,048, where
+ * all of it is. */
+enum { AT_THIN = 5, AT_TRIANGLES = 8 };
 /* Discs much larger than their share of the surface would be a tree's only look. */
 static const float LEAST_GAIN = 0.02f, MOST_GAIN = 4;
 
 struct plan {
-    const struct wd_disc_class *classes[2]; /* wood, leaves */
-    struct wd_faces faces[2];
-    struct wd_facet *facets[MOST_VIEWS][2]; /* [view][class] */
+    const struct wd_disc_class *classes[3]; /* wood, leaves, thin wood */
+    struct wd_faces faces[3];
+    struct wd_facet *facets[MOST_VIEWS][3]; /* [view][class] */
+    float thin_share;                       /* of the wood that is seen */
     int view_count;
     const struct wd_tree_mesh *bark;         /* whose wood are the triangles */
     struct wd_silhouette barks[MOST_VIEWS];  /* as each view sees them */
@@ -52,7 +54,7 @@ static size_t disc_count(const struct plan *plan, int class, size_t count)
  * windows and views is known to 2 %. */
 static uint32_t window_count(size_t count)
 {
-    return count < 32 ? MOST_WINDOWS : count < 100 ? 16 : count < 1000 ? 6 : count < 5000 ? 2 : 1;
+    return count < 32 ? MOST_WINDOWS : count < 100 ? 24 : count < 1000 ? 8 : count < 5000 ? 2 : 1;
 }
 
 /* They begin anywhere. Counts look from other views by turns. */
@@ -62,18 +64,20 @@ static void windows_init(struct windows *windows, const struct plan *plan, int k
     windows->step = plan->view_count > 1 ? 2 : 1;
     windows->first_view = k % windows->step;
     windows->mesh = (struct wd_shown){0};
-    windows->count = window_count(count);
+    windows->count = window_count(count) * (plan->view_count > 1 ? 1 : 2);
+    windows->count = windows->count < MOST_WINDOWS ? windows->count : MOST_WINDOWS;
     for (int class = 0; class < 2; class++)
         windows->wanted[class] = disc_count(plan, class, count);
     for (int view = windows->first_view; view < plan->view_count; view += windows->step) {
+        size_t first = wd_hash2((uint32_t)view, (uint32_t)count);
         wd_shown_add(&windows->mesh, &plan->meshes[view], 1);
         for (uint32_t i = 0; i < windows->count; i++) {
-            uint32_t first = wd_hash2(i * MOST_VIEWS + (uint32_t)view, (uint32_t)count);
             struct wd_facet_run runs[2] = {0};
             for (int class = 0; class < 2; class++) {
                 size_t all = plan->classes[class]->discs->count;
                 if (windows->wanted[class])
-                    runs[class] = (struct wd_facet_run){plan->facets[view][class], all, first % all,
+                    runs[class] = (struct wd_facet_run){plan->facets[view][class], all,
+                                                        ((first + i) * windows->wanted[class]) % all,
                                                         windows->wanted[class]};
             }
             wd_disc_window_init(&windows->of[view][i], runs, wd_disc_close((float)count),
@@ -144,13 +148,15 @@ static void fit(const struct plan *plan, const struct windows *windows, int roun
 }
 
 /* Few discs hide less of the dark within. */
-static float light_gain(const struct plan *plan, const struct windows *windows,
+static void light_gains(float light[2], const struct plan *plan, const struct windows *windows,
                         const float gains[2])
 {
-    struct wd_shown discs = show_discs(plan, windows, gains, NULL);
-    const struct wd_shown *mesh = &windows->mesh;
-    double wanted = mesh->openness * discs.covered, found = discs.openness * mesh->covered;
-    return found > 0 ? wd_clampf((float)(wanted / found), 0.5f, 2) : 1;
+    const struct wd_shown discs = show_discs(plan, windows, gains, NULL), *mesh = &windows->mesh;
+    const double shown[2][2] = {{mesh->wood, discs.wood}, {mesh->covered - mesh->wood, discs.covered - discs.wood}};
+    for (int class = 0; class < 2; class++) {
+        double wanted = mesh->openness[class] * shown[class][1], found = discs.openness[class] * shown[class][0];
+        light[class] = wanted > 0 && found > 0 ? wd_clampf((float)(wanted / found), 0.5f, 2) : 1;
+    }
 }
 
 /* Triangles of bark do not stick out of leaves as discs do: factor on the gain of leaves' discs with which
@@ -175,6 +181,27 @@ static float past_bark(const struct plan *plan, const float gains[2])
     windows_finish(windows, &bare);
     free(windows);
     return only_leaves[1] / gains[1];
+}
+
+/* Thin wood lies among leaves, whose discs hide more of it than of all wood: factor on the gain with which its discs
+ * show their share. */
+static float thin_gain(const struct plan *plan, const float gains[2])
+{
+    float thin[2] = {gains[0] * plan->thin_share, gains[1]}, first = thin[0];
+    struct growth growth = {.power = {0.8f, 0.4f}};
+    struct windows *windows = wd_alloc(sizeof *windows);
+    struct plan among = *plan;
+    among.classes[0] = plan->classes[2];
+    for (int view = 0; view < plan->view_count; view++)
+        among.facets[view][0] = plan->facets[view][2];
+    windows_init(windows, &among, AT_THIN);
+    for (int round = 0; round < FIRST_ROUNDS && first > 0; round++) {
+        struct wd_shown discs = show_discs(&among, windows, thin, NULL);
+        thin[0] = nearer(&growth, 0, thin[0], plan->thin_share * windows->mesh.wood, discs.wood);
+    }
+    windows_finish(windows, &among);
+    free(windows);
+    return first > 0 ? wd_clampf(thin[0] / first, 0.5f, 2.5f) : 1;
 }
 
 /* Windows leave chance in each count's gains, which change little from one to the next but where discs
@@ -207,7 +234,12 @@ static void fit_side(const struct plan *plan, struct wd_disc_fit *fits, int side
         fit(plan, windows, k == WD_POINT_GAINS - 1 ? FIRST_ROUNDS : ROUNDS, &growth, gains);
         fits->wood.gains[side][k] = gains[0];
         fits->leaf.gains[side][k] = gains[1];
-        fits->light.gains[side][k] = light_gain(plan, windows, gains);
+        float light[2];
+        light_gains(light, plan, windows, gains);
+        fits->wood_light.gains[side][k] = light[0];
+        fits->light.gains[side][k] = light[1];
+        if (k == AT_THIN)
+            fits->thin[side] = thin_gain(plan, gains);
         if (k == AT_TRIANGLES)
             fits->past_bark[side] = leaves > 0 ? past_bark(plan, gains) : 1;
         windows_finish(windows, plan);
@@ -233,7 +265,7 @@ static void look_from(struct plan *plan, const struct wd_tree_mesh *mesh, float 
         plan->scale = frame.scale;
         wd_silhouette_cover(&frame, 1, plan->bark, 0, plan->bark->wood_index_count);
         plan->barks[i] = frame;
-        for (int class = 0; class < 2; class++)
+        for (int class = 0; class < 3; class++)
             plan->facets[i][class] = wd_facets_of(&plan->faces[class], &frame);
     }
 }
@@ -241,25 +273,26 @@ static void look_from(struct plan *plan, const struct wd_tree_mesh *mesh, float 
 static void look_away(struct plan *plan)
 {
     for (int i = 0; i < plan->view_count; i++)
-        for (int class = 0; class < 2; class++)
+        for (int class = 0; class < 3; class++)
             free(plan->facets[i][class]);
 }
 
 void wd_disc_fit(struct wd_disc_fit *fits, const struct wd_disc_class *wood,
-                 const struct wd_disc_class *leaves, const struct wd_tree_mesh *mesh,
-                 const struct wd_tree_mesh *bark)
+                 const struct wd_disc_class *leaves, const struct wd_disc_class *thin, float thin_share,
+                 const struct wd_tree_mesh *mesh, const struct wd_tree_mesh *bark)
 {
     static const float elevations_deg[WD_GAIN_SIDES] = {4, 45, 90};
-    struct plan plan = {.classes = {wood, leaves},
+    struct plan plan = {.classes = {wood, leaves, thin},
+                        .thin_share = thin_share,
                         .bark = bark,
                         .nearer_m = WD_DISC_NEARER * (mesh->max_m[0] - mesh->min_m[0])};
-    for (int class = 0; class < 2; class++)
+    for (int class = 0; class < 3; class++)
         wd_faces_init(&plan.faces[class], plan.classes[class]->discs);
     for (int side = 0; side < WD_GAIN_SIDES; side++) {
         look_from(&plan, mesh, elevations_deg[side], side < 2 ? MOST_VIEWS : 1);
         fit_side(&plan, fits, side);
         look_away(&plan);
     }
-    for (int class = 0; class < 2; class++)
+    for (int class = 0; class < 3; class++)
         wd_faces_finish(&plan.faces[class]);
 }

@@ -5,10 +5,10 @@
 #include "tree/points.h"
 #include "tree/silhouette.h"
 
-/* Pixels, those of them that are wood or the lower side of leaves, and the sum of their openness to the
- * sky. */
+/* Pixels, those of them that are wood or the lower side of leaves, and the sum of the openness to the
+ * sky of wood and of leaves. */
 struct wd_shown {
-    double covered, wood, lower, openness;
+    double covered, wood, lower, openness[2];
 };
 
 void wd_shown_add(struct wd_shown *sum, const struct wd_shown *shown, double weight);

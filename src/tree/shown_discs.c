@@ -15,7 +15,8 @@ void wd_shown_add(struct wd_shown *sum, const struct wd_shown *shown, double wei
     sum->covered += weight * shown->covered;
     sum->wood += weight * shown->wood;
     sum->lower += weight * shown->lower;
-    sum->openness += weight * shown->openness;
+    for (int class = 0; class < 2; class++)
+        sum->openness[class] += weight * shown->openness[class];
 }
 
 /* --- facets ------------------------------------------------------------------------------ */
@@ -173,7 +174,7 @@ struct wd_shown wd_shown_discs(const struct wd_disc_window *window, const float 
     for (int y = 0; y < WD_SILHOUETTE && before; y++)
         for (int i = 0; i < WD_SILHOUETTE / 8; i++)
             covered[i / 8][y] |= (uint64_t)before->covered[y][i] << (i % 8 * 8);
-    uint32_t counts[2] = {0}, openness = 0;
+    uint32_t counts[2] = {0}, openness[2] = {0};
     for (size_t from = 0; from < window->count; from += BATCH) {
         struct squares squares;
         int reaching[BATCH + 1], found = 0;
@@ -187,9 +188,9 @@ struct wd_shown wd_shown_discs(const struct wd_disc_window *window, const float 
             int32_t look = window->looks[from + (size_t)reaching[k]];
             uint32_t fresh = cover(covered, &squares, reaching[k]);
             counts[look >= LEAF] += fresh;
-            openness += fresh * (uint32_t)(look % LEAF);
+            openness[look >= LEAF] += fresh * (uint32_t)(look % LEAF);
         }
     }
     return (struct wd_shown){.covered = counts[0] + counts[1], .wood = counts[0],
-                             .openness = openness};
+                             .openness = {openness[0], openness[1]}};
 }

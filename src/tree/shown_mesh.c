@@ -79,13 +79,13 @@ static void draw_triangle(struct canvas *canvas, const struct wd_tree_vertex *co
 
 static struct wd_shown count_shown(const struct canvas *canvas)
 {
-    uint32_t counts[WOOD + 1] = {0}, openness = 0;
+    uint32_t counts[WOOD + 1] = {0}, openness[2] = {0};
     for (int i = 0; i < PIXELS; i++) {
         counts[canvas->kind[i]]++;
-        openness += canvas->openness[i];
+        openness[canvas->kind[i] != WOOD] += canvas->openness[i];
     }
     return (struct wd_shown){counts[LEAF] + counts[LEAF_BELOW] + counts[WOOD], counts[WOOD],
-                             counts[LEAF_BELOW], openness};
+                             counts[LEAF_BELOW], {openness[0], openness[1]}};
 }
 
 struct wd_shown wd_shown_mesh(const struct wd_silhouette *frame, const struct wd_tree_mesh *mesh)

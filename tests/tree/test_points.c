@@ -37,7 +37,7 @@ static void fit_gains(struct sampled *sampled)
         classes[kind] = (struct wd_disc_class){
             &kinds[kind], area_m2, area_m2 / (points->leaf_area_m2 + points->wood_area_m2)};
     }
-    wd_disc_fit(&sampled->fits, &classes[0], &classes[1], &sampled->model.full,
+    wd_disc_fit(&sampled->fits, &classes[0], &classes[1], &classes[0], 1, &sampled->model.full,
                 &sampled->model.reduced);
     wd_tree_points_finish(&kinds[0]);
     wd_tree_points_finish(&kinds[1]);
