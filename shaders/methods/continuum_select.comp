@@ -307,12 +307,6 @@ vec2 slope_under(vec3 foot, float wide_m)
  * three stands, of which a twentieth to a tenth was missing. */
 const float FROM_BELOW = 0.3;
 
-/* Windows begin at multiples of this power of two, where they are spread best. */
-uint window_step(float each)
-{
-    return clamp(2u << findMSB(uint(ceil(each))), WD_LEAST_WINDOW_STEP, WD_WINDOW_STEP);
-}
-
 /* `share` of the trees around stand for all: a tree is drawn as wide as the ground that it stands for
  * asks, as high as it is, and its splats grow with it. `place`: bit of the masks of put_off. */
 void select_tree(uint index, float share, uint place)
@@ -398,7 +392,7 @@ void select_tree(uint index, float share, uint place)
     splats.tree = index;
     splats.first_splat = model_index * WD_SPLATS;
     splats.first_wood = model_word(model_index, WD_WORD_WOOD_FIRST);
-    splats.offset = (wd_hash_mix(random) * window_step(each) + frame.sample_index * uint(ceil(each)))
+    splats.offset = (wd_hash_mix(random) * WD_WINDOW_STEP + frame.sample_index * uint(ceil(each)))
                     & (WD_STRATUM_SPLATS - 1u);
     splats.offset |= wood ? 0x80000000u : 0u;
     splats.turn = packHalf2x16(pose.turn);

@@ -18,9 +18,7 @@
 #define WD_SPLATS 65536u
 #define WD_SPLAT_STRATA 8u
 #define WD_STRATUM_SPLATS (WD_SPLATS / WD_SPLAT_STRATA)
-/* Trees' windows begin at multiples of these, of few discs and of many: few places, which small trees read again
- * and again, but not so few that their chance is a species' look. */
-#define WD_LEAST_WINDOW_STEP 8u
+/* Trees' windows begin at multiples of this: few places, which small trees read again and again. */
 #define WD_WINDOW_STEP 128u
 #define WD_LEAF_STRATA (WD_SPLAT_STRATA - 1u)
 /* The stratum of wood: half of it of all wood; half without what the first triangles of wood show,
@@ -80,8 +78,8 @@ WD_STATIC_ASSERT_SIZE(wd_splat_corner, 16);
 
 struct wd_splat_model {
     WD_GAINS_STRUCT wood, leaf; /* what keeps the mesh's coverage */
-    WD_GAINS_STRUCT light;      /* and the openness of the leaves that are seen, */
-    WD_GAINS_STRUCT wood_light; /* and of the wood */
+    WD_GAINS_STRUCT light;      /* and the openness of what is seen, by which leaves are lit, */
+    WD_GAINS_STRUCT wood_light; /* and of wood alone */
     WD_VEC3(min_m);
     WD_VEC3(extent_m);
     float leaf_area_m2, wood_area_m2;     /* of the surface that the splats stand for */

@@ -67,7 +67,7 @@ struct wd_disc_class {
  * wd_point_gains. */
 struct wd_disc_fit {
     struct wd_point_gains wood, leaf; /* of their areas */
-    struct wd_point_gains light, wood_light; /* of the openness to the sky of leaves and wood that are seen */
+    struct wd_point_gains light, wood_light; /* of the openness to the sky of all that is seen, and of wood */
     float lower[WD_GAIN_SIDES];       /* share of the leaves seen that show their lower side */
     float past_bark[WD_GAIN_SIDES];   /* factors on leaves' gains where triangles stand for all wood */
     float thin[WD_GAIN_SIDES];        /* and on wood's where they stand for the thick */

@@ -54,7 +54,7 @@ static size_t disc_count(const struct plan *plan, int class, size_t count)
  * windows and views is known to 2 %. */
 static uint32_t window_count(size_t count)
 {
-    return count < 32 ? MOST_WINDOWS : count < 100 ? 24 : count < 1000 ? 8 : count < 5000 ? 2 : 1;
+    return count < 32 ? MOST_WINDOWS : count < 100 ? 16 : count < 1000 ? 6 : count < 5000 ? 2 : 1;
 }
 
 /* They begin anywhere. Counts look from other views by turns. */
@@ -64,20 +64,18 @@ static void windows_init(struct windows *windows, const struct plan *plan, int k
     windows->step = plan->view_count > 1 ? 2 : 1;
     windows->first_view = k % windows->step;
     windows->mesh = (struct wd_shown){0};
-    windows->count = window_count(count) * (plan->view_count > 1 ? 1 : 2);
-    windows->count = windows->count < MOST_WINDOWS ? windows->count : MOST_WINDOWS;
+    windows->count = window_count(count);
     for (int class = 0; class < 2; class++)
         windows->wanted[class] = disc_count(plan, class, count);
     for (int view = windows->first_view; view < plan->view_count; view += windows->step) {
-        size_t first = wd_hash2((uint32_t)view, (uint32_t)count);
         wd_shown_add(&windows->mesh, &plan->meshes[view], 1);
         for (uint32_t i = 0; i < windows->count; i++) {
+            uint32_t first = wd_hash2(i * MOST_VIEWS + (uint32_t)view, (uint32_t)count);
             struct wd_facet_run runs[2] = {0};
             for (int class = 0; class < 2; class++) {
                 size_t all = plan->classes[class]->discs->count;
                 if (windows->wanted[class])
-                    runs[class] = (struct wd_facet_run){plan->facets[view][class], all,
-                                                        ((first + i) * windows->wanted[class]) % all,
+                    runs[class] = (struct wd_facet_run){plan->facets[view][class], all, first % all,
                                                         windows->wanted[class]};
             }
             wd_disc_window_init(&windows->of[view][i], runs, wd_disc_close((float)count),
@@ -147,16 +145,20 @@ static void fit(const struct plan *plan, const struct windows *windows, int roun
     }
 }
 
-/* Few discs hide less of the dark within. */
+static float openness_gain(double wanted, double found)
+{
+    return wanted > 0 && found > 0 ? wd_clampf((float)(wanted / found), 0.5f, 2) : 1;
+}
+
+/* Few discs hide less of the dark within, and show more of the wood that lies out of it. Of wood, and of all. */
 static void light_gains(float light[2], const struct plan *plan, const struct windows *windows,
                         const float gains[2])
 {
     const struct wd_shown discs = show_discs(plan, windows, gains, NULL), *mesh = &windows->mesh;
-    const double shown[2][2] = {{mesh->wood, discs.wood}, {mesh->covered - mesh->wood, discs.covered - discs.wood}};
-    for (int class = 0; class < 2; class++) {
-        double wanted = mesh->openness[class] * shown[class][1], found = discs.openness[class] * shown[class][0];
-        light[class] = wanted > 0 && found > 0 ? wd_clampf((float)(wanted / found), 0.5f, 2) : 1;
-    }
+    const double of_mesh[2] = {mesh->openness[0], mesh->openness[0] + mesh->openness[1]};
+    const double of_discs[2] = {discs.openness[0], discs.openness[0] + discs.openness[1]};
+    light[0] = openness_gain(of_mesh[0] * discs.wood, of_discs[0] * mesh->wood);
+    light[1] = openness_gain(of_mesh[1] * discs.covered, of_discs[1] * mesh->covered);
 }
 
 /* Triangles of bark do not stick out of leaves as discs do: factor on the gain of leaves' discs with which
@@ -222,7 +224,7 @@ static void smooth(float gains[WD_POINT_GAINS])
 /* From many discs to few: what suits twice as many is where to begin. */
 static void fit_side(const struct plan *plan, struct wd_disc_fit *fits, int side)
 {
-    float gains[2] = {1, 1};
+    float gains[2] = {1, 1}, light[2];
     struct growth growth = {.power = {0.8f, 0.4f}};
     struct wd_shown mesh = {0};
     for (int view = 0; view < plan->view_count; view++)
@@ -234,7 +236,6 @@ static void fit_side(const struct plan *plan, struct wd_disc_fit *fits, int side
         fit(plan, windows, k == WD_POINT_GAINS - 1 ? FIRST_ROUNDS : ROUNDS, &growth, gains);
         fits->wood.gains[side][k] = gains[0];
         fits->leaf.gains[side][k] = gains[1];
-        float light[2];
         light_gains(light, plan, windows, gains);
         fits->wood_light.gains[side][k] = light[0];
         fits->light.gains[side][k] = light[1];
