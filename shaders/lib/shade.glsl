@@ -647,7 +647,7 @@ vec3 within_wax(vec3 albedo, float waxed)
 
 /* Which ways past its tree a leaf has is known of one place on it and of few ways: how far that tells what its wax
  * mirrors; the rest: what leaves of such openness have, seen from there. By path-traced leaves at 512 and 1,024 px a
- * tree, 16 places each (1: FLIP 0.258 and 0.332; 0.5: 0.248 and 0.333; 0: 0.248 and 0.341). */
+ * tree, 16 places each (FLIP 0.258 and 0.332 before this and WAX_OF_OWN; 0.5: 0.248 and 0.333; 0: 0.248 and 0.341). */
 const float MIRRORS_KNOWN = 0.5;
 
 float gap_toward(vec3 mirror, float openness)

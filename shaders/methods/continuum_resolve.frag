@@ -172,8 +172,7 @@ void main()
         seen.albedo = min(seen.albedo * tint.rgb * (below ? lower.rgb : vec3(1.0)), 1.0);
     if (WOOD == 0u)
         seen.openness = min(seen.openness * (seen.wood ? lower.a : tint.a), 1.0);
-    if (WOOD == 0u && seen.wood)
-        seen.lit *= lower.a;
+    seen.lit *= seen.wood ? lower.a : 1.0;
     if (frame.view_mode == WD_MODE_LOD)
         seen.albedo = (seen.wood ? vec3(0.5, 0.3, 0.1) : vec3(0.1, 0.6, 0.15))
                       * (0.3 + 0.7 * seen.openness);

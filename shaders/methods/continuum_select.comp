@@ -359,10 +359,8 @@ void select_tree(uint index, float share, uint place)
     uint triangles = wood ? wood_triangles(model_index, tall_px) : 0u;
     /* Discs stand for the wood that is not there as triangles: few large ones are most of it. */
     float all = max(float(model_word(model_index, WD_WORD_WOOD_COUNT)), 1.0);
-    float spread = model_float(model_index, WD_WORD_WOOD_SPREAD);
-    float missing = 1.0 - pow(float(triangles) / all, spread);
-    float without_thick = 1.0 - pow(min(0.5, float(WD_THICK_TRIANGLES) / all), spread);
-    float thin = triangles > 0u ? min(missing / max(without_thick, 1e-3), 1.0) : 0.0;
+    float missing = 1.0 - pow(float(triangles) / all, model_float(model_index, WD_WORD_WOOD_SPREAD));
+    float thin = triangles > 0u ? min(missing / max(model_float(model_index, WD_WORD_THIN_SHARE), 1e-3), 1.0) : 0.0;
     thin = mix(1.0, model_float(model_index, WD_WORD_THIN_WOOD), thin);
     splats.wood_radius *= sqrt(max(missing, 0.0) * thin);
     splats.radius *= sqrt(mix(model_float(model_index, WD_WORD_LEAF_PAST_BARK), 1.0, missing));

@@ -72,8 +72,6 @@ struct wd_splat_corner {
 };
 WD_STATIC_ASSERT_SIZE(wd_splat_corner, 16);
 #define WD_WOOD_TRIANGLES 2u
-/* The smallest trees that have triangles of bark have so many of the largest, but no more than half of all. */
-#define WD_THICK_TRIANGLES 38u
 #define WD_WOOD_BITS 21u
 
 struct wd_splat_model {
@@ -95,11 +93,12 @@ struct wd_splat_model {
     uint32_t wood_first;                  /* place of the first triangle among all corners */
     uint32_t wood_count, wood_corners;    /* triangles, those that show most first */
     float leaf_past_bark;                 /* factor on leaves' gains where these are all the wood */
-    float thin_wood;                      /* and on those of discs of wood where the first triangles are drawn */
+    float thin_share;                     /* of the bark that is seen: what the first triangles do not show */
+    float thin_wood;                      /* factor on the gains of discs of wood that stand for as much */
 };
-WD_STATIC_ASSERT_SIZE(wd_splat_model, 696);
+WD_STATIC_ASSERT_SIZE(wd_splat_model, 700);
 /* Its words, to be fetched one by one. */
-#define WD_SPLAT_MODEL_WORDS 174u
+#define WD_SPLAT_MODEL_WORDS 175u
 #define WD_WORD_WOOD_GAINS 0u
 #define WD_WORD_LEAF_GAINS 36u
 #define WD_WORD_LIGHT_GAINS 72u
@@ -116,7 +115,8 @@ WD_STATIC_ASSERT_SIZE(wd_splat_model, 696);
 #define WD_WORD_WOOD_FIRST 169u
 #define WD_WORD_WOOD_COUNT 170u
 #define WD_WORD_LEAF_PAST_BARK 172u
-#define WD_WORD_THIN_WOOD 173u
+#define WD_WORD_THIN_SHARE 173u
+#define WD_WORD_THIN_WOOD 174u
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u

@@ -170,10 +170,10 @@ struct sized {
     uint32_t triangle;
 };
 
+/* As many of N as are drawn where the first are (shaders/methods/continuum_select.comp). */
 static uint32_t first_triangles(uint32_t count)
 {
-    const uint32_t most = WD_THICK_TRIANGLES;
-    return count / 2 < most ? count / 2 : most;
+    return count / 2 < 38 ? count / 2 : 38;
 }
 
 static int larger_first(const void *a, const void *b)
@@ -263,8 +263,7 @@ static void fill_wood_triangles(struct wd_splats *splats, const struct wd_tree_m
     free(number);
 }
 
-/* Returns the share of the bark that is seen which the first triangles do not show. */
-static float make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
+static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
                       const struct sized *order)
 {
     const uint32_t most = (1u << WD_WOOD_BITS) / 3 - 1; /* that can be named; what shows least goes */
@@ -280,7 +279,7 @@ static float make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh
     }
     float spread = large > 0 ? logf(large / all) / logf((float)first / (float)count) : 1;
     splats->model.wood_spread = fminf(fmaxf(spread, 0.05f), 1.0f);
-    return all > 0 ? 1 - large / all : 1;
+    splats->model.thin_share = all > 0 ? 1 - large / all : 1;
 }
 
 /* Mean colour of a look's texels that show. */
@@ -437,7 +436,7 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     struct wd_tree_sides sides;
     wd_tree_sides_init(&sides, &model->full);
     order_wood(order, triangles, model, &sides);
-    float thin_share = make_wood(splats, &model->reduced, order);
+    make_wood(splats, &model->reduced, order);
     fill_leaves(splats, points, &discs[1]);
     fill_wood_halves(splats, points, model, &sides, order, &discs[0], &discs[2]);
     light_discs(splats, points, &model->full, discs);
@@ -446,7 +445,7 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     const struct wd_disc_class woody = {&discs[0], points->wood_area_m2, stratum};
     const struct wd_disc_class leafy = {&discs[1], points->leaf_area_m2, 1 - stratum};
     const struct wd_disc_class thin = {&discs[2], points->wood_area_m2, stratum};
-    wd_disc_fit(&fits, &woody, &leafy, &thin, thin_share, &model->full, &model->reduced);
+    wd_disc_fit(&fits, &woody, &leafy, &thin, splats->model.thin_share, &model->full, &model->reduced);
     splats->model.wood = fits.wood;
     splats->model.leaf = fits.leaf;
     splats->model.light = fits.light;
