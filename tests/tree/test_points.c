@@ -320,6 +320,21 @@ static void cover(const struct sampled *sampled, size_t first, size_t count, dou
     free(hit);
 }
 
+/* Of few discs of bark those are seen that stick out of the leaves (128 of an oak: 0.88 of their openness is right). Where
+ * thin wood is all the wood, it needs no gain of its own. */
+static void few_discs_show_open_wood(void **state)
+{
+    (void)state;
+    struct sampled sampled;
+    sample_species(&sampled, "oak");
+    fit_gains(&sampled);
+    for (int side = 0; side < 2; side++) {
+        assert_true(sampled.fits.wood_light.gains[side][4] < 0.95f);
+        assert_float_equal(sampled.fits.thin[side], 1, 0.1f);
+    }
+    sampled_finish(&sampled);
+}
+
 static void discs_cover_what_the_mesh_covers(void **state)
 {
     (void)state;
@@ -509,6 +524,7 @@ int main(void)
         cmocka_unit_test(neighbours_on_the_curve_are_neighbours_in_space),
         cmocka_unit_test(prefixes_are_spread_better_than_chance),
         cmocka_unit_test(windows_keep_the_means),
+        cmocka_unit_test(few_discs_show_open_wood),
         cmocka_unit_test(discs_cover_what_the_mesh_covers),
         cmocka_unit_test(ways_mix_their_neighbours),
         cmocka_unit_test(plates_shade_what_is_below),
