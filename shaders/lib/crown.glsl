@@ -14,7 +14,7 @@ struct wd_crown {
 wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
 {
     float height_m = WD_TREE_HEIGHT_M(tree), radius_m = WD_TREE_CROWN_M(tree) * 0.5;
-    float base_m = model.crown_base * height_m;
+    float base_m = unpackHalf2x16(model.base_petals).x * height_m;
     vec3 foot_rel = tree_foot_rel(tree);
     wd_crown crown;
     crown.foot_z = foot_rel.z;

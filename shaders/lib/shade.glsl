@@ -87,7 +87,7 @@ float leaf_roughness(wd_lit_leaves model)
 wd_lit_leaves lit_leaves(int model)
 {
     vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
-    return wd_lit_leaves(a.x, floatBitsToUint(a.y), floatBitsToUint(a.z), floatBitsToUint(a.w), b.xyz, b.w);
+    return wd_lit_leaves(floatBitsToUint(a.x), floatBitsToUint(a.y), floatBitsToUint(a.z), floatBitsToUint(a.w), b.xyz, b.w);
 }
 
 vec3 paler_below(wd_lit_leaves model)
@@ -480,12 +480,17 @@ const float FEW_DISCS = 100.0, MANY_DISCS = 400.0;
 const float STAND_WAY = 0.4, STAND_NO_MAP = 1.25;
 const vec2 STAND_DISC_SUN = vec2(1.12, 1.03);
 
+float pixel_size_m(wd_pixel pixel)
+{
+    return pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
+}
+
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. `sun`: factors on each disc's share
  * and on the mean by depth. A map that holds leaves tells more where discs are as near as they are; a disc may lie a
  * pixel behind its leaf then. Leaves of meshes (lit 1) are in the nearest maps as they are. 0: none goes on to the eye. */
 void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2 sun, uint cascade)
 {
-    float pixel_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
+    float pixel_m = pixel_size_m(pixel);
     if (!is_disc(pixel)) {
         float told = map_tells_leaves(cascade, crown.sward);
         place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, 1.0, told);
@@ -557,6 +562,21 @@ void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, float
     } else {
         place.transmittance *= as_seen;
     }
+}
+
+/* Petals have no wax, and let through what leaves do, not more for being paler (look maps). What is so many times as
+ * bright as the leaves of a plant in flower is a petal. */
+const float PETALS_BRIGHTER = 1.5;
+
+void know_petals(inout wd_place place, wd_pixel pixel, wd_lit_leaves model)
+{
+    float leaf = unpackHalf2x16(model.base_petals).y;
+    if ((!ALL_SINGLE && pixel.lit < 0.0) || leaf <= 0.0 || pixel.albedo.g < PETALS_BRIGHTER * leaf || pixel.snow > 0.0)
+        return;
+    place.transmittance = model.transmittance * (leaf / pixel.albedo.g);
+    place.waxed = place.gloss = 0.0;
+    place.waxed_lit = vec2(0.0);
+    place.body = 1.0;
 }
 
 /* Wood within a crown is in its shade as leaves are. Where a pixel shows branches that lie this way and that, which its
@@ -631,11 +651,13 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
-    place.sheet = fine > 0.0 ? plain * sunny * pixel.normal : vec3(0.0);
+    float sheet = pixel.lit >= 1.0 ? 1.0 - smoothstep(0.008, 0.04, pixel_size_m(pixel)) : plain;
+    place.sheet = fine > 0.0 ? sheet * sunny * pixel.normal : vec3(0.0);
     vec2 in_stands = mix(vec2(1.0), STAND_DISC_SUN, is_tree(crown));
     vec2 on_discs = vec2(hot, sunlit.x) * mix(in_stands, vec2(free_disc_light(eye, crown).x, 1.0), free);
     light_disc(place, pixel, crown, model, free, on_discs, cascade);
     tell_sides(place, pixel, model, free);
+    know_petals(place, pixel, model);
     return place;
 }
 

@@ -73,7 +73,8 @@ WD_FUNC uint32_t wd_sunlit_place(uint32_t eye_ring, uint32_t sun_ring, uint32_t 
 /* What light asks of a model, fetched as texels of four words: software devices do that for all lanes at
  * once. */
 struct wd_lit_leaves {
-    float crown_base;             /* height of the lowest living branch, of the tree's */
+    uint32_t base_petals;         /* two half floats: height of the lowest living branch, of the tree's; and of plants
+                                     in flower the green albedo of leaves, else 0 */
     uint32_t cloud_wax;           /* two half floats, as of struct wd_tree_model */
     uint32_t sun_curve;           /* of wd_crown_lit: two half floats */
     uint32_t paler;               /* WD_PALER_*: albedo of leaves' lower sides over that of the upper ones */

@@ -125,11 +125,20 @@ static uint32_t paler_below(const struct wd_species *species)
     return packed;
 }
 
+static float petal_leaf_green(const struct wd_species *species)
+{
+    float leaf[3];
+    if (species->imported || species->flower.count <= 0)
+        return 0;
+    wd_look_color(species, WD_LOOK_LEAF, leaf);
+    return leaf[1];
+}
+
 void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species *species,
                                const struct wd_model *model, const struct wd_tree_model *grown)
 {
     lit->leaves = (struct wd_lit_leaves){
-        .crown_base = model->crown_base_m / model->height_m,
+        .base_petals = wd_pack_uv(model->crown_base_m / model->height_m, petal_leaf_green(species)),
         .cloud_wax = wd_pack_uv(grown->cloud_wax[0], grown->cloud_wax[1]),
         .sun_curve = wd_pack_uv(grown->sun_curve[0], grown->sun_curve[1]),
         .paler = paler_below(species),
