@@ -51,10 +51,11 @@ vec3 nearest_texel(vec3 uv, float lod)
     return vec3((floor(uv.xy * size) + 0.5) / size, uv.z);
 }
 
-/* Opacities are kept as they are to twice the pictures' size: edges are sharpened only beyond. */
+/* Opacities are kept as they are to four times the pictures' size: edges are sharpened only beyond. From twice on blades
+ * of grass, thinner than texels, lost a sixteenth. */
 float view_opacity(float alpha)
 {
-    return card_opacity(alpha, in_foot.w + 2.0);
+    return card_opacity(alpha, in_foot.w + 3.0);
 }
 
 void add_view(inout view_sum sum, uint view, float weight, wd_view_point p, float layer)
@@ -112,6 +113,20 @@ vec3 refined_place(vec3 toward, float layer)
 }
 #endif
 
+#ifdef VIEW_DEPTH
+/* The search for a surface finds what covers rather than the holes between, the more texels it may move by. Six species'
+ * rows at 8 to 128 pixels covered up to 8 % too much. */
+float found_cover(float covered)
+{
+    return pow(covered, 1.0 + 0.09 * exp2(-0.8 * max(in_foot.w + 1.0, 0.0)));
+}
+#else
+float found_cover(float covered)
+{
+    return covered;
+}
+#endif
+
 vec3 world_vector(vec3 v, vec2 scale)
 {
     v.x *= sign(in_pose.z);
@@ -141,7 +156,7 @@ void main()
     for (uint i = 0u; i < (push.nearest != 0u ? 1u : 3u); i++)
         add_view(sum, view_of(i), in_weights[i], p, layer);
 #endif
-    if (view_noise() >= sum.covered * in_tint.a)
+    if (view_noise() >= found_cover(sum.covered) * in_tint.a)
         discard;
     float per = 1.0 / max(sum.covered, 1e-5), openness = sum.openness * per;
     vec3 albedo = sum.color * per * mix(vec3(1.0), in_tint.rgb, sum.leaf * per);
