@@ -622,6 +622,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float cosine = dot(eye, frame.sun_direction);
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
     float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free);
+    fine *= pixel.lit < 0.0 ? 1.0 - free : 1.0;
     float mapped = 0.75 * fine;
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
