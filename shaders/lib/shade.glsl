@@ -584,7 +584,7 @@ void know_petals(inout wd_place place, wd_pixel pixel, wd_lit_leaves model)
 wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2 sunlit, uint cascade)
 {
     wd_place place = ground_place(pixel);
-    float fine = map_holds_leaves(cascade, free);
+    float fine = map_holds_leaves(cascade, free) * (pixel.lit < 0.0 ? 1.0 - free : 1.0);
     float many = smoothstep(1.0, 0.8, length(pixel.facing)) * (1.0 - fine);
     shade_by_crown(place, crown, curve, pixel.openness, free, mix(sunlit.x, 1.0, many), cascade);
     place.sides.x = mix(place.sides.x, sunlit.y, many * free);
