@@ -534,7 +534,6 @@ static void impostor_draw(void *state, const struct wd_tree_draw *draw)
 const struct wd_method wd_method_impostor = {
     .name = "impostor",
     .cards = true,
-    .eye_pictures = true,
     .state_size = sizeof(struct impostors),
     .init = impostor_init,
     .finish = impostor_finish,
