@@ -579,14 +579,15 @@ void know_petals(inout wd_place place, wd_pixel pixel, wd_lit_leaves model)
     place.body = 1.0;
 }
 
-/* Wood within a crown is in its shade as leaves are, of a tree that stands free by maps that are as fine as leaves alone. Where a pixel shows branches that lie this way and that, which its
+/* Wood within a crown is in its shade as leaves are, pictures of branches that stand free by maps that are as fine as
+ * leaves alone. Where a pixel shows branches that lie this way and that, which its
  * short mean normal tells, those of a tree that stands free are lit as its table says. */
 wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2 sunlit, uint cascade)
 {
     wd_place place = ground_place(pixel);
-    float fine = map_holds_leaves(cascade, free);
-    fine = pixel.lit < 0.0 ? mix(fine, map_tells_leaves(cascade, 0.0), free) : fine;
-    float many = smoothstep(1.0, 0.8, length(pixel.facing)) * (1.0 - fine);
+    float branches = pixel.lit < 0.0 ? smoothstep(1.0, 0.8, length(pixel.facing)) : 0.0;
+    float fine = mix(map_holds_leaves(cascade, free), map_tells_leaves(cascade, 0.0), free * branches);
+    float many = branches * (1.0 - fine);
     shade_by_crown(place, crown, curve, pixel.openness, free, mix(sunlit.x, 1.0, many), cascade);
     place.sides.x = mix(place.sides.x, sunlit.y, many * free);
     place.own = pixel.lit < 0.0 ? place.own : pixel.lit;
@@ -609,8 +610,8 @@ const float HERB_SHINES = 0.4;
  * of the sides that are seen. */
 const float BROAD_LEAVES_WAX = 0.49;
 
-/* Leaves of reduced forms of a tree that stands free are lit by the table alone: maps hold leaves that are not theirs. By
- * path-traced rows of seven species at 32 and 128 px, which were up to 14 % too bright and of hazel from -18 to +31 %.
+/* Of a z-field that stands free, the table alone lights leaves: maps hold others than it shows. By path-traced rows of
+ * seven species at 32 and 128 px, which were up to 14 % too bright and of hazel from -18 to +31 %.
  *
  * Near, the maps hold each leaf and the crown's depth adds little. Far, the crown is left behind before the
  * map is asked, and depth along the sun says where in it how much of the light is left. Of a tree that stands
@@ -625,7 +626,8 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float sward = crown.sward;
     float cosine = dot(eye, frame.sun_direction);
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
-    float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free) * (pixel.lit < 0.0 ? 1.0 - free : 1.0);
+    bool pictured = pixel.lit < 0.0 && push.level_cards == 0u; /* a z-field's */
+    float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free) * (pictured ? 1.0 - free : 1.0);
     float mapped = 0.75 * fine;
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
