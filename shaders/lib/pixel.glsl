@@ -32,14 +32,19 @@ void pixel_set_normal(inout wd_pixel pixel, vec3 mean)
     pixel.facing = pixel.normal * min(1.005 * length_of_mean, 1.0);
 }
 
+/* Metres that a pixel spans where it shows something. */
+float pixel_size_m(wd_pixel pixel)
+{
+    return pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
+}
+
 /* Snow on trees: it hides what it lies on, and its pads are smoother than leaves. */
 void pixel_lay_snow(inout wd_pixel pixel)
 {
     pixel.snow = 0.0;
     if (frame.snow == 0.0 || pixel.surface == 0u || frame.view_mode == WD_MODE_LOD)
         return;
-    float footprint_m = pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
-    pixel.snow = wd_snow_share_on(pixel.rel, pixel.normal, pixel.openness, footprint_m);
+    pixel.snow = wd_snow_share_on(pixel.rel, pixel.normal, pixel.openness, pixel_size_m(pixel));
     pixel.albedo = mix(pixel.albedo, WD_SNOW_ALBEDO, pixel.snow);
     pixel.normal = normalize(mix(pixel.normal, vec3(0.0, 0.0, 1.0), 0.5 * pixel.snow));
     pixel.facing = mix(pixel.facing, vec3(0.0, 0.0, length(pixel.facing)), 0.5 * pixel.snow);

@@ -480,11 +480,6 @@ const float FEW_DISCS = 100.0, MANY_DISCS = 400.0;
 const float STAND_WAY = 0.4, STAND_NO_MAP = 1.25;
 const vec2 STAND_DISC_SUN = vec2(1.12, 1.03);
 
-float pixel_size_m(wd_pixel pixel)
-{
-    return pixel.axis_m * length(pixel_ray(ivec2(0, 1)) - pixel_ray(ivec2(0, 0)));
-}
-
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. `sun`: factors on each disc's share
  * and on the mean by depth. A map that holds leaves tells more where discs are as near as they are; a disc may lie a
  * pixel behind its leaf then. Leaves of meshes (lit 1) are in the nearest maps as they are. 0: none goes on to the eye. */
@@ -579,9 +574,9 @@ void know_petals(inout wd_place place, wd_pixel pixel, wd_lit_leaves model)
     place.body = 1.0;
 }
 
-/* Wood within a crown is in its shade as leaves are, pictures of branches that stand free by maps that are as fine as
- * leaves alone. Where a pixel shows branches that lie this way and that, which its
- * short mean normal tells, those of a tree that stands free are lit as its table says. */
+/* Wood within a crown is in its shade as leaves are. Where a pixel shows branches that lie this way and that, which its
+ * short mean normal tells, those of a tree that stands free are lit as its table says, by maps that are not as fine as
+ * leaves. */
 wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2 sunlit, uint cascade)
 {
     wd_place place = ground_place(pixel);
