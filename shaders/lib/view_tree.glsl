@@ -111,9 +111,7 @@ vec3 refined_place(vec3 toward, float layer)
     }
     return place;
 }
-#endif
 
-#ifdef VIEW_DEPTH
 /* The search for a surface finds what covers rather than the holes between, the more texels it may move by. Six species'
  * rows at 8 to 128 pixels covered up to 8 % too much. */
 float found_cover(float covered)
