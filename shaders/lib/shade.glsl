@@ -87,7 +87,13 @@ float leaf_roughness(wd_lit_leaves model)
 wd_lit_leaves lit_leaves(int model)
 {
     vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
-    return wd_lit_leaves(floatBitsToUint(a.x), floatBitsToUint(a.y), floatBitsToUint(a.z), floatBitsToUint(a.w), b.xyz, b.w);
+    return wd_lit_leaves(floatBitsToUint(a.x), floatBitsToUint(a.y), floatBitsToUint(a.z), floatBitsToUint(a.w),
+                         floatBitsToUint(b.x), b.y, floatBitsToUint(b.z), b.w);
+}
+
+vec3 leaf_transmittance(wd_lit_leaves model)
+{
+    return vec3(unpackHalf2x16(model.through_rg), model.through_b);
 }
 
 vec3 paler_below(wd_lit_leaves model)
@@ -418,11 +424,21 @@ void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float open
     place.ahead_m = mix(path_m, left_m, free) + cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
 }
 
-/* Maps' texels are as wide as leaves and twigs, past whose edges too much of the sun comes: of that, what reaches the
- * leaves of a tree that stands free; a low eye sees the more of their edges. By path-traced rows of four species. */
-float map_lets(vec3 eye)
+/* A map is asked past what is nearer than some texels: of the sun that it lets through, what leaves as near leave. */
+const float NEAR_TEXELS = 1.0;
+
+float map_holds_near(uint cascade)
 {
-    return mix(0.84, 0.93, smoothstep(0.1, 0.6, eye.z));
+    float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
+    return cascade < WD_LEAF_CASCADES ? 1.0 - smoothstep(0.10, 0.20, texel_m) : 0.0;
+}
+
+float near_shade(wd_lit_leaves model, vec3 eye, float ahead_m, uint cascade)
+{
+    vec2 near = unpackHalf2x16(model.near_shade);
+    float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M], past_m = ahead_m + texel_m;
+    float edges = mix(2.0, 0.65, smoothstep(0.1, 0.6, eye.z)) * texel_m;
+    return 1.0 / (1.0 + edges + near.x * pow(min(past_m * (1.0 / WD_NEAR_SHADE_M), 2.0), near.y));
 }
 
 /* `mapped` of their shade is in the shadow map, which holds leaves as far as `fine` says and lets so much through. */
@@ -483,17 +499,21 @@ const vec2 STAND_DISC_SUN = vec2(1.12, 1.03);
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. `sun`: factors on each disc's share
  * and on the mean by depth. A map that holds leaves tells more where discs are as near as they are; a disc may lie a
  * pixel behind its leaf then. Leaves of meshes (lit 1) are in the nearest maps as they are. 0: none goes on to the eye. */
-void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2 sun, uint cascade)
+void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float free, vec2 sun,
+                uint cascade)
 {
     float pixel_m = pixel_size_m(pixel);
     if (!is_disc(pixel)) {
         float told = map_tells_leaves(cascade, crown.sward);
-        place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, 1.0, told);
         float broad = smoothstep(0.4, 0.8, place.transmittance.y); /* needles let little through */
         float apart = (1.0 - smoothstep(0.015, 0.05, pixel_m)) * mix(1.0, smoothstep(0.002, 0.006, pixel_m), broad);
-        place.ahead_m += NEEDLES_AHEAD_M * told * apart;
+        float needles_m = NEEDLES_AHEAD_M * told * apart, held = map_holds_near(cascade);
+        held = mix(held, told, crown.sward);
+        place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, near_shade(model, -pixel.direction, needles_m, cascade), held);
+        place.ahead_m = mix(place.ahead_m, needles_m, held);
         return;
     }
+    vec2 curve = unpackHalf2x16(model.sun_curve);
     float tall_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
     float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
     float discs = 0.6 * crown.radii_m.x * tall_m / (pixel_m * pixel_m); /* about as many */
@@ -514,7 +534,7 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
 {
     if (!ALL_SINGLE && pixel.lit < 0.0)
         return;
-    shade_disc(place, pixel, crown, unpackHalf2x16(model.sun_curve), free, sun, cascade);
+    shade_disc(place, pixel, crown, model, free, sun, cascade);
     place.normal = pixel.normal;
     place.cloud = 0.0;
     float cosine = dot(pixel.normal, frame.sun_direction);
@@ -568,7 +588,7 @@ void know_petals(inout wd_place place, wd_pixel pixel, wd_lit_leaves model)
     float leaf = unpackHalf2x16(model.base_petals).y;
     if ((!ALL_SINGLE && pixel.lit < 0.0) || leaf <= 0.0 || pixel.albedo.g < PETALS_BRIGHTER * leaf || pixel.snow > 0.0)
         return;
-    place.transmittance = model.transmittance * (leaf / pixel.albedo.g);
+    place.transmittance = leaf_transmittance(model) * (leaf / pixel.albedo.g);
     place.waxed = place.gloss = 0.0;
     place.waxed_lit = vec2(0.0);
     place.body = 1.0;
@@ -623,18 +643,18 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
     bool pictured = pixel.lit < 0.0 && push.level_cards == 0u; /* a z-field's */
     float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free) * (pictured ? 1.0 - free : 1.0);
-    float mapped = 0.75 * fine;
+    float mapped = 0.75 * fine, shade_near = near_shade(model, eye, 0.0, cascade);
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
     shade_by_crown(place, crown, unpackHalf2x16(model.sun_curve), pixel.openness, free,
                    pixel.lit >= 1.0 ? sunlit.x : 1.0, cascade);
     place.own *= mix(1.0, card ? sward_tufts_lit() : 1.0, sward);
-    shade_by_map(place, 0.75 - 0.375 * sward, fine, mix(1.0, map_lets(eye), free));
+    shade_by_map(place, 0.75 - 0.375 * sward, fine, shade_near);
     vec3 outward = crown_normal(crown, place.rel);
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), near);
     place.sides = mix(mix(blades * sunlit_seen(eye, crown), sunlit, free), blades, mapped);
-    place.transmittance = model.transmittance;
+    place.transmittance = leaf_transmittance(model);
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
     place.body = 1.0 - WAX_CLOUD * place.waxed * (1.0 - sward);
     place.sward = sward;
@@ -708,7 +728,9 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         wd_sunlit_mix mixed = sunlit_mix(-pixel.direction);
         hot = mixed.hot.y;
         bool leaf = pixel.material >= WD_MATERIAL_LEAF;
-        uint leaves = ALL_SINGLE || pixel.lit >= 0.0 ? WD_SUNLIT_LEAVES : WD_SUNLIT_CLOUDS;
+        uint cards = push.level_cards != 0u ? WD_SUNLIT_CARDS : WD_SUNLIT_VIEWS;
+        uint leaves = pixel.material == WD_MATERIAL_CARD ? cards : WD_SUNLIT_DEEP;
+        leaves = ALL_SINGLE || pixel.lit >= 0.0 ? WD_SUNLIT_LEAVES : leaves;
         mixed.place += (leaf ? leaves : WD_SUNLIT_WOOD) * WD_SUNLIT_PLACES;
         vec2 sunlit = sunlit_of(model_at, mixed);
         uint seen_as = pixel.lit >= 0.0 ? WD_SKYLIT_LEAVES : WD_SKYLIT_CLOUDS;

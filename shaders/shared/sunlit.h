@@ -46,15 +46,20 @@ WD_FUNC float wd_lower_sides(float sine)
     return sine < 0.0f ? 1.0f - 0.59f * WD_EXP(1.7f * sine) : 0.41f * WD_EXP(-2.4f * sine);
 }
 
+/* How far a model's leaves shade one another from close by is told by how many more places on them are lit if nothing
+ * nearer than this hides the sun, and by which power of the distance that goes with. */
+#define WD_NEAR_SHADE_M 0.08f
+
 #define WD_SUNLIT_TURNS 7u
 #define WD_SUNLIT_PLACES 112u /* WD_SUN_RINGS * WD_SUN_RINGS * WD_SUNLIT_TURNS */
-/* Of leaves as a cloud: reflected and transmitted over a lit wall; of single leaves and of wood: factors on
- * what of the sun is left to each; of wood as a cloud: reflected over a lit wall. */
-#define WD_SUNLIT_KINDS 5u
-/* The same as texels: two kinds each. */
-#define WD_SUNLIT_CLOUDS 0u
-#define WD_SUNLIT_LEAVES 1u
-#define WD_SUNLIT_WOOD 2u /* single, and as a cloud */
+/* Two numbers each. Of leaves as a cloud, reflected and transmitted over a lit wall to which depth leaves as much of the
+ * sun as to what shows them: */
+#define WD_SUNLIT_CARDS 0u  /* a card with a picture that was taken level, */
+#define WD_SUNLIT_VIEWS 1u  /* a card with what the eye sees, */
+#define WD_SUNLIT_DEEP 2u   /* or places of their own. */
+#define WD_SUNLIT_WOOD 3u   /* Of wood, a factor on what is left to it; as a cloud, reflected over a lit wall. */
+#define WD_SUNLIT_LEAVES 4u /* Of single leaves, the former. */
+#define WD_SUNLIT_KINDS 9u
 
 /* Index of the ring below a sine (bits 0..7) and how near the next one is, in 1/65535 above. */
 WD_FUNC uint32_t wd_sunlit_ring(float sine_of)
@@ -78,7 +83,9 @@ struct wd_lit_leaves {
     uint32_t cloud_wax;           /* two half floats, as of struct wd_tree_model */
     uint32_t sun_curve;           /* of wd_crown_lit: two half floats */
     uint32_t paler;               /* WD_PALER_*: albedo of leaves' lower sides over that of the upper ones */
-    WD_VEC3(transmittance);       /* of a leaf over its upper side's albedo, linear */
+    uint32_t through_rg;          /* transmittance of a leaf over its upper side's albedo, linear: two half floats, */
+    float through_b;              /* and the third */
+    uint32_t near_shade;          /* at WD_NEAR_SHADE_M, and the power: two half floats */
     float roughness;              /* of leaves, the root of GGX's alpha; minus that of a grass's blades, and
                                      less 1 where these close over the ground */
 };
@@ -91,14 +98,14 @@ struct wd_lit_leaves {
 
 struct wd_lit_model {
     WD_LIT_LEAVES_STRUCT leaves;
-    /* A texel for each wd_sunlit_place and of each WD_SUNLIT_CLOUDS .. WD_SUNLIT_WOOD: two half floats of that place,
+    /* A texel for each wd_sunlit_place and of each WD_SUNLIT_CARDS .. WD_SUNLIT_LEAVES: two half floats of that place,
      * of a turn on, of a ring of the eye on, and of both on. */
-    uint32_t sunlit[3 * WD_SUNLIT_PLACES * 4];
+    uint32_t sunlit[5 * WD_SUNLIT_PLACES * 4];
     uint32_t skylit[WD_SKYLIT_PLACES * 4]; /* two half floats each: of a place, and of a ring on */
 };
-WD_STATIC_ASSERT_SIZE(wd_lit_model, 5600);
+WD_STATIC_ASSERT_SIZE(wd_lit_model, 9184);
 #define WD_LIT_LEAVES_TEXELS 2u
-#define WD_LIT_SKYLIT_TEXEL 338u
-#define WD_LIT_MODEL_TEXELS 350u
+#define WD_LIT_SKYLIT_TEXEL 562u
+#define WD_LIT_MODEL_TEXELS 574u
 
 #endif

@@ -55,6 +55,7 @@ struct wd_tree_model {
     float skylit[WD_SKYLIT_PLACES][WD_SKYLIT_KINDS]; /* likewise */
     float cloud_wax[2]; /* what leaves' wax mirrors of the sun to an eye, over WD_WAX of what they would send of it were
                            they white: toward the sun, and what wd_cloud_wax_rise adds; 0: not known yet */
+    float near_shade[2]; /* at WD_NEAR_SHADE_M, and the power; 0: not known yet */
     float spray_reach;           /* of wd_spray_share; 0 without twigs */
     struct wd_tree_mesh spray;   /* the twig that each leaf stands for (tree/leaf_spray.h), or
                                     empty where it is one leaf */

@@ -51,9 +51,9 @@ void wd_tree_points_seen(float *shares, const struct wd_tree_points *points,
  * the sky. */
 void wd_tree_points_light(struct wd_tree_points *points, const struct wd_tree_mesh *mesh);
 
-/* Fills open[points->count] alike for other ways, 32 at most. */
-void wd_tree_points_open(uint32_t *open, const struct wd_tree_points *points,
-                         const struct wd_tree_mesh *mesh, const struct wd_vec3 *ways, uint32_t count);
+/* Fills open[points->count] alike for other ways, 32 at most, on which what is nearer than `clear_m` is let through. */
+void wd_tree_points_open(uint32_t *open, const struct wd_tree_points *points, const struct wd_tree_mesh *mesh,
+                         float clear_m, const struct wd_vec3 *ways, uint32_t count);
 
 /* Points of one kind, in an order of which windows are drawn, and the surface that all stand for: discs
  * are as large as their faces seem, and what nothing of the tree hides is drawn before the rest. */

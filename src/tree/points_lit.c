@@ -35,7 +35,7 @@ struct whole {
  * nothing hides. */
 struct picture {
     struct wd_vec3 axis[3]; /* right and up in cells, toward the sky in metres */
-    float low[3];
+    float low[3], clear_m;
     float *x, *y, *toward; /* x and y in cells */
     uint32_t *point, *first, *cells;
 };
@@ -98,10 +98,11 @@ static void whole_finish(struct whole *whole)
     free(whole->triangles);
 }
 
-static void picture_init(struct picture *picture, size_t points)
+static void picture_init(struct picture *picture, size_t points, float clear_m)
 {
     const size_t room = points + EIGHT;
-    *picture = (struct picture){.x = wd_alloc_array(room, sizeof *picture->x),
+    *picture = (struct picture){.clear_m = fmaxf(clear_m, CLEAR_M),
+                                .x = wd_alloc_array(room, sizeof *picture->x),
                                 .y = wd_alloc_array(room, sizeof *picture->y),
                                 .toward = wd_alloc_array(room, sizeof *picture->toward),
                                 .point = wd_alloc_array(room, sizeof *picture->point),
@@ -159,7 +160,7 @@ static void place_points(struct picture *picture, const struct whole *whole, uin
         uint32_t to = --first[picture->cells[i]]; /* then beginnings */
         picture->x[to] = wd_v3_dot(p, picture->axis[0]) - picture->low[0];
         picture->y[to] = wd_v3_dot(p, picture->axis[1]) - picture->low[1];
-        picture->toward[to] = wd_v3_dot(p, picture->axis[2]) + CLEAR_M;
+        picture->toward[to] = wd_v3_dot(p, picture->axis[2]) + picture->clear_m;
         picture->point[to] = (uint32_t)i;
     }
     for (uint32_t i = count; i < count + EIGHT - 1; i++)
@@ -278,14 +279,14 @@ static void hide_points(const struct picture *picture, const struct whole *whole
     }
 }
 
-void wd_tree_points_open(uint32_t *open, const struct wd_tree_points *points,
-                         const struct wd_tree_mesh *mesh, const struct wd_vec3 *ways, uint32_t count)
+void wd_tree_points_open(uint32_t *open, const struct wd_tree_points *points, const struct wd_tree_mesh *mesh,
+                         float clear_m, const struct wd_vec3 *ways, uint32_t count)
 {
     struct whole whole;
     struct picture picture;
     uint32_t *bits = wd_alloc_array(points->count + 1, sizeof *bits);
     whole_init(&whole, points, mesh);
-    picture_init(&picture, points->count);
+    picture_init(&picture, points->count, clear_m);
     for (uint32_t way = 0; way < count; way++) {
         aim(&picture, &whole, ways[way]);
         place_points(&picture, &whole, bits, way);
@@ -304,5 +305,5 @@ void wd_tree_points_light(struct wd_tree_points *points, const struct wd_tree_me
     for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
         ways[way] = wd_sun_way(way);
     points->lit = wd_alloc_array(points->count + 1, sizeof *points->lit);
-    wd_tree_points_open(points->lit, points, mesh, ways, WD_SUN_WAYS);
+    wd_tree_points_open(points->lit, points, mesh, 0, ways, WD_SUN_WAYS);
 }

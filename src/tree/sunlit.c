@@ -8,7 +8,7 @@
 #include "shared/wax.h"
 #include "tree/leaves_open.h"
 
-enum { POINTS = 4096, EYES = 16, STEPS = 16, LOW_WAYS = 8 };
+enum { POINTS = 4096, EYES = 16, STEPS = 16, LOW_WAYS = 8, NEAR_EACH = 4 /* way of the sun */ };
 
 /* Eyes stand on the sun's rings, between its ways: of what an eye sees that looks along one of these, all
  * would be lit. */
@@ -65,7 +65,8 @@ struct skylit {
 struct sent {
     float seen;            /* area of leaves toward the eye */
     float sides[2];        /* reflected and transmitted, */
-    float leaf;            /* the same by depth, of the leaf's own place and side */
+    float leaf;            /* the same by depth, of the leaf's own place and side; */
+    float deep, viewed;    /* its area by depth, and that by depth of the place of a card with what the eye sees */
     float pictured, card;  /* area of leaves in pictures on cards, and that by depth of the card's place */
     float wood, wood_deep; /* of the wood seen, and the same by depth; */
     float wood_left;       /* its area by depth */
@@ -129,11 +130,19 @@ static float wax_mirrors(struct wd_vec3 normal, struct wd_vec3 eye, struct wd_ve
                           wd_v3_dot(half_way, eye), alpha2);
 }
 
+/* What depth leaves of the sun to a card's place where it shows a leaf so open. */
+static float card_left(const struct fit *fit, struct wd_vec3 place, float openness, uint32_t way)
+{
+    float path_m = wd_crown_path_m(place, fit->radii_m, fit->suns[way]);
+    return wd_crown_lit(wd_crown_through(fit->radii_m, path_m, openness), fit->curve[0], fit->curve[1]);
+}
+
 static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
 {
     struct wd_vec3 toward = fit->eyes[eye].toward, face = point->face, normal = point->normal;
     turn_to_eye(&face, &normal, toward);
     float area = wd_v3_dot(face, toward), area_above = wd_v3_dot(point->face, toward);
+    struct wd_vec3 card = card_place(fit, wd_v3_add(point->place, fit->middle_m), toward);
     for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
         struct sent *sent = &fit->sent[eye][way];
         struct wd_vec3 sun = fit->suns[way];
@@ -143,6 +152,8 @@ static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
         sent->seen += area;
         sent->sides[behind] += side * wd_sun_way_lit(point->lit, way);
         sent->leaf += side * point->left[way];
+        sent->deep += area * point->left[way];
+        sent->viewed += area * card_left(fit, card, point->openness, way);
         if (area_above > 0 && !behind && cosine > 0 && wd_sun_way_lit(point->lit, way) > 0)
             sent->mirrored += area * wax_mirrors(normal, toward, sun);
     }
@@ -159,10 +170,8 @@ static void send_card(struct fit *fit, const struct shown *point, const struct e
     p = wd_v3_mad(p, level, -wd_v3_dot(p, level));
     struct wd_vec3 place = card_place(fit, p, toward);
     for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
-        float path_m = wd_crown_path_m(place, fit->radii_m, fit->suns[way]);
-        float through = wd_crown_through(fit->radii_m, path_m, point->openness);
         fit->sent[eye][way].pictured += area;
-        fit->sent[eye][way].card += area * wd_crown_lit(through, fit->curve[0], fit->curve[1]);
+        fit->sent[eye][way].card += area * card_left(fit, place, point->openness, way);
     }
 }
 
@@ -354,6 +363,8 @@ static void add_sent(struct sent *sum, const struct sent *sent, float weight)
     sum->pictured += weight * sent->pictured;
     sum->card += weight * sent->card;
     sum->leaf += weight * sent->leaf;
+    sum->deep += weight * sent->deep;
+    sum->viewed += weight * sent->viewed;
     sum->wood += weight * sent->wood;
     sum->wood_deep += weight * sent->wood_deep;
     sum->wood_left += weight * sent->wood_left;
@@ -387,6 +398,49 @@ static float ratio(float of, float over, float seen)
     return over > 1e-4f * seen && over > 0 ? fminf(of / over, 8) : 1;
 }
 
+/* Area that all eyes see. */
+static float seen_by_eyes(const struct fit *fit, size_t point, struct wd_vec3 face)
+{
+    float seen = 0;
+    for (uint32_t i = 0; i < EYES; i++)
+        seen += fabsf(wd_v3_dot(face, fit->eyes[i].toward)) * (float)(fit->views[point] >> i & 1);
+    return seen;
+}
+
+/* How many more of the leaves' places that eyes see are lit along some ways of the sun if nothing nearer than `clear_m` hides it. */
+static float lit_past(const struct fit *fit, const struct wd_tree_points *points, const struct wd_tree_mesh *mesh,
+                      float clear_m)
+{
+    struct wd_vec3 ways[WD_SUN_WAYS / NEAR_EACH];
+    uint32_t *open = wd_alloc_array(points->count + 1, sizeof *open);
+    double lit = 0, past = 0;
+    for (uint32_t i = 0; i < WD_SUN_WAYS / NEAR_EACH; i++)
+        ways[i] = wd_sun_way(NEAR_EACH * i);
+    wd_tree_points_open(open, points, mesh, clear_m, ways, WD_SUN_WAYS / NEAR_EACH);
+    for (size_t i = 0; i < points->count; i++) {
+        if (!(points->points[i].kind & WD_POINT_LEAF))
+            continue;
+        float face[3];
+        wd_unpack_normal(points->points[i].face, face);
+        float seen = seen_by_eyes(fit, i, wd_v3_of(face));
+        for (uint32_t k = 0; k < WD_SUN_WAYS / NEAR_EACH; k++) {
+            float side = seen * fabsf(wd_v3_dot(wd_v3_of(face), ways[k]));
+            lit += (double)(side * wd_sun_way_lit(points->lit[i], NEAR_EACH * k));
+            past += (double)(side * wd_sun_way_lit(open[i], k));
+        }
+    }
+    free(open);
+    return lit > 0 ? (float)(past / lit - 1) : 0;
+}
+
+/* A power of the distance through two of them. */
+static void fit_near(float near[2], const struct fit *fit, const struct wd_tree_points *points, const struct wd_tree_mesh *mesh)
+{
+    float less = fmaxf(lit_past(fit, points, mesh, 0.25f * WD_NEAR_SHADE_M), 1e-3f);
+    near[0] = fmaxf(lit_past(fit, points, mesh, WD_NEAR_SHADE_M), 0);
+    near[1] = near[0] > less ? fminf(fmaxf(0.5f * log2f(near[0] / less), 0.3f), 2) : 1;
+}
+
 /* Points of the surface, and with them all leaves. */
 static void light(struct wd_tree_points *points, struct wd_tree_model *model, const struct fit *fit)
 {
@@ -418,11 +472,12 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
         uint32_t *views = wd_alloc_array(points.count, sizeof *views);
         fit->views = views;
         light(&points, model, fit);
-        wd_tree_points_open(views, &points, &model->full, ways, EYES + LOW_WAYS);
+        wd_tree_points_open(views, &points, &model->full, 0, ways, EYES + LOW_WAYS);
         struct shown *shown = wd_alloc_array(points.count, sizeof *shown);
         for (size_t i = 0; i < points.count; i++)
             shown[i] = shown_at(fit, &points, i);
         fit_curve(fit, &points, shown);
+        fit_near(model->near_shade, fit, &points, &model->full);
         send(fit, &points, shown);
         free(shown);
         free(views);
@@ -434,11 +489,15 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
         uint32_t turn = k % WD_SUNLIT_TURNS, rings = k / WD_SUNLIT_TURNS;
         struct sent sum = sum_near(fit, rings % WD_SUN_RINGS, rings / WD_SUN_RINGS, turn);
         float card = sum.pictured > 0 ? sum.card / sum.pictured * sum.seen : 0;
-        model->sunlit[k][0] = ratio(sum.sides[0], card, sum.seen);
-        model->sunlit[k][1] = ratio(sum.sides[1], card, sum.seen);
-        model->sunlit[k][2] = ratio(sum.sides[0] + sum.sides[1], sum.leaf, sum.seen);
-        model->sunlit[k][3] = ratio(sum.wood, sum.wood_deep, sum.seen);
-        model->sunlit[k][4] = ratio(sum.wood, sum.wood_left, sum.seen);
+        float *to = model->sunlit[k];
+        for (int side = 0; side < 2; side++) {
+            to[2 * WD_SUNLIT_CARDS + side] = ratio(sum.sides[side], card, sum.seen);
+            to[2 * WD_SUNLIT_VIEWS + side] = ratio(sum.sides[side], sum.viewed, sum.seen);
+            to[2 * WD_SUNLIT_DEEP + side] = ratio(sum.sides[side], sum.deep, sum.seen);
+        }
+        to[2 * WD_SUNLIT_WOOD] = ratio(sum.wood, sum.wood_deep, sum.seen);
+        to[2 * WD_SUNLIT_WOOD + 1] = ratio(sum.wood, sum.wood_left, sum.seen);
+        to[2 * WD_SUNLIT_LEAVES] = ratio(sum.sides[0] + sum.sides[1], sum.leaf, sum.seen);
     }
     for (uint32_t k = 0; k < WD_SKYLIT_PLACES * WD_SKYLIT_KINDS; k++) {
         uint32_t place = k / WD_SKYLIT_KINDS, kind = k % WD_SKYLIT_KINDS;

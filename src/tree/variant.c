@@ -84,7 +84,7 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
     memcpy(model->seen_m2, grown->seen_m2, sizeof model->seen_m2);
 }
 
-/* The texels of two of the table's kinds. */
+/* The texels of a kind. */
 static void pack_sunlit(uint32_t *texels, const struct wd_tree_model *grown, uint32_t kind)
 {
     for (uint32_t place = 0; place < WD_SUNLIT_PLACES; place++) {
@@ -93,8 +93,8 @@ static void pack_sunlit(uint32_t *texels, const struct wd_tree_model *grown, uin
         uint32_t ring_on = ring + 1 < WD_SUN_RINGS ? WD_SUNLIT_TURNS : 0;
         const uint32_t of[4] = {place, place + turn_on, place + ring_on, place + ring_on + turn_on};
         for (int k = 0; k < 4; k++) {
-            const float *sunlit = &grown->sunlit[of[k]][kind];
-            texels[4 * place + k] = wd_pack_uv(sunlit[0], sunlit[1]);
+            const float *sunlit = &grown->sunlit[of[k]][2 * kind];
+            texels[4 * place + k] = wd_pack_uv(sunlit[0], kind == WD_SUNLIT_LEAVES ? 0 : sunlit[1]);
         }
     }
 }
@@ -142,11 +142,12 @@ void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species
         .cloud_wax = wd_pack_uv(grown->cloud_wax[0], grown->cloud_wax[1]),
         .sun_curve = wd_pack_uv(grown->sun_curve[0], grown->sun_curve[1]),
         .paler = paler_below(species),
-        .transmittance = {model->transmittance[0], model->transmittance[1], model->transmittance[2]},
+        .through_rg = wd_pack_uv(model->transmittance[0], model->transmittance[1]),
+        .through_b = model->transmittance[2],
+        .near_shade = wd_pack_uv(grown->near_shade[0], grown->near_shade[1]),
         .roughness = model->roughness,
     };
-    pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * WD_SUNLIT_CLOUDS, grown, 0);
-    pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * WD_SUNLIT_LEAVES, grown, 2);
-    pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * WD_SUNLIT_WOOD, grown, 3);
+    for (uint32_t kind = WD_SUNLIT_CARDS; kind <= WD_SUNLIT_LEAVES; kind++)
+        pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * kind, grown, kind);
     pack_skylit(lit->skylit, grown);
 }
