@@ -68,10 +68,10 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
     float cosine = dot(a, b) * inversesqrt(max(dot(a, a) * dot(b, b), 1e-12));
     float steps = angle_of(cosine) * (float(WD_SUNLIT_TURNS - 1u) * PER_PI);
     uint turn = min(uint(steps), WD_SUNLIT_TURNS - 2u);
-    uint eye_ring = wd_sunlit_ring(eye.z), sun_ring = wd_sunlit_ring(frame.sun_direction.z);
+    uint eye_ring = wd_sunlit_ring(eye.z), sun_ring = wd_sunlit_ring(max(frame.sun_direction.z, WD_SUN_RING_SINE(0u)));
     wd_sunlit_mix at;
     at.eye_ring = eye_ring & 255u;
-    at.place = wd_sunlit_place(eye_ring & 255u, sun_ring & 255u, turn);
+    at.place = wd_sunlit_place(eye_ring & 255u, (sun_ring & 255u) - 1u, turn);
     at.eye = float(eye_ring >> 8) * (1.0 / 65535.0);
     at.sun = float(sun_ring >> 8) * (1.0 / 65535.0);
     at.turn = steps - float(turn);
@@ -113,7 +113,7 @@ vec2 sunlit_of(int model, wd_sunlit_mix at)
 {
     int first = model + int(WD_LIT_LEAVES_TEXELS + at.place);
     uvec4 low = texelFetch(lit_models, first);
-    uvec4 high = texelFetch(lit_models, first + int(WD_SUN_RINGS * WD_SUNLIT_TURNS));
+    uvec4 high = texelFetch(lit_models, first + int(WD_EYE_RINGS * WD_SUNLIT_TURNS));
     float both = min(at.eye, at.sun);
     vec2 known = sunlit_of_pair(low.x, low.y, at) * (1.0 - max(at.eye, at.sun))
                  + sunlit_of_pair(low.z, low.w, at) * (at.eye - both)

@@ -1,5 +1,5 @@
 /* sunlit.h: how much of the sun's light a model's own leaves and wood send to an eye, over what the crown's
- * depth would say (shared/crown.h), by the elevation of the eye and of the sun (rings of shared/sun_ways.h)
+ * depth would say (shared/crown.h), by the elevation of the eye and of the sun (rings of shared/sun_ways.h, and of eyes one below the horizon)
  * and by the angle between both on the ground, half a turn in six steps. */
 #ifndef WD_SHARED_SUNLIT_H
 #define WD_SHARED_SUNLIT_H
@@ -7,13 +7,13 @@
 #include "shared/sun_ways.h"
 
 /* How much of an even sky's light and of even ground's a model's own crown leaves to what an eye sees, by the
- * eye's elevation (the same rings), of leaves and of wood: from above to the side that is seen and to the
+ * eye's elevation (its rings), of leaves and of wood: from above to the side that is seen and to the
  * other, then from below. Factors on what they would have by how far they look up and by openness: */
 #define WD_SKYLIT_KINDS 4u
-#define WD_SKYLIT_PLACES 12u /* WD_SUN_RINGS each of these: */
+#define WD_SKYLIT_PLACES 15u /* WD_EYE_RINGS each of these: */
 #define WD_SKYLIT_LEAVES 0u  /* with normals of their own; */
-#define WD_SKYLIT_WOOD 4u
-#define WD_SKYLIT_CLOUDS 8u  /* and of pixels that show many leaves, as wd_leaves_seen_up says */
+#define WD_SKYLIT_WOOD 5u
+#define WD_SKYLIT_CLOUDS 10u /* and of pixels that show many leaves, as wd_leaves_seen_up says */
 
 /* What has little of the sky overhead has more of it to its sides, and more of the ground. */
 WD_FUNC float wd_skylit_above(float openness)
@@ -51,7 +51,7 @@ WD_FUNC float wd_lower_sides(float sine)
 #define WD_NEAR_SHADE_M 0.08f
 
 #define WD_SUNLIT_TURNS 7u
-#define WD_SUNLIT_PLACES 112u /* WD_SUN_RINGS * WD_SUN_RINGS * WD_SUNLIT_TURNS */
+#define WD_SUNLIT_PLACES 140u /* WD_SUN_RINGS * WD_EYE_RINGS * WD_SUNLIT_TURNS */
 /* Two numbers each. Of leaves as a cloud, reflected and transmitted over a lit wall to which depth leaves as much of the
  * sun as to what shows them: */
 #define WD_SUNLIT_CARDS 0u  /* a card with a picture that was taken level, */
@@ -61,18 +61,23 @@ WD_FUNC float wd_lower_sides(float sine)
 #define WD_SUNLIT_LEAVES 4u /* Of single leaves, the former. */
 #define WD_SUNLIT_KINDS 9u
 
-/* Index of the ring below a sine (bits 0..7) and how near the next one is, in 1/65535 above. */
+/* The sun's rings, and 15 degrees below the horizon one from which eyes look up. */
+#define WD_EYE_RINGS 5u
+#define WD_EYE_RING_SINE(ring) ((ring) == 0u ? -0.25882f : WD_SUN_RING_SINE((ring) - 1u))
+
+/* Index of the eye's ring below a sine (bits 0..7) and how near the next one is, in 1/65535 above. */
 WD_FUNC uint32_t wd_sunlit_ring(float sine_of)
 {
-    float sine = WD_CLAMP(sine_of, WD_SUN_RING_SINE(0u), 1.0f);
-    uint32_t ring = sine < WD_SUN_RING_SINE(1u) ? 0u : sine < WD_SUN_RING_SINE(2u) ? 1u : 2u;
-    float low = WD_SUN_RING_SINE(ring), high = WD_SUN_RING_SINE(ring + 1u);
+    float sine = WD_CLAMP(sine_of, WD_EYE_RING_SINE(0u), 1.0f);
+    uint32_t ring = sine < WD_EYE_RING_SINE(1u) ? 0u
+                    : sine < WD_EYE_RING_SINE(2u) ? 1u : sine < WD_EYE_RING_SINE(3u) ? 2u : 3u;
+    float low = WD_EYE_RING_SINE(ring), high = WD_EYE_RING_SINE(ring + 1u);
     return ring | WD_UINT((sine - low) / (high - low) * 65535.0f + 0.5f) << 8;
 }
 
 WD_FUNC uint32_t wd_sunlit_place(uint32_t eye_ring, uint32_t sun_ring, uint32_t turn)
 {
-    return (sun_ring * WD_SUN_RINGS + eye_ring) * WD_SUNLIT_TURNS + turn;
+    return (sun_ring * WD_EYE_RINGS + eye_ring) * WD_SUNLIT_TURNS + turn;
 }
 
 /* What light asks of a model, fetched as texels of four words: software devices do that for all lanes at
@@ -103,9 +108,9 @@ struct wd_lit_model {
     uint32_t sunlit[5 * WD_SUNLIT_PLACES * 4];
     uint32_t skylit[WD_SKYLIT_PLACES * 4]; /* two half floats each: of a place, and of a ring on */
 };
-WD_STATIC_ASSERT_SIZE(wd_lit_model, 9184);
+WD_STATIC_ASSERT_SIZE(wd_lit_model, 11472);
 #define WD_LIT_LEAVES_TEXELS 2u
-#define WD_LIT_SKYLIT_TEXEL 562u
-#define WD_LIT_MODEL_TEXELS 574u
+#define WD_LIT_SKYLIT_TEXEL 702u
+#define WD_LIT_MODEL_TEXELS 717u
 
 #endif

@@ -8,11 +8,11 @@
 #include "shared/wax.h"
 #include "tree/leaves_open.h"
 
-enum { POINTS = 4096, EYES = 16, STEPS = 16, LOW_WAYS = 8, NEAR_EACH = 4 /* way of the sun */ };
+enum { POINTS = 4096, EYES = 21, STEPS = 16, LOW_WAYS = 8, NEAR_EACH = 4 /* way of the sun */ };
 
-/* Eyes stand on the sun's rings, between its ways: of what an eye sees that looks along one of these, all
- * would be lit. */
-static const uint32_t eyes_on_ring[WD_SUN_RINGS] = {6, 5, 4, 1};
+/* Eyes stand between the sun's ways: of what an eye sees that looks along one of these, all would be lit. */
+static const uint32_t eyes_on_ring[WD_EYE_RINGS] = {5, 6, 5, 4, 1};
+enum { LEVEL_RING = 1, LEVEL_EYE = 5 }; /* and the first eye there */
 static const float EYE_OFF = 0.04f, EYE_HIGHEST_SINE = 0.9976f;
 
 struct eye {
@@ -23,9 +23,9 @@ struct eye {
 
 static void place_eyes(struct eye eyes[EYES])
 {
-    for (uint32_t ring = 0, i = 0; ring < WD_SUN_RINGS; ring++)
+    for (uint32_t ring = 0, i = 0; ring < WD_EYE_RINGS; ring++)
         for (uint32_t k = 0; k < eyes_on_ring[ring]; k++, i++) {
-            float sine = fminf(WD_SUN_RING_SINE(ring), EYE_HIGHEST_SINE);
+            float sine = fminf(WD_EYE_RING_SINE(ring), EYE_HIGHEST_SINE);
             float level = sqrtf(1 - sine * sine);
             float turn = ((float)k + EYE_OFF) / (float)eyes_on_ring[ring], rad = 6.2831853f * turn;
             eyes[i] = (struct eye){WD_V3(level * cosf(rad), level * sinf(rad), sine), ring, turn};
@@ -179,7 +179,7 @@ static void send_card(struct fit *fit, const struct shown *point, const struct e
 static void send_cards(struct fit *fit, const struct shown *point, uint32_t seen, uint32_t index)
 {
     for (uint32_t eye = index % 2; eye < EYES; eye += 2) {
-        uint32_t pictured = (index / 2 + eye) % eyes_on_ring[0];
+        uint32_t pictured = LEVEL_EYE + (index / 2 + eye) % eyes_on_ring[LEVEL_RING];
         if (seen >> pictured & 1)
             send_card(fit, point, &fit->eyes[pictured], eye);
     }
@@ -334,11 +334,11 @@ static void send(struct fit *fit, const struct wd_tree_points *points, const str
     }
 }
 
-/* Least squares, each way by how much of its light is seen. */
+/* Least squares, each way by how much of its light is seen from above. */
 static void fit_wax(float wax[2], const struct fit *fit)
 {
     double n = 0, sx = 0, sxx = 0, sy = 0, sxy = 0;
-    for (uint32_t eye = 0; eye < EYES; eye++)
+    for (uint32_t eye = LEVEL_EYE; eye < EYES; eye++)
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
             const struct sent *sent = &fit->sent[eye][way];
             float sides = sent->sides[0] + sent->sides[1];
@@ -382,7 +382,7 @@ static struct sent sum_near(const struct fit *fit, uint32_t eye_ring, uint32_t s
 {
     struct sent sum = {0};
     uint32_t first = WD_SUN_RING_FIRST(sun_ring), end = first + WD_SUN_RING_COUNT(sun_ring);
-    bool level = eye_ring + 1 < WD_SUN_RINGS && sun_ring + 1 < WD_SUN_RINGS;
+    bool level = eye_ring + 1 < WD_EYE_RINGS && sun_ring + 1 < WD_SUN_RINGS;
     for (uint32_t eye = 0; eye < EYES; eye++)
         for (uint32_t way = first; way < end && fit->eyes[eye].ring == eye_ring; way++) {
             float off = fabsf(steps_apart(&fit->eyes[eye], sun_ring, way) - (float)turn);
@@ -487,7 +487,7 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
     wd_tree_points_finish(&points);
     for (uint32_t k = 0; k < WD_SUNLIT_PLACES; k++) {
         uint32_t turn = k % WD_SUNLIT_TURNS, rings = k / WD_SUNLIT_TURNS;
-        struct sent sum = sum_near(fit, rings % WD_SUN_RINGS, rings / WD_SUN_RINGS, turn);
+        struct sent sum = sum_near(fit, rings % WD_EYE_RINGS, rings / WD_EYE_RINGS, turn);
         float card = sum.pictured > 0 ? sum.card / sum.pictured * sum.seen : 0;
         float *to = model->sunlit[k];
         for (int side = 0; side < 2; side++) {

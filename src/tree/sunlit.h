@@ -4,7 +4,7 @@
 
 #include "tree/grow.h"
 
-/* Fills model->sunlit from what of the full mesh, which has its leaves, the eye and the sun see from 16 and
+/* Fills model->sunlit from what of the full mesh, which has its leaves, the eye and the sun see from 21 and
  * from 32 sides: each leaf reflects or transmits by its own face and normal, as the path tracer's does. Tells
  * each of model->leaves which ways its tree leaves open, and how open it is by these (tree/leaves_open.h). Fills
  * model->sun_curve, skylit, cloud_wax and near_shade, too. To be called once. */

@@ -88,9 +88,9 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
 static void pack_sunlit(uint32_t *texels, const struct wd_tree_model *grown, uint32_t kind)
 {
     for (uint32_t place = 0; place < WD_SUNLIT_PLACES; place++) {
-        uint32_t turn = place % WD_SUNLIT_TURNS, ring = place / WD_SUNLIT_TURNS % WD_SUN_RINGS;
+        uint32_t turn = place % WD_SUNLIT_TURNS, ring = place / WD_SUNLIT_TURNS % WD_EYE_RINGS;
         uint32_t turn_on = turn + 1 < WD_SUNLIT_TURNS ? 1 : 0;
-        uint32_t ring_on = ring + 1 < WD_SUN_RINGS ? WD_SUNLIT_TURNS : 0;
+        uint32_t ring_on = ring + 1 < WD_EYE_RINGS ? WD_SUNLIT_TURNS : 0;
         const uint32_t of[4] = {place, place + turn_on, place + ring_on, place + ring_on + turn_on};
         for (int k = 0; k < 4; k++) {
             const float *sunlit = &grown->sunlit[of[k]][2 * kind];
@@ -102,7 +102,7 @@ static void pack_sunlit(uint32_t *texels, const struct wd_tree_model *grown, uin
 static void pack_skylit(uint32_t *texels, const struct wd_tree_model *grown)
 {
     for (uint32_t place = 0; place < WD_SKYLIT_PLACES; place++) {
-        uint32_t ring_on = place % WD_SUN_RINGS + 1 < WD_SUN_RINGS ? 1 : 0;
+        uint32_t ring_on = place % WD_EYE_RINGS + 1 < WD_EYE_RINGS ? 1 : 0;
         for (uint32_t k = 0; k < 4; k++) {
             const float *skylit = &grown->skylit[place + k / 2 * ring_on][k % 2 * 2];
             texels[4 * place + k] = wd_pack_uv(skylit[0], skylit[1]);
