@@ -433,12 +433,12 @@ float map_holds_near(uint cascade)
     return cascade < WD_LEAF_CASCADES ? 1.0 - smoothstep(0.10, 0.20, texel_m) : 0.0;
 }
 
-float near_shade(wd_lit_leaves model, vec3 eye, float ahead_m, uint cascade)
+float near_shade(wd_lit_leaves model, vec3 eye, uint cascade)
 {
     vec2 near = unpackHalf2x16(model.near_shade);
-    float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M], past_m = ahead_m + texel_m;
+    float texel_m = cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
     float edges = mix(2.0, 0.65, smoothstep(0.1, 0.6, eye.z)) * texel_m;
-    return 1.0 / (1.0 + edges + near.x * pow(min(past_m * (1.0 / WD_NEAR_SHADE_M), 2.0), near.y));
+    return 1.0 / (1.0 + edges + near.x * pow(min(texel_m * (1.0 / WD_NEAR_SHADE_M), 2.0), near.y));
 }
 
 /* `mapped` of their shade is in the shadow map, which holds leaves as far as `fine` says and lets so much through. */
@@ -509,7 +509,7 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
         float apart = (1.0 - smoothstep(0.015, 0.05, pixel_m)) * mix(1.0, smoothstep(0.002, 0.006, pixel_m), broad);
         float needles_m = NEEDLES_AHEAD_M * told * apart, held = map_holds_near(cascade);
         held = mix(held, told, crown.sward);
-        place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, near_shade(model, -pixel.direction, needles_m, cascade), held);
+        place.own = pixel.lit <= 0.0 ? 0.0 : mix(place.own, near_shade(model, -pixel.direction, cascade), held);
         place.ahead_m = mix(place.ahead_m, needles_m, held);
         return;
     }
@@ -643,7 +643,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
     bool pictured = pixel.lit < 0.0 && push.level_cards == 0u; /* a z-field's */
     float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free) * (pictured ? 1.0 - free : 1.0);
-    float mapped = 0.75 * fine, shade_near = near_shade(model, eye, 0.0, cascade);
+    float mapped = 0.75 * fine, shade_near = near_shade(model, eye, cascade);
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
     shade_by_crown(place, crown, unpackHalf2x16(model.sun_curve), pixel.openness, free,
