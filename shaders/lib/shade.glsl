@@ -625,6 +625,10 @@ const float HERB_SHINES = 0.4;
  * of the sides that are seen. */
 const float BROAD_LEAVES_WAX = 0.49;
 
+/* Leaves of reduced meshes stand for several: how far maps that hold them light each as the leaf that it is. By path-traced
+ * trees of four species close by. */
+const float MESH_SINGLE = 0.6;
+
 /* Of a z-field that stands free, the table alone lights leaves: maps hold others than it shows. By path-traced rows of
  * seven species at 32 and 128 px, which were up to 14 % too bright and of hazel from -18 to +31 %.
  *
@@ -643,16 +647,18 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
     bool pictured = pixel.lit < 0.0 && push.level_cards == 0u; /* a z-field's */
     float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free) * (pictured ? 1.0 - free : 1.0);
-    float mapped = 0.75 * fine, shade_near = near_shade(model, eye, cascade);
+    float mapped = fine * mix(0.75, 1.0, is_tree(crown)), shade_near = near_shade(model, eye, cascade);
     wd_place place;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
     shade_by_crown(place, crown, unpackHalf2x16(model.sun_curve), pixel.openness, free,
                    pixel.lit >= 1.0 ? sunlit.x : 1.0, cascade);
     place.own *= mix(1.0, card ? sward_tufts_lit() : 1.0, sward);
-    shade_by_map(place, 0.75 - 0.375 * sward, fine, shade_near);
+    shade_by_map(place, mix(0.75 - 0.375 * sward, 1.0, is_tree(crown)), fine, shade_near);
     vec3 outward = crown_normal(crown, place.rel);
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
-    vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), near);
+    bool mesh = !card && pixel.lit < 0.0 && !pictured;
+    plain = max(plain, mesh ? MESH_SINGLE * fine * is_tree(crown) : 0.0);
+    vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), max(near, plain));
     place.sides = mix(mix(blades * sunlit_seen(eye, crown), sunlit, free), blades, mapped);
     place.transmittance = leaf_transmittance(model);
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
