@@ -88,18 +88,22 @@ wd_lit_leaves lit_leaves(int model)
 {
     vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
     return wd_lit_leaves(floatBitsToUint(a.x), floatBitsToUint(a.y), floatBitsToUint(a.z), floatBitsToUint(a.w),
-                         floatBitsToUint(b.x), b.y, floatBitsToUint(b.z), b.w);
+                         floatBitsToUint(b.x), floatBitsToUint(b.y), floatBitsToUint(b.z), b.w);
+}
+
+vec3 unpack_ratios(uint packed)
+{
+    return vec3(packed & 1023u, packed >> 10 & 1023u, packed >> 20 & 1023u) * (WD_PALER_MOST / WD_PALER_STEPS);
 }
 
 vec3 leaf_transmittance(wd_lit_leaves model)
 {
-    return vec3(unpackHalf2x16(model.through_rg), model.through_b);
+    return unpack_ratios(model.through);
 }
 
 vec3 paler_below(wd_lit_leaves model)
 {
-    return vec3(model.paler & 1023u, model.paler >> 10 & 1023u, model.paler >> 20 & 1023u)
-           * (WD_PALER_MOST / WD_PALER_STEPS);
+    return unpack_ratios(model.paler);
 }
 
 vec2 sunlit_of_pair(uint here, uint turn_on, wd_sunlit_mix at)
@@ -335,13 +339,11 @@ vec3 scattered_again(vec3 leaf)
 
 /* Of light from the sky and the ground, what leaves of a tree that stands free scatter comes to its other leaves,
  * again and again: a photon that a leaf has scattered meets another one by this chance (Smolander and Stenberg
- * 2005). Rows of oaks, maples and spruces ask for 0.45, path-traced; birches and maples on a shore in October, which
- * are 1.8 times as bright in red as by the first meeting alone, for 0.65. */
-const float FREE_RECOLLISION = 0.47;
-
-vec3 scattered_on(vec3 leaf)
+ * 2005). */
+vec3 scattered_on(vec3 leaf, wd_lit_leaves model)
 {
-    return 1.0 / (1.0 - FREE_RECOLLISION * min(leaf, vec3(0.95)));
+    float again = unpackHalf2x16(model.again_low).x;
+    return 1.0 / (1.0 - again * min(leaf, vec3(0.95)));
 }
 
 /* Mean albedo of the forest's leaves, both sides of them. */
@@ -373,10 +375,7 @@ const float NEIGHBOURS_OVER = 0.75;
 /* Leaves of a crown hide more of the sky overhead than of that at the horizon, which a clear one is bright at: by
  * how much brighter an upright face's is than an even sky's. Fitted to path-traced oaks, spruces and birches, of
  * single leaves and of clouds. */
-const float LOW_SKY_LEAF = 0.12, LOW_SKY_CLOUD = 0.23;
-
-/* What of the sky's light a free tree sends to an eye, over what its table tells: by path-traced rows of six species. */
-const float SKY_OVER_TABLE = 1.1;
+const float LOW_SKY_CLOUD = 0.11;
 
 float brighter_low_sky()
 {
@@ -387,7 +386,8 @@ float brighter_low_sky()
 /* The model's table holds in stands, too, past what neighbours leave, where an eye looks down on single leaves. A
  * low one sees what lies under others: the table's light would be a fifth too much there, and of a tree that stands
  * free as much is hidden as of the ground beside it. */
-void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown, wd_shelter shelter, wd_place place)
+void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown, wd_lit_leaves model,
+                           wd_shelter shelter, wd_place place)
 {
     bool one_leaf = ALL_SINGLE || pixel.lit >= 0.0;
     float over = pow(canopy_above(shelter.layer_m, place.rel.z - crown.foot_z), NEIGHBOURS_OVER);
@@ -396,11 +396,10 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.sides = exp2(mix(1.0, over, from_above) * log2(max(alone.beside, 1e-3)));
     alone.known = mix(alone.share, 1.0, from_above);
     alone.side = mix(vec4(1.0), eye_side(-pixel.direction), one_leaf ? alone.share : 0.0);
-    alone.lets.xy *= 1.0 + alone.share * (one_leaf ? LOW_SKY_LEAF : LOW_SKY_CLOUD) * brighter_low_sky();
-    alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, alone.share * is_tree(crown));
+    alone.lets.xy *= 1.0 + alone.share * (unpackHalf2x16(model.again_low).y + (one_leaf ? 0.0 : LOW_SKY_CLOUD)) * brighter_low_sky();
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown).y, alone.share) : 1.0;
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
-    alone.again = mix(vec3(1.0), scattered_on(leaf), is_tree(crown));
+    alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown));
 }
 
 /* Mean normal of the sides of leaves that the eye sees (wd_leaves_seen_up), and how far their z spread, squared. */
@@ -750,7 +749,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction),
                      alone.share * place.cloud);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
-        light_past_neighbours(alone, pixel, crown, shelter, place);
+        light_past_neighbours(alone, pixel, crown, model, shelter, place);
     } else {
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);

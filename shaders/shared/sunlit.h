@@ -88,8 +88,8 @@ struct wd_lit_leaves {
     uint32_t cloud_wax;           /* two half floats, as of struct wd_tree_model */
     uint32_t sun_curve;           /* of wd_crown_lit: two half floats */
     uint32_t paler;               /* WD_PALER_*: albedo of leaves' lower sides over that of the upper ones */
-    uint32_t through_rg;          /* transmittance of a leaf over its upper side's albedo, linear: two half floats, */
-    float through_b;              /* and the third */
+    uint32_t through;             /* WD_PALER_*: transmittance of a leaf over its upper side's albedo, linear */
+    uint32_t again_low;           /* two half floats: recollision and low_sky of struct wd_tree_model */
     uint32_t near_shade;          /* at WD_NEAR_SHADE_M, and the power: two half floats */
     float roughness;              /* of leaves, the root of GGX's alpha; minus that of a grass's blades, and
                                      less 1 where these close over the ground */

@@ -288,6 +288,51 @@ static void send_skylight(struct fit *fit, const struct shown *point, uint32_t s
     }
 }
 
+/* Area that all eyes see. */
+static float seen_by_eyes(const struct fit *fit, size_t point, struct wd_vec3 face)
+{
+    float seen = 0;
+    for (uint32_t i = 0; i < EYES; i++)
+        seen += fabsf(wd_v3_dot(face, fit->eyes[i].toward)) * (float)(fit->views[point] >> i & 1);
+    return seen;
+}
+
+/* Share of what leaves scatter, as much to any way, that meets others of the tree. */
+static float find_recollision(const struct fit *fit, const struct wd_tree_points *points, const struct shown *shown)
+{
+    double all = 0, hidden = 0;
+    for (size_t i = 0; i < points->count; i++)
+        for (uint32_t way = 0; way < WD_SUN_WAYS + LOW_WAYS && points->points[i].kind & WD_POINT_LEAF; way++) {
+            bool low = way >= WD_SUN_WAYS;
+            bool open = low ? shown[i].low >> (way - WD_SUN_WAYS) & 1 : shown[i].lit >> way & 1;
+            float share = fit->sky[way].brings * fabsf(wd_v3_dot(shown[i].face, fit->sky[way].toward));
+            all += (double)share;
+            hidden += open ? 0 : (double)share;
+        }
+    return all > 0 ? (float)(hidden / all) : 0;
+}
+
+/* A sky of radiance 1 + k (1 - 1.5 z), z the sine of the elevation, is as bright on level ground as one of 1, and on an
+ * upright face brighter by LOW_UPRIGHT k. Of what eyes see, each leaf by both sides: how much more of it comes than of
+ * an even one, over that without the tree's leaves. */
+static const float LOW_UPRIGHT = 0.3634f;
+
+static float find_low_sky(const struct fit *fit, const struct wd_tree_points *points, const struct shown *shown)
+{
+    double all[2] = {0}, comes[2] = {0};
+    for (size_t i = 0; i < points->count; i++) {
+        double seen = (double)seen_by_eyes(fit, i, shown[i].face);
+        for (uint32_t way = 0; way < WD_SUN_WAYS && points->points[i].kind & WD_POINT_LEAF; way++) {
+            double share = seen * (double)fit->sky[way].brings, rise = (double)fit->sky[way].toward.z;
+            share *= (double)fabsf(wd_v3_dot(shown[i].face, fit->sky[way].toward));
+            double open = (double)wd_sun_way_lit(shown[i].lit, way);
+            all[0] += share, all[1] += share * rise;
+            comes[0] += share * open, comes[1] += share * rise * open;
+        }
+    }
+    return comes[0] > 0 ? 1.5f / LOW_UPRIGHT * (float)(all[1] / all[0] - comes[1] / comes[0]) : 0;
+}
+
 /* How many places are lit of those where depth leaves as much of the sun: 1 - exp(-a x^b), a line through
  * logarithms. Whichever way the eye and the sun are, it is nearly the same curve. */
 static void fit_curve(struct fit *fit, const struct wd_tree_points *points,
@@ -398,15 +443,6 @@ static float ratio(float of, float over, float seen)
     return over > 1e-4f * seen && over > 0 ? fminf(of / over, 8) : 1;
 }
 
-/* Area that all eyes see. */
-static float seen_by_eyes(const struct fit *fit, size_t point, struct wd_vec3 face)
-{
-    float seen = 0;
-    for (uint32_t i = 0; i < EYES; i++)
-        seen += fabsf(wd_v3_dot(face, fit->eyes[i].toward)) * (float)(fit->views[point] >> i & 1);
-    return seen;
-}
-
 /* How many more of the leaves' places that eyes see are lit along some ways of the sun if nothing nearer than `clear_m` hides it. */
 static float lit_past(const struct fit *fit, const struct wd_tree_points *points, const struct wd_tree_mesh *mesh,
                       float clear_m)
@@ -477,6 +513,8 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
         for (size_t i = 0; i < points.count; i++)
             shown[i] = shown_at(fit, &points, i);
         fit_curve(fit, &points, shown);
+        model->recollision = find_recollision(fit, &points, shown);
+        model->low_sky = find_low_sky(fit, &points, shown);
         fit_near(model->near_shade, fit, &points, &model->full);
         send(fit, &points, shown);
         free(shown);

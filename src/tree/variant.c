@@ -110,19 +110,24 @@ static void pack_skylit(uint32_t *texels, const struct wd_tree_model *grown)
     }
 }
 
+static uint32_t pack_ratios(const float ratios[3])
+{
+    uint32_t packed = 0;
+    for (int k = 0; k < 3; k++)
+        packed |= (uint32_t)(fminf(ratios[k], WD_PALER_MOST) * (WD_PALER_STEPS / WD_PALER_MOST) + 0.5f) << (10 * k);
+    return packed;
+}
+
 static uint32_t paler_below(const struct wd_species *species)
 {
-    float upper[3] = {1, 1, 1}, lower[3] = {1, 1, 1};
+    float upper[3] = {1, 1, 1}, lower[3] = {1, 1, 1}, ratios[3];
     if (!species->imported) {
         wd_look_color(species, WD_LOOK_LEAF, upper);
         wd_look_color(species, WD_LOOK_LEAF_BACK, lower);
     }
-    uint32_t packed = species->leaf.shape == WD_LEAF_NEEDLES ? WD_PALER_ANY_WAY : 0;
-    for (int k = 0; k < 3; k++) {
-        float ratio = fminf(lower[k] / fmaxf(upper[k], 1e-3f), WD_PALER_MOST);
-        packed |= (uint32_t)(ratio * (WD_PALER_STEPS / WD_PALER_MOST) + 0.5f) << (10 * k);
-    }
-    return packed;
+    for (int k = 0; k < 3; k++)
+        ratios[k] = lower[k] / fmaxf(upper[k], 1e-3f);
+    return pack_ratios(ratios) | (species->leaf.shape == WD_LEAF_NEEDLES ? WD_PALER_ANY_WAY : 0);
 }
 
 static float petal_leaf_green(const struct wd_species *species)
@@ -142,8 +147,8 @@ void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species
         .cloud_wax = wd_pack_uv(grown->cloud_wax[0], grown->cloud_wax[1]),
         .sun_curve = wd_pack_uv(grown->sun_curve[0], grown->sun_curve[1]),
         .paler = paler_below(species),
-        .through_rg = wd_pack_uv(model->transmittance[0], model->transmittance[1]),
-        .through_b = model->transmittance[2],
+        .through = pack_ratios(model->transmittance),
+        .again_low = wd_pack_uv(grown->recollision, grown->low_sky),
         .near_shade = wd_pack_uv(grown->near_shade[0], grown->near_shade[1]),
         .roughness = model->roughness,
     };
