@@ -7,6 +7,7 @@
 #include "tree/progressive.h"
 #include "tree/radix.h"
 #include "tree/random.h"
+#include "tree/sunlit.h"
 
 enum { POINTS = 8192, LOOK_SIZE = 32 };
 
@@ -422,21 +423,22 @@ static void plates_shade_what_is_below(void **state)
 }
 
 /* Möller and Trumbore 1997 */
-static bool ray_meets(struct wd_vec3 from, struct wd_vec3 way, const struct wd_vec3 corners[3])
+static bool ray_meets(struct wd_vec3 from, struct wd_vec3 way, float clear_m, const struct wd_vec3 corners[3])
 {
     struct wd_vec3 u = wd_v3_sub(corners[1], corners[0]), v = wd_v3_sub(corners[2], corners[0]);
     struct wd_vec3 p = wd_v3_cross(way, v), off = wd_v3_sub(from, corners[0]), q = wd_v3_cross(off, u);
     float over = 1 / wd_v3_dot(u, p), b = wd_v3_dot(off, p) * over, c = wd_v3_dot(way, q) * over;
-    return b >= 0 && c >= 0 && b + c <= 1 && wd_v3_dot(v, q) * over > 5e-4f;
+    return b >= 0 && c >= 0 && b + c <= 1 && wd_v3_dot(v, q) * over > clear_m;
 }
 
-static bool is_open(const struct wd_tree_mesh *mesh, const struct wd_tree_point *point, struct wd_vec3 way)
+static bool is_open(const struct wd_tree_mesh *mesh, const struct wd_tree_point *point, struct wd_vec3 way,
+                    float clear_m)
 {
     for (uint32_t i = 0; i < mesh->index_count; i += 3) {
         struct wd_vec3 corners[3];
         for (uint32_t k = 0; k < 3; k++)
             corners[k] = wd_v3_of(mesh->vertices[mesh->indices[i + k]].position_m);
-        if (ray_meets(wd_v3_of(point->position_m), way, corners))
+        if (ray_meets(wd_v3_of(point->position_m), way, clear_m, corners))
             return false;
     }
     return true;
@@ -458,31 +460,81 @@ static void add_splinters(struct wd_tree_mesh *mesh, uint32_t count)
     }
 }
 
-/* Any of 32 ways at any of the points: by pictures with pixels as wide as leaves one in fifteen was wrong. */
+/* Any of 32 ways at any of the points. */
+static void assert_as_rays(const struct wd_tree_points *points, const struct wd_tree_mesh *mesh, const uint32_t *ways,
+                           float clear_m)
+{
+    uint32_t open = 0, differ = 0;
+    for (size_t i = 0; i < points->count; i++)
+        for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
+            bool is = is_open(mesh, &points->points[i], wd_sun_way(way), clear_m);
+            open += is;
+            differ += is != (ways[i] >> way & 1);
+        }
+    const uint32_t all = (uint32_t)points->count * WD_SUN_WAYS;
+    print_message("past %g m %u of %u ways are open, %u are not as rays tell\n", (double)clear_m, open, all, differ);
+    assert_true(open > all / 10 && open < all - all / 10);
+    assert_true(differ < all / 1000);
+}
+
+/* By pictures with pixels as wide as leaves one in fifteen was wrong. */
 static void rays_find_the_same_ways_open(void **state)
 {
     (void)state;
+    static const float PAST_M = 0.2f;
     static const uint8_t rgba[4 * WD_LOOK_LAYERS];
     const struct wd_point_look look = {rgba, 1};
     struct wd_tree_points points;
     struct wd_tree_mesh mesh = {0};
-    uint32_t open = 0, differ = 0;
+    struct wd_vec3 ways[WD_SUN_WAYS];
     add_splinters(&mesh, 400);
     wd_tree_mesh_update_bounds(&mesh);
     assert_true(wd_tree_points_build(&points, &mesh, &look, 700));
     wd_tree_points_light(&points, &mesh);
-    for (size_t i = 0; i < points.count; i++)
-        for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
-            bool is = is_open(&mesh, &points.points[i], wd_sun_way(way));
-            open += is;
-            differ += is != (points.lit[i] >> way & 1);
-        }
-    const uint32_t all = (uint32_t)points.count * WD_SUN_WAYS;
-    print_message("%u of %u ways are not as rays tell\n", differ, all);
-    assert_true(open > all / 10 && open < all - all / 10);
-    assert_true(differ < all / 1000);
+    assert_as_rays(&points, &mesh, points.lit, 5e-4f);
+    for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
+        ways[way] = wd_sun_way(way);
+    wd_tree_points_open(points.lit, &points, &mesh, PAST_M, ways, WD_SUN_WAYS);
+    assert_as_rays(&points, &mesh, points.lit, PAST_M);
     wd_tree_points_finish(&points);
     wd_tree_mesh_finish(&mesh);
+}
+
+static struct wd_tree_model lit_model(const char *name)
+{
+    struct wd_arena arena = {0};
+    const struct wd_grow_params params = {.seed = 3, .openness = 0.4f};
+    struct wd_species species = test_species(&arena, name);
+    struct wd_tree_model model;
+    assert_true(wd_tree_grow(&model, &species, &params, NULL));
+    wd_tree_model_add_leaves(&model);
+    wd_tree_sunlit_fit(&model);
+    wd_arena_finish(&arena);
+    return model;
+}
+
+/* A spruce's leaves meet more of what they scatter than a palm's few fronds, and hide more of the sky overhead than low
+ * down; birches' hang close to one another, maples' stand in layers farther apart. From below less of what an eye sees
+ * is lit than level. */
+static void models_tell_how_their_leaves_stand(void **state)
+{
+    (void)state;
+    struct wd_tree_model spruce = lit_model("spruce"), palm = lit_model("coconut"), birch = lit_model("birch"),
+                         maple = lit_model("maple");
+    print_message("recollision %.2f and %.2f, low sky %+.2f and %+.2f, near shade %.2f and %.2f\n",
+                  (double)spruce.recollision, (double)palm.recollision, (double)spruce.low_sky, (double)palm.low_sky,
+                  (double)birch.near_shade[0], (double)maple.near_shade[0]);
+    assert_true(spruce.recollision > palm.recollision + 0.1f && spruce.recollision < 0.9f && palm.recollision > 0.3f);
+    assert_true(spruce.low_sky > 0.1f && palm.low_sky < 0);
+    assert_true(birch.near_shade[0] > 3 * maple.near_shade[0] && maple.near_shade[0] > 0);
+    assert_true(birch.near_shade[1] >= 0.3f && birch.near_shade[1] <= 2);
+    const uint32_t below = wd_sunlit_place(0, 1, 1), level = wd_sunlit_place(1, 1, 1);
+    for (uint32_t kind = WD_SUNLIT_CARDS; kind <= WD_SUNLIT_DEEP; kind++)
+        assert_true(spruce.sunlit[below][2 * kind] < spruce.sunlit[level][2 * kind]);
+    wd_tree_model_finish(&spruce);
+    wd_tree_model_finish(&palm);
+    wd_tree_model_finish(&birch);
+    wd_tree_model_finish(&maple);
 }
 
 static void broken_meshes_give_none_or_few(void **state)
@@ -529,6 +581,7 @@ int main(void)
         cmocka_unit_test(ways_mix_their_neighbours),
         cmocka_unit_test(plates_shade_what_is_below),
         cmocka_unit_test(rays_find_the_same_ways_open),
+        cmocka_unit_test(models_tell_how_their_leaves_stand),
         cmocka_unit_test(broken_meshes_give_none_or_few),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
