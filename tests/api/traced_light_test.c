@@ -101,7 +101,7 @@ static const char *const STAND = "26,30,tree,14\n34,30,tree,15\n26,38,tree,13\n3
 #define AS_CARDS "\"quality\": {\"mesh_distance_m\": 0, \"reduced_distance_m\": 0}"
 #define FROM_AFAR "\"position_m\": [30, -30, 8], \"look_at_m\": [30, 30, 8], \"fov_deg\": 20"
 
-/* Under a low sun: +4 %, and -4 with what grass sends up. */
+/* Under a low sun: +5 %, and -4 with what grass sends up. */
 static void snow_lights_trees_from_below(void **state)
 {
     (void)state;
@@ -112,7 +112,7 @@ static void snow_lights_trees_from_below(void **state)
     assert_true(found.trees_pct > -2 && found.trees_pct < 9);
 }
 
-/* Maples in October, under clouds: +5 %, and -3 (of +2 then) where those of open stands scattered as an even layer of leaves. */
+/* Maples in October, under clouds: +6 %, and -3 (of +2 then) where those of open stands scattered as an even layer of leaves. */
 static void pale_leaves_light_each_other(void **state)
 {
     (void)state;
@@ -149,7 +149,7 @@ static void cards_reflect_as_upper_sides(void **state)
 }
 
 /* Oaks as cards against the sun, without a sky: what comes through leaves, and what their wax mirrors, most of it ahead.
- * +11 %, and -21 where their wax is dull. */
+ * +21 % (+11 while a level eye was taken to see what one from 10 degrees above sees), and 32 less where their wax is dull. */
 static void crowns_shine_against_the_light(void **state)
 {
     (void)state;
@@ -158,7 +158,7 @@ static void crowns_shine_against_the_light(void **state)
         .keys = "\"sun\": {\"azimuth_deg\": 0, \"elevation_deg\": 40}, \"sky\": {\"strength\": 0.0001}, "
                 AS_CARDS,
         .camera = FROM_AFAR});
-    assert_true(found.trees_pct > -10 && found.trees_pct < 16);
+    assert_true(found.trees_pct > -5 && found.trees_pct < 25);
 }
 
 int main(int argc, char **argv)
