@@ -1,0 +1,91 @@
+/* What is known of a model's leaves and of the light that they send (shared/sunlit.h).
+ * Expects `frame`, `lit_models`, PER_PI and angle_of. */
+
+/* Of a model's table (shared/sunlit.h), for this eye: where its eight entries stand, and their shares. */
+struct wd_sunlit_mix {
+    uint place, eye_ring;
+    float eye, sun, turn;
+    vec2 hot;
+};
+
+/* The eye sees past a leaf's edge what the sun reaches past it, if both come nearly the same way: more than the table
+ * tells between its ways (x), and than discs do, whose own few ways are mixed (y). By path-traced rows of six species
+ * under suns 0 to 60 degrees from the eye. */
+vec2 hot_spot(float cosine)
+{
+    float apart = angle_of(cosine);
+    return 1.0 + vec2(0.28, 0.36) * exp(-9.5 * apart) + vec2(0.0, 0.10) * exp(-2.6 * apart);
+}
+
+wd_sunlit_mix sunlit_mix(vec3 eye)
+{
+    vec2 a = eye.xy, b = frame.sun_direction.xy;
+    float cosine = dot(a, b) * inversesqrt(max(dot(a, a) * dot(b, b), 1e-12));
+    float steps = angle_of(cosine) * (float(WD_SUNLIT_TURNS - 1u) * PER_PI);
+    uint turn = min(uint(steps), WD_SUNLIT_TURNS - 2u);
+    uint eye_ring = wd_sunlit_ring(eye.z), sun_ring = wd_sunlit_ring(max(frame.sun_direction.z, WD_SUN_RING_SINE(0u)));
+    wd_sunlit_mix at;
+    at.eye_ring = eye_ring & 255u;
+    at.place = wd_sunlit_place(eye_ring & 255u, (sun_ring & 255u) - 1u, turn);
+    at.eye = float(eye_ring >> 8) * (1.0 / 65535.0);
+    at.sun = float(sun_ring >> 8) * (1.0 / 65535.0);
+    at.turn = steps - float(turn);
+    at.hot = hot_spot(dot(eye, frame.sun_direction));
+    return at;
+}
+
+float leaf_roughness(wd_lit_leaves model)
+{
+    return fract(abs(model.roughness));
+}
+
+wd_lit_leaves lit_leaves(int model)
+{
+    vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
+    return wd_lit_leaves(floatBitsToUint(a.x), floatBitsToUint(a.y), floatBitsToUint(a.z), floatBitsToUint(a.w),
+                         floatBitsToUint(b.x), floatBitsToUint(b.y), floatBitsToUint(b.z), b.w);
+}
+
+vec3 unpack_ratios(uint packed)
+{
+    return vec3(packed & 1023u, packed >> 10 & 1023u, packed >> 20 & 1023u) * (WD_PALER_MOST / WD_PALER_STEPS);
+}
+
+vec3 leaf_transmittance(wd_lit_leaves model)
+{
+    return unpack_ratios(model.through);
+}
+
+vec3 paler_below(wd_lit_leaves model)
+{
+    return unpack_ratios(model.paler);
+}
+
+vec2 sunlit_of_pair(uint here, uint turn_on, wd_sunlit_mix at)
+{
+    return mix(unpackHalf2x16(here), unpackHalf2x16(turn_on), at.turn);
+}
+
+/* An eye as high as the sun sees the most lit leaves: between rings, what both of a step on and neither say
+ * counts most (a simplex's shares), which keeps that ridge; all four alike would level it. */
+vec2 sunlit_of(int model, wd_sunlit_mix at)
+{
+    int first = model + int(WD_LIT_LEAVES_TEXELS + at.place);
+    uvec4 low = texelFetch(lit_models, first);
+    uvec4 high = texelFetch(lit_models, first + int(WD_EYE_RINGS * WD_SUNLIT_TURNS));
+    float both = min(at.eye, at.sun);
+    vec2 known = sunlit_of_pair(low.x, low.y, at) * (1.0 - max(at.eye, at.sun))
+                 + sunlit_of_pair(low.z, low.w, at) * (at.eye - both)
+                 + sunlit_of_pair(high.x, high.y, at) * (at.sun - both)
+                 + sunlit_of_pair(high.z, high.w, at) * both;
+    return known * at.hot.x;
+}
+
+/* `first`: of leaves or of wood. */
+vec4 skylit_of(int model, wd_sunlit_mix at, uint first)
+{
+    int place = model + int(WD_LIT_SKYLIT_TEXEL + first + at.eye_ring);
+    uvec4 texel = texelFetch(lit_models, place);
+    return mix(vec4(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y)),
+               vec4(unpackHalf2x16(texel.z), unpackHalf2x16(texel.w)), at.eye);
+}
