@@ -149,7 +149,7 @@ static void cards_reflect_as_upper_sides(void **state)
 }
 
 /* Oaks as cards against the sun, without a sky: what comes through leaves, and what their wax mirrors, most of it ahead.
- * +21 % (+11 while a level eye was taken to see what one from 10 degrees above sees), and 32 less where their wax is dull. */
+ * +21 % (+11 while a level eye was taken to see what one from 10 degrees above sees), and -28 without what wax mirrors. */
 static void crowns_shine_against_the_light(void **state)
 {
     (void)state;
