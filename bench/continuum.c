@@ -13,7 +13,7 @@ enum { VIEW_COUNT = sizeof VIEWS / sizeof VIEWS[0] };
 
 /* Medians of the passes of a view, of frames drawn for these alone. */
 struct passes {
-    double processor_ms[MAX_PASSES][PASS_FRAMES];
+    double ms[MAX_PASSES][PASS_FRAMES];
     char names[MAX_PASSES][40];
     uint32_t count;
 };
@@ -80,13 +80,13 @@ static void keep_passes(struct passes *passes, const struct wd_frame_stats *stat
     passes->count = stats->pass_count < MAX_PASSES ? stats->pass_count : MAX_PASSES;
     for (uint32_t k = 0; k < passes->count; k++) {
         const struct wd_pass_time *pass = &stats->passes[k];
-        passes->processor_ms[k][frame] = pass->processor_ms;
+        passes->ms[k][frame] = pass->processor_ms > 0 ? pass->processor_ms : pass->gpu_ms;
         snprintf(passes->names[k], sizeof passes->names[k], "%*s%s", 2 * (int)pass->depth, "",
                  pass->name);
     }
 }
 
-/* On software devices: processor time, so that other work on the machine does not count. */
+/* On software devices processor time, so that other work on the machine does not count; else the device's. */
 static bool print_passes(struct subject *subject, const char *view)
 {
     struct passes passes = {0};
@@ -97,10 +97,10 @@ static bool print_passes(struct subject *subject, const char *view)
         wd_renderer_get_stats(subject->renderer, &stats);
         keep_passes(&passes, &stats, frame);
     }
-    printf("%-9s %-12s processor time of passes\n", view, subject->label);
+    printf("%-9s %-12s time of passes\n", view, subject->label);
     for (uint32_t k = 0; k < passes.count; k++)
         printf("    %-20s %7.1f ms\n", passes.names[k],
-               bench_median(passes.processor_ms[k], PASS_FRAMES));
+               bench_median(passes.ms[k], PASS_FRAMES));
     return true;
 }
 

@@ -31,6 +31,7 @@ static const struct figure {
     {"continuum-floor-ratio", bench_continuum_floor},
     {"continuum-moving-ratio", bench_continuum_moving},
     {"continuum-gpu-mb", bench_continuum_memory},
+    {"frame-times", bench_frame_times},
     {"continuum-flip", bench_continuum_flip},
     {"continuum-popping", bench_continuum_popping},
     {"scale-1e6-1e9-ratio", bench_scale_ratio},

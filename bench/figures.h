@@ -34,6 +34,7 @@ bool bench_continuum_vs_octree(const char *gpu);
 bool bench_continuum_floor(const char *gpu);
 bool bench_continuum_moving(const char *gpu);
 bool bench_continuum_memory(const char *gpu);
+bool bench_frame_times(const char *gpu);
 bool bench_continuum_flip(const char *gpu);
 bool bench_continuum_popping(const char *gpu);
 bool bench_scale_ratio(const char *gpu);

@@ -6,8 +6,9 @@
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
-layout(constant_id = 3) const uint SMALL = 0u; /* 1: an item is a thread's work, 0: a group's */
+layout(constant_id = 3) const uint SMALL = 0u; /* 1: an item is the work of LANES threads, 0: a group's */
 layout(constant_id = 4) const uint RUNS = 1u;
+layout(constant_id = 5) const uint LANES = 1u; /* threads of a small item */
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view_block; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
@@ -108,7 +109,7 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
     uint random = disc.xy * 0x9e3779b9u;
     uint way = wd_sun_way_by_lot(tree.eye, random >> 8);
     float seen = wd_sun_way_lit(texelFetch(lit, int(at_disc)).x, way);
-    float depth = ORTHOGRAPHIC != 0u ? clip.z
+    float depth = ORTHOGRAPHIC != 0u ? min(clip.z, 1.0)
                                      : view.near_m / max(w - tree.nearer_m * seen, view.near_m);
     if (w < view.near_m || depth <= 0.0 || (ORTHOGRAPHIC != 0u && !may_shade(clip.xy, 0.0)))
         return;
@@ -124,7 +125,7 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
     if (LEAVES && !wood && radius > LEAF_PX)
         outline = leaf_outline(radius, leaf_along(tree, splat_along(disc), clip));
     uint depth_bits = floatBitsToUint(depth);
-    if (ORTHOGRAPHIC == 0u) /* continuum_depth.frag asks that of it */
+    if (ORTHOGRAPHIC == 0u) /* lib/splat_depth.glsl asks that of it */
         depth_bits = depth_bits & ~1u | uint(seen);
     draw_outline(center, outline, depth_bits, id);
 }
@@ -134,15 +135,15 @@ void main()
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
     uint done = SMALL != 0u ? counts.done_small : counts.done_items;
     uint end = SMALL != 0u ? counts.small_items : counts.items;
-    uint each = SMALL != 0u ? gl_WorkGroupSize.x : 1u, groups = (end - done + each - 1u) / each;
+    uint each = SMALL != 0u ? gl_WorkGroupSize.x / LANES : 1u, groups = (end - done + each - 1u) / each;
     if (group >= groups)
         return;
     uint index = done + dealt(group, groups) * each;
     uint first = gl_LocalInvocationID.x, step_size = gl_WorkGroupSize.x;
     if (SMALL != 0u) {
-        index += first;
-        first = 0u;
-        step_size = 1u;
+        index += first / LANES;
+        first %= LANES;
+        step_size = LANES;
     }
     if (index >= end)
         return;

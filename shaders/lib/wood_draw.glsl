@@ -1,10 +1,12 @@
-/* Triangles of wood into the visibility buffer, a thread a triangle. Expects SPLAT(pixel,
+/* Triangles of wood into the visibility buffer, a thread a triangle, or with TOGETHER large ones by all threads of a
+ * group. Expects SPLAT(pixel,
  * depth_bits, id) as lib/splat_draw.glsl does. */
 #include "shared/continuum.h"
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
 layout(constant_id = 4) const uint RUNS = 1u;
+layout(constant_id = 6) const uint TOGETHER = 0u;
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view_block; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
@@ -21,44 +23,101 @@ wd_splat_view view = view_block;
 #include "lib/drawn.glsl"
 #include "lib/slice.glsl"
 
-/* Pixels whose middles lie in the triangle, row by row: from which column on, and up to which, all
- * three shares are positive. Shares and depth are linear on screen. */
-void draw_triangle(vec3 a, vec3 b, vec3 c, uint id)
+/* A triangle on screen: pixels whose middles may lie in it; of the first of these the shares of the corners, and what a
+ * step right and down adds. Shares and depth are linear on screen. */
+struct wd_bark {
+    vec2 low, high;
+    vec3 share, share_x, share_y, depths;
+};
+
+bool set_up(vec3 a, vec3 b, vec3 c, out wd_bark bark)
 {
     vec2 size = vec2(view.width, view.height);
-    vec2 low = max(ceil(min(min(a.xy, b.xy), c.xy) - 0.5), vec2(0.0));
-    vec2 high = min(floor(max(max(a.xy, b.xy), c.xy) - 0.5), size - 1.0);
+    bark.low = max(ceil(min(min(a.xy, b.xy), c.xy) - 0.5), vec2(0.0));
+    bark.high = min(floor(max(max(a.xy, b.xy), c.xy) - 0.5), size - 1.0);
     vec2 u = b.xy - a.xy, v = c.xy - a.xy;
     float area = u.x * v.y - u.y * v.x;
-    if (low.x > high.x || low.y > high.y || area == 0.0)
-        return;
-    vec3 share_x = vec3(0.0, v.y, -u.y) / area, share_y = vec3(0.0, -v.x, u.x) / area;
-    share_x.x = -share_x.y - share_x.z;
-    share_y.x = -share_y.y - share_y.z;
-    vec2 from = low + 0.5 - a.xy;
-    vec3 row = vec3(1.0, 0.0, 0.0) + share_x * from.x + share_y * from.y + 1e-5;
-    vec3 depths = vec3(a.z, b.z, c.z);
-    vec3 inverse = -1.0 / mix(share_x, vec3(1e-12), equal(share_x, vec3(0.0)));
-    bvec3 rises = greaterThan(share_x, vec3(0.0));
-    float last = high.x - low.x, y = low.y;
+    bark.share_x = vec3(0.0, v.y, -u.y) / area;
+    bark.share_y = vec3(0.0, -v.x, u.x) / area;
+    bark.share_x.x = -bark.share_x.y - bark.share_x.z;
+    bark.share_y.x = -bark.share_y.y - bark.share_y.z;
+    vec2 from = bark.low + 0.5 - a.xy;
+    bark.share = vec3(1.0, 0.0, 0.0) + bark.share_x * from.x + bark.share_y * from.y + 1e-5;
+    bark.depths = vec3(a.z, b.z, c.z);
+    return bark.low.x <= bark.high.x && bark.low.y <= bark.high.y && area != 0.0;
+}
+
+void mark_bark(uint at, float depth, uint id)
+{
+    uint depth_bits = floatBitsToUint(ORTHOGRAPHIC != 0u ? min(depth, 1.0) : depth);
+    if (may_show(at, depth_bits))
+        SPLAT(at, depth_bits, id);
+}
+
+/* Row by row: from which column on, and up to which, all three shares are positive. */
+void draw_rows(wd_bark bark, uint id)
+{
+    vec3 row = bark.share;
+    vec3 inverse = -1.0 / mix(bark.share_x, vec3(1e-12), equal(bark.share_x, vec3(0.0)));
+    bvec3 rises = greaterThan(bark.share_x, vec3(0.0));
+    float last = bark.high.x - bark.low.x, y = bark.low.y;
     do {
         vec3 edges = row * inverse;
         vec3 begins = mix(vec3(0.0), edges, rises), ends = mix(edges, vec3(last), rises);
         float begin = max(ceil(max(max(begins.x, begins.y), begins.z)), 0.0);
         float end = min(floor(min(min(ends.x, ends.y), ends.z)), last);
-        float depth = dot(row + share_x * begin, depths), step_x = dot(share_x, depths);
-        uint at = uint(y) * view.width + uint(low.x + begin);
+        float depth = dot(row + bark.share_x * begin, bark.depths), step_x = dot(bark.share_x, bark.depths);
+        uint at = uint(y) * view.width + uint(bark.low.x + begin);
         do { /* one turn where there is no pixel: lanes run in step */
-            if (begin <= end && may_show(at, floatBitsToUint(depth)))
-                SPLAT(at, floatBitsToUint(depth), id);
+            if (begin <= end)
+                mark_bark(at, depth, id);
             depth += step_x;
             at++;
             begin += 1.0;
         } while (begin <= end);
-        row += share_y;
+        row += bark.share_y;
         y += 1.0;
-    } while (y <= high.y);
+    } while (y <= bark.high.y);
 }
+
+/* The same by all threads of the group, pixel by pixel. */
+void draw_together(wd_bark bark, uint id)
+{
+    uint width = uint(bark.high.x - bark.low.x) + 1u, height = uint(bark.high.y - bark.low.y) + 1u;
+    for (uint i = gl_LocalInvocationID.x; i < width * height; i += gl_WorkGroupSize.x) {
+        vec2 at = vec2(i % width, i / width);
+        vec3 share = bark.share + bark.share_x * at.x + bark.share_y * at.y;
+        if (min(min(share.x, share.y), share.z) >= 0.0)
+            mark_bark(uint(bark.low.y + at.y) * view.width + uint(bark.low.x + at.x),
+                      dot(share, bark.depths), id);
+    }
+}
+
+/* False where nothing of it is to be drawn. */
+bool bark_at(wd_splat_tree tree, uint index, out wd_bark bark)
+{
+    uvec3 corners = splat_wood_at(wood, tree.first_wood, index);
+    vec3 at[3];
+    vec2 low = vec2(1e9), high = vec2(-1e9);
+    float nearest = 1e9;
+    for (uint k = 0u; k < 3u; k++) {
+        vec3 clip = splat_clip(tree, splat_place(splat_corner_at(wood, corners[k]).at));
+        float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
+        float depth = ORTHOGRAPHIC != 0u ? min(clip.z, 1.0) : view.near_m / w;
+        at[k] = vec3((clip.xy / w * 0.5 + 0.5) * vec2(view.width, view.height), depth);
+        nearest = min(nearest, clip.z);
+        low = min(low, clip.xy);
+        high = max(high, clip.xy);
+    }
+    bool shades = ORTHOGRAPHIC == 0u || may_shade(0.5 * (low + high), length(high - low));
+    bool before = nearest > (ORTHOGRAPHIC != 0u ? 0.0 : view.near_m);
+    return shades && before && set_up(at[0], at[1], at[2], bark);
+}
+
+/* Triangles that span more pixels than this are left to all threads, or one would work on when the rest is done. */
+const float TOGETHER_PX = 64.0;
+shared uint large[WD_ITEM_SPLATS];
+shared uint large_count;
 
 void main()
 {
@@ -70,27 +129,30 @@ void main()
     wd_splat_item item = splat_item_at(items, group);
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
     uint count = WD_ITEM_COUNT(item), from = WD_ITEM_FIRST(item);
-    vec2 size = vec2(view.width, view.height);
+    uint first_id = WD_ID_WOOD | (group * WD_ITEM_SPLATS + 1u);
+    wd_bark bark;
+    if (TOGETHER != 0u) {
+        if (gl_LocalInvocationID.x == 0u)
+            large_count = 0u;
+        barrier();
+    }
     uint i = gl_LocalInvocationID.x;
-    if (i >= count)
-        return;
-    do {
-        uvec3 corners = splat_wood_at(wood, tree.first_wood, from + i);
-        vec3 at[3];
-        vec2 low = vec2(1e9), high = vec2(-1e9);
-        float nearest = 1e9;
-        for (uint k = 0u; k < 3u; k++) {
-            vec3 clip = splat_clip(tree, splat_place(splat_corner_at(wood, corners[k]).at));
-            float w = ORTHOGRAPHIC != 0u ? 1.0 : clip.z;
-            float depth = ORTHOGRAPHIC != 0u ? clip.z : view.near_m / w;
-            at[k] = vec3((clip.xy / w * 0.5 + 0.5) * size, depth);
-            nearest = min(nearest, clip.z);
-            low = min(low, clip.xy);
-            high = max(high, clip.xy);
+    if (i < count) {
+        do {
+            bool shows = bark_at(tree, from + i, bark);
+            vec2 size = bark.high - bark.low + 1.0;
+            if (shows && TOGETHER != 0u && size.x * size.y > TOGETHER_PX)
+                large[atomicAdd(large_count, 1u)] = i;
+            else if (shows)
+                draw_rows(bark, first_id + i);
+            i += gl_WorkGroupSize.x;
+        } while (i < count);
+    }
+    if (TOGETHER != 0u) {
+        barrier();
+        for (uint k = 0u; k < large_count; k++) {
+            if (bark_at(tree, from + large[k], bark))
+                draw_together(bark, first_id + large[k]);
         }
-        bool shades = ORTHOGRAPHIC == 0u || may_shade(0.5 * (low + high), length(high - low));
-        if (shades && nearest > (ORTHOGRAPHIC != 0u ? 0.0 : view.near_m))
-            draw_triangle(at[0], at[1], at[2], WD_ID_WOOD | (group * WD_ITEM_SPLATS + i + 1u));
-        i += gl_WorkGroupSize.x;
-    } while (i < count);
+    }
 }

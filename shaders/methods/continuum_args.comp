@@ -7,6 +7,7 @@ layout(local_size_x = 1) in;
 
 layout(constant_id = 0) const uint THREADS = 64u; /* of a splat's group */
 layout(constant_id = 1) const uint AGAIN = 0u;
+layout(constant_id = 2) const uint LANES = 1u; /* threads of a small item */
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) buffer Counts { wd_splat_counts counts; };
@@ -45,7 +46,8 @@ void main()
     }
     groups.select = groups_of(AGAIN != 0u ? counts.put_off : counts.clusters);
     groups.splat = groups_of(counts.items - counts.done_items);
-    groups.small = groups_of((counts.small_items - counts.done_small + THREADS - 1u) / THREADS);
+    uint each = THREADS / LANES;
+    groups.small = groups_of((counts.small_items - counts.done_small + each - 1u) / each);
     groups.sort = groups_of((counts.small_items - counts.done_small + WD_SORT_ITEMS - 1u) / WD_SORT_ITEMS);
     groups.wood = groups_of(counts.wood_items - counts.done_wood);
 }

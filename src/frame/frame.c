@@ -165,9 +165,16 @@ static void add_stats(struct wd_draw_stats *sum, const struct wd_draw_stats *sta
         sum->trees[level] += stats->trees[level];
 }
 
+static void set_load(struct wd_rendering *targets, enum wd_load load)
+{
+    for (uint32_t i = 0; i < targets->color_count; i++)
+        targets->color[i].load = load;
+    targets->depth_load = load;
+}
+
 /* The trees of one view, into `targets`. */
 static void record_trees(const struct recording *r, const struct wd_view *view,
-                         enum wd_tree_pass pass, const struct wd_rendering *targets)
+                         enum wd_tree_pass pass, struct wd_rendering *targets)
 {
     struct wd_frame *frame = r->frame;
     const struct wd_method *method = frame->params.method;
@@ -177,10 +184,19 @@ static void record_trees(const struct recording *r, const struct wd_view *view,
                  (pass == WD_PASS_CAMERA || r->values.shadow_taps);
     if (trees && method->select)
         method->select(frame->method_state, &draw);
-    wd_cmd_begin_rendering(r->cmd, targets);
-    if (trees)
-        method->draw(frame->method_state, &draw);
-    wd_cmd_end_rendering(r->cmd);
+    wd_cmd_scope_begin(r->cmd, "draw");
+    enum wd_filled filled = WD_FILLED_NOT;
+    if (trees && method->fill)
+        filled = method->fill(frame->method_state, &draw);
+    if (filled != WD_FILLED_NOT)
+        set_load(targets, WD_LOAD_KEEP);
+    if (filled != WD_FILLED_LAST) {
+        wd_cmd_begin_rendering(r->cmd, targets);
+        if (trees)
+            method->draw(frame->method_state, &draw);
+        wd_cmd_end_rendering(r->cmd);
+    }
+    wd_cmd_scope_end(r->cmd);
     add_stats(&frame->stats, &stats);
     if (pass == WD_PASS_CAMERA)
         frame->camera_stats = stats;
@@ -210,7 +226,7 @@ static void record_shadows(const struct recording *r)
     wd_cmd_scope_begin(r->cmd, "shadow trees");
     uint32_t maps = maps_of(&r->frame->params) == WD_SHADOW_PERSPECTIVE ? 1 : WD_CASCADES;
     for (uint32_t i = 0; i < maps; i++) {
-        const struct wd_rendering rendering = {
+        struct wd_rendering rendering = {
             .width = targets->shadow_size,
             .height = targets->shadow_size,
             .depth = &targets->shadow,
@@ -261,9 +277,11 @@ static void record_gbuffer(const struct recording *r)
     if (!last)
         record_terrain(r, WD_LOAD_CLEAR);
     wd_cmd_scope_begin(r->cmd, "trees");
-    if (last)
+    bool clear = last && !method->fill;
+    if (clear)
         clear_gbuffer(r); /* methods may draw on its depth before the rest */
-    const struct wd_rendering targets = wd_targets_gbuffer(&frame->targets, WD_LOAD_KEEP);
+    struct wd_rendering targets =
+        wd_targets_gbuffer(&frame->targets, last && !clear ? WD_LOAD_CLEAR : WD_LOAD_KEEP);
     record_trees(r, &r->view, WD_PASS_CAMERA, &targets);
     wd_cmd_scope_end(r->cmd);
     if (last)

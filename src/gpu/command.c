@@ -174,3 +174,20 @@ void wd_cmd_fill_buffer(struct wd_cmd *cmd, struct wd_buffer *buffer, uint32_t v
     cmd->recorded = true;
     vkCmdFillBuffer(cmd->vk, buffer->buffer, 0, VK_WHOLE_SIZE, value);
 }
+
+void wd_cmd_copy_to_image(struct wd_cmd *cmd, struct wd_buffer *buffer, VkDeviceSize offset,
+                          struct wd_image *image, uint32_t layer)
+{
+    assert(!cmd->rendering && layer < image->layers);
+    const VkBufferImageCopy region = {
+        .bufferOffset = offset,
+        .imageSubresource = {image->aspect, 0, layer, 1},
+        .imageExtent = {image->width, image->height, 1},
+    };
+    wd_cmd_use_buffer(cmd, buffer, WD_USE_TRANSFER_READ);
+    wd_cmd_use_image(cmd, image, WD_USE_TRANSFER_WRITE);
+    cmd->recorded = true;
+    if (!cmd->failed)
+        vkCmdCopyBufferToImage(cmd->vk, buffer->buffer, image->image,
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+}

@@ -129,6 +129,11 @@ void wd_cmd_dispatch_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer
 /* Fills a whole buffer with a 32-bit value; declares the use. */
 void wd_cmd_fill_buffer(struct wd_cmd *cmd, struct wd_buffer *buffer, uint32_t value);
 
+/* Texels of all of a layer's first mip, tightly packed from `offset` on; declares both uses. Outside of any
+ * rendering. */
+void wd_cmd_copy_to_image(struct wd_cmd *cmd, struct wd_buffer *buffer, VkDeviceSize offset,
+                          struct wd_image *image, uint32_t layer);
+
 /* Space in this frame's upload arena (256-byte aligned); NULL marks the frame failed. `*binding`
  * describes the range for wd_cmd_bind. */
 void *wd_cmd_upload(struct wd_cmd *cmd, VkDeviceSize size, struct wd_binding *binding);

@@ -28,6 +28,8 @@ struct continuum {
     struct wd_buffer put_off; /* uint32_t[]: see shaders/lib/put_off.glsl */
     uint32_t tree_capacity, item_capacity, cluster_capacity;
     uint32_t most_trees; /* that any view can hold */
+    struct wd_buffer resolved; /* words of what is copied to the view's targets */
+    enum wd_filled filled;     /* by these */
     struct wd_buffer pyramid; /* float[], of the camera's newest frame */
     struct wd_continuum_history history;
     struct wd_splat_view values; /* of the view being drawn */
@@ -49,6 +51,7 @@ static void continuum_finish(void *state, struct wd_gpu *gpu)
     struct continuum *c = state;
     wd_continuum_pipelines_finish(&c->pipelines, gpu);
     wd_buffer_finish(&c->pixels, gpu);
+    wd_buffer_finish(&c->resolved, gpu);
     wd_buffer_finish(&c->pyramid, gpu);
     wd_page_list_finish(&c->pages);
 }
@@ -427,10 +430,91 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     if (cmd->failed)
         return;
     record_rounds(c, draw);
-    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_GRAPHICS_READ);
-    wd_cmd_use_buffer(cmd, &c->trees, WD_USE_GRAPHICS_READ);
-    wd_cmd_use_buffer(cmd, &c->items, WD_USE_GRAPHICS_READ);
-    wd_cmd_use_buffer(cmd, &c->wood_items, WD_USE_GRAPHICS_READ);
+}
+
+static bool fit_resolved(struct continuum *c, struct wd_cmd *cmd, VkDeviceSize texels, uint32_t planes)
+{
+    VkDeviceSize size = texels * planes * sizeof(uint32_t);
+    if (c->resolved.size >= size)
+        return true;
+    if (c->resolved.buffer)
+        wd_cmd_defer_buffer(cmd, &c->resolved);
+    return make_work(&c->resolved, cmd->gpu, "resolved", size, VK_FORMAT_UNDEFINED);
+}
+
+/* A cascade's depth lies in the visibility buffer as its map holds it, but where discs have larger texels. */
+static void fill_cascade(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    struct wd_cmd *cmd = draw->cmd;
+    struct wd_image *map = &draw->targets->shadow;
+    VkDeviceSize texels = (VkDeviceSize)map->width * map->height;
+    struct wd_buffer *depths = &c->pixels;
+    if (c->values.texels > 1) {
+        if (!fit_resolved(c, cmd, texels, 1)) {
+            cmd->failed = true;
+            return;
+        }
+        depths = &c->resolved;
+        wd_cmd_use_buffer(cmd, depths, WD_USE_COMPUTE_WRITE);
+        const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
+                                              WD_BIND_BUFFER(depths)};
+        wd_cmd_bind(cmd, &c->pipelines.cascade, bindings);
+        wd_cmd_dispatch_1d(cmd, (texels + 63) / 64);
+    }
+    wd_cmd_copy_to_image(cmd, depths, 0, map, draw->view->cascade);
+}
+
+static void fill_camera(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    struct wd_cmd *cmd = draw->cmd;
+    struct wd_targets *targets = draw->targets;
+    VkDeviceSize texels = (VkDeviceSize)targets->width * targets->height;
+    if (!fit_resolved(c, cmd, texels, WD_RESOLVED_PLANES)) {
+        cmd->failed = true;
+        return;
+    }
+    wd_cmd_use_buffer(cmd, &c->resolved, WD_USE_COMPUTE_WRITE);
+    const struct wd_binding bindings[] = {draw->uniforms,
+                                          WD_BIND_BUFFER(&c->pixels),
+                                          WD_BIND_BUFFER(&c->trees),
+                                          WD_BIND_BUFFER(&c->items),
+                                          WD_BIND_BUFFER(&c->forest.splats),
+                                          WD_BIND_BUFFER(&c->forest.looks),
+                                          WD_BIND_BUFFER(&c->wood_items),
+                                          WD_BIND_BUFFER(&c->forest.wood),
+                                          WD_BIND_IMAGE(&draw->forest->looks,
+                                                        draw->forest->look_sampler),
+                                          WD_BIND_BUFFER(&c->forest.lit),
+                                          WD_BIND_BUFFER(&c->resolved)};
+    wd_cmd_bind(cmd, &c->pipelines.resolve_all, bindings);
+    wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);
+    struct wd_image *const planes[WD_RESOLVED_PLANES] = {
+        [WD_RESOLVED_ALBEDO] = &targets->albedo,
+        [WD_RESOLVED_NORMAL] = &targets->normal,
+        [WD_RESOLVED_SURFACE] = &targets->surface,
+        [WD_RESOLVED_DEPTH] = &targets->depth};
+    for (uint32_t i = 0; i < WD_RESOLVED_PLANES; i++)
+        wd_cmd_copy_to_image(cmd, &c->resolved, i * texels * sizeof(uint32_t), planes[i], 0);
+}
+
+static enum wd_filled continuum_fill(void *state, const struct wd_tree_draw *draw)
+{
+    struct continuum *c = state;
+    bool fills = draw->pass == WD_PASS_SHADOW || c->pipelines.resolve_all.pipeline;
+    c->filled = WD_FILLED_NOT;
+    if (draw->cmd->failed)
+        return c->filled;
+    struct wd_buffer *reads[] = {&c->pixels, &c->trees, &c->items, &c->wood_items};
+    for (size_t i = 0; i < sizeof reads / sizeof *reads; i++)
+        wd_cmd_use_buffer(draw->cmd, reads[i], fills ? WD_USE_COMPUTE_READ : WD_USE_GRAPHICS_READ);
+    if (!fills)
+        return c->filled;
+    c->filled = c->near.mesh_count ? WD_FILLED : WD_FILLED_LAST;
+    if (draw->pass == WD_PASS_SHADOW)
+        fill_cascade(c, draw);
+    else
+        fill_camera(c, draw);
+    return c->filled;
 }
 
 static void draw_camera(struct continuum *c, const struct wd_tree_draw *draw)
@@ -458,22 +542,12 @@ static void draw_camera(struct continuum *c, const struct wd_tree_draw *draw)
     }
 }
 
-static void draw_cascade(struct continuum *c, const struct wd_tree_draw *draw)
-{
-    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels)};
-    wd_cmd_bind(draw->cmd, &c->pipelines.resolve_shadow, bindings);
-    wd_cmd_draw(draw->cmd, 3, 1);
-    draw->stats->draw_calls++;
-}
-
 static void continuum_draw(void *state, const struct wd_tree_draw *draw)
 {
     if (draw->cmd->failed)
         return;
-    if (draw->pass == WD_PASS_CAMERA)
+    if (((struct continuum *)state)->filled == WD_FILLED_NOT)
         draw_camera(state, draw);
-    else
-        draw_cascade(state, draw);
     wd_tree_draw_selection(draw, &((struct continuum *)state)->near, WD_DRAW_GROUPED);
 }
 
@@ -539,6 +613,7 @@ const struct wd_method wd_method_continuum = {
     .use_forest = continuum_use_forest,
     .drop_forest = continuum_drop_forest,
     .select = continuum_select,
+    .fill = continuum_fill,
     .draw = continuum_draw,
     .keep = continuum_keep,
     .discs = continuum_discs,

@@ -39,8 +39,11 @@ static const uint32_t depth_frag[] =
 static const uint32_t resolve_frag[] =
 #include "continuum_resolve.frag.inc"
     ;
-static const uint32_t resolve_shadow_frag[] =
-#include "continuum_resolve_shadow.frag.inc"
+static const uint32_t resolve_comp[] =
+#include "continuum_resolve.comp.inc"
+    ;
+static const uint32_t cascade_comp[] =
+#include "continuum_cascade.comp.inc"
     ;
 
 #define SPIRV(words)                                                                               \
@@ -53,6 +56,18 @@ static const uint32_t resolve_shadow_frag[] =
 #define TEXELS VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
 #define STORED_TEXELS VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
 
+/* llvmpipe's subgroups are 8 wide: there a wider group only idles on small trees, and what waits for one long loop
+ * is no more than seven lanes. */
+static uint32_t threads_of(const struct wd_gpu *gpu)
+{
+    return gpu->software ? 8 : 64;
+}
+
+static uint32_t lanes_of(const struct wd_gpu *gpu)
+{
+    return gpu->software ? 1 : 8;
+}
+
 static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     const struct wd_spirv shaders[WD_SHAPES][2] = {
@@ -63,14 +78,14 @@ static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     for (uint32_t i = 0; i < WD_SHAPES * 2 * 2; i++) {
         uint32_t shape = i / 4, pass = i / 2 % 2, ids = i % 2;
         bool once = wide && pass == WD_PASS_CAMERA;
-        /* llvmpipe's subgroups are 8 wide; a wider group only idles on small trees */
-        const uint32_t constants[] = {gpu->software ? 8 : 64, pass == WD_PASS_SHADOW, ids,
-                                      shape == WD_SHAPE_SMALL, gpu->runs};
+        const uint32_t constants[] = {threads_of(gpu), pass == WD_PASS_SHADOW, ids,
+                                      shape == WD_SHAPE_SMALL, gpu->runs, lanes_of(gpu),
+                                      !gpu->software};
         const struct wd_compute_params params = {
             .shader = shaders[shape][once],
             .bindings = {8, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS,
                              STORED_TEXELS}},
-            .constants = {5, constants},
+            .constants = {7, constants},
         };
         bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
         if (needed && !wd_pipeline_init_compute(&p->draw[shape][pass][ids], gpu, &params))
@@ -79,7 +94,8 @@ static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     return true;
 }
 
-static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+/* By fragments, which llvmpipe leaves out where nothing is to be drawn. */
+static bool init_resolve_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     struct wd_graphics_params params = {
         .vertex = SPIRV(resolve_vert),
@@ -104,14 +120,20 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
             !wd_pipeline_init_graphics(&p->resolve[wood], gpu, &params))
             return false;
     }
-    params.depth_compare = VK_COMPARE_OP_NEVER;
-    params.depth_read_only = false;
-    params.vertex = depth.vertex;
-    params.fragment = (struct wd_spirv)SPIRV(resolve_shadow_frag);
-    params.constants.count = 0;
-    params.bindings.count = 2;
-    params.color_count = 0;
-    return wd_pipeline_init_graphics(&p->resolve_shadow, gpu, &params);
+    return true;
+}
+
+static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
+    const struct wd_compute_params resolve = {
+        .shader = SPIRV(resolve_comp),
+        .bindings = {11, {UNIFORM, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS,
+                          VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, TEXELS, BUFFER}}};
+    const struct wd_compute_params cascade = {.shader = SPIRV(cascade_comp),
+                                              .bindings = {3, {UNIFORM, TEXELS, BUFFER}}};
+    return (gpu->software ? init_resolve_draws(p, gpu)
+                          : wd_pipeline_init_compute(&p->resolve_all, gpu, &resolve)) &&
+           wd_pipeline_init_compute(&p->cascade, gpu, &cascade);
 }
 
 static bool init_level(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t level,
@@ -141,7 +163,7 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
     struct wd_pipeline *const pipelines[] = {&p->choose[WD_PASS_CAMERA], &p->choose[WD_PASS_SHADOW],
                                              &p->choose_again};
     for (uint32_t i = 0; i < 3; i++) {
-        const uint32_t constants[] = {gpu->software ? 8 : 64, i == WD_PASS_SHADOW, i == 2,
+        const uint32_t constants[] = {threads_of(gpu), i == WD_PASS_SHADOW, i == 2,
                                       gpu->runs};
         const struct wd_compute_params choose = {
             .shader = SPIRV(select_comp),
@@ -158,10 +180,10 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 static bool init_args(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     for (uint32_t again = 0; again < 2; again++) {
-        const uint32_t constants[] = {gpu->software ? 8 : 64, again};
+        const uint32_t constants[] = {threads_of(gpu), again, lanes_of(gpu)};
         const struct wd_compute_params args = {.shader = SPIRV(args_comp),
                                                .bindings = {4, {UNIFORM, BUFFER, BUFFER, BUFFER}},
-                                               .constants = {2, constants}};
+                                               .constants = {3, constants}};
         if (!wd_pipeline_init_compute(&p->args[again], gpu, &args))
             return false;
     }
@@ -170,7 +192,7 @@ static bool init_args(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 
 static bool init_sort(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
-    const uint32_t threads = gpu->software ? 8 : 64;
+    const uint32_t threads = threads_of(gpu);
     const struct wd_compute_params sort = {.shader = SPIRV(sort_comp),
                                            .bindings = {3, {UNIFORM, BUFFER, BUFFER}},
                                            .constants = {1, &threads}};
@@ -193,7 +215,7 @@ void wd_continuum_pipelines_finish(struct wd_continuum_pipelines *p, struct wd_g
                                        &p->choose[0],  &p->choose[1],  &p->choose_again,
                                        &p->sort,
                                        &p->depth[0],   &p->depth[1],   &p->resolve[0],
-                                       &p->resolve[1], &p->resolve_shadow,
+                                       &p->resolve[1], &p->resolve_all, &p->cascade,
                                        &p->pyramid_of_trees};
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         wd_pipeline_finish(pipelines[i], gpu);
