@@ -1,12 +1,13 @@
-/* Triangles of wood into the visibility buffer, a thread a triangle, or with TOGETHER large ones by all threads of a
- * group. Expects SPLAT(pixel,
+/* Triangles of wood into the visibility buffer, a thread a triangle, or of large ones a group. Expects SPLAT(pixel,
  * depth_bits, id) as lib/splat_draw.glsl does. */
 #include "shared/continuum.h"
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
 layout(constant_id = 4) const uint RUNS = 1u;
-layout(constant_id = 6) const uint TOGETHER = 0u;
+/* What becomes of large triangles: they are drawn as all are, listed, or they are what is drawn. */
+const uint LARGE_AS_ALL = 0u, LARGE_LISTED = 1u, LARGE_ALONE = 2u;
+layout(constant_id = 6) const uint LARGE = LARGE_AS_ALL;
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view_block; };
 layout(scalar, set = 0, binding = 1) readonly buffer Counts { wd_splat_counts counts; };
@@ -14,6 +15,11 @@ layout(set = 0, binding = 2) uniform usamplerBuffer splat_trees; /* wd_splat_tre
 layout(set = 0, binding = 3) uniform usamplerBuffer items;       /* wd_splat_item */
 layout(set = 0, binding = 4) uniform usamplerBuffer wood;        /* wd_splat_corner */
 layout(set = 0, binding = 7, rg32ui) uniform readonly uimageBuffer drawn; /* the visibility buffer */
+
+layout(scalar, set = 0, binding = 8) buffer Large {
+    uint large_groups[3]; /* of an indirect dispatch */
+    uint large_ids[];
+};
 
 /* Read before any branch: lib/light_pixels.glsl tells why. */
 wd_splat_view view = view_block;
@@ -80,7 +86,7 @@ void draw_rows(wd_bark bark, uint id)
     } while (y <= bark.high.y);
 }
 
-/* The same by all threads of the group, pixel by pixel. */
+/* The same by all threads of a group, pixel by pixel. */
 void draw_together(wd_bark bark, uint id)
 {
     uint width = uint(bark.high.x - bark.low.x) + 1u, height = uint(bark.high.y - bark.low.y) + 1u;
@@ -114,45 +120,57 @@ bool bark_at(wd_splat_tree tree, uint index, out wd_bark bark)
     return shades && before && set_up(at[0], at[1], at[2], bark);
 }
 
-/* Triangles that span more pixels than this are left to all threads, or one would work on when the rest is done. */
-const float TOGETHER_PX = 64.0;
-shared uint large[WD_ITEM_SPLATS];
-shared uint large_count;
+/* Triangles that span more pixels than this are listed, for a group each: or one thread would work on when all others
+ * are done. */
+const float LARGE_PX = 64.0;
+
+bool put_aside(wd_bark bark, uint id)
+{
+    vec2 size = bark.high - bark.low + 1.0;
+    if (size.x * size.y <= LARGE_PX)
+        return false;
+    uint at = atomicAdd(large_groups[0], 1u);
+    if (at < WD_LARGE_MOST)
+        large_ids[at] = id;
+    else
+        atomicAdd(large_groups[0], 0xffffffffu);
+    return at < WD_LARGE_MOST;
+}
+
+void draw_item(uint index)
+{
+    wd_splat_item item = splat_item_at(items, index);
+    wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
+    uint count = WD_ITEM_COUNT(item), from = WD_ITEM_FIRST(item), i = gl_LocalInvocationID.x;
+    wd_bark bark;
+    if (i >= count)
+        return;
+    do {
+        uint id = WD_ID_WOOD | (index * WD_ITEM_SPLATS + i + 1u);
+        if (bark_at(tree, from + i, bark) && !(LARGE == LARGE_LISTED && put_aside(bark, id)))
+            draw_rows(bark, id);
+        i += gl_WorkGroupSize.x;
+    } while (i < count);
+}
+
+void draw_large(uint id)
+{
+    uint at = (id & ~WD_ID_WOOD) - 1u;
+    wd_splat_item item = splat_item_at(items, at / WD_ITEM_SPLATS);
+    wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
+    wd_bark bark;
+    if (bark_at(tree, WD_ITEM_FIRST(item) + at % WD_ITEM_SPLATS, bark))
+        draw_together(bark, id);
+}
 
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    uint groups = counts.wood_items - counts.done_wood;
-    if (group >= groups)
+    if (LARGE == LARGE_ALONE) {
+        draw_large(large_ids[group]);
         return;
-    group = counts.done_wood + dealt(group, groups);
-    wd_splat_item item = splat_item_at(items, group);
-    wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
-    uint count = WD_ITEM_COUNT(item), from = WD_ITEM_FIRST(item);
-    uint first_id = WD_ID_WOOD | (group * WD_ITEM_SPLATS + 1u);
-    wd_bark bark;
-    if (TOGETHER != 0u) {
-        if (gl_LocalInvocationID.x == 0u)
-            large_count = 0u;
-        barrier();
     }
-    uint i = gl_LocalInvocationID.x;
-    if (i < count) {
-        do {
-            bool shows = bark_at(tree, from + i, bark);
-            vec2 size = bark.high - bark.low + 1.0;
-            if (shows && TOGETHER != 0u && size.x * size.y > TOGETHER_PX)
-                large[atomicAdd(large_count, 1u)] = i;
-            else if (shows)
-                draw_rows(bark, first_id + i);
-            i += gl_WorkGroupSize.x;
-        } while (i < count);
-    }
-    if (TOGETHER != 0u) {
-        barrier();
-        for (uint k = 0u; k < large_count; k++) {
-            if (bark_at(tree, from + large[k], bark))
-                draw_together(bark, first_id + large[k]);
-        }
-    }
+    uint groups = counts.wood_items - counts.done_wood;
+    if (group < groups)
+        draw_item(counts.done_wood + dealt(group, groups));
 }

@@ -1,6 +1,5 @@
 #version 460
-/* From the visibility buffer to what the G-buffer's images hold, in their formats: of each of these, one after
- * another, a word a pixel, to be copied. For devices on which fragments cost more than that. */
+/* From the visibility buffer to the G-buffer, all of it; depth is to be copied there. */
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/continuum.h"
@@ -12,39 +11,27 @@ layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 #include "lib/resolve.glsl"
 #include "lib/splat_depth.glsl"
 
-layout(scalar, set = 0, binding = 10) writeonly buffer Words { uint words[]; }; /* WD_RESOLVED_* */
-
-uint pack_srgb(vec4 color)
-{
-    vec3 c = clamp(color.rgb, 0.0, 1.0);
-    c = mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThan(c, vec3(0.0031308)));
-    return packUnorm4x8(vec4(c, color.a));
-}
-
-uint pack_a2b10g10r10(vec4 v)
-{
-    uvec4 q = uvec4(clamp(v, 0.0, 1.0) * vec4(1023.0, 1023.0, 1023.0, 3.0) + 0.5);
-    return q.x | q.y << 10 | q.z << 20 | q.w << 30;
-}
+#include "lib/stored_targets.glsl"
+layout(set = 0, binding = 10, rgba8) uniform writeonly image2D to_albedo;
+layout(set = 0, binding = 11, rgb10_a2) uniform writeonly image2D to_normal;
+layout(set = 0, binding = 12, r32ui) uniform writeonly uimage2D to_surface;
+layout(scalar, set = 0, binding = 13) writeonly buffer Depths { uint depths[]; };
 
 void main()
 {
     uvec2 at = gl_GlobalInvocationID.xy;
     if (at.x >= frame.width || at.y >= frame.height)
         return;
-    uint index = at.y * frame.width + at.x, all = frame.width * frame.height;
+    uint index = at.y * frame.width + at.x, depth = 0u;
     uvec2 pixel = texelFetch(pixels, int(index)).xy;
-    uint albedo = 0u, normal = 0u, surface = 0u, depth = 0u;
+    wd_resolved seen = wd_resolved(vec4(0.0), vec4(0.0), 0u);
     if (pixel.x != 0u) {
         bool of_wood = (pixel.x & WD_ID_WOOD) != 0u;
-        wd_resolved seen = resolve(at, pixel.x, of_wood);
-        albedo = pack_srgb(seen.albedo);
-        normal = pack_a2b10g10r10(seen.normal);
-        surface = seen.surface;
+        seen = resolve(at, pixel.x, of_wood);
         depth = of_wood ? pixel.y : floatBitsToUint(splat_true_depth(pixel, frame.near_m));
     }
-    words[WD_RESOLVED_ALBEDO * all + index] = albedo;
-    words[WD_RESOLVED_NORMAL * all + index] = normal;
-    words[WD_RESOLVED_SURFACE * all + index] = surface;
-    words[WD_RESOLVED_DEPTH * all + index] = depth;
+    imageStore(to_albedo, ivec2(at), stored_albedo(seen.albedo));
+    imageStore(to_normal, ivec2(at), seen.normal);
+    imageStore(to_surface, ivec2(at), uvec4(seen.surface));
+    depths[index] = depth;
 }

@@ -266,12 +266,8 @@ WD_STATIC_ASSERT_SIZE(wd_splat_tree, 128);
 #define WD_TREE_WOOD_LAST(tree) ((tree).strata >> 11 & 1u)
 #define WD_TREE_BARK(tree) ((tree).strata >> 12)
 
-/* What continuum_resolve.comp writes: planes of a word a pixel. */
-#define WD_RESOLVED_ALBEDO 0u
-#define WD_RESOLVED_NORMAL 1u
-#define WD_RESOLVED_SURFACE 2u
-#define WD_RESOLVED_DEPTH 3u
-#define WD_RESOLVED_PLANES 4u
+/* Triangles of wood of one view that are drawn by a group each; all others are drawn by a thread. */
+#define WD_LARGE_MOST 65535u
 
 /* Splats of its strata in turn, or triangles of its wood. */
 struct wd_splat_item {

@@ -257,6 +257,7 @@ static void record_terrain(const struct recording *r, enum wd_load load)
     wd_cmd_begin_rendering(r->cmd, &targets);
     wd_terrain_pass_record(&frame->terrain, r->cmd, &terrain);
     wd_cmd_end_rendering(r->cmd);
+    wd_terrain_pass_shade(&frame->terrain, r->cmd, &terrain, &frame->targets);
     wd_cmd_scope_end(r->cmd);
     frame->stats.draw_calls++;
     frame->stats.triangles += frame->terrain.triangles;

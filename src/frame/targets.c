@@ -3,7 +3,9 @@
 bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t width,
                      uint32_t height, uint32_t shadow_size)
 {
+    bool stored = gpu->features & WD_GPU_FEATURE_STORED_TARGETS;
     const VkImageUsageFlags target = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const VkImageUsageFlags filled = target | (stored ? VK_IMAGE_USAGE_STORAGE_BIT : 0);
     const VkImageUsageFlags depth =
         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     const VkImageUsageFlags storage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
@@ -11,16 +13,17 @@ bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t wi
         struct wd_image *image;
         struct wd_image_params params;
     } images[] = {
-        {&targets->albedo, {"albedo", WD_ALBEDO_FORMAT, width, height, 1, 1, target, 0}},
-        {&targets->normal, {"normal", WD_NORMAL_FORMAT, width, height, 1, 1, target, 0}},
-        {&targets->surface, {"surface", WD_SURFACE_FORMAT, width, height, 1, 1, target, 0}},
-        {&targets->depth, {"depth", WD_DEPTH_FORMAT, width, height, 1, 1, depth, 0}},
-        {&targets->overlay, {"overlay", WD_OVERLAY_FORMAT, width, height, 1, 1, target, 0}},
-        {&targets->radiance, {"radiance", WD_RADIANCE_FORMAT, width, height, 1, 1, storage, 0}},
-        {&targets->display, {"display", WD_DISPLAY_FORMAT, width, height, 1, 1, storage, 0}},
+        {&targets->albedo, {"albedo", WD_ALBEDO_FORMAT, width, height, 1, 1, target, 0,
+                            stored ? WD_ALBEDO_STORED : VK_FORMAT_UNDEFINED}},
+        {&targets->normal, {"normal", WD_NORMAL_FORMAT, width, height, 1, 1, filled, 0, 0}},
+        {&targets->surface, {"surface", WD_SURFACE_FORMAT, width, height, 1, 1, filled, 0, 0}},
+        {&targets->depth, {"depth", WD_DEPTH_FORMAT, width, height, 1, 1, depth, 0, 0}},
+        {&targets->overlay, {"overlay", WD_OVERLAY_FORMAT, width, height, 1, 1, target, 0, 0}},
+        {&targets->radiance, {"radiance", WD_RADIANCE_FORMAT, width, height, 1, 1, storage, 0, 0}},
+        {&targets->display, {"display", WD_DISPLAY_FORMAT, width, height, 1, 1, storage, 0, 0}},
         {&targets->shadow,
          {"shadow", WD_DEPTH_FORMAT, shadow_size, shadow_size, WD_CASCADES, 1, depth,
-          WD_IMAGE_ARRAY}},
+          WD_IMAGE_ARRAY, 0}},
     };
     *targets = (struct wd_targets){
         .width = width, .height = height, .shadow_size = shadow_size};

@@ -81,6 +81,9 @@ static void load_debug_functions(struct wd_gpu *gpu)
         gpu->features &= ~(uint32_t)WD_GPU_FEATURE_DEBUG_LABELS;
 }
 
+/* What costs software devices more than it spares them. */
+static const uint32_t hardware_alone = WD_GPU_FEATURE_STORED_TARGETS | WD_GPU_FEATURE_MANY_LANES;
+
 static bool init_own(struct wd_gpu *gpu, const struct wd_gpu_params *params)
 {
     gpu->owned = true;
@@ -93,6 +96,9 @@ static bool init_own(struct wd_gpu *gpu, const struct wd_gpu_params *params)
     take_candidate(gpu, &choice);
     if (debug_utils)
         gpu->features |= WD_GPU_FEATURE_DEBUG_LABELS;
+    gpu->features |= WD_GPU_FEATURE_MANY_LANES;
+    if (gpu->software)
+        gpu->features &= params->asked_features | ~hardware_alone;
     gpu->features &= ~params->disabled_features;
     return create_device(gpu, params->presentation);
 }
@@ -116,6 +122,7 @@ static bool init_external(struct wd_gpu *gpu, const struct wd_gpu_params *params
     take_candidate(gpu, &candidate);
     uint32_t from_hardware = WD_GPU_FEATURE_TIMESTAMPS;
     gpu->features &= external->features | from_hardware;
+    gpu->features |= gpu->software ? 0 : WD_GPU_FEATURE_MANY_LANES;
     gpu->features |= external->features & WD_GPU_FEATURE_DEBUG_LABELS;
     gpu->features &= ~params->disabled_features;
     gpu->instance = external->instance;

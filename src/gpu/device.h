@@ -34,6 +34,8 @@ struct wd_gpu_params {
     enum wd_gpu_presentation { WD_GPU_HEADLESS, WD_GPU_PRESENT } presentation;
     /* fallback tests: pretend that these optional features (wd_gpu_feature bits) are absent */
     uint32_t disabled_features;
+    /* tests: use these optional features also where others are faster */
+    uint32_t asked_features;
     const struct wd_gpu_external *external; /* or NULL: make our own */
 };
 
@@ -47,6 +49,11 @@ enum wd_gpu_feature {
     WD_GPU_FEATURE_TIMESTAMPS = 1 << 5, /* and they are true: never set on software devices */
     WD_GPU_FEATURE_DEBUG_LABELS = 1 << 6,
     WD_GPU_FEATURE_BLOCKS = 1 << 7, /* textureCompressionBC */
+    /* shaderStorageImageExtendedFormats: compute fills the G-buffer, where fragments cost more than that: on
+     * software devices only if asked for */
+    WD_GPU_FEATURE_STORED_TARGETS = 1 << 8,
+    /* Thousands of lanes: what one would do for long is shared out. On software devices only if asked for. */
+    WD_GPU_FEATURE_MANY_LANES = 1 << 9,
 };
 
 struct wd_gpu {

@@ -31,6 +31,7 @@ static const struct feature all_features[] = {
     FEATURE(base.features, depthClamp, WD_GPU_FEATURE_DEPTH_CLAMP),
     FEATURE(base.features, samplerAnisotropy, WD_GPU_FEATURE_ANISOTROPY),
     FEATURE(base.features, textureCompressionBC, WD_GPU_FEATURE_BLOCKS),
+    FEATURE(base.features, shaderStorageImageExtendedFormats, WD_GPU_FEATURE_STORED_TARGETS),
 };
 enum { FEATURE_COUNT = sizeof all_features / sizeof all_features[0] };
 

@@ -41,6 +41,13 @@ static bool report_usage(struct wd_gpu *gpu, const struct wd_image_params *param
                     (int)params->format, usage);
 }
 
+/* Of two formats, each view for what its own can. */
+static VkImageCreateFlags image_flags(const struct wd_image_params *params)
+{
+    return params->stored_as ? VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT
+                             : 0;
+}
+
 static bool check_image(struct wd_gpu *gpu, const struct wd_image_params *params,
                         const struct wd_image *image, VkImageUsageFlags usage)
 {
@@ -50,8 +57,8 @@ static bool check_image(struct wd_gpu *gpu, const struct wd_image_params *params
     }
     VkImageFormatProperties can;
     VkResult result = vkGetPhysicalDeviceImageFormatProperties(
-        gpu->physical_device, params->format, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL, usage, 0,
-        &can);
+        gpu->physical_device, params->format, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL, usage,
+        image_flags(params), &can);
     if (result == VK_ERROR_FORMAT_NOT_SUPPORTED)
         return report_usage(gpu, params, usage);
     if (!wd_gpu_check(gpu, result, params->name))
@@ -68,14 +75,26 @@ static bool check_image(struct wd_gpu *gpu, const struct wd_image_params *params
     return true;
 }
 
-static VkResult create_view(struct wd_gpu *gpu, const struct wd_image *image, VkImageViewType type,
-                            const VkImageSubresourceRange *range, VkImageView *view)
+struct view_kind {
+    VkImageViewType type;
+    VkFormat format;
+    VkImageUsageFlags usage; /* 0: all of the image's */
+};
+
+static VkResult create_view(struct wd_gpu *gpu, const struct wd_image *image,
+                            const struct view_kind *kind, const VkImageSubresourceRange *range,
+                            VkImageView *view)
 {
+    const VkImageViewUsageCreateInfo usage = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_USAGE_CREATE_INFO,
+        .usage = kind->usage,
+    };
     const VkImageViewCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .pNext = kind->usage ? &usage : NULL,
         .image = image->image,
-        .viewType = type,
-        .format = image->format,
+        .viewType = kind->type,
+        .format = kind->format,
         .subresourceRange = *range,
     };
     VkResult result = vkCreateImageView(gpu->device, &info, NULL, view);
@@ -84,15 +103,19 @@ static VkResult create_view(struct wd_gpu *gpu, const struct wd_image *image, Vk
     return result;
 }
 
-static bool create_whole_view(struct wd_gpu *gpu, struct wd_image *image,
-                              enum wd_image_view_kind kind, const char *name)
+static VkImageViewType whole_type(const struct wd_image *image, enum wd_image_view_kind kind)
+{
+    bool array = image->layers > 1 || kind == WD_IMAGE_ARRAY;
+    return array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+}
+
+static bool create_whole_view(struct wd_gpu *gpu, const struct wd_image *image,
+                              const struct view_kind *kind, const char *name, VkImageView *view)
 {
     const VkImageSubresourceRange range = {image->aspect, 0, image->mips, 0, image->layers};
-    bool array = image->layers > 1 || kind == WD_IMAGE_ARRAY;
-    VkImageViewType type = array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
-    VkResult result = create_view(gpu, image, type, &range, &image->view);
+    VkResult result = create_view(gpu, image, kind, &range, view);
     if (result == VK_SUCCESS) {
-        wd_set_object_name(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, (uint64_t)(uintptr_t)image->view, name);
+        wd_set_object_name(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, (uint64_t)(uintptr_t)*view, name);
         return true;
     }
     char *what = wd_format("view of image \"%s\"", name);
@@ -101,11 +124,23 @@ static bool create_whole_view(struct wd_gpu *gpu, struct wd_image *image,
     return false;
 }
 
+static bool create_whole_views(struct wd_gpu *gpu, struct wd_image *image,
+                               const struct wd_image_params *params)
+{
+    VkImageViewType type = whole_type(image, params->view);
+    const struct view_kind own = {type, image->format, params->stored_as ? params->usage : 0};
+    const struct view_kind stored = {type, params->stored_as, VK_IMAGE_USAGE_STORAGE_BIT};
+    return create_whole_view(gpu, image, &own, params->name, &image->view) &&
+           (!params->stored_as ||
+            create_whole_view(gpu, image, &stored, params->name, &image->stored));
+}
+
 static bool create_image(struct wd_image *image, struct wd_gpu *gpu,
                          const struct wd_image_params *params, VkImageUsageFlags usage)
 {
     const VkImageCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .flags = image_flags(params),
         .imageType = VK_IMAGE_TYPE_2D,
         .format = image->format,
         .extent = {image->width, image->height, 1},
@@ -154,7 +189,8 @@ bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu, const struct wd_i
     if (params->mips == WD_ALL_MIPS)
         image->mips = mip_count(params->width, params->height);
     VkImageUsageFlags usage =
-        params->usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        params->usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+        (params->stored_as ? VK_IMAGE_USAGE_STORAGE_BIT : 0);
     if (gpu->lost || !check_image(gpu, params, image, usage) ||
         !create_image(image, gpu, params, usage)) {
         wd_image_finish(image, gpu);
@@ -164,7 +200,7 @@ bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu, const struct wd_i
     const VkImageUsageFlags viewable =
         VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-    if ((usage & viewable) && !create_whole_view(gpu, image, params->view, params->name)) {
+    if ((usage & viewable) && !create_whole_views(gpu, image, params)) {
         wd_image_finish(image, gpu);
         return false;
     }
@@ -183,7 +219,8 @@ bool wd_image_wrap(struct wd_image *image, struct wd_gpu *gpu, VkImage foreign, 
         .layers = 1,
         .mips = 1,
     };
-    if (!create_whole_view(gpu, image, WD_IMAGE_AUTO, "foreign")) {
+    const struct view_kind kind = {VK_IMAGE_VIEW_TYPE_2D, format, 0};
+    if (!create_whole_view(gpu, image, &kind, "foreign", &image->view)) {
         *image = (struct wd_image){0};
         return false;
     }
@@ -194,6 +231,8 @@ void wd_image_finish(struct wd_image *image, struct wd_gpu *gpu)
 {
     if (image->view)
         vkDestroyImageView(gpu->device, image->view, NULL);
+    if (image->stored)
+        vkDestroyImageView(gpu->device, image->stored, NULL);
     if (image->memory)
         vkDestroyImage(gpu->device, image->image, NULL);
     wd_free_memory(gpu, image->memory, image->memory_size);
@@ -205,6 +244,7 @@ bool wd_image_layer_view(struct wd_gpu *gpu, const struct wd_image *image, uint3
 {
     assert(layer < image->layers && mip < image->mips);
     const VkImageSubresourceRange range = {image->aspect, mip, 1, layer, 1};
-    VkResult result = create_view(gpu, image, VK_IMAGE_VIEW_TYPE_2D, &range, view);
+    const struct view_kind kind = {VK_IMAGE_VIEW_TYPE_2D, image->format, 0};
+    VkResult result = create_view(gpu, image, &kind, &range, view);
     return wd_gpu_check(gpu, result, "view of an image layer");
 }

@@ -59,6 +59,7 @@ struct wd_image {
     VkImage image;
     VkDeviceMemory memory; /* VK_NULL_HANDLE: the image belongs to somebody else */
     VkImageView view;      /* all layers and mips; 2D, or 2D array when layered */
+    VkImageView stored;    /* the same to be stored to, where its parameters name a format */
     VkFormat format;
     VkImageAspectFlags aspect;
     uint32_t width, height, layers, mips;
@@ -79,6 +80,7 @@ struct wd_image_params {
     uint32_t mips;   /* 0 means 1; WD_ALL_MIPS: down to 1x1 */
     VkImageUsageFlags usage; /* ORed with TRANSFER_SRC and TRANSFER_DST */
     enum wd_image_view_kind view;
+    VkFormat stored_as; /* of a view for storage alone, where the image's own format has none; 0: none */
 };
 #define WD_ALL_MIPS UINT32_MAX
 bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu,

@@ -28,8 +28,9 @@ struct continuum {
     struct wd_buffer put_off; /* uint32_t[]: see shaders/lib/put_off.glsl */
     uint32_t tree_capacity, item_capacity, cluster_capacity;
     uint32_t most_trees; /* that any view can hold */
-    struct wd_buffer resolved; /* words of what is copied to the view's targets */
-    enum wd_filled filled;     /* by these */
+    struct wd_buffer large;    /* triangles of wood: groups of a dispatch, then ids */
+    struct wd_buffer depths;   /* of a view, in its target's texels */
+    enum wd_filled filled;     /* whether the view's targets are */
     struct wd_buffer pyramid; /* float[], of the camera's newest frame */
     struct wd_continuum_history history;
     struct wd_splat_view values; /* of the view being drawn */
@@ -38,25 +39,6 @@ struct continuum {
     struct wd_page_list pages; /* of that view */
     struct wd_selection near;  /* drawn leaf by leaf */
 };
-
-static bool continuum_init(void *state, struct wd_gpu *gpu)
-{
-    struct continuum *c = state;
-    c->gpu = gpu;
-    return wd_continuum_pipelines_init(&c->pipelines, gpu);
-}
-
-static void continuum_finish(void *state, struct wd_gpu *gpu)
-{
-    struct continuum *c = state;
-    wd_continuum_pipelines_finish(&c->pipelines, gpu);
-    wd_buffer_finish(&c->pixels, gpu);
-    wd_buffer_finish(&c->resolved, gpu);
-    wd_buffer_finish(&c->pyramid, gpu);
-    wd_page_list_finish(&c->pages);
-}
-
-/* --- forest ------------------------------------------------------------------------------ */
 
 static bool make_work(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
                       VkDeviceSize size, VkFormat texels)
@@ -68,6 +50,34 @@ static bool make_work(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *
         WD_MEMORY_DEVICE, texels};
     return wd_buffer_init(buffer, gpu, &params);
 }
+
+static bool make_large(struct continuum *c, struct wd_gpu *gpu)
+{
+    const uint32_t groups[3] = {0, 1, 1};
+    return make_work(&c->large, gpu, "large triangles", sizeof groups + WD_LARGE_MOST * sizeof(uint32_t),
+                     VK_FORMAT_UNDEFINED) &&
+           wd_buffer_upload(gpu, &c->large, 0, groups, sizeof groups);
+}
+
+static bool continuum_init(void *state, struct wd_gpu *gpu)
+{
+    struct continuum *c = state;
+    c->gpu = gpu;
+    return wd_continuum_pipelines_init(&c->pipelines, gpu) && make_large(c, gpu);
+}
+
+static void continuum_finish(void *state, struct wd_gpu *gpu)
+{
+    struct continuum *c = state;
+    wd_continuum_pipelines_finish(&c->pipelines, gpu);
+    wd_buffer_finish(&c->pixels, gpu);
+    wd_buffer_finish(&c->depths, gpu);
+    wd_buffer_finish(&c->large, gpu);
+    wd_buffer_finish(&c->pyramid, gpu);
+    wd_page_list_finish(&c->pages);
+}
+
+/* --- forest ------------------------------------------------------------------------------ */
 
 static bool make_lists(struct continuum *c, struct wd_gpu *gpu, uint32_t trees)
 {
@@ -334,6 +344,14 @@ static void clear_pixels(struct continuum *c, const struct wd_tree_draw *draw)
         vkCmdFillBuffer(draw->cmd->vk, c->pixels.buffer, 0, size, 0);
 }
 
+static void clear_large(struct continuum *c, struct wd_cmd *cmd)
+{
+    wd_cmd_use_buffer(cmd, &c->large, WD_USE_TRANSFER_WRITE);
+    if (!cmd->failed)
+        vkCmdFillBuffer(cmd->vk, c->large.buffer, 0, sizeof(uint32_t), 0);
+    wd_cmd_use_buffer(cmd, &c->large, WD_USE_COMPUTE_WRITE);
+}
+
 static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
@@ -356,12 +374,23 @@ static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
                                               WD_BIND_BUFFER(shapes[kind]),
                                               WD_BIND_BUFFER(&c->pixels),
                                               WD_BIND_BUFFER(&c->forest.lit),
-                                              WD_BIND_BUFFER(&c->pixels)};
+                                              WD_BIND_BUFFER(&c->pixels),
+                                              WD_BIND_BUFFER(&c->large)};
+        const struct wd_pipeline *large = &c->pipelines.large[draw->pass];
+        bool lists = kind == WD_SHAPE_WOOD && large->pipeline;
         if (!pipeline->pipeline)
             continue;
+        if (lists)
+            clear_large(c, cmd);
         wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
         wd_cmd_bind(cmd, pipeline, bindings);
         wd_cmd_dispatch_indirect(cmd, &c->groups, groups[kind]);
+        if (!lists)
+            continue;
+        wd_cmd_use_buffer(cmd, &c->large, WD_USE_INDIRECT);
+        wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
+        wd_cmd_bind(cmd, large, bindings);
+        wd_cmd_dispatch_indirect(cmd, &c->large, 0);
     }
 }
 
@@ -432,14 +461,18 @@ static void continuum_select(void *state, const struct wd_tree_draw *draw)
     record_rounds(c, draw);
 }
 
-static bool fit_resolved(struct continuum *c, struct wd_cmd *cmd, VkDeviceSize texels, uint32_t planes)
+static bool fit_depths(struct continuum *c, struct wd_cmd *cmd, VkDeviceSize texels)
 {
-    VkDeviceSize size = texels * planes * sizeof(uint32_t);
-    if (c->resolved.size >= size)
-        return true;
-    if (c->resolved.buffer)
-        wd_cmd_defer_buffer(cmd, &c->resolved);
-    return make_work(&c->resolved, cmd->gpu, "resolved", size, VK_FORMAT_UNDEFINED);
+    VkDeviceSize size = texels * sizeof(uint32_t);
+    if (c->depths.size < size) {
+        if (c->depths.buffer)
+            wd_cmd_defer_buffer(cmd, &c->depths);
+        cmd->failed = cmd->failed ||
+                      !make_work(&c->depths, cmd->gpu, "depths", size, VK_FORMAT_UNDEFINED);
+    }
+    if (!cmd->failed)
+        wd_cmd_use_buffer(cmd, &c->depths, WD_USE_COMPUTE_WRITE);
+    return !cmd->failed;
 }
 
 /* A cascade's depth lies in the visibility buffer as its map holds it, but where discs have larger texels. */
@@ -448,32 +481,26 @@ static void fill_cascade(struct continuum *c, const struct wd_tree_draw *draw)
     struct wd_cmd *cmd = draw->cmd;
     struct wd_image *map = &draw->targets->shadow;
     VkDeviceSize texels = (VkDeviceSize)map->width * map->height;
-    struct wd_buffer *depths = &c->pixels;
-    if (c->values.texels > 1) {
-        if (!fit_resolved(c, cmd, texels, 1)) {
-            cmd->failed = true;
-            return;
-        }
-        depths = &c->resolved;
-        wd_cmd_use_buffer(cmd, depths, WD_USE_COMPUTE_WRITE);
+    bool as_map = c->values.texels == 1;
+    if (!as_map && fit_depths(c, cmd, texels)) {
         const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
-                                              WD_BIND_BUFFER(depths)};
+                                              WD_BIND_BUFFER(&c->depths)};
         wd_cmd_bind(cmd, &c->pipelines.cascade, bindings);
         wd_cmd_dispatch_1d(cmd, (texels + 63) / 64);
     }
-    wd_cmd_copy_to_image(cmd, depths, 0, map, draw->view->cascade);
+    if (!cmd->failed)
+        wd_cmd_copy_to_image(cmd, as_map ? &c->pixels : &c->depths, 0, map, draw->view->cascade);
 }
 
 static void fill_camera(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
     struct wd_targets *targets = draw->targets;
-    VkDeviceSize texels = (VkDeviceSize)targets->width * targets->height;
-    if (!fit_resolved(c, cmd, texels, WD_RESOLVED_PLANES)) {
-        cmd->failed = true;
+    if (!fit_depths(c, cmd, (VkDeviceSize)targets->width * targets->height))
         return;
-    }
-    wd_cmd_use_buffer(cmd, &c->resolved, WD_USE_COMPUTE_WRITE);
+    wd_cmd_discard_image(cmd, &targets->albedo, WD_USE_COMPUTE_WRITE);
+    wd_cmd_discard_image(cmd, &targets->normal, WD_USE_COMPUTE_WRITE);
+    wd_cmd_discard_image(cmd, &targets->surface, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {draw->uniforms,
                                           WD_BIND_BUFFER(&c->pixels),
                                           WD_BIND_BUFFER(&c->trees),
@@ -485,16 +512,13 @@ static void fill_camera(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_IMAGE(&draw->forest->looks,
                                                         draw->forest->look_sampler),
                                           WD_BIND_BUFFER(&c->forest.lit),
-                                          WD_BIND_BUFFER(&c->resolved)};
+                                          WD_BIND_STORAGE_IMAGE(&targets->albedo),
+                                          WD_BIND_STORAGE_IMAGE(&targets->normal),
+                                          WD_BIND_STORAGE_IMAGE(&targets->surface),
+                                          WD_BIND_BUFFER(&c->depths)};
     wd_cmd_bind(cmd, &c->pipelines.resolve_all, bindings);
     wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);
-    struct wd_image *const planes[WD_RESOLVED_PLANES] = {
-        [WD_RESOLVED_ALBEDO] = &targets->albedo,
-        [WD_RESOLVED_NORMAL] = &targets->normal,
-        [WD_RESOLVED_SURFACE] = &targets->surface,
-        [WD_RESOLVED_DEPTH] = &targets->depth};
-    for (uint32_t i = 0; i < WD_RESOLVED_PLANES; i++)
-        wd_cmd_copy_to_image(cmd, &c->resolved, i * texels * sizeof(uint32_t), planes[i], 0);
+    wd_cmd_copy_to_image(cmd, &c->depths, 0, &targets->depth, 0);
 }
 
 static enum wd_filled continuum_fill(void *state, const struct wd_tree_draw *draw)

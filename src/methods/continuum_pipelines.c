@@ -54,47 +54,73 @@ static const uint32_t cascade_comp[] =
 #define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
 #define UNIFORM VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
 #define TEXELS VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+#define STORED VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
 #define STORED_TEXELS VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
 
-/* llvmpipe's subgroups are 8 wide: there a wider group only idles on small trees, and what waits for one long loop
- * is no more than seven lanes. */
+/* llvmpipe's subgroups are 8 wide; a wider group only idles on small trees. */
 static uint32_t threads_of(const struct wd_gpu *gpu)
 {
     return gpu->software ? 8 : 64;
 }
 
+/* That draw a small tree together. */
 static uint32_t lanes_of(const struct wd_gpu *gpu)
 {
-    return gpu->software ? 1 : 8;
+    return gpu->features & WD_GPU_FEATURE_MANY_LANES ? 8 : 1;
 }
 
-static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+#define DRAW_BINDINGS                                                                              \
+    {                                                                                              \
+        9, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS, STORED_TEXELS, BUFFER}        \
+    }
+
+enum large { LARGE_AS_ALL, LARGE_LISTED, LARGE_ALONE }; /* lib/wood_draw.glsl */
+
+struct draw_kind {
+    uint32_t shape, pass, ids;
+    enum large large;
+};
+
+static bool init_draw(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct draw_kind *kind)
 {
     const struct wd_spirv shaders[WD_SHAPES][2] = {
         {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
         {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
         {SPIRV(wood_twice_comp), SPIRV(wood_comp)}};
+    bool once = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS && kind->pass == WD_PASS_CAMERA;
+    const uint32_t constants[] = {threads_of(gpu), kind->pass == WD_PASS_SHADOW, kind->ids,
+                                  kind->shape == WD_SHAPE_SMALL, gpu->runs, lanes_of(gpu),
+                                  kind->large};
+    const struct wd_compute_params params = {
+        .shader = shaders[kind->shape][once],
+        .bindings = {9, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS, STORED_TEXELS,
+                         BUFFER}},
+        .constants = {7, constants},
+    };
+    return wd_pipeline_init_compute(pipeline, gpu, &params);
+}
+
+static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
+{
     bool wide = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS;
     for (uint32_t i = 0; i < WD_SHAPES * 2 * 2; i++) {
-        uint32_t shape = i / 4, pass = i / 2 % 2, ids = i % 2;
-        bool once = wide && pass == WD_PASS_CAMERA;
-        const uint32_t constants[] = {threads_of(gpu), pass == WD_PASS_SHADOW, ids,
-                                      shape == WD_SHAPE_SMALL, gpu->runs, lanes_of(gpu),
-                                      !gpu->software};
-        const struct wd_compute_params params = {
-            .shader = shaders[shape][once],
-            .bindings = {8, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS,
-                             STORED_TEXELS}},
-            .constants = {7, constants},
-        };
-        bool needed = !ids || (!wide && pass == WD_PASS_CAMERA);
-        if (needed && !wd_pipeline_init_compute(&p->draw[shape][pass][ids], gpu, &params))
+        struct draw_kind kind = {.shape = i / 4, .pass = i / 2 % 2, .ids = i % 2};
+        bool twice = !wide && kind.pass == WD_PASS_CAMERA;
+        bool lists = kind.shape == WD_SHAPE_WOOD && !twice &&
+                     gpu->features & WD_GPU_FEATURE_MANY_LANES;
+        if (kind.ids && !twice)
+            continue;
+        kind.large = lists ? LARGE_LISTED : LARGE_AS_ALL;
+        if (!init_draw(&p->draw[kind.shape][kind.pass][kind.ids], gpu, &kind))
+            return false;
+        kind.large = LARGE_ALONE;
+        if (lists && !init_draw(&p->large[kind.pass], gpu, &kind))
             return false;
     }
     return true;
 }
 
-/* By fragments, which llvmpipe leaves out where nothing is to be drawn. */
+/* By fragments; llvmpipe leaves out those of which nothing is to be drawn. */
 static bool init_resolve_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     struct wd_graphics_params params = {
@@ -127,12 +153,14 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     const struct wd_compute_params resolve = {
         .shader = SPIRV(resolve_comp),
-        .bindings = {11, {UNIFORM, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS,
-                          VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, TEXELS, BUFFER}}};
+        .bindings = {14, {UNIFORM, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS,
+                          VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, TEXELS, STORED, STORED, STORED,
+                          BUFFER}}};
     const struct wd_compute_params cascade = {.shader = SPIRV(cascade_comp),
                                               .bindings = {3, {UNIFORM, TEXELS, BUFFER}}};
-    return (gpu->software ? init_resolve_draws(p, gpu)
-                          : wd_pipeline_init_compute(&p->resolve_all, gpu, &resolve)) &&
+    bool stored = gpu->features & WD_GPU_FEATURE_STORED_TARGETS;
+    return (stored ? wd_pipeline_init_compute(&p->resolve_all, gpu, &resolve)
+                   : init_resolve_draws(p, gpu)) &&
            wd_pipeline_init_compute(&p->cascade, gpu, &cascade);
 }
 
@@ -221,6 +249,8 @@ void wd_continuum_pipelines_finish(struct wd_continuum_pipelines *p, struct wd_g
         wd_pipeline_finish(pipelines[i], gpu);
     for (uint32_t i = 0; i < WD_SHAPES * 2 * 2; i++)
         wd_pipeline_finish(&p->draw[i / 4][i / 2 % 2][i % 2], gpu);
+    wd_pipeline_finish(&p->large[WD_PASS_CAMERA], gpu);
+    wd_pipeline_finish(&p->large[WD_PASS_SHADOW], gpu);
     for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++)
         wd_pipeline_finish(&p->pyramid[i], gpu);
     if (p->nearest)

@@ -13,8 +13,9 @@ struct wd_continuum_pipelines {
     struct wd_pipeline choose[2], choose_again; /* [WD_PASS_*] */
     struct wd_pipeline sort;
     struct wd_pipeline draw[WD_SHAPES][2][2]; /* [][WD_PASS_*][1: ids of the second pass] */
-    struct wd_pipeline depth[2], resolve[2]; /* [1: wood]; of software devices */
-    struct wd_pipeline resolve_all;          /* of others */
+    struct wd_pipeline large[2];                 /* triangles that wood's have listed; [WD_PASS_*] */
+    struct wd_pipeline depth[2], resolve[2];     /* [1: wood] */
+    struct wd_pipeline resolve_all;              /* in their place where targets can be stored to */
     struct wd_pipeline cascade;
     struct wd_pipeline pyramid[WD_PYRAMID_LEVELS - 1], pyramid_of_trees; /* its finest levels */
     VkSampler nearest;

@@ -12,19 +12,15 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-void frame_test_init(struct frame_test *test, const char *root, uint32_t disabled)
+void frame_test_init(struct frame_test *test, const char *root,
+                     const struct frame_test_params *params)
 {
-    frame_test_init_with(test, root, disabled, NULL);
-}
-
-void frame_test_init_with(struct frame_test *test, const char *root, uint32_t disabled,
-                          const char *const *settings)
-{
-    const struct wd_scene_params scene = {.settings = settings};
+    const struct wd_scene_params scene = {.settings = params->settings};
     char *path = wd_format("%s/tests/api/small.json", root), *cache = wd_cache_directory();
     const struct wd_gpu_params gpu = {.name = "software",
                                       .validation = WD_GPU_VALIDATION_ON,
-                                      .disabled_features = disabled};
+                                      .disabled_features = params->disabled,
+                                      .asked_features = params->asked};
     *test = (struct frame_test){0};
     assert_true(wd_scene_load_with(&test->scene, path, &scene, &test->log));
     assert_true(wd_world_init(&test->world, &test->scene,

@@ -17,12 +17,14 @@ struct frame_test {
     uint32_t height; /* of pictures; 0: 240 */
 };
 
-/* Opens the scene of the API's tests; `root` is the source folder. `disabled`: wd_gpu_feature bits
- * that the device is to lack. Validation is on. */
-void frame_test_init(struct frame_test *test, const char *root, uint32_t disabled);
-/* The same with settings in place of the scene's; NULL: none. */
-void frame_test_init_with(struct frame_test *test, const char *root, uint32_t disabled,
-                          const char *const *settings);
+struct frame_test_params {
+    uint32_t disabled; /* wd_gpu_feature bits that the device is to lack, */
+    uint32_t asked;    /* and that it is to use though software */
+    const char *const *settings; /* in place of the scene's; NULL: none */
+};
+/* Opens the scene of the API's tests; `root` is the source folder. Validation is on. */
+void frame_test_init(struct frame_test *test, const char *root,
+                     const struct frame_test_params *params);
 void frame_test_finish(struct frame_test *test);
 
 /* What one frame left in the G-buffer. */

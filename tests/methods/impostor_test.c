@@ -52,7 +52,7 @@ static void clusters_give_way_octant_by_octant(void **state)
         "quality.mesh_distance_m=5", "quality.reduced_distance_m=10", NULL};
     (void)state;
     struct frame_test test;
-    frame_test_init_with(&test, root, 0, settings);
+    frame_test_init(&test, root, &(struct frame_test_params){.settings = settings});
     size_t all_at_once, all_in_parts;
     size_t at_once = largest_step(&test, true, &all_at_once);
     size_t in_parts = largest_step(&test, false, &all_in_parts);

@@ -160,7 +160,7 @@ static void assert_each_cell_once(const struct frame_test *test, const struct wd
 
 static void open_pages(struct frame_test *test, struct wd_buffer *clusters)
 {
-    frame_test_init_with(test, root, 0, WOODS);
+    frame_test_init(test, root, &(struct frame_test_params){.settings = WOODS});
     const struct wd_buffer_params params = {
         "clusters", (VkDeviceSize)test->forest.pages.capacity * WD_PAGE_CLUSTERS * 32,
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, WD_MEMORY_DEVICE};
@@ -262,8 +262,8 @@ static void pictures_know_no_past(void **state)
 {
     (void)state;
     struct frame_test test, other;
-    frame_test_init_with(&test, root, 0, WOODS);
-    frame_test_init_with(&other, root, 0, WOODS);
+    frame_test_init(&test, root, &(struct frame_test_params){.settings = WOODS});
+    frame_test_init(&other, root, &(struct frame_test_params){.settings = WOODS});
     struct frame_picture fresh, between, later;
     frame_test_draw(&test, "continuum", OVER, &fresh);
     frame_test_draw(&other, "continuum", WALK, &between);
@@ -302,8 +302,8 @@ static void jumps_show_all_and_refine(void **state)
 {
     (void)state;
     struct frame_test test, live;
-    frame_test_init_with(&test, root, 0, WOODS);
-    frame_test_init_with(&live, root, 0, WOODS);
+    frame_test_init(&test, root, &(struct frame_test_params){.settings = WOODS});
+    frame_test_init(&live, root, &(struct frame_test_params){.settings = WOODS});
     struct frame_picture whole, jumped;
     frame_test_draw(&test, "continuum", OVER, &whole);
     live.page_budget = 24;
@@ -334,8 +334,8 @@ static void cover_is_that_of_stored_trees(void **state)
     memcpy(stored, WOODS, sizeof WOODS);
     stored[0] = "planting=stored";
     struct frame_test test, other;
-    frame_test_init_with(&test, root, 0, WOODS);
-    frame_test_init_with(&other, root, 0, stored);
+    frame_test_init(&test, root, &(struct frame_test_params){.settings = WOODS});
+    frame_test_init(&other, root, &(struct frame_test_params){.settings = stored});
     for (uint32_t camera = OVER; camera <= WALK; camera++) {
         struct frame_picture paged, all;
         frame_test_draw(&test, "continuum", camera, &paged);
@@ -369,7 +369,7 @@ static struct frame_test woods; /* of the tests that change nothing in it */
 
 static int open_woods(void **state)
 {
-    frame_test_init_with(&woods, root, 0, WOODS);
+    frame_test_init(&woods, root, &(struct frame_test_params){.settings = WOODS});
     *state = &woods;
     return 0;
 }

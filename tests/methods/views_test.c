@@ -20,7 +20,7 @@ static const char *root;
 static int open_test(void **state)
 {
     struct frame_test *test = *state = wd_alloc(sizeof *test);
-    frame_test_init(test, root, 0);
+    frame_test_init(test, root, &(struct frame_test_params){0});
     struct wd_method_options *methods = &test->scene.methods;
     test->scene.quality.mesh_distance_m = 0.0;
     test->scene.quality.reduced_distance_m = 1e5;

@@ -9,6 +9,10 @@ static const uint32_t terrain_frag[] =
 #include "terrain.frag.inc"
     ;
 
+static const uint32_t terrain_shade_comp[] =
+#include "terrain_shade.comp.inc"
+    ;
+
 #define SPIRV(words) {words, sizeof words, #words}
 
 enum { PATCH_INDICES = WD_PATCH_CELLS * WD_PATCH_CELLS * 6 };
@@ -37,10 +41,31 @@ static bool init_indices(struct wd_buffer *buffer, struct wd_gpu *gpu)
     return true;
 }
 
+/* Whether fragments only mark the ground. */
+static bool marks(const struct wd_gpu *gpu)
+{
+    return gpu->features & WD_GPU_FEATURE_STORED_TARGETS;
+}
+
+static bool init_shade(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+{
+    const struct wd_compute_params params = {
+        .shader = SPIRV(terrain_shade_comp),
+        .bindings = {9,
+                     {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},
+    };
+    return wd_pipeline_init_compute(pipeline, gpu, &params);
+}
+
 static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t has_holes,
                           uint32_t is_near)
 {
-    const uint32_t constants[] = {has_holes, is_near};
+    const uint32_t constants[] = {has_holes, is_near, marks(gpu)};
     const struct wd_graphics_params params = {
         .vertex = SPIRV(terrain_vert),
         .fragment = SPIRV(terrain_frag),
@@ -50,7 +75,7 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
-        .constants = {2, constants},
+        .constants = {3, constants},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
@@ -65,6 +90,8 @@ bool wd_terrain_pass_init(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
     bool ok = init_indices(&pass->indices, gpu);
     for (uint32_t near = 0; near < 2 && ok; near++)
         ok = init_pipeline(&pass->pipelines[0][near], gpu, 0, near);
+    ok = ok && (!marks(gpu) || (init_shade(&pass->shade, gpu) &&
+                                wd_sampler_init(&pass->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP)));
     if (!ok)
         wd_terrain_pass_finish(pass, gpu);
     return ok;
@@ -84,6 +111,9 @@ void wd_terrain_pass_finish(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
 {
     for (uint32_t i = 0; i < 4; i++)
         wd_pipeline_finish(&pass->pipelines[i >> 1][i & 1], gpu);
+    wd_pipeline_finish(&pass->shade, gpu);
+    if (pass->nearest)
+        vkDestroySampler(gpu->device, pass->nearest, NULL);
     wd_buffer_finish(&pass->indices, gpu);
     wd_patch_list_finish(&pass->patches);
     *pass = (struct wd_terrain_pass){0};
@@ -108,6 +138,7 @@ void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
     wd_patches_select(&pass->patches, &ranges, ground, params->view);
     size_t count = pass->patches.count;
     pass->triangles = (uint64_t)count * PATCH_INDICES / 3;
+    pass->view = (struct wd_binding){0};
     if (!count)
         return;
     struct wd_binding view_binding, patch_binding;
@@ -116,6 +147,7 @@ void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
     if (!view || !patches)
         return;
     wd_terrain_view_init(view, &ranges, ground, params->view);
+    pass->view = view_binding;
     memcpy(patches, pass->patches.items, count * sizeof *pass->patches.items);
     const struct wd_binding bindings[] = {
         params->uniforms,
@@ -132,4 +164,29 @@ void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
     vkCmdBindIndexBuffer(cmd->vk, pass->indices.buffer, 0, VK_INDEX_TYPE_UINT16);
     draw(cmd, &pipelines[1], bindings, 0, detailed);
     draw(cmd, &pipelines[0], bindings, detailed, (uint32_t)count - detailed);
+}
+
+void wd_terrain_pass_shade(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
+                           const struct wd_terrain_params *params, struct wd_targets *targets)
+{
+    const struct wd_ground *ground = params->ground;
+    if (!pass->shade.pipeline || !pass->view.buffer || cmd->failed)
+        return;
+    wd_cmd_use_image(cmd, &targets->depth, WD_USE_COMPUTE_READ);
+    wd_cmd_use_image(cmd, &targets->surface, WD_USE_COMPUTE_READ);
+    wd_cmd_use_image(cmd, &targets->albedo, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_image(cmd, &targets->normal, WD_USE_COMPUTE_WRITE);
+    const struct wd_binding bindings[] = {
+        params->uniforms,
+        pass->view,
+        WD_BIND_IMAGE(&targets->depth, pass->nearest),
+        WD_BIND_IMAGE(&targets->surface, pass->nearest),
+        WD_BIND_IMAGE(&ground->slopes, ground->sampler),
+        WD_BIND_IMAGE(&ground->cover, ground->sampler),
+        WD_BIND_STORAGE_IMAGE(&targets->albedo),
+        WD_BIND_BUFFER(&ground->waters),
+        WD_BIND_STORAGE_IMAGE(&targets->normal),
+    };
+    wd_cmd_bind(cmd, &pass->shade, bindings);
+    wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);
 }

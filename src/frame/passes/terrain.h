@@ -9,6 +9,9 @@
 
 struct wd_terrain_pass {
     struct wd_pipeline pipelines[2][2]; /* with holes; near enough for what is strewn on it */
+    struct wd_pipeline shade; /* where fragments only mark the ground */
+    VkSampler nearest;
+    struct wd_binding view; /* struct wd_terrain_view of the newest record */
     struct wd_buffer indices;
     struct wd_patch_list patches; /* scratch */
     uint64_t triangles;           /* of the newest record */
@@ -32,5 +35,8 @@ struct wd_terrain_params {
  * pass (frame/sun_field.h), and the maps hold what stands on it. */
 void wd_terrain_pass_record(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
                             const struct wd_terrain_params *params);
+/* Outside of any rendering, after that: what the ground looks like, on devices on which compute finds that. */
+void wd_terrain_pass_shade(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
+                           const struct wd_terrain_params *params, struct wd_targets *targets);
 
 #endif
