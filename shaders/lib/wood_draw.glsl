@@ -18,7 +18,7 @@ layout(set = 0, binding = 7, rg32ui) uniform readonly uimageBuffer drawn; /* the
 
 layout(scalar, set = 0, binding = 8) buffer Large {
     uint large_groups[3]; /* of an indirect dispatch */
-    uint large_ids[];
+    wd_large_part large[];
 };
 
 /* Read before any branch: lib/light_pixels.glsl tells why. */
@@ -86,11 +86,13 @@ void draw_rows(wd_bark bark, uint id)
     } while (y <= bark.high.y);
 }
 
-/* The same by all threads of a group, pixel by pixel. */
-void draw_together(wd_bark bark, uint id)
+/* The same by all threads of a group, pixel by pixel: those of one part (WD_LARGE_PART_PX). */
+void draw_together(wd_bark bark, uint part, uint id)
 {
     uint width = uint(bark.high.x - bark.low.x) + 1u, height = uint(bark.high.y - bark.low.y) + 1u;
-    for (uint i = gl_LocalInvocationID.x; i < width * height; i += gl_WorkGroupSize.x) {
+    uint i = part * WD_LARGE_PART_PX + gl_LocalInvocationID.x;
+    uint end = min((part + 1u) * WD_LARGE_PART_PX, width * height);
+    for (; i < end; i += gl_WorkGroupSize.x) {
         vec2 at = vec2(i % width, i / width);
         vec3 share = bark.share + bark.share_x * at.x + bark.share_y * at.y;
         if (min(min(share.x, share.y), share.z) >= 0.0)
@@ -120,28 +122,32 @@ bool bark_at(wd_splat_tree tree, uint index, out wd_bark bark)
     return shades && before && set_up(at[0], at[1], at[2], bark);
 }
 
-/* Triangles that span more pixels than this are listed, for a group each: or one thread would work on when all others
- * are done. */
+/* Triangles that span more pixels than this are listed, in parts, for a group each: or one thread would work on when
+ * all others are done. */
 const float LARGE_PX = 64.0;
 
 bool put_aside(wd_bark bark, uint id)
 {
     vec2 size = bark.high - bark.low + 1.0;
-    if (size.x * size.y <= LARGE_PX)
+    float span = size.x * size.y;
+    if (span <= LARGE_PX)
         return false;
-    uint at = atomicAdd(large_groups[0], 1u);
-    if (at < WD_LARGE_MOST)
-        large_ids[at] = id;
-    else
-        atomicAdd(large_groups[0], 0xffffffffu);
-    return at < WD_LARGE_MOST;
+    uint parts = uint(ceil(span / float(WD_LARGE_PART_PX)));
+    uint at = atomicAdd(large_groups[0], parts);
+    bool fits = at + parts <= WD_LARGE_MOST;
+    if (!fits)
+        atomicAdd(large_groups[0], 0u - parts);
+    for (uint part = 0u; fits && part < parts; part++)
+        large[at + part] = wd_large_part(id, part);
+    return fits;
 }
 
+/* Groups share an item in the dispatch's third dimension. */
 void draw_item(uint index)
 {
     wd_splat_item item = splat_item_at(items, index);
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
-    uint count = WD_ITEM_COUNT(item), from = WD_ITEM_FIRST(item), i = gl_LocalInvocationID.x;
+    uint count = WD_ITEM_COUNT(item), from = WD_ITEM_FIRST(item), i = gl_LocalInvocationID.x + gl_WorkGroupSize.x * gl_WorkGroupID.z;
     wd_bark bark;
     if (i >= count)
         return;
@@ -149,25 +155,25 @@ void draw_item(uint index)
         uint id = WD_ID_WOOD | (index * WD_ITEM_SPLATS + i + 1u);
         if (bark_at(tree, from + i, bark) && !(LARGE == LARGE_LISTED && put_aside(bark, id)))
             draw_rows(bark, id);
-        i += gl_WorkGroupSize.x;
+        i += gl_WorkGroupSize.x * gl_NumWorkGroups.z;
     } while (i < count);
 }
 
-void draw_large(uint id)
+void draw_large(wd_large_part part)
 {
-    uint at = (id & ~WD_ID_WOOD) - 1u;
+    uint at = (part.id & ~WD_ID_WOOD) - 1u;
     wd_splat_item item = splat_item_at(items, at / WD_ITEM_SPLATS);
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);
     wd_bark bark;
     if (bark_at(tree, WD_ITEM_FIRST(item) + at % WD_ITEM_SPLATS, bark))
-        draw_together(bark, id);
+        draw_together(bark, part.part, part.id);
 }
 
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
     if (LARGE == LARGE_ALONE) {
-        draw_large(large_ids[group]);
+        draw_large(large[group]);
         return;
     }
     uint groups = counts.wood_items - counts.done_wood;

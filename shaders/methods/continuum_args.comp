@@ -8,11 +8,13 @@ layout(local_size_x = 1) in;
 layout(constant_id = 0) const uint THREADS = 64u; /* of a splat's group */
 layout(constant_id = 1) const uint AGAIN = 0u;
 layout(constant_id = 2) const uint LANES = 1u; /* threads of a small item */
+layout(constant_id = 3) const uint PARTS = 1u; /* groups of an item of wood */
 
 layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 2) writeonly buffer Groups { wd_splat_groups groups; };
 layout(scalar, set = 0, binding = 3) buffer Lost { wd_splat_lost lost; };
+layout(scalar, set = 0, binding = 4) writeonly buffer Large { uint large_groups[3]; };
 
 uint[3] groups_of(uint count)
 {
@@ -50,4 +52,6 @@ void main()
     groups.small = groups_of((counts.small_items - counts.done_small + each - 1u) / each);
     groups.sort = groups_of((counts.small_items - counts.done_small + WD_SORT_ITEMS - 1u) / WD_SORT_ITEMS);
     groups.wood = groups_of(counts.wood_items - counts.done_wood);
+    groups.wood[2] = PARTS;
+    large_groups = uint[3](0u, 1u, 1u);
 }

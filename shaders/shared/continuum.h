@@ -266,8 +266,13 @@ WD_STATIC_ASSERT_SIZE(wd_splat_tree, 128);
 #define WD_TREE_WOOD_LAST(tree) ((tree).strata >> 11 & 1u)
 #define WD_TREE_BARK(tree) ((tree).strata >> 12)
 
-/* Triangles of wood of one view that are drawn by a group each; all others are drawn by a thread. */
+/* Large triangles of wood are drawn by a group for each part of so many pixels of their bounds; as many parts as
+ * find room, all other triangles by a thread. */
+#define WD_LARGE_PART_PX 1024u
 #define WD_LARGE_MOST 65535u
+struct wd_large_part {
+    uint32_t id, part;
+};
 
 /* Splats of its strata in turn, or triangles of its wood. */
 struct wd_splat_item {

@@ -380,10 +380,12 @@ void wd_pages_select(struct wd_pages *pages, struct wd_cmd *cmd,
 {
     struct choice choice = {.pages = pages, .query = query};
     list->count = 0;
+    list->coarser = false;
     if (!pages->capacity || cmd->failed)
         return;
     find_wanted(&choice);
-    if (query->budget && count_missing(&choice, &choice.wanted) > query->budget)
+    list->coarser = query->budget && count_missing(&choice, &choice.wanted) > query->budget;
+    if (list->coarser)
         refine(&choice, list);
     else
         for (size_t i = 0; i < choice.wanted.count; i++)

@@ -63,6 +63,7 @@ struct wd_pages_query {
 struct wd_page_list {
     uint32_t *slots;
     size_t count, capacity;
+    bool coarser; /* than wanted: the budget did not do */
 };
 void wd_page_list_finish(struct wd_page_list *list);
 

@@ -163,6 +163,7 @@ static void add_stats(struct wd_draw_stats *sum, const struct wd_draw_stats *sta
     sum->triangles += stats->triangles;
     for (int level = 0; level < 3; level++)
         sum->trees[level] += stats->trees[level];
+    sum->unfinished = sum->unfinished || stats->unfinished;
 }
 
 static void set_load(struct wd_rendering *targets, enum wd_load load)
@@ -172,8 +173,8 @@ static void set_load(struct wd_rendering *targets, enum wd_load load)
     targets->depth_load = load;
 }
 
-/* The trees of one view, into `targets`. */
-static void record_trees(const struct recording *r, const struct wd_view *view,
+/* The trees of one view, into `targets`; false where more of them are to come. */
+static bool record_trees(const struct recording *r, const struct wd_view *view,
                          enum wd_tree_pass pass, struct wd_rendering *targets)
 {
     struct wd_frame *frame = r->frame;
@@ -200,6 +201,7 @@ static void record_trees(const struct recording *r, const struct wd_view *view,
     add_stats(&frame->stats, &stats);
     if (pass == WD_PASS_CAMERA)
         frame->camera_stats = stats;
+    return !stats.unfinished;
 }
 
 static bool is_kept(const struct wd_kept_cascade *kept, const struct wd_method *method,
@@ -237,8 +239,8 @@ static void record_shadows(const struct recording *r)
         struct wd_kept_cascade *kept = &r->frame->kept[i];
         if (is_kept(kept, method, &r->cascades[i].box))
             continue;
-        record_trees(r, &r->cascades[i], WD_PASS_SHADOW, &rendering);
-        *kept = (struct wd_kept_cascade){method, r->cascades[i].box};
+        bool whole = record_trees(r, &r->cascades[i], WD_PASS_SHADOW, &rendering);
+        *kept = (struct wd_kept_cascade){whole ? method : NULL, r->cascades[i].box};
     }
     wd_cmd_scope_end(r->cmd);
 }
@@ -398,14 +400,12 @@ static void record_display(const struct recording *r)
     wd_cmd_scope_end(r->cmd);
 }
 
-/* Trees on demand come in as they are planted; their maps are not kept. Else gusts and ringing move the crowns of the tallest trees by about half of this from where the mean
+/* Gusts and ringing move the crowns of the tallest trees by about half of this from where the mean
  * wind bends them; less cannot be told from the grain of the shadow maps. */
 static double calm_m(const struct wd_forest_device *forest)
 {
     const struct wd_scene *scene = forest->scene;
     float flexibility = 0.0f;
-    if (forest->pages.capacity)
-        return 0.0;
     for (uint32_t i = 0; i < forest->model_count; i++)
         flexibility = fmaxf(flexibility, forest->host_models[i].flexibility);
     double bend_m = 0.1 * scene->wind.speed_mps * (double)(flexibility * forest->max_tree_height_m);

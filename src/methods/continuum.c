@@ -51,19 +51,14 @@ static bool make_work(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *
     return wd_buffer_init(buffer, gpu, &params);
 }
 
-static bool make_large(struct continuum *c, struct wd_gpu *gpu)
-{
-    const uint32_t groups[3] = {0, 1, 1};
-    return make_work(&c->large, gpu, "large triangles", sizeof groups + WD_LARGE_MOST * sizeof(uint32_t),
-                     VK_FORMAT_UNDEFINED) &&
-           wd_buffer_upload(gpu, &c->large, 0, groups, sizeof groups);
-}
-
 static bool continuum_init(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
     c->gpu = gpu;
-    return wd_continuum_pipelines_init(&c->pipelines, gpu) && make_large(c, gpu);
+    return wd_continuum_pipelines_init(&c->pipelines, gpu) &&
+           make_work(&c->large, gpu, "large triangles",
+                     3 * sizeof(uint32_t) + WD_LARGE_MOST * sizeof(struct wd_large_part),
+                     VK_FORMAT_UNDEFINED);
 }
 
 static void continuum_finish(void *state, struct wd_gpu *gpu)
@@ -238,6 +233,7 @@ static void select_pages(struct continuum *c, const struct wd_tree_draw *draw)
     }
     wd_pages_select(pages, draw->cmd, &query, &c->device->trees, &c->forest.clusters,
                     c->forest.cluster_count, &c->pages);
+    draw->stats->unfinished = draw->stats->unfinished || c->pages.coarser;
 }
 
 static struct wd_binding upload_pages(struct continuum *c, struct wd_cmd *cmd)
@@ -257,8 +253,10 @@ static void record_args(struct continuum *c, struct wd_cmd *cmd, enum round begi
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->lost, WD_USE_COMPUTE_WRITE);
+    wd_cmd_use_buffer(cmd, &c->large, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->counts),
-                                          WD_BIND_BUFFER(&c->groups), WD_BIND_BUFFER(&c->lost)};
+                                          WD_BIND_BUFFER(&c->groups), WD_BIND_BUFFER(&c->lost),
+                                          WD_BIND_BUFFER(&c->large)};
     wd_cmd_bind(cmd, &c->pipelines.args[begins], bindings);
     wd_cmd_dispatch(cmd, 1, 1, 1);
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_INDIRECT);
@@ -344,14 +342,6 @@ static void clear_pixels(struct continuum *c, const struct wd_tree_draw *draw)
         vkCmdFillBuffer(draw->cmd->vk, c->pixels.buffer, 0, size, 0);
 }
 
-static void clear_large(struct continuum *c, struct wd_cmd *cmd)
-{
-    wd_cmd_use_buffer(cmd, &c->large, WD_USE_TRANSFER_WRITE);
-    if (!cmd->failed)
-        vkCmdFillBuffer(cmd->vk, c->large.buffer, 0, sizeof(uint32_t), 0);
-    wd_cmd_use_buffer(cmd, &c->large, WD_USE_COMPUTE_WRITE);
-}
-
 static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
@@ -380,9 +370,8 @@ static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
         bool lists = kind == WD_SHAPE_WOOD && large->pipeline;
         if (!pipeline->pipeline)
             continue;
-        if (lists)
-            clear_large(c, cmd);
         wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
+        wd_cmd_use_buffer(cmd, &c->large, WD_USE_COMPUTE_WRITE);
         wd_cmd_bind(cmd, pipeline, bindings);
         wd_cmd_dispatch_indirect(cmd, &c->groups, groups[kind]);
         if (!lists)

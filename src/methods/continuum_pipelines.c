@@ -63,7 +63,7 @@ static uint32_t threads_of(const struct wd_gpu *gpu)
     return gpu->software ? 8 : 64;
 }
 
-/* That draw a small tree together. */
+/* That draw a small tree together; and groups that draw an item of wood. */
 static uint32_t lanes_of(const struct wd_gpu *gpu)
 {
     return gpu->features & WD_GPU_FEATURE_MANY_LANES ? 8 : 1;
@@ -208,10 +208,11 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 static bool init_args(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     for (uint32_t again = 0; again < 2; again++) {
-        const uint32_t constants[] = {threads_of(gpu), again, lanes_of(gpu)};
+        const uint32_t constants[] = {threads_of(gpu), again, lanes_of(gpu), lanes_of(gpu)};
         const struct wd_compute_params args = {.shader = SPIRV(args_comp),
-                                               .bindings = {4, {UNIFORM, BUFFER, BUFFER, BUFFER}},
-                                               .constants = {3, constants}};
+                                               .bindings = {5, {UNIFORM, BUFFER, BUFFER, BUFFER,
+                                                                BUFFER}},
+                                               .constants = {4, constants}};
         if (!wd_pipeline_init_compute(&p->args[again], gpu, &args))
             return false;
     }

@@ -11,6 +11,7 @@
 struct wd_draw_stats {
     uint64_t draw_calls, triangles;
     uint64_t trees[3]; /* by WD_LEVEL_*; a tree that blends counts at both levels */
+    bool unfinished;   /* a view shows less than it will when trees on demand have been planted */
 };
 
 struct wd_tree_pipelines {
