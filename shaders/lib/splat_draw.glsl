@@ -6,7 +6,9 @@
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u;
-layout(constant_id = 3) const uint SMALL = 0u; /* 1: an item is the work of LANES threads, 0: a group's */
+/* Whose items are drawn: large trees', an item a group's work, small ones', that of LANES threads, or both. */
+const uint OF_LARGE = 0u, OF_SMALL = 1u, OF_BOTH = 2u;
+layout(constant_id = 3) const uint ITEMS = OF_LARGE;
 layout(constant_id = 4) const uint RUNS = 1u;
 layout(constant_id = 5) const uint LANES = 1u; /* threads of a small item */
 
@@ -26,7 +28,7 @@ wd_splat_view view = view_block;
 #include "lib/drawn.glsl"
 #include "lib/slice.glsl"
 
-const bool LEAVES = ORTHOGRAPHIC == 0u && SMALL == 0u;
+bool small = ITEMS == OF_SMALL;
 
 /* What a splat covers: pixels whose middles lie within `reach` of its middle each way and, of a leaf, in
  * its outline. */
@@ -65,6 +67,12 @@ bool outline_holds(wd_outline outline, vec2 from)
     return abs(v) <= LEAF_WIDTH * (1.0 - u * u);
 }
 
+/* Whether splats may have a leaf's outline. */
+bool has_leaves()
+{
+    return ORTHOGRAPHIC == 0u && !small;
+}
+
 /* Asked at its end, the loop spares software devices a last turn with all lanes off. */
 void draw_outline(vec2 center, wd_outline outline, uint depth_bits, uint id)
 {
@@ -78,7 +86,7 @@ void draw_outline(vec2 center, wd_outline outline, uint depth_bits, uint id)
     uint at = uint(low.y) * view.width + uint(low.x), column = 0u;
     int left = size.x * size.y;
     do {
-        bool holds = !LEAVES || outline_holds(outline, from);
+        bool holds = !has_leaves() || outline_holds(outline, from);
         if (holds && may_show(at, depth_bits))
             SPLAT(at, depth_bits, id);
         at++;
@@ -122,7 +130,7 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
     float radius = (wood ? tree.wood_radius : tree.radius) * inverse * sqrt(share);
     vec2 center = (clip.xy * inverse * 0.5 + 0.5) * vec2(view.width, view.height);
     wd_outline outline = disc_outline(radius);
-    if (LEAVES && !wood && radius > LEAF_PX)
+    if (has_leaves() && !wood && radius > LEAF_PX)
         outline = leaf_outline(radius, leaf_along(tree, splat_along(disc), clip));
     uint depth_bits = floatBitsToUint(depth);
     if (ORTHOGRAPHIC == 0u) /* lib/splat_depth.glsl asks that of it */
@@ -133,21 +141,25 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    uint done = SMALL != 0u ? counts.done_small : counts.done_items;
-    uint end = SMALL != 0u ? counts.small_items : counts.items;
-    uint each = SMALL != 0u ? gl_WorkGroupSize.x / LANES : 1u, groups = (end - done + each - 1u) / each;
+    if (ITEMS == OF_BOTH) {
+        small = group >= counts.items - counts.done_items;
+        group -= small ? counts.items - counts.done_items : 0u;
+    }
+    uint done = small ? counts.done_small : counts.done_items;
+    uint end = small ? counts.small_items : counts.items;
+    uint each = small ? gl_WorkGroupSize.x / LANES : 1u, groups = (end - done + each - 1u) / each;
     if (group >= groups)
         return;
     uint index = done + dealt(group, groups) * each;
     uint first = gl_LocalInvocationID.x, step_size = gl_WorkGroupSize.x;
-    if (SMALL != 0u) {
+    if (small) {
         index += first / LANES;
         first %= LANES;
         step_size = LANES;
     }
     if (index >= end)
         return;
-    if (SMALL != 0u)
+    if (small)
         index = view.item_capacity - 1u - index;
     wd_splat_item item = splat_item_at(items, index);
     wd_splat_tree tree = splat_tree_at(splat_trees, item.tree);

@@ -47,9 +47,11 @@ void main()
         counts.done_wood = counts.wood_items;
     }
     groups.select = groups_of(AGAIN != 0u ? counts.put_off : counts.clusters);
-    groups.splat = groups_of(counts.items - counts.done_items);
-    uint each = THREADS / LANES;
-    groups.small = groups_of((counts.small_items - counts.done_small + each - 1u) / each);
+    uint each = THREADS / LANES, large = counts.items - counts.done_items;
+    uint small = (counts.small_items - counts.done_small + each - 1u) / each;
+    groups.splat = groups_of(large);
+    groups.small = groups_of(small);
+    groups.all_splats = groups_of(large + small);
     groups.sort = groups_of((counts.small_items - counts.done_small + WD_SORT_ITEMS - 1u) / WD_SORT_ITEMS);
     groups.wood = groups_of(counts.wood_items - counts.done_wood);
     groups.wood[2] = PARTS;

@@ -231,7 +231,7 @@ struct wd_splat_lost {
 };
 /* Indirect dispatches that follow from them. */
 struct wd_splat_groups {
-    uint32_t select[3], splat[3], small[3], wood[3], sort[3];
+    uint32_t select[3], splat[3], small[3], all_splats[3], wood[3], sort[3];
 };
 
 /* A visible tree, ready to be splatted. Rows give clip coordinates of a place in the model's box,

@@ -345,10 +345,12 @@ static void clear_pixels(struct continuum *c, const struct wd_tree_draw *draw)
 static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
-    const struct wd_buffer *items[] = {&c->items, &c->items, &c->wood_items};
-    const struct wd_buffer *shapes[] = {&c->forest.splats, &c->forest.splats, &c->forest.wood};
+    const struct wd_buffer *items[] = {&c->items, &c->items, &c->items, &c->wood_items};
+    const struct wd_buffer *shapes[] = {&c->forest.splats, &c->forest.splats, &c->forest.splats,
+                                        &c->forest.wood};
     const VkDeviceSize groups[] = {offsetof(struct wd_splat_groups, splat),
                                    offsetof(struct wd_splat_groups, small),
+                                   offsetof(struct wd_splat_groups, all_splats),
                                    offsetof(struct wd_splat_groups, wood)};
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &c->trees, WD_USE_COMPUTE_READ);

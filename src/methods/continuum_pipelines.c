@@ -77,7 +77,7 @@ static uint32_t lanes_of(const struct wd_gpu *gpu)
 enum large { LARGE_AS_ALL, LARGE_LISTED, LARGE_ALONE }; /* lib/wood_draw.glsl */
 
 struct draw_kind {
-    uint32_t shape, pass, ids;
+    uint32_t shape, pass, ids; /* WD_SHAPE_*: of splats as lib/splat_draw.glsl numbers whose they are */
     enum large large;
 };
 
@@ -86,10 +86,11 @@ static bool init_draw(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const st
     const struct wd_spirv shaders[WD_SHAPES][2] = {
         {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
         {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
+        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
         {SPIRV(wood_twice_comp), SPIRV(wood_comp)}};
     bool once = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS && kind->pass == WD_PASS_CAMERA;
     const uint32_t constants[] = {threads_of(gpu), kind->pass == WD_PASS_SHADOW, kind->ids,
-                                  kind->shape == WD_SHAPE_SMALL, gpu->runs, lanes_of(gpu),
+                                  kind->shape, gpu->runs, lanes_of(gpu),
                                   kind->large};
     const struct wd_compute_params params = {
         .shader = shaders[kind->shape][once],
@@ -103,12 +104,13 @@ static bool init_draw(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const st
 static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     bool wide = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS;
+    bool many = gpu->features & WD_GPU_FEATURE_MANY_LANES;
     for (uint32_t i = 0; i < WD_SHAPES * 2 * 2; i++) {
         struct draw_kind kind = {.shape = i / 4, .pass = i / 2 % 2, .ids = i % 2};
         bool twice = !wide && kind.pass == WD_PASS_CAMERA;
-        bool lists = kind.shape == WD_SHAPE_WOOD && !twice &&
-                     gpu->features & WD_GPU_FEATURE_MANY_LANES;
-        if (kind.ids && !twice)
+        bool lists = kind.shape == WD_SHAPE_WOOD && !twice && many;
+        bool apart = kind.shape == WD_SHAPE_SPLATS || kind.shape == WD_SHAPE_SMALL;
+        if ((kind.ids && !twice) || (many ? apart : kind.shape == WD_SHAPE_BOTH))
             continue;
         kind.large = lists ? LARGE_LISTED : LARGE_AS_ALL;
         if (!init_draw(&p->draw[kind.shape][kind.pass][kind.ids], gpu, &kind))

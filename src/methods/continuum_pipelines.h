@@ -6,7 +6,13 @@
 #include "shared/continuum.h"
 
 /* What is rasterised. */
-enum { WD_SHAPE_SPLATS, WD_SHAPE_SMALL, WD_SHAPE_WOOD, WD_SHAPES };
+enum {
+    WD_SHAPE_SPLATS,
+    WD_SHAPE_SMALL, /* splats of small trees */
+    WD_SHAPE_BOTH,  /* both at once, in place of these where lanes are many */
+    WD_SHAPE_WOOD,
+    WD_SHAPES
+};
 
 struct wd_continuum_pipelines {
     struct wd_pipeline cull, args[2]; /* [1]: to begin the second round */
