@@ -14,6 +14,7 @@ layout(constant_id = 2) const uint MIXED = 0u; /* tiles hold pixels with and wit
 
 layout(constant_id = 3) const uint RUNS = 1u;
 layout(constant_id = 4) const uint SINGLE = 0u; /* 1: all leaves are single ones */
+layout(constant_id = 6) const uint COMPARES = 0u; /* see lib/shadow.glsl */
 
 layout(scalar, set = 0, binding = 0) FRAME_BLOCK Frame { wd_frame_uniforms frame_block; };
 layout(set = 0, binding = 1) uniform sampler2D gbuffer_albedo;
@@ -40,6 +41,7 @@ wd_light_push push = push_block;
 
 #define TREE_TEXELS
 #define SHADOW_DEPTH shadow_depth
+#define SHADOW_COMPARES (COMPARES != 0u)
 #define ALL_SINGLE (SINGLE != 0u)
 #define SUN_HEIGHT_AT(index) texelFetch(sun_height_m, int(index)).x
 #define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)

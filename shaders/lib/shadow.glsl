@@ -1,7 +1,7 @@
 /* Shadows of trees (cascaded maps) and of the ground (a field of shadow heights).
  * Expects `frame`, `push` (wd_light_push), `shadow_map` (sampler2DArrayShadow) and
  * SUN_HEIGHT_AT(index). Where SHADOW_DEPTH names the same maps without comparison, penumbras widen with
- * the way from the caster. */
+ * the way from the caster; with SHADOW_COMPARES these are all that is asked, and `shadow_map` may be another. */
 
 /* Of five values that of a cascade, chosen: software devices index a block lane by lane. */
 vec4 of_cascade(vec4 first, vec4 second, vec4 third, vec4 fourth, vec4 fifth, uint cascade)
@@ -86,6 +86,20 @@ float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, floa
 }
 #endif
 
+/* Share of the four texels about a place that are no nearer the sun than it, as samplers find it. */
+float map_lit(vec2 at, uint cascade, float depth)
+{
+#ifdef SHADOW_DEPTH
+    if (SHADOW_COMPARES) {
+        vec2 share = fract(at * vec2(textureSize(SHADOW_DEPTH, 0).xy) - 0.5);
+        vec4 lit = step(textureGather(SHADOW_DEPTH, vec3(at, float(cascade))), vec4(depth));
+        vec2 column = mix(lit.wx, lit.zy, share.x);
+        return mix(column.x, column.y, share.y);
+    }
+#endif
+    return texture(shadow_map, vec4(at, float(cascade), depth));
+}
+
 /* Share of the sun that trees let through to `rel`. The disc of taps (Vogel 1979) is as wide as
  * the penumbra of what casts the shadow, at least a texel and a half. `sheet`: normal of the flat thing
  * that the place is on, toward the sun, or none. */
@@ -121,8 +135,7 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
     uint i = 0u;
     do {
         float r = sqrt((float(i) + 0.5) / float(frame.shadow_taps)) * radius;
-        lit += texture(shadow_map, vec4(at.xy + spin * r, float(cascade),
-                                        at.z + dot(slope, spin) * r));
+        lit += map_lit(at.xy + spin * r, cascade, at.z + dot(slope, spin) * r);
         spin = vec2(-0.7373688 * spin.x - 0.6754903 * spin.y,
                     0.6754903 * spin.x - 0.7373688 * spin.y); /* the golden angle on */
     } while (++i < frame.shadow_taps);

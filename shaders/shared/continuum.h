@@ -274,6 +274,11 @@ struct wd_large_part {
     uint32_t id, part;
 };
 
+struct wd_cascade_push {
+    uint32_t layer;     /* of the maps */
+    uint32_t has_drawn; /* 1: meshes have been drawn there, too */
+};
+
 /* Splats of its strata in turn, or triangles of its wood. */
 struct wd_splat_item {
     uint32_t tree;  /* index of a wd_splat_tree */

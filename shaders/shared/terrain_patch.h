@@ -18,8 +18,8 @@
 #define WD_EDGE_EAST 2
 #define WD_EDGE_NORTH 3
 #define WD_EDGE_WEST 4
-/* Where ground is marked only, the normal's first number is that value over this. */
-#define WD_MARKED_SIDES 8.0f
+/* In the surface target, before the ground is shaded: this, and that value more. No tree has such a number. */
+#define WD_GROUND_MARK 0xfffffff0u
 
 struct wd_terrain_patch {
     uint32_t column, row; /* of its south-west sample */

@@ -197,6 +197,8 @@ static bool record_trees(const struct recording *r, const struct wd_view *view,
             method->draw(frame->method_state, &draw);
         wd_cmd_end_rendering(r->cmd);
     }
+    if (trees && method->merge)
+        method->merge(frame->method_state, &draw);
     wd_cmd_scope_end(r->cmd);
     add_stats(&frame->stats, &stats);
     if (pass == WD_PASS_CAMERA)
@@ -225,6 +227,9 @@ static enum wd_shadow_maps maps_of(const struct wd_frame_params *params)
 static void record_shadows(const struct recording *r)
 {
     struct wd_targets *targets = &r->frame->targets;
+    targets->shadow_is_stored = r->frame->params.method->stores_shadow &&
+                                wd_world_has_trees(r->frame->params.forest->world) &&
+                                targets->stored_shadow.image;
     wd_cmd_scope_begin(r->cmd, "shadow trees");
     uint32_t maps = maps_of(&r->frame->params) == WD_SHADOW_PERSPECTIVE ? 1 : WD_CASCADES;
     for (uint32_t i = 0; i < maps; i++) {
@@ -245,7 +250,7 @@ static void record_shadows(const struct recording *r)
     wd_cmd_scope_end(r->cmd);
 }
 
-static void record_terrain(const struct recording *r, enum wd_load load)
+static void record_terrain(const struct recording *r)
 {
     struct wd_frame *frame = r->frame;
     const struct wd_terrain_params terrain = {
@@ -255,7 +260,7 @@ static void record_terrain(const struct recording *r, enum wd_load load)
         .error_px = (float)frame->params.forest->scene->quality.terrain_error_px,
     };
     wd_cmd_scope_begin(r->cmd, "terrain");
-    const struct wd_rendering targets = wd_targets_gbuffer(&frame->targets, load);
+    const struct wd_rendering targets = wd_terrain_pass_targets(&frame->terrain, &frame->targets);
     wd_cmd_begin_rendering(r->cmd, &targets);
     wd_terrain_pass_record(&frame->terrain, r->cmd, &terrain);
     wd_cmd_end_rendering(r->cmd);
@@ -268,8 +273,10 @@ static void record_terrain(const struct recording *r, enum wd_load load)
 static void clear_gbuffer(const struct recording *r)
 {
     const struct wd_rendering targets = wd_targets_gbuffer(&r->frame->targets, WD_LOAD_CLEAR);
+    wd_cmd_scope_begin(r->cmd, "clear");
     wd_cmd_begin_rendering(r->cmd, &targets);
     wd_cmd_end_rendering(r->cmd);
+    wd_cmd_scope_end(r->cmd);
 }
 
 static void record_gbuffer(const struct recording *r)
@@ -277,18 +284,18 @@ static void record_gbuffer(const struct recording *r)
     struct wd_frame *frame = r->frame;
     const struct wd_method *method = frame->params.method;
     bool last = method->ground == WD_GROUND_LAST;
-    if (!last)
-        record_terrain(r, WD_LOAD_CLEAR);
-    wd_cmd_scope_begin(r->cmd, "trees");
-    bool clear = last && !method->fill;
+    bool clear = !last || !method->fill;
     if (clear)
         clear_gbuffer(r); /* methods may draw on its depth before the rest */
+    if (!last)
+        record_terrain(r);
+    wd_cmd_scope_begin(r->cmd, "trees");
     struct wd_rendering targets =
-        wd_targets_gbuffer(&frame->targets, last && !clear ? WD_LOAD_CLEAR : WD_LOAD_KEEP);
+        wd_targets_gbuffer(&frame->targets, clear ? WD_LOAD_KEEP : WD_LOAD_CLEAR);
     record_trees(r, &r->view, WD_PASS_CAMERA, &targets);
     wd_cmd_scope_end(r->cmd);
     if (last)
-        record_terrain(r, WD_LOAD_KEEP);
+        record_terrain(r);
     if (method->keep && wd_world_has_trees(frame->params.forest->world)) {
         struct wd_draw_stats stats = {0};
         const struct wd_tree_draw draw = tree_draw_of(r, &r->view, WD_PASS_CAMERA, &stats);

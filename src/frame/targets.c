@@ -24,10 +24,14 @@ bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t wi
         {&targets->shadow,
          {"shadow", WD_DEPTH_FORMAT, shadow_size, shadow_size, WD_CASCADES, 1, depth,
           WD_IMAGE_ARRAY, 0}},
+        {&targets->stored_shadow,
+         {"stored shadow", WD_DEPTH_STORED, shadow_size, shadow_size, WD_CASCADES, 1, storage,
+          WD_IMAGE_ARRAY, 0}},
     };
+    const size_t count = sizeof images / sizeof *images - (stored ? 0 : 1);
     *targets = (struct wd_targets){
         .width = width, .height = height, .shadow_size = shadow_size};
-    for (size_t i = 0; i < sizeof images / sizeof *images; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (!wd_image_init(images[i].image, gpu, &images[i].params)) {
             wd_targets_finish(targets, gpu);
             return false;
@@ -46,7 +50,7 @@ void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu)
 {
     struct wd_image *images[] = {&targets->albedo,   &targets->normal,  &targets->surface,
                                  &targets->depth,    &targets->radiance, &targets->display,
-                                 &targets->overlay,  &targets->shadow};
+                                 &targets->overlay,  &targets->shadow,   &targets->stored_shadow};
     for (uint32_t i = 0; i < WD_CASCADES; i++) {
         if (targets->shadow_layers[i])
             vkDestroyImageView(gpu->device, targets->shadow_layers[i], NULL);
@@ -54,6 +58,11 @@ void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu)
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
         wd_image_finish(images[i], gpu);
     *targets = (struct wd_targets){0};
+}
+
+struct wd_image *wd_targets_shadow(struct wd_targets *targets)
+{
+    return targets->shadow_is_stored ? &targets->stored_shadow : &targets->shadow;
 }
 
 struct wd_rendering wd_targets_gbuffer(struct wd_targets *targets, enum wd_load load)

@@ -10,6 +10,7 @@
 #define WD_NORMAL_FORMAT VK_FORMAT_A2B10G10R10_UNORM_PACK32
 #define WD_SURFACE_FORMAT VK_FORMAT_R32_UINT
 #define WD_DEPTH_FORMAT VK_FORMAT_D32_SFLOAT
+#define WD_DEPTH_STORED VK_FORMAT_R32_SFLOAT
 #define WD_OVERLAY_FORMAT VK_FORMAT_R16G16B16A16_SFLOAT
 #define WD_RADIANCE_FORMAT VK_FORMAT_R32G32B32A32_SFLOAT
 #define WD_DISPLAY_FORMAT VK_FORMAT_R8G8B8A8_UNORM
@@ -22,6 +23,9 @@ struct wd_targets {
     struct wd_image radiance;                       /* storage: sum over the samples so far */
     struct wd_image display;                        /* storage: tone-mapped, sRGB-encoded bytes */
     struct wd_image shadow;                         /* depth, WD_CASCADES layers */
+    struct wd_image stored_shadow;                  /* the same, of methods that store it; {0} where targets
+                                                       cannot be stored to */
+    bool shadow_is_stored;                          /* which of both holds it */
     VkImageView shadow_layers[WD_CASCADES];
     uint32_t shadow_size;
 };
@@ -29,6 +33,8 @@ struct wd_targets {
 bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t width,
                      uint32_t height, uint32_t shadow_size);
 void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu);
+
+struct wd_image *wd_targets_shadow(struct wd_targets *targets);
 
 /* The G-buffer as targets of a rendering: albedo, normal, surface, depth in this order. `load` says
  * whether it is cleared or kept. */

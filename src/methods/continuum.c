@@ -512,6 +512,30 @@ static void fill_camera(struct continuum *c, const struct wd_tree_draw *draw)
     wd_cmd_copy_to_image(cmd, &c->depths, 0, &targets->depth, 0);
 }
 
+/* As an image that compute stores to: copies to depth cost an H200 ten times as much. */
+static void store_cascade(struct continuum *c, const struct wd_tree_draw *draw)
+{
+    struct wd_cmd *cmd = draw->cmd;
+    struct wd_targets *targets = draw->targets;
+    const struct wd_cascade_push push = {draw->view->cascade, c->near.mesh_count > 0};
+    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_READ);
+    wd_cmd_use_image(cmd, &targets->shadow, WD_USE_COMPUTE_READ);
+    wd_cmd_use_image(cmd, &targets->stored_shadow, WD_USE_COMPUTE_WRITE);
+    const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
+                                          WD_BIND_IMAGE(&targets->shadow, c->pipelines.nearest),
+                                          WD_BIND_STORAGE_IMAGE(&targets->stored_shadow)};
+    wd_cmd_bind(cmd, &c->pipelines.cascade_store, bindings);
+    wd_cmd_push(cmd, &c->pipelines.cascade_store, &push, sizeof push);
+    wd_cmd_dispatch(cmd, (targets->shadow_size + 7) / 8, (targets->shadow_size + 7) / 8, 1);
+}
+
+static void continuum_merge(void *state, const struct wd_tree_draw *draw)
+{
+    struct continuum *c = state;
+    if (draw->pass == WD_PASS_SHADOW && c->pipelines.cascade_store.pipeline && !draw->cmd->failed)
+        store_cascade(c, draw);
+}
+
 static enum wd_filled continuum_fill(void *state, const struct wd_tree_draw *draw)
 {
     struct continuum *c = state;
@@ -524,6 +548,10 @@ static enum wd_filled continuum_fill(void *state, const struct wd_tree_draw *dra
         wd_cmd_use_buffer(draw->cmd, reads[i], fills ? WD_USE_COMPUTE_READ : WD_USE_GRAPHICS_READ);
     if (!fills)
         return c->filled;
+    if (draw->pass == WD_PASS_SHADOW && c->pipelines.cascade_store.pipeline) { /* see continuum_merge */
+        c->filled = c->near.mesh_count ? WD_FILLED_NOT : WD_FILLED_LAST;
+        return c->filled;
+    }
     c->filled = c->near.mesh_count ? WD_FILLED : WD_FILLED_LAST;
     if (draw->pass == WD_PASS_SHADOW)
         fill_cascade(c, draw);
@@ -561,7 +589,7 @@ static void continuum_draw(void *state, const struct wd_tree_draw *draw)
 {
     if (draw->cmd->failed)
         return;
-    if (((struct continuum *)state)->filled == WD_FILLED_NOT)
+    if (draw->pass == WD_PASS_CAMERA && ((struct continuum *)state)->filled == WD_FILLED_NOT)
         draw_camera(state, draw);
     wd_tree_draw_selection(draw, &((struct continuum *)state)->near, WD_DRAW_GROUPED);
 }
@@ -621,6 +649,7 @@ const struct wd_method wd_method_continuum = {
     .on_demand = true,
     .cascades = WD_CASCADES_KEPT,
     .ground = WD_GROUND_LAST,
+    .stores_shadow = true,
     .single_leaves = true,
     .state_size = sizeof(struct continuum),
     .init = continuum_init,
@@ -630,6 +659,7 @@ const struct wd_method wd_method_continuum = {
     .select = continuum_select,
     .fill = continuum_fill,
     .draw = continuum_draw,
+    .merge = continuum_merge,
     .keep = continuum_keep,
     .discs = continuum_discs,
     .check = continuum_check,

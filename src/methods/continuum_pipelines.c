@@ -45,6 +45,9 @@ static const uint32_t resolve_comp[] =
 static const uint32_t cascade_comp[] =
 #include "continuum_cascade.comp.inc"
     ;
+static const uint32_t cascade_store_comp[] =
+#include "continuum_cascade_store.comp.inc"
+    ;
 
 #define SPIRV(words)                                                                               \
     {                                                                                              \
@@ -158,12 +161,16 @@ static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         .bindings = {14, {UNIFORM, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS,
                           VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, TEXELS, STORED, STORED, STORED,
                           BUFFER}}};
+    const struct wd_compute_params cascade_store = {
+        .shader = SPIRV(cascade_store_comp),
+        .bindings = {4, {UNIFORM, TEXELS, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, STORED}},
+        .push_size = sizeof(struct wd_cascade_push)};
     const struct wd_compute_params cascade = {.shader = SPIRV(cascade_comp),
                                               .bindings = {3, {UNIFORM, TEXELS, BUFFER}}};
-    bool stored = gpu->features & WD_GPU_FEATURE_STORED_TARGETS;
-    return (stored ? wd_pipeline_init_compute(&p->resolve_all, gpu, &resolve)
-                   : init_resolve_draws(p, gpu)) &&
-           wd_pipeline_init_compute(&p->cascade, gpu, &cascade);
+    if (gpu->features & WD_GPU_FEATURE_STORED_TARGETS)
+        return wd_pipeline_init_compute(&p->resolve_all, gpu, &resolve) &&
+               wd_pipeline_init_compute(&p->cascade_store, gpu, &cascade_store);
+    return init_resolve_draws(p, gpu) && wd_pipeline_init_compute(&p->cascade, gpu, &cascade);
 }
 
 static bool init_level(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t level,
@@ -247,6 +254,7 @@ void wd_continuum_pipelines_finish(struct wd_continuum_pipelines *p, struct wd_g
                                        &p->sort,
                                        &p->depth[0],   &p->depth[1],   &p->resolve[0],
                                        &p->resolve[1], &p->resolve_all, &p->cascade,
+                                       &p->cascade_store,
                                        &p->pyramid_of_trees};
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         wd_pipeline_finish(pipelines[i], gpu);

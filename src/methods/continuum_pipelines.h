@@ -22,7 +22,7 @@ struct wd_continuum_pipelines {
     struct wd_pipeline large[2];                 /* triangles that wood's have listed; [WD_PASS_*] */
     struct wd_pipeline depth[2], resolve[2];     /* [1: wood] */
     struct wd_pipeline resolve_all;              /* in their place where targets can be stored to */
-    struct wd_pipeline cascade;
+    struct wd_pipeline cascade, cascade_store;   /* one of both, likewise */
     struct wd_pipeline pyramid[WD_PYRAMID_LEVELS - 1], pyramid_of_trees; /* its finest levels */
     VkSampler nearest;
 };

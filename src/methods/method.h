@@ -20,6 +20,7 @@ struct wd_method {
      * it is not shaded. */
     enum wd_ground_order { WD_GROUND_FIRST, WD_GROUND_LAST } ground;
     bool eye_pictures; /* what it shows of trees besides meshes was pictured as the eye sees it; cards, level */
+    bool stores_shadow; /* stores cascades' depth where targets can be stored to (wd_targets.stored_shadow) */
     bool single_leaves; /* each leaf in the camera's view says how it lies (shaders/lib/disc.glsl) */
     size_t state_size; /* bytes of what one renderer keeps for it; zeroed before `init` */
     /* Pipelines and the like. On failure `finish` is called all the same. */
@@ -37,6 +38,8 @@ struct wd_method {
     /* Inside the open rendering of the view's targets: the G-buffer over the terrain that is there
      * already, or one cascade's depth. */
     void (*draw)(void *state, const struct wd_tree_draw *draw);
+    /* Outside of any rendering, after `draw`. */
+    void (*merge)(void *state, const struct wd_tree_draw *draw);
     /* Outside of any rendering, with the camera's depth complete: what it saw, for the next frame. */
     void (*keep)(void *state, const struct wd_tree_draw *draw);
     /* With no frame in flight: discs that the newest view of the camera was drawn with. */

@@ -53,18 +53,25 @@ static struct wd_compute_params shading_params(void)
     };
 }
 
+/* Stored shadow maps have no format that samplers compare. */
+static bool compares(const struct wd_gpu *gpu)
+{
+    return gpu->features & WD_GPU_FEATURE_STORED_TARGETS;
+}
+
 /* Shades of a list's tiles the pixels of these parts. */
 static bool init_list(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t list,
                       uint32_t parts, uint32_t single)
 {
     const uint32_t rows = gpu->software ? 1 : WD_TILE; /* of a tile at once */
-    const uint32_t constants[] = {parts, list, list == WET_LIST, gpu->runs, single, rows};
+    const uint32_t constants[] = {parts,  list, list == WET_LIST, gpu->runs,
+                                  single, rows, compares(gpu)};
     struct wd_compute_params params = shading_params();
     if (list == WET_LIST) {
         params.shader = (struct wd_spirv)SPIRV(light_water_comp);
         params.bindings.types[0] = BUFFER;
     }
-    params.constants = (struct wd_spec_constants){6, constants};
+    params.constants = (struct wd_spec_constants){7, constants};
     return wd_pipeline_init_compute(pipeline, gpu, &params);
 }
 
@@ -75,6 +82,8 @@ static bool init_view(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
     params.bindings.count = 11;
     params.bindings.types[0] = BUFFER;
     params.bindings.types[7] = BUFFER;
+    const uint32_t constants[] = {0, 0, 0, 0, 0, 0, compares(gpu)};
+    params.constants = (struct wd_spec_constants){7, constants};
     return wd_pipeline_init_compute(pipeline, gpu, &params);
 }
 
@@ -302,6 +311,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     if (push.has_overlay)
         wd_cmd_use_image(cmd, &targets->overlay, WD_USE_COMPUTE_READ);
     wd_cmd_use_image(cmd, &targets->shadow, WD_USE_COMPUTE_READ);
+    wd_cmd_use_image(cmd, wd_targets_shadow(targets), WD_USE_COMPUTE_READ);
     wd_cmd_use_image(cmd, &targets->radiance, WD_USE_COMPUTE_WRITE);
     if (cmd->failed)
         return;
@@ -312,7 +322,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(&targets->surface, pass->nearest),
         WD_BIND_IMAGE(&targets->depth, pass->nearest),
         WD_BIND_IMAGE(&targets->shadow, pass->shadow),
-        WD_BIND_IMAGE(&targets->shadow, pass->nearest),
+        WD_BIND_IMAGE(wd_targets_shadow(targets), pass->nearest),
         WD_BIND_BUFFER(&pass->sun_field.heights),
         WD_BIND_BUFFER(&params->forest->trees),
         models_or_trees(&params->forest->lit_models, params->forest),

@@ -9,6 +9,9 @@ static const uint32_t terrain_frag[] =
 #include "terrain.frag.inc"
     ;
 
+static const uint32_t terrain_mark_frag[] =
+#include "terrain_mark.frag.inc"
+    ;
 static const uint32_t terrain_shade_comp[] =
 #include "terrain_shade.comp.inc"
     ;
@@ -53,8 +56,7 @@ static bool init_shade(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
         .shader = SPIRV(terrain_shade_comp),
         .bindings = {9,
                      {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
-                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},
@@ -65,8 +67,8 @@ static bool init_shade(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t has_holes,
                           uint32_t is_near)
 {
-    const uint32_t constants[] = {has_holes, is_near, marks(gpu)};
-    const struct wd_graphics_params params = {
+    const uint32_t constants[] = {has_holes, is_near};
+    struct wd_graphics_params params = {
         .vertex = SPIRV(terrain_vert),
         .fragment = SPIRV(terrain_frag),
         .bindings = {8,
@@ -75,12 +77,17 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
-        .constants = {3, constants},
+        .constants = {2, constants},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
         .depth_format = WD_DEPTH_FORMAT,
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
+    if (marks(gpu)) {
+        params.fragment = (struct wd_spirv)SPIRV(terrain_mark_frag);
+        params.color_count = 1;
+        params.color_formats[0] = WD_SURFACE_FORMAT;
+    }
     return wd_pipeline_init_graphics(pipeline, gpu, &params);
 }
 
@@ -173,14 +180,14 @@ void wd_terrain_pass_shade(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
     if (!pass->shade.pipeline || !pass->view.buffer || cmd->failed)
         return;
     wd_cmd_use_image(cmd, &targets->depth, WD_USE_COMPUTE_READ);
-    wd_cmd_use_image(cmd, &targets->surface, WD_USE_COMPUTE_READ);
+    wd_cmd_use_image(cmd, &targets->surface, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_image(cmd, &targets->albedo, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_image(cmd, &targets->normal, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {
         params->uniforms,
         pass->view,
         WD_BIND_IMAGE(&targets->depth, pass->nearest),
-        WD_BIND_IMAGE(&targets->surface, pass->nearest),
+        WD_BIND_STORAGE_IMAGE(&targets->surface),
         WD_BIND_IMAGE(&ground->slopes, ground->sampler),
         WD_BIND_IMAGE(&ground->cover, ground->sampler),
         WD_BIND_STORAGE_IMAGE(&targets->albedo),
@@ -189,4 +196,15 @@ void wd_terrain_pass_shade(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
     };
     wd_cmd_bind(cmd, &pass->shade, bindings);
     wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);
+}
+
+struct wd_rendering wd_terrain_pass_targets(const struct wd_terrain_pass *pass,
+                                            struct wd_targets *targets)
+{
+    struct wd_rendering rendering = wd_targets_gbuffer(targets, WD_LOAD_KEEP);
+    if (pass->shade.pipeline) {
+        rendering.color_count = 1;
+        rendering.color[0].image = &targets->surface;
+    }
+    return rendering;
 }

@@ -29,7 +29,10 @@ struct wd_terrain_params {
     struct wd_binding uniforms;     /* struct wd_frame_uniforms */
     float error_px;                 /* wanted bound of the mesh's error on screen */
 };
-/* Records up to two indexed draws into an open rendering of the G-buffer (wd_targets_gbuffer).
+/* What it draws into, of a G-buffer that has been cleared or drawn to before. */
+struct wd_rendering wd_terrain_pass_targets(const struct wd_terrain_pass *pass,
+                                            struct wd_targets *targets);
+/* Records up to two indexed draws into an open rendering of these.
  *
  * The ground needs no pass into the shadow maps: its own shadows, at any distance, are in the light
  * pass (frame/sun_field.h), and the maps hold what stands on it. */
