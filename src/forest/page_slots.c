@@ -93,10 +93,17 @@ void wd_pages_forget(struct wd_pages *pages)
         return;
     memset(pages->slot_of_hash, 0, pages->hash_size * sizeof *pages->slot_of_hash);
     pages->newest = pages->oldest = pages->capacity;
+    pages->changes++;
     for (uint32_t i = 0; i < pages->capacity; i++) {
         pages->slots[i] = (struct wd_page_slot){0};
         link_newest(pages, i);
     }
+}
+
+void wd_page_slots_touch(struct wd_pages *pages, uint32_t slot)
+{
+    unlink_slot(pages, slot);
+    link_newest(pages, slot);
 }
 
 int64_t wd_page_slots_find(struct wd_pages *pages, const struct wd_page *page)
@@ -104,8 +111,7 @@ int64_t wd_page_slots_find(struct wd_pages *pages, const struct wd_page *page)
     uint32_t found = pages->slot_of_hash[place_of(pages, page)];
     if (!found)
         return WD_NO_SLOT;
-    unlink_slot(pages, found - 1);
-    link_newest(pages, found - 1);
+    wd_page_slots_touch(pages, found - 1);
     return found - 1;
 }
 
@@ -113,6 +119,7 @@ uint32_t wd_page_slots_take(struct wd_pages *pages, const struct wd_page *page)
 {
     uint32_t index = pages->oldest;
     struct wd_page_slot *slot = &pages->slots[index];
+    pages->changes++;
     if (slot->filled)
         remove_place(pages, place_of(pages, &slot->page));
     unlink_slot(pages, index);

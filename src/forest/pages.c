@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
 #include "base/log.h"
 #include "base/memory.h"
@@ -373,14 +374,43 @@ static void plant(struct choice *c, struct wd_cmd *cmd, struct wd_buffer *trees,
     pages->planted += c->missing.count;
 }
 
+static uint64_t hash_of(const struct wd_pages_query *query)
+{
+    const struct {
+        uint64_t view;
+        double eye_m[3], pixels, whole_px;
+        uint64_t most, orthographic;
+    } key = {query->view_hash,
+             {query->eye_m[0], query->eye_m[1], query->eye_m[2]},
+             (double)query->pixels,
+             (double)query->whole_px,
+             query->most,
+             query->orthographic};
+    return XXH3_64bits(&key, sizeof key);
+}
+
+/* Whether the list is the one that would be made now; then its pages are in use again. */
+static bool use_again(struct wd_pages *pages, const struct wd_page_list *list, uint64_t hash)
+{
+    if (list->coarser || !list->changes || list->query_hash != hash || list->changes != pages->changes)
+        return false;
+    for (size_t i = 0; i < list->count; i++)
+        wd_page_slots_touch(pages, list->slots[i]);
+    return true;
+}
+
 void wd_pages_select(struct wd_pages *pages, struct wd_cmd *cmd,
                      const struct wd_pages_query *query, struct wd_buffer *trees,
                      struct wd_buffer *clusters, uint32_t first_cluster,
                      struct wd_page_list *list)
 {
     struct choice choice = {.pages = pages, .query = query};
+    uint64_t hash = hash_of(query);
+    if (pages->capacity && !cmd->failed && use_again(pages, list, hash))
+        return;
     list->count = 0;
     list->coarser = false;
+    list->changes = 0;
     if (!pages->capacity || cmd->failed)
         return;
     find_wanted(&choice);
@@ -392,6 +422,8 @@ void wd_pages_select(struct wd_pages *pages, struct wd_cmd *cmd,
             add_slot(list, slot_for(&choice, &choice.wanted.items[i]));
     if (choice.missing.count)
         plant(&choice, cmd, trees, clusters, first_cluster);
+    list->query_hash = hash;
+    list->changes = cmd->failed ? 0 : pages->changes;
     free(choice.wanted.items);
     free(choice.missing.items);
     free(choice.missing_slots);

@@ -29,6 +29,7 @@ struct wd_pages {
     uint32_t *slot_of_hash; /* open addressing: slot + 1, 0 free */
     uint32_t hash_size;     /* a power of two */
     uint64_t planted;       /* pages since the beginning, for reports */
+    uint64_t changes;       /* of what slots hold */
 };
 
 /* Pages for the layers of `world` that are planted on demand; none without such layers. */
@@ -52,6 +53,7 @@ struct wd_pages_query {
     /* Whether a box in rel may be seen. */
     bool (*sees)(const void *view, const float min[3], const float max[3]);
     const void *view;
+    uint64_t view_hash;  /* equal for views that see the same */
     double eye_m[3];
     float pixels;        /* of a metre at a metre's distance, or anywhere when `orthographic` */
     bool orthographic;
@@ -64,6 +66,7 @@ struct wd_page_list {
     uint32_t *slots;
     size_t count, capacity;
     bool coarser; /* than wanted: the budget did not do */
+    uint64_t query_hash, changes; /* what it was made for; while slots hold the same it is not made again */
 };
 void wd_page_list_finish(struct wd_page_list *list);
 

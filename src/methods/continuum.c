@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
 #include "base/memory.h"
 
@@ -36,7 +37,7 @@ struct continuum {
     struct wd_splat_view values; /* of the view being drawn */
     struct wd_binding view;      /* the same, for the device */
     struct wd_forest_device *device; /* whose pages this plants */
-    struct wd_page_list pages; /* of that view */
+    struct wd_page_list pages[2]; /* of that view; [WD_PASS_*] */
     struct wd_selection near;  /* drawn leaf by leaf */
 };
 
@@ -69,7 +70,8 @@ static void continuum_finish(void *state, struct wd_gpu *gpu)
     wd_buffer_finish(&c->depths, gpu);
     wd_buffer_finish(&c->large, gpu);
     wd_buffer_finish(&c->pyramid, gpu);
-    wd_page_list_finish(&c->pages);
+    wd_page_list_finish(&c->pages[WD_PASS_CAMERA]);
+    wd_page_list_finish(&c->pages[WD_PASS_SHADOW]);
 }
 
 /* --- forest ------------------------------------------------------------------------------ */
@@ -192,7 +194,7 @@ static void fill_view(struct continuum *c, const struct wd_tree_draw *draw)
         .history = &c->history,
         /* without these, ids of a second round could not be told from those of the first */
         .puts_off = c->gpu->features & WD_GPU_FEATURE_INT64_ATOMICS,
-        .page_count = (uint32_t)c->pages.count,
+        .page_count = (uint32_t)c->pages[draw->pass].count,
         .tree_capacity = c->tree_capacity,
         .item_capacity = c->item_capacity,
         .cluster_capacity = c->cluster_capacity,
@@ -220,6 +222,7 @@ static void select_pages(struct continuum *c, const struct wd_tree_draw *draw)
     struct wd_pages_query query = {
         .sees = page_seen,
         .view = view,
+        .view_hash = XXH3_64bits(&view->frustum, sizeof view->frustum),
         .eye_m = {view->eye_m[0], view->eye_m[1], view->eye_m[2]},
         .pixels = view->pixels_per_radian,
         .orthographic = shadow,
@@ -232,17 +235,17 @@ static void select_pages(struct continuum *c, const struct wd_tree_draw *draw)
         query.whole_px *= 0.5f; /* a shadow is seen from nearer than it falls */
     }
     wd_pages_select(pages, draw->cmd, &query, &c->device->trees, &c->forest.clusters,
-                    c->forest.cluster_count, &c->pages);
-    draw->stats->unfinished = draw->stats->unfinished || c->pages.coarser;
+                    c->forest.cluster_count, &c->pages[draw->pass]);
+    draw->stats->unfinished = draw->stats->unfinished || c->pages[draw->pass].coarser;
 }
 
-static struct wd_binding upload_pages(struct continuum *c, struct wd_cmd *cmd)
+static struct wd_binding upload_pages(const struct wd_page_list *pages, struct wd_cmd *cmd)
 {
     struct wd_binding binding = {0};
-    size_t size = c->pages.count * sizeof *c->pages.slots;
+    size_t size = pages->count * sizeof *pages->slots;
     uint32_t *slots = wd_cmd_upload(cmd, size ? size : sizeof *slots, &binding);
     if (slots && size)
-        memcpy(slots, c->pages.slots, size);
+        memcpy(slots, pages->slots, size);
     return binding;
 }
 
@@ -276,8 +279,8 @@ static void record_cull(struct continuum *c, const struct wd_tree_draw *draw)
                                           WD_BIND_BUFFER(&c->forest.clusters),
                                           WD_BIND_BUFFER(&c->counts), WD_BIND_BUFFER(&c->visible),
                                           WD_BIND_BUFFER(&c->pyramid),
-                                          upload_pages(c, cmd), WD_BIND_BUFFER(&c->put_off)};
-    size_t clusters = c->forest.cluster_count + c->pages.count * WD_PAGE_CLUSTERS;
+                                          upload_pages(&c->pages[draw->pass], cmd), WD_BIND_BUFFER(&c->put_off)};
+    size_t clusters = c->forest.cluster_count + c->pages[draw->pass].count * WD_PAGE_CLUSTERS;
     wd_cmd_bind(cmd, &c->pipelines.cull, bindings);
     wd_cmd_dispatch_1d(cmd, (clusters + 63) / 64);
     record_args(c, cmd, FIRST_ROUND);
