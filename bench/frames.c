@@ -1,6 +1,8 @@
-/* What the table of frame times asks for (docs/performance.md), view by view: whole frames, and by a GPU's own
- * clock, each as a median and the 99th of a hundred, with the time of each pass. */
+/* What the table of frame times asks for (docs/performance.md), view by view: whole frames one by one, and by a
+ * GPU's own clock, each as a median and the 99th of a hundred, with the time of each pass; and how many a second
+ * are drawn live, two in flight. */
 #include "figures.h"
+#include "live_target.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -35,6 +37,7 @@ struct passes {
 struct times {
     double frame_ms[MOST_FRAMES], gpu_ms[MOST_FRAMES];
     uint32_t frames;
+    double live_ms; /* a frame */
     struct passes passes;
 };
 
@@ -60,17 +63,24 @@ static void close_stage(struct stage *stage)
     wd_forest_destroy(&stage->forest);
 }
 
+static enum wd_result params_of(const struct stage *stage, const struct view *view, uint32_t frame,
+                                struct wd_render_params *params)
+{
+    *params = (struct wd_render_params){.samples = 1, .method = "continuum",
+                                        .width = view->width, .height = view->height,
+                                        .time_s = frame / 60.0};
+    return view->is_path ? wd_forest_get_path_camera(stage->forest, view->camera,
+                                                     fmod(frame / 60.0, 8.0), &params->camera, NULL)
+                         : wd_forest_get_camera(stage->forest, view->camera, &params->camera);
+}
+
 static bool draw(struct stage *stage, const struct view *view, uint32_t frame,
                  enum wd_time_mode timing, struct wd_frame_stats *stats)
 {
-    struct wd_render_params params = {.samples = 1, .method = "continuum", .timing = timing,
-                                      .width = view->width, .height = view->height,
-                                      .time_s = frame / 60.0};
+    struct wd_render_params params;
     struct wd_picture picture = {0};
-    enum wd_result result =
-        view->is_path ? wd_forest_get_path_camera(stage->forest, view->camera,
-                                                  fmod(frame / 60.0, 8.0), &params.camera, NULL)
-                      : wd_forest_get_camera(stage->forest, view->camera, &params.camera);
+    enum wd_result result = params_of(stage, view, frame, &params);
+    params.timing = timing;
     if (result == WD_OK)
         result = wd_renderer_render(stage->renderer, &params, &picture);
     wd_picture_finish(&picture);
@@ -113,6 +123,24 @@ static bool measure(struct stage *stage, const struct view *view, struct times *
     return ok;
 }
 
+static bool measure_live(struct stage *stage, const struct view *view, struct times *times)
+{
+    struct live_target live;
+    struct wd_render_params params;
+    bool ok = live_target_init(&live, stage->renderer, view->width, view->height);
+    double begin_s = bench_now_s();
+    uint32_t frame = 0;
+    while (ok && frame < MOST_FRAMES && (frame < LEAST_FRAMES || bench_now_s() - begin_s < VIEW_S)) {
+        ok = params_of(stage, view, frame, &params) == WD_OK &&
+             wd_renderer_draw(stage->renderer, &params, &live.target) == WD_OK;
+        frame++;
+    }
+    ok = wd_renderer_wait(stage->renderer) == WD_OK && ok;
+    times->live_ms = frame ? (bench_now_s() - begin_s) * 1e3 / frame : 0.0;
+    live_target_finish(&live);
+    return ok;
+}
+
 static double percentile_99(const double *sorted, uint32_t count)
 {
     return sorted[(uint32_t)ceil(0.99 * count) - 1];
@@ -123,9 +151,11 @@ static void report(const struct view *view, struct times *times, double *gpu_ms)
     uint32_t count = times->frames;
     double frame_ms = bench_median(times->frame_ms, count);
     *gpu_ms = bench_median(times->gpu_ms, count);
-    printf("%s %s, %s, %u x %u: %u frames, whole %.2f ms (99th %.2f), device %.2f ms (99th %.2f)\n",
+    printf("%s %s, %s, %u x %u: %u frames, whole %.2f ms (99th %.2f), device %.2f ms (99th %.2f), live "
+           "%.2f ms\n",
            view->scene, view->setting, view->camera, view->width, view->height, count, frame_ms,
-           percentile_99(times->frame_ms, count), *gpu_ms, percentile_99(times->gpu_ms, count));
+           percentile_99(times->frame_ms, count), *gpu_ms, percentile_99(times->gpu_ms, count),
+           times->live_ms);
     for (uint32_t i = 0; i < times->passes.count; i++)
         printf("    %-22s %8.3f ms, recorded in %.3f\n", times->passes.names[i],
                bench_median(times->passes.gpu_ms[i], count),
@@ -141,7 +171,8 @@ bool bench_frame_times(const char *gpu)
         struct stage stage = {.gpu = gpu};
         struct times *times = calloc(1, sizeof *times);
         double gpu_ms = 0.0;
-        bool ok = times && open_stage(&stage, &VIEWS[i]) && measure(&stage, &VIEWS[i], times);
+        bool ok = times && open_stage(&stage, &VIEWS[i]) && measure(&stage, &VIEWS[i], times) &&
+                  measure_live(&stage, &VIEWS[i], times);
         if (ok)
             report(&VIEWS[i], times, &gpu_ms);
         close_stage(&stage);

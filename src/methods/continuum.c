@@ -269,6 +269,8 @@ static void record_cull(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
     wd_cmd_use_buffer(cmd, &c->pyramid, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(cmd, &c->forest.clusters, WD_USE_COMPUTE_READ); /* later views may plant there */
+    wd_cmd_use_buffer(cmd, &c->device->trees, WD_USE_SHADER_READ);
     wd_cmd_fill_buffer(cmd, &c->counts, 0);
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->visible, WD_USE_COMPUTE_WRITE);
