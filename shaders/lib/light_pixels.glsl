@@ -58,9 +58,9 @@ wd_light_push push = push_block;
 #include "lib/gbuffer.glsl"
 #include "lib/tree.glsl"
 #include "lib/crown.glsl"
+#include "lib/shade.glsl"
 #include "lib/river.glsl"
 #include "lib/water.glsl"
-#include "lib/shade.glsl"
 
 /* How far off the eye sees water at a pixel; negative: it sees none. */
 float pixel_water_m(ivec2 at)
@@ -79,8 +79,9 @@ vec3 seen(uvec2 at, vec3 radiance, vec3 direction, float distance_m, float water
         float depth_m = distance_m < WD_SKY_M ? distance_m - water_m : 1e4;
         radiance = water_radiance(at, radiance, direction, water_m, depth_m, sun_share);
         distance_m = water_m;
+        haze_shade_of_place = vec2(0.0);
     }
-    return distance_m < WD_SKY_M ? apply_fog(radiance, direction, distance_m, ground_share)
+    return distance_m < WD_SKY_M ? apply_haze(radiance, direction, distance_m, ground_share)
                                  : radiance;
 }
 
@@ -131,6 +132,7 @@ void main()
     index = dealt(index, lists.count[LIST]);
     uint tile = tiles[LIST * push.tile_columns * push.tile_rows + index];
     ivec2 corner = ivec2(tile & 0xffffu, tile >> 16) * WD_TILE + ivec2(gl_LocalInvocationID.xy);
+    know_eye();
     uint row = 0u;
     do {
         light_pixel(corner + ivec2(0, row));

@@ -19,8 +19,3 @@ vec3 sun_disc(vec3 direction)
 {
     return wd_sun_disc_toward(direction);
 }
-
-vec3 apply_fog(vec3 radiance, vec3 direction, float length_m, float sunlit)
-{
-    return wd_fog_apply(radiance, direction, length_m, sunlit);
-}

@@ -64,8 +64,9 @@ void main()
     pixel.lit = -1.0;
     pixel.above = pixel.mirrors = 0.0;
     pixel_lay_snow(pixel);
+    know_eye();
     float sun_share, ground_share;
     vec3 radiance = shade(pixel, uvec2(gl_FragCoord.xy), sun_share, ground_share);
-    radiance = apply_fog(radiance, pixel.direction, length(pixel.rel), ground_share);
+    radiance = apply_haze(radiance, pixel.direction, length(pixel.rel), ground_share);
     out_color = vec4(radiance * opacity, opacity);
 }

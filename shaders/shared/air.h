@@ -64,13 +64,19 @@ WD_FUNC WD_VECTOR wd_fog_through(WD_FRAME_IN WD_VECTOR direction, float length_m
     return WD_V3(WD_EXP(-0.80f * depth), WD_EXP(-depth), WD_EXP(-1.34f * depth));
 }
 
-/* `radiance` as it arrives from `length_m` off. `sunlit`: share of the way on which the ground lets
- * the sun reach the haze. */
+/* Share of haze's light from the sky that it has where hills keep the sun from it: what is scattered twice. */
+#define WD_HAZE_IN_SHADE 0.45f
+
+/* `radiance` as it arrives from `length_m` off. `sunlit`: share of the way on which the ground lets the sun reach
+ * the haze; `sky`, `sun`: what trees let through to it of each. */
 WD_FUNC WD_VECTOR wd_fog_apply(WD_FRAME_IN WD_VECTOR radiance, WD_VECTOR direction, float length_m,
-                               float sunlit)
+                               float sunlit, float sky, float sun)
 {
     WD_VECTOR through = wd_fog_through(WD_FRAME_PASS direction, length_m);
-    WD_VECTOR haze = wd_horizon_toward(WD_FRAME_PASS direction, WD_MIX(0.45f, 1.0f, sunlit));
+    float phase = wd_haze_phase(wd_v3_dot(direction, WD_FRAME_V3(sun_direction)));
+    float glow = phase * WD_MIX(WD_HAZE_IN_SHADE * sky, sun, sunlit);
+    WD_VECTOR haze = wd_v3_add(wd_v3_scale(WD_FRAME_V3(sky_horizon), sky),
+                               wd_v3_scale(WD_FRAME_V3(sky_glow), glow));
     WD_VECTOR lost = wd_v3_sub(WD_V3(1.0f, 1.0f, 1.0f), through);
     return wd_v3_add(wd_v3_mul(radiance, through), wd_v3_mul(haze, lost));
 }

@@ -289,8 +289,37 @@ static bool advance(struct path *path)
     return scatter(path, &hit);
 }
 
-/* Haze between the eye and what it sees is lit where the ground there lets the sun pass. */
-static struct wd_vec3 through_haze(const struct path *path, struct wd_vec3 direction)
+/* Where the eye looks through haze: a place on the way, chosen as haze there adds to what arrives. */
+static struct wd_vec3 place_in_haze(struct path *path, struct wd_vec3 direction)
+{
+    float through = wd_fog_through(frame_of(path), direction, path->seen_m).y, point[2];
+    wd_sampler_next(&path->sampler, point);
+    float share = through < 0.999f ? logf(1 - point[0] * (1 - through)) / logf(through) : point[0];
+    return wd_v3_scale(direction, share * path->seen_m);
+}
+
+/* Trees farther off stand in haze themselves, and so does what they hide. */
+static const float HAZE_SHADOWS_M = 300;
+
+/* Toward all the sky alike. */
+static bool sky_lights_haze(struct path *path, struct wd_vec3 at)
+{
+    float point[2];
+    wd_sampler_next(&path->sampler, point);
+    float across = sqrtf(1 - point[0] * point[0]), turn = 6.2831853f * point[1];
+    struct wd_vec3 toward = WD_V3(across * cosf(turn), across * sinf(turn), point[0]);
+    return sky_reaches(path, &(struct wd_trace_ray){at, toward, HAZE_SHADOWS_M});
+}
+
+static bool sun_lights_haze(struct path *path, struct wd_vec3 at)
+{
+    float share;
+    struct wd_vec3 toward = toward_sun(path, &share);
+    return sky_reaches(path, &(struct wd_trace_ray){at, toward, HAZE_SHADOWS_M});
+}
+
+/* Haze between the eye and what it sees is lit where the ground there lets the sun pass, and trees near by. */
+static struct wd_vec3 through_haze(struct path *path, struct wd_vec3 direction)
 {
     const struct wd_frame_uniforms *frame = frame_of(path);
     if (path->seen_m >= INFINITY)
@@ -300,7 +329,9 @@ static struct wd_vec3 through_haze(const struct path *path, struct wd_vec3 direc
                                   wd_v3_of(frame->sun_direction), INFINITY};
     bool shaded = wd_trace_blocked_by_ground(path->tracer->scene, &to_sun);
     path->counts->rays++;
-    return wd_fog_apply(frame, path->radiance, direction, path->seen_m, shaded ? 0.0f : 1.0f);
+    struct wd_vec3 at = place_in_haze(path, direction);
+    float sky = sky_lights_haze(path, at) ? 1.0f : 0.0f, sun = sun_lights_haze(path, at) ? 1.0f : 0.0f;
+    return wd_fog_apply(frame, path->radiance, direction, path->seen_m, shaded ? 0.0f : 1.0f, sky, sun);
 }
 
 struct wd_vec3 wd_path_radiance(const struct wd_tracer *tracer, struct wd_vec3 from,

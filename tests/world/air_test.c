@@ -34,7 +34,7 @@ static float contrast(const struct wd_frame_uniforms *frame, float distance_m)
 {
     struct wd_vec3 level = {0, 1, 0};
     struct wd_vec3 horizon = wd_horizon_toward(frame, level, 1);
-    struct wd_vec3 black = wd_fog_apply(frame, WD_V3(0, 0, 0), level, distance_m, 1);
+    struct wd_vec3 black = wd_fog_apply(frame, WD_V3(0, 0, 0), level, distance_m, 1, 1, 1);
     return (horizon.y - black.y) / horizon.y;
 }
 
@@ -60,7 +60,7 @@ static void test_ridges_to_50_km(void **state)
     struct wd_vec3 horizon = wd_horizon_toward(&frame, level, 1);
     float before = 0;
     for (int km = 1; km <= 50; km++) {
-        struct wd_vec3 seen = wd_fog_apply(&frame, dark, level, 1000.0f * (float)km, 1);
+        struct wd_vec3 seen = wd_fog_apply(&frame, dark, level, 1000.0f * (float)km, 1, 1, 1);
         assert_true(seen.y > before && seen.y < horizon.y);
         assert_true(seen.z / seen.x > horizon.z / horizon.x);
         before = seen.y;
@@ -92,7 +92,7 @@ static void test_night(void **state)
             float z = (float)(i % 8) / 8, turn = 0.8f * (float)i;
             struct wd_vec3 d = {sqrtf(1 - z * z) * cosf(turn), sqrtf(1 - z * z) * sinf(turn), z};
             struct wd_vec3 sky = wd_sky_toward(&frame, d);
-            struct wd_vec3 far = wd_fog_apply(&frame, sky, d, 20000, 1);
+            struct wd_vec3 far = wd_fog_apply(&frame, sky, d, 20000, 1, 1, 1);
             assert_true(isfinite(sky.x + sky.y + sky.z + far.x + far.y + far.z));
             assert_true(sky.x > 0 && sky.y > 0 && sky.z > 0 && far.x > 0 && far.z > 0);
             if (elevation < -9)

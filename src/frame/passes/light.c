@@ -210,6 +210,15 @@ static void use_gbuffer(struct wd_cmd *cmd, struct wd_targets *targets)
     wd_cmd_use_image(cmd, &targets->depth, WD_USE_COMPUTE_READ);
 }
 
+static float eye_over_ground_m(const struct wd_light_params *params)
+{
+    const struct wd_terrain *terrain = params->forest->ground.terrain;
+    const double *eye_m = params->view->eye_m;
+    if (!wd_terrain_contains(terrain, eye_m[0], eye_m[1]))
+        return 1e6f;
+    return (float)(eye_m[2] - (double)wd_terrain_height(terrain, eye_m[0], eye_m[1]));
+}
+
 static struct wd_light_push push_of(const struct wd_light_pass *pass,
                                     const struct wd_light_params *params)
 {
@@ -224,6 +233,7 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
         .has_rivers = params->forest->ground.terrain->water_m != NULL,
         .has_overlay = params->overlay == WD_OVERLAY_OVER,
         .level_cards = params->level_cards,
+        .eye_over_ground_m = eye_over_ground_m(params),
         .extent_m = {(float)wd_terrain_extent_x_m(params->forest->ground.terrain),
                      (float)wd_terrain_extent_y_m(params->forest->ground.terrain)},
         .canopy_scale = {params->forest->canopy_light_scale[0],
