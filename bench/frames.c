@@ -11,7 +11,7 @@
 
 enum { MOST_FRAMES = 400, LEAST_FRAMES = 5, MOST_PASSES = 40 };
 static const double VIEW_S = 4.0; /* frames of a view are drawn for so long, */
-static const double WARM_S = 1.0; /* after so long a time, in which devices raise their clocks */
+static const double WARM_S = 3.0; /* after so long a time, in which devices raise their clocks */
 
 static const struct view {
     const char *scene, *setting, *camera; /* a camera, or a path of that name */

@@ -79,7 +79,7 @@ vec3 seen(uvec2 at, vec3 radiance, vec3 direction, float distance_m, float water
         float depth_m = distance_m < WD_SKY_M ? distance_m - water_m : 1e4;
         radiance = water_radiance(at, radiance, direction, water_m, depth_m, sun_share);
         distance_m = water_m;
-        haze_shade_of_place = vec2(0.0);
+        haze_end = IN_THE_OPEN;
     }
     return distance_m < WD_SKY_M ? apply_haze(radiance, direction, distance_m, ground_share)
                                  : radiance;

@@ -672,11 +672,11 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
             place = wood_place(pixel, crown, unpackHalf2x16(model.sun_curve), alone.share, sunlit, cascade);
         facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction),
                      alone.share * place.cloud);
-        haze_shade_of_place = haze_shade(shelter.floor_mean, shelter.layer_m, pixel.rel.z - crown.foot_z);
+        haze_end = wd_haze_place(shelter.beside, shelter.layer_m, pixel.rel.z - crown.foot_z);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
         light_past_neighbours(alone, pixel, crown, model, shelter, place);
     } else {
-        haze_shade_of_place = haze_shade(shelter.floor_mean, shelter.layer_m, 0.0);
+        haze_end = wd_haze_place(shelter.beside, shelter.layer_m, 0.0);
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);
     }

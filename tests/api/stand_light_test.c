@@ -13,6 +13,7 @@ static struct suite suite;
 struct stand {
     const char *scene;
     double from_m[2], size_m;
+    const char *setting; /* in place of the scene's; NULL: none */
 };
 
 struct painters {
@@ -23,10 +24,12 @@ struct painters {
 static void painters_init(struct painters *painters, const struct stand *stand)
 {
     char scene[1280];
+    const char *settings[] = {stand->setting, NULL};
     snprintf(scene, sizeof scene, "%s/%s", suite.root, stand->scene);
     const struct wd_reference_params params = {.log = suite.log};
-    painters->forest = suite_forest(&suite, scene);
-    assert_non_null(painters->forest);
+    const struct wd_forest_params forest = {
+        .scene_path = scene, .settings = settings, .log = suite.log};
+    assert_int_equal(wd_forest_create(&painters->forest, &forest), WD_OK);
     assert_int_equal(wd_renderer_set_forest(suite.renderer, painters->forest), WD_OK);
     assert_int_equal(wd_reference_create(&painters->reference, painters->forest, &params), WD_OK);
 }
@@ -98,8 +101,9 @@ static void check_light(const char *part, const struct sum *drawn, const struct 
 /* --- tests ---------------------------------------------------------------------------------------
  */
 
-static const struct stand dark = {"scenes/bench75k.json", {300, 300}, 400};
-static const struct stand light = {"bench/light.json", {460, 250}, 180};
+static const struct stand dark = {"scenes/bench75k.json", {300, 300}, 400, NULL};
+static const struct stand hazy = {"scenes/bench75k.json", {300, 300}, 400, "fog.visibility_m=3000"};
+static const struct stand light = {"bench/light.json", {460, 250}, 180, NULL};
 
 /* 0.98 to 0.99 of the traced; 1.36 in red if leaves scatter the sun down as an even layer does and
  * the sky about the sun comes by as short a way as in lighter stands. */
@@ -174,12 +178,42 @@ static void crowns_from_within_hide_as_much_of_the_sky_as_traced(void **state)
     assert_true(ratio > 0.96 && ratio < 1.04);
 }
 
+/* What lies so far off that most of its light is haze's. */
+static void add_far(struct sum *sum, const struct wd_picture *picture)
+{
+    for (size_t i = 0; i < (size_t)picture->width * picture->height; i++)
+        if (picture->depth_m[i] > 60 && picture->depth_m[i] < 300)
+            add(sum, picture, i);
+}
+
+/* 0.84 to 0.97 of the traced; several times as much if no tree shades the haze. */
+static void haze_within_a_stand_is_as_dark_as_traced(void **state)
+{
+    (void)state;
+    struct sum drawn = {0}, traced = {0};
+    struct painters painters;
+    painters_init(&painters, &hazy);
+    for (int place = 0; place < 8; place++) {
+        struct wd_camera camera = camera_at(painters.forest, &hazy, place);
+        struct wd_picture picture = {0}, truth = {0};
+        camera.yaw_rad = 6.283185307179586 * fmod(0.6180339887 * place, 1);
+        look(&painters, &camera, &picture, &truth);
+        add_far(&drawn, &picture);
+        add_far(&traced, &truth);
+        wd_picture_finish(&picture);
+        wd_picture_finish(&truth);
+    }
+    check_light("haze within a dark stand", &drawn, &traced, 1.3);
+    painters_finish(&painters);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dark_floor_is_as_bright_as_traced),
         cmocka_unit_test(crowns_from_within_are_as_bright_as_traced),
         cmocka_unit_test(crowns_from_within_hide_as_much_of_the_sky_as_traced),
+        cmocka_unit_test(haze_within_a_stand_is_as_dark_as_traced),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;
