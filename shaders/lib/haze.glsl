@@ -42,13 +42,22 @@ float haze_reach(float length_m)
     return 0.5 * inversesqrt(1.0 + x * x);
 }
 
-/* Of short ways this is Simpson's rule. */
+/* Simpson's rule over the part of the way that is below the stands' tops. */
 vec3 apply_haze(vec3 radiance, vec3 direction, float length_m, float sunlit)
 {
-    wd_haze_place between = wd_haze_place(0.5 * (haze_eye.floor_log + haze_end.floor_log),
-                                          0.5 * (haze_eye.layer_m + haze_end.layer_m),
-                                          0.5 * (haze_eye.height_m + haze_end.height_m));
-    vec2 shade = haze_shade(haze_eye) + 4.0 * haze_shade(between) + haze_shade(haze_end);
-    vec2 open = 1.0 - shade * haze_reach(length_m) / 3.0;
+    bool rises = haze_eye.height_m < haze_end.height_m;
+    wd_haze_place low = haze_end, high = haze_eye;
+    if (rises) {
+        low = haze_eye;
+        high = haze_end;
+    }
+    float top_m = max(low.layer_m.y, high.layer_m.y) + 0.5;
+    float part = clamp((top_m - low.height_m) / max(high.height_m - low.height_m, 1e-3), 0.0, 1.0);
+    high.height_m = min(high.height_m, top_m);
+    wd_haze_place between = wd_haze_place(0.5 * (low.floor_log + high.floor_log),
+                                          0.5 * (low.layer_m + high.layer_m),
+                                          0.5 * (low.height_m + high.height_m));
+    vec2 shade = haze_shade(low) + 4.0 * haze_shade(between) + haze_shade(high);
+    vec2 open = 1.0 - shade * (part * haze_reach(length_m * part) / 3.0);
     return wd_fog_apply(radiance, direction, length_m, sunlit, open.x, open.y);
 }
