@@ -420,7 +420,7 @@ void select_tree(uint index, float share, uint place)
 
 /* How many times over a cluster's crowns may cover what is seen of it: what lies deeper is hidden all
  * the same. */
-const float MOST_LAYERS = 4.0;
+const float MOST_LAYERS = 2.0;
 
 /* Which of a cluster's trees are drawn: the first so many records, of which each stands for 1 over
  * the share of trees. */
