@@ -17,7 +17,8 @@ layout(set = 0, binding = 4) uniform usamplerBuffer wood;        /* wd_splat_cor
 layout(set = 0, binding = 7, rg32ui) uniform readonly uimageBuffer drawn; /* the visibility buffer */
 
 layout(scalar, set = 0, binding = 8) buffer Large {
-    uint large_groups[3]; /* of an indirect dispatch */
+    uint large_groups[3]; /* of an indirect dispatch: parts that are listed */
+    uint large_wanted;    /* parts that were to be */
     wd_large_part large[];
 };
 
@@ -133,10 +134,10 @@ bool put_aside(wd_bark bark, uint id)
     if (span <= LARGE_PX)
         return false;
     uint parts = uint(ceil(span / float(WD_LARGE_PART_PX)));
-    uint at = atomicAdd(large_groups[0], parts);
+    uint at = atomicAdd(large_wanted, parts); /* never falls: after one that does not fit none does */
     bool fits = at + parts <= WD_LARGE_MOST;
-    if (!fits)
-        atomicAdd(large_groups[0], 0u - parts);
+    if (fits)
+        atomicMax(large_groups[0], at + parts);
     for (uint part = 0u; fits && part < parts; part++)
         large[at + part] = wd_large_part(id, part);
     return fits;

@@ -14,7 +14,7 @@ layout(scalar, set = 0, binding = 0) uniform View { wd_splat_view view; };
 layout(scalar, set = 0, binding = 1) buffer Counts { wd_splat_counts counts; };
 layout(scalar, set = 0, binding = 2) writeonly buffer Groups { wd_splat_groups groups; };
 layout(scalar, set = 0, binding = 3) buffer Lost { wd_splat_lost lost; };
-layout(scalar, set = 0, binding = 4) writeonly buffer Large { uint large_groups[3]; };
+layout(scalar, set = 0, binding = 4) writeonly buffer Large { uint large_groups[3], large_wanted; };
 
 uint[3] groups_of(uint count)
 {
@@ -56,4 +56,5 @@ void main()
     groups.wood = groups_of(counts.wood_items - counts.done_wood);
     groups.wood[2] = PARTS;
     large_groups = uint[3](0u, 1u, 1u);
+    large_wanted = 0u;
 }

@@ -34,6 +34,7 @@ bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t wi
                      uint32_t height, uint32_t shadow_size);
 void wd_targets_finish(struct wd_targets *targets, struct wd_gpu *gpu);
 
+/* The one that holds the maps of this frame. */
 struct wd_image *wd_targets_shadow(struct wd_targets *targets);
 
 /* The G-buffer as targets of a rendering: albedo, normal, surface, depth in this order. `load` says

@@ -29,7 +29,7 @@ struct continuum {
     struct wd_buffer put_off; /* uint32_t[]: see shaders/lib/put_off.glsl */
     uint32_t tree_capacity, item_capacity, cluster_capacity;
     uint32_t most_trees; /* that any view can hold */
-    struct wd_buffer large;    /* triangles of wood: groups of a dispatch, then ids */
+    struct wd_buffer large;    /* parts of triangles of wood: see lib/wood_draw.glsl */
     struct wd_buffer depths;   /* of a view, in its target's texels */
     enum wd_filled filled;     /* whether the view's targets are */
     struct wd_buffer pyramid; /* float[], of the camera's newest frame */
@@ -58,7 +58,7 @@ static bool continuum_init(void *state, struct wd_gpu *gpu)
     c->gpu = gpu;
     return wd_continuum_pipelines_init(&c->pipelines, gpu) &&
            make_work(&c->large, gpu, "large triangles",
-                     3 * sizeof(uint32_t) + WD_LARGE_MOST * sizeof(struct wd_large_part),
+                     4 * sizeof(uint32_t) + WD_LARGE_MOST * sizeof(struct wd_large_part),
                      VK_FORMAT_UNDEFINED);
 }
 
@@ -378,7 +378,8 @@ static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
         if (!pipeline->pipeline)
             continue;
         wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
-        wd_cmd_use_buffer(cmd, &c->large, WD_USE_COMPUTE_WRITE);
+        if (kind == WD_SHAPE_WOOD)
+            wd_cmd_use_buffer(cmd, &c->large, WD_USE_COMPUTE_WRITE);
         wd_cmd_bind(cmd, pipeline, bindings);
         wd_cmd_dispatch_indirect(cmd, &c->groups, groups[kind]);
         if (!lists)
@@ -517,7 +518,7 @@ static void fill_camera(struct continuum *c, const struct wd_tree_draw *draw)
     wd_cmd_copy_to_image(cmd, &c->depths, 0, &targets->depth, 0);
 }
 
-/* As an image that compute stores to: copies to depth cost an H200 ten times as much. */
+/* As an image that compute stores to: a copy to depth takes an H200 four times as long. */
 static void store_cascade(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;

@@ -326,6 +326,59 @@ static void jumps_show_all_and_refine(void **state)
     frame_test_finish(&live);
 }
 
+/* Nothing of the first frames' cascades is planted on demand, then the camera plants what they have read: validation
+ * ends the program if these are not told apart. */
+static void far_views_plant_after_cascades(void **state)
+{
+    (void)state;
+    struct frame_test test;
+    frame_test_init(&test, root, &(struct frame_test_params){.settings = WOODS});
+    test.scene.quality.shadow_distance_m = 5.0;
+    struct frame_picture picture;
+    frame_test_draw(&test, "continuum", OVER, &picture);
+    assert_true(test.forest.pages.planted > 0);
+    assert_true(covered(&picture) > pixels_of(&picture) / 5);
+    frame_picture_finish(&picture);
+    frame_test_finish(&test);
+}
+
+/* A cascade of trees on demand that is kept is the one that would be drawn. */
+static void kept_cascades_are_as_if_drawn(void **state)
+{
+    (void)state;
+    struct frame_test test;
+    void *maps[2][WD_CASCADES];
+    frame_test_init(&test, root, &(struct frame_test_params){.settings = WOODS});
+    test.scene.wind.speed_mps = 6.0;
+    test.scene.wind.gust = 0.5;
+    uint32_t kept = 0;
+    for (int i = 0; i < 2; i++) {
+        for (int frame = 0; frame < 2; frame++) { /* the second one keeps what it may */
+            struct frame_picture picture;
+            if (i == 1)
+                memset(test.frame.kept, 0, sizeof test.frame.kept);
+            test.time_s = 0.3 * frame;
+            frame_test_draw(&test, "continuum", OVER, &picture);
+            frame_picture_finish(&picture);
+        }
+        for (uint32_t k = 0; k < WD_CASCADES; k++) {
+            struct wd_image *shadow = &test.frame.targets.shadow;
+            size_t size = (size_t)4 * shadow->width * shadow->height;
+            maps[i][k] = wd_alloc(size);
+            assert_true(wd_image_read(&test.gpu, shadow, k, 0, maps[i][k], size));
+            bool calm = test.frame.kept[k].method && test.frame.kept[k].box.calm;
+            kept += calm;
+            if (i == 1 && calm)
+                assert_memory_equal(maps[0][k], maps[1][k], size);
+        }
+    }
+    print_message("%u of %d cascades may be kept\n", kept / 2, WD_CASCADES);
+    assert_true(kept > 0);
+    for (uint32_t k = 0; k < 2 * WD_CASCADES; k++)
+        free(maps[k / WD_CASCADES][k % WD_CASCADES]);
+    frame_test_finish(&test);
+}
+
 /* As many of a picture's pixels show trees as where all trees are stored. */
 static void cover_is_that_of_stored_trees(void **state)
 {
@@ -391,6 +444,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(caps_hold),
         cmocka_unit_test(pictures_know_no_past),
         cmocka_unit_test(jumps_show_all_and_refine),
+        cmocka_unit_test(far_views_plant_after_cascades),
+        cmocka_unit_test(kept_cascades_are_as_if_drawn),
         cmocka_unit_test(cover_is_that_of_stored_trees),
         cmocka_unit_test(others_refuse),
     };
