@@ -64,7 +64,7 @@ WD_FUNC WD_VECTOR wd_fog_through(WD_FRAME_IN WD_VECTOR direction, float length_m
     return WD_V3(WD_EXP(-0.80f * depth), WD_EXP(-depth), WD_EXP(-1.34f * depth));
 }
 
-/* Share of haze's light from the sky that it has where hills keep the sun from it: what is scattered twice. */
+/* Of the light that haze scatters forward, what is left where hills keep the sun's own from it. */
 #define WD_HAZE_IN_SHADE 0.45f
 
 /* `radiance` as it arrives from `length_m` off. `sunlit`: share of the way on which the ground lets the sun reach

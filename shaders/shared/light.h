@@ -16,7 +16,7 @@ struct wd_light_push {
     WD_VEC2(extent_m);   /* of the terrain */
     WD_VEC2(canopy_scale); /* of the canopy's light: image coordinates = metres * scale */
     uint32_t has_overlay; /* a method has blended trees over the G-buffer */
-    float eye_over_ground_m;
+    float eye_over_ground_m; /* 1e6 where there is no ground */
     uint32_t level_cards; /* cards show pictures taken level, whatever way the eye looks */
 };
 
