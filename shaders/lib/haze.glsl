@@ -1,5 +1,9 @@
-/* Haze among trees has the light that these let down. Expects `frame`, `push` (wd_light_push) and lib/skylight.glsl. */
+/* Haze among trees has the light that these let down. Expects `frame`, `push` (wd_light_push) and lib/skylight.glsl;
+ * with SHAFT_AT(tile, slice) the sun's comes in shafts (lib/shafts.glsl). */
 #include "shared/air.h"
+#ifdef SHAFT_AT
+#include "lib/shafts.glsl"
+#endif
 
 /* A stand, and how high over its ground: log2 of the share of the sky's light that reaches the floor; base and top of
  * its leaves. */
@@ -42,6 +46,54 @@ float haze_reach(float length_m)
     return 0.5 * inversesqrt(1.0 + x * x);
 }
 
+#ifdef SHAFT_AT
+/* The pixel that is lit, and noise of it. */
+uvec2 haze_pixel = uvec2(0u);
+float haze_noise = 0.5;
+
+/* A row of three tiles, by a quadratic B-spline: of the few places of each tile it leaves little noise. */
+float shaft_row(uint row, uvec3 columns, vec3 weights, uint slice)
+{
+    uint first = row * push.tile_columns;
+    return dot(weights, vec3(SHAFT_AT(first + columns.x, slice), SHAFT_AT(first + columns.y, slice),
+                             SHAFT_AT(first + columns.z, slice)));
+}
+
+vec3 spline_weights(float at)
+{
+    vec2 ends = 0.5 * vec2((1.0 - at) * (1.0 - at), at * at);
+    return vec3(ends.x, 1.0 - ends.x - ends.y, ends.y);
+}
+
+float shaft_at(uint slice)
+{
+    vec2 at = (vec2(haze_pixel) + 0.5) / float(WD_TILE);
+    uvec2 most = uvec2(push.tile_columns, push.tile_rows) - 1u, tile = uvec2(at);
+    uvec2 low = uvec2(max(ivec2(tile) - 1, 0)), high = min(tile + 1u, most);
+    uvec3 columns = uvec3(low.x, tile.x, high.x);
+    vec3 across = spline_weights(fract(at.x)), down = spline_weights(fract(at.y));
+    return dot(down, vec3(shaft_row(low.y, columns, across, slice), shaft_row(tile.y, columns, across, slice),
+                          shaft_row(high.y, columns, across, slice)));
+}
+
+/* Slices of tiles up to the last that ends before what is seen, and one place of the rest: behind what is seen light
+ * may be another. `open` is what the canopy's field tells of all the way. */
+float sun_on_way(float open, vec3 direction, float length_m)
+{
+    float axis = (frame.clip_from_rel * vec4(direction, 0.0)).w, reach_m = shafts_reach_m(axis);
+    float near_m = min(length_m, reach_m);
+    uint whole = uint(sqrt(near_m / reach_m) * float(WD_SHAFT_SLICES) + 1e-3);
+    float from_m = whole > 0u ? slice_end_m(reach_m, whole - 1u) : 0.0;
+    float lit = shaft_at(max(whole, 1u) - 1u);
+    float at_m = mix(from_m, near_m, haze_noise);
+    float last = sun_in_air(direction * at_m, at_m * axis, haze_noise);
+    float before = 1.0 - wd_fog_through(direction, from_m).y, near = 1.0 - wd_fog_through(direction, near_m).y;
+    float all = max(1.0 - wd_fog_through(direction, length_m).y, 1e-4);
+    lit = (lit * before + last * max(near - before, 0.0)) / max(near, 1e-4);
+    return mix(open, lit, push.shafts * min(near / all, 1.0));
+}
+#endif
+
 /* Simpson's rule over the part of the way that is below the stands' tops. */
 vec3 apply_haze(vec3 radiance, vec3 direction, float length_m, float sunlit)
 {
@@ -59,5 +111,9 @@ vec3 apply_haze(vec3 radiance, vec3 direction, float length_m, float sunlit)
                                           0.5 * (low.height_m + high.height_m));
     vec2 shade = haze_shade(low) + 4.0 * haze_shade(between) + haze_shade(high);
     vec2 open = 1.0 - shade * (part * haze_reach(length_m * part) / 3.0);
+#ifdef SHAFT_AT
+    if (push.shafts > 0.0)
+        open.y = sun_on_way(open.y, direction, length_m);
+#endif
     return wd_fog_apply(radiance, direction, length_m, sunlit, open.x, open.y);
 }

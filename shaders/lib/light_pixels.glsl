@@ -32,6 +32,7 @@ layout(set = 0, binding = 12) uniform sampler2D overlay;
 layout(set = 0, binding = 13) uniform sampler2DArray canopy_light;
 layout(set = 0, binding = 14) uniform sampler2D sky_map;
 layout(scalar, set = 0, binding = 15) readonly buffer Waters { float river_m[]; };
+layout(scalar, set = 0, binding = 16) readonly buffer Shafts { float shafts[]; };
 layout(scalar, push_constant) uniform Push { wd_light_push push_block; };
 
 /* llvmpipe reads a block once for all lanes only where all of them run, which is before any branch; within
@@ -49,6 +50,7 @@ wd_light_push push = push_block;
 #define SKY_MAP sky_map
 
 #define WATER_AT(index) river_m[index]
+#define SHAFT_AT(tile, slice) shafts[(tile) * WD_SHAFT_SLICES + (slice)]
 
 #include "lib/dealt.glsl"
 #include "lib/trees.glsl"
@@ -113,6 +115,8 @@ void light_pixel(ivec2 at)
     float water_m = MIXED != 0u ? pixel_water_m(at) : -1.0;
     if (MIXED != 0u && (water_m > 0.0) != ((PARTS & WD_PART_WATER) != 0u))
         return;
+    haze_pixel = uvec2(at);
+    haze_noise = pixel_noise(haze_pixel, frame.sample_index);
     vec4 radiance = vec4(pixel_radiance(at, water_m), 1.0);
     if (push.has_overlay != 0u) {
         vec4 over = texelFetch(overlay, at, 0);

@@ -204,12 +204,12 @@ float map_holds_mesh(uint cascade)
     return cascade < WD_LEAF_CASCADES ? 1.0 - smoothstep(0.10, 0.20, texel_m) : 0.0;
 }
 
-/* Of the nearest texel of layer 0: one fetch instead of four. */
-vec4 canopy_light_near(vec2 place_m)
+/* Of the nearest texel: one fetch instead of four. */
+vec4 canopy_light_near(vec2 place_m, int layer)
 {
 #ifdef CANOPY_LIGHT
     vec2 at = clamp(place_m * push.canopy_scale, 0.0, 0.9999);
-    return texelFetch(CANOPY_LIGHT, ivec3(at * vec2(textureSize(CANOPY_LIGHT, 0)), 0), 0);
+    return texelFetch(CANOPY_LIGHT, ivec3(at * vec2(textureSize(CANOPY_LIGHT, 0).xy), layer), 0);
 #else
     return vec4(1.0);
 #endif
@@ -238,10 +238,15 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
 {
     vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(clear_of_crown_m(crown));
     vec2 sunward = center + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
-    vec4 open = canopy_light_near(sunward);
-    vec4 field = vec4(canopy_light_near(center + corner).xy, canopy_light_near(center - corner).zw);
+    vec4 open = canopy_light_near(sunward, 0);
+    vec4 field = vec4(canopy_light_near(center + corner, 0).xy, canopy_light_near(center - corner, 0).zw);
+    vec4 high = vec4(canopy_light_near(center + corner, 2).xy, canopy_light_near(center - corner, 2).zw);
+    vec4 low = vec4(canopy_light_near(center + corner, 3).xy, canopy_light_near(center - corner, 3).zw);
     wd_alone alone = NOT_ALONE;
-    alone.beside = field * field * through_herbs(herbs_above(shelter, height_m));
+    float herbs = through_herbs(herbs_above(shelter, height_m));
+    alone.beside = field * field * herbs;
+    alone.high = high * high * herbs;
+    alone.low = low * low * herbs;
     alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open)) * has_table(crown);
     alone.lets.xy = skylit.xy * wd_skylit_above(pixel.openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(pixel.openness);
@@ -320,7 +325,10 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     float over = pow(canopy_above(shelter.layer_m, place.rel.z - crown.foot_z), NEIGHBOURS_OVER);
     float from_above = smoothstep(0.15, 0.5, -pixel.direction.z) * (1.0 - shelter.within);
     from_above *= one_leaf ? has_table(crown) : 0.0;
-    alone.sides = exp2(mix(1.0, over, from_above) * log2(max(alone.beside, 1e-3)));
+    float hidden = mix(1.0, over, from_above);
+    alone.sides = exp2(hidden * log2(max(alone.beside, 1e-3)));
+    alone.high = exp2(hidden * log2(max(alone.high, 1e-3)));
+    alone.low = exp2(hidden * log2(max(alone.low, 1e-3)));
     alone.known = mix(alone.share, 1.0, from_above);
     alone.side = mix(vec4(1.0), eye_side(-pixel.direction), one_leaf ? alone.share : 0.0);
     float low_sky = unpackHalf2x16(model.again_low).y + (one_leaf ? 0.0 : LOW_SKY_CLOUD);
@@ -718,7 +726,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);
-    float about_sun = mix(wide_way, leaf_way, pixel.surface == 0u ? 0.0 : NEAR_SUN);
+    float close = pixel.surface == 0u ? 0.0 : mix(NEAR_SUN, NEAR_SUN_BLADES, place.sward);
+    float about_sun = mix(wide_way, leaf_way, close);
     vec3 from_sun = frame.sun_irradiance * sun_share + frame.circumsolar * about_sun;
     vec3 light = from_sun * (sunlit + place.gloss) + skylit;
     return light * PER_PI;

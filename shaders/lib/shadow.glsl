@@ -1,5 +1,5 @@
 /* Shadows of trees (cascaded maps) and of the ground (a field of shadow heights).
- * Expects `frame`, `push` (wd_light_push), `shadow_map` (sampler2DArrayShadow) and
+ * Expects `frame`, `push` (wd_light_push), `shadow_map` (sampler2DArrayShadow) and, for the ground's,
  * SUN_HEIGHT_AT(index). Where SHADOW_DEPTH names the same maps without comparison, penumbras widen with
  * the way from the caster; with SHADOW_COMPARES these are all that is asked, and `shadow_map` may be another. */
 
@@ -142,6 +142,7 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
     return lit / float(frame.shadow_taps);
 }
 
+#ifdef SUN_HEIGHT_AT
 /* Share of the sun's disc over the ground's own horizon. The field says below which height a place
  * lies in the shadow of ground farther toward the sun. */
 float ground_shadow(vec3 rel)
@@ -158,3 +159,4 @@ float ground_shadow(vec3 rel)
     float above_m = height_m - mix(south, north, share.y);
     return smoothstep(-push.sun_soft_m, push.sun_soft_m, above_m);
 }
+#endif

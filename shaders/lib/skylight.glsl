@@ -128,7 +128,7 @@ struct wd_around {
 
 /* The sky about the sun lies wide beside stems and far crowns, whose shadows it fills, but is hidden by the
  * leaves close to a leaf that hide the sun: how far. Of a hill that hides the sun it is in part above. */
-const float NEAR_SUN = 0.7, OVER_HILLS = 0.6;
+const float NEAR_SUN = 0.7, NEAR_SUN_BLADES = 0.92, OVER_HILLS = 0.6;
 
 /* Ways past a stand to the sky about the sun, most of which lies higher than a low sun, over the mean way of the
  * sky's light: the one over the sine and the other. By path-traced stands under suns of 12 to 60 degrees. */
@@ -172,15 +172,6 @@ vec4 faced_quarters(vec2 n)
     return 0.5 + 0.5 * vec4(n, -n);
 }
 
-/* Share of its sky's light that a face has where level ground has such shares of the quarters, all of one
- * colour. What stands before a quarter leaves its high part: of a horizon at angle h ground keeps cos^2 h, an
- * upright face 1 - (2 h + sin 2h) / pi, which is this within 0.04. `flat_on`: how level the face is. */
-float sky_faced(vec4 through, vec4 faced, float flat_on)
-{
-    vec4 upright = through * (1.0 - sqrt(max(1.0 - through, 0.0)));
-    return dot(mix(upright, through, flat_on), faced) / max(dot(faced, vec4(1.0)), 1e-12);
-}
-
 /* A crown stands before the quarters behind it, and what an eye sees of it looks out toward the eye: by how much
  * that lets it have of the quarters. Fitted to path-traced oaks and spruces under skies of one bright side. */
 const float OWN_SIDE = 0.7;
@@ -205,7 +196,8 @@ struct wd_alone {
     float share;  /* how far it stands free, */
     float known;  /* and how far that table tells what of the sky it has */
     vec4 beside;  /* shares of the sky's quarters that the ground beside its crown has, */
-    vec4 sides;   /* and the place past what stands there */
+    vec4 sides;   /* and the place past what stands there, */
+    vec4 high, low; /* and an upright face there that looks that way, of its light from the high sky and the low */
     vec4 side;    /* shares of what its own crown leaves that come from each quarter, over an even crown's */
     vec4 lets;    /* of light from above to the side that is seen and to the other, then from below */
     vec3 again;   /* times as much as without what its leaves scatter of that */
@@ -213,8 +205,27 @@ struct wd_alone {
     float leaf; /* 1: of a leaf of a crown; 0: of wood, herbs and the ground */
 };
 
-const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(1.0), vec4(0.0), vec3(1.0), vec3(0.0),
-                                   0.0);
+const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(1.0), vec4(0.0),
+                                   vec3(1.0), vec3(0.0), 0.0);
+
+/* Of an even sky's light on an upright face so much comes from below 30 degrees, and of what level ground has a quarter:
+ * what both have tells how much of any sky's does, of each colour. `upright`: irradiance of the face; `level`: of
+ * level ground by such a half of the sky. */
+vec3 low_share(vec3 upright, vec3 level)
+{
+    return clamp(1.272 - 0.663 * level / max(upright, vec3(1e-12)), 0.3, 0.95);
+}
+
+/* Share of its sky's light that a face has past what stands beside the place. `faced`: light of the quarters, by how
+ * much of it the face has; `flat_on`: how level it is; `sky`: its irradiance in the open. */
+vec3 sky_faced(wd_alone alone, vec4 faced, float flat_on, vec3 sky)
+{
+    float per_light = 1.0 / max(dot(faced, vec4(1.0)), 1e-12);
+    float high = dot(alone.high, faced) * per_light, low = dot(alone.low, faced) * per_light;
+    vec4 part = faced / max(quarters_bright(), vec4(1e-12));
+    vec3 upright = mix(vec3(high), vec3(low), low_share(sky, sky_level(part)));
+    return mix(upright, vec3(dot(alone.sides, faced) * per_light), flat_on);
+}
 
 /* Of the ways past a stand to what a leaf of it mirrors, the leaves that they meet over those on the mean way of the
  * sky's light, times their sine: 0.67, as of any ray. Stands are leaves and gaps: of ways that meet t leaves on
@@ -264,9 +275,10 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 sky = reach * gain * mix(upright, 1.0, abs(n.z));
     vec4 bright = quarters_bright(), faced = faced_quarters(n.xy);
     float flat_on = min(sqrt(n.z * n.z + facing.w), 1.0);
-    vec3 beside_front = alone.again * sky_faced(alone.sides, bright * faced, flat_on)
+    vec3 sky_of_front = max(even + odd, vec3(0.0)), sky_of_back = max(even - odd, vec3(0.0));
+    vec3 beside_front = alone.again * sky_faced(alone, bright * faced, flat_on, sky_of_front)
                         * sky_of_side(alone.side, bright, faced);
-    vec3 beside_back = alone.again * sky_faced(alone.sides, bright - bright * faced, flat_on)
+    vec3 beside_back = alone.again * sky_faced(alone, bright - bright * faced, flat_on, sky_of_back)
                        * sky_of_side(alone.side, bright, 1.0 - faced);
     vec3 sky_front = mix(sky, beside_front * alone.lets.x, alone.known);
     vec3 sky_back = mix(sky, beside_back * alone.lets.y, alone.known);
@@ -285,14 +297,15 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     floor_albedo = mix(floor_albedo, WD_SNOW_ALBEDO, shelter.snow);
     vec3 below = mix(deep_albedo, floor_albedo, exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
     vec3 upward = below * (open_sky * sky + with_scattered);
-    vec3 beside = alone.again * floor_albedo * (sky_level(alone.beside) + sun);
+    float beside_lit = exp2(longer * log2(max(dot(frame.sunward, alone.beside), 1e-3)));
+    vec3 beside = alone.again * floor_albedo * (sky_level(alone.beside) + sun * beside_lit);
     vec3 upward_front = mix(upward, beside * alone.lets.z, alone.share);
     vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
     float up = 0.5 + 0.5 * n.z;
     wd_around around;
     vec3 again = alone.scattered * mix(mean, 1.0, alone.share); /* in a stand, `scattered` has deeper ones' */
-    around.front = max(even + odd, vec3(0.0)) * sky_front + scattered * (up * (1.0 - alone.share)) + again;
-    around.back = max(even - odd, vec3(0.0)) * sky_back
+    around.front = sky_of_front * sky_front + scattered * (up * (1.0 - alone.share)) + again;
+    around.back = sky_of_back * sky_back
                   + scattered * ((1.0 - up) * (1.0 - alone.share)) + again;
     around.front += upward_front * (1.0 - up);
     around.back += upward_back * up;

@@ -17,6 +17,8 @@ struct wd_light_push {
     WD_VEC2(canopy_scale); /* of the canopy's light: image coordinates = metres * scale */
     uint32_t has_overlay; /* a method has blended trees over the G-buffer */
     float eye_over_ground_m; /* 1e6 where there is no ground */
+    float shafts_m; /* way along the view axis within maps of shadows, on which these tell what haze has of the sun */
+    float shafts;   /* how far they do, by how thick it is: 0..1 */
     uint32_t level_cards; /* cards show pictures taken level, whatever way the eye looks */
 };
 
@@ -36,6 +38,7 @@ struct wd_light_push {
 #define WD_PART_WATER 8u
 #define WD_PART_ALL 15u
 #define WD_TILE_LISTS 6
+#define WD_SHAFT_SLICES 16 /* parts of the way through haze, of a tile (lib/shafts.glsl) */
 #define WD_SKY_M 1e9f     /* distances from here on are the sky's */
 
 /* The cheapest list whose parts are enough. */

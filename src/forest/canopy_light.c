@@ -256,19 +256,30 @@ static float ray_through(const struct work *work, size_t cell, const struct ray 
     return expf(-depth);
 }
 
+/* Of an upright surface's light from above the lowest ring, the shares that come from each ring. Most of what the
+ * lowest sends it comes from lower yet than its rays, which go twice as far through crowns. */
+static const float UPRIGHT[STEEPNESSES - 1] = {0.148f, 0.317f, 0.535f};
+
 /* Each ring is turned against the one before, so that a quarter is seen at several bearings. */
 static void fill_cell(const struct work *work, size_t cell)
 {
     static const float turn_deg[STEEPNESSES] = {-34, 11, -11, 34};
+    struct wd_canopy_field *field = work->field;
     for (int quarter = 0; quarter < QUARTERS; quarter++) {
-        float sum = 0;
+        float through[STEEPNESSES], sum = 0, high = 0;
         for (int ring = 0; ring < STEEPNESSES; ring++) {
             float rise = ring_rise(ring), across = sqrtf(1 - rise * rise);
             float bearing = (90.0f * (float)quarter + turn_deg[ring]) * (PI / 180);
             const struct ray ray = {across * cosf(bearing), across * sinf(bearing), rise, ring};
-            sum += ray_through(work, cell, &ray);
+            through[ring] = ray_through(work, cell, &ray);
+            sum += through[ring];
         }
-        work->field->quarters[cell][quarter] = sum / STEEPNESSES;
+        for (int ring = 0; ring + 1 < STEEPNESSES; ring++)
+            high += UPRIGHT[ring] * through[ring];
+        float lowest = through[STEEPNESSES - 1];
+        field->quarters[cell][quarter] = sum / STEEPNESSES;
+        field->high[cell][quarter] = high;
+        field->low[cell][quarter] = 0.5f * (lowest + lowest * lowest);
     }
 }
 
@@ -294,6 +305,8 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
     field->height = field->height ? field->height : 1;
     size_t count = (size_t)field->width * field->height;
     field->quarters = wd_alloc_array(count, sizeof *field->quarters);
+    field->high = wd_alloc_array(count, sizeof *field->high);
+    field->low = wd_alloc_array(count, sizeof *field->low);
     field->layer_m = wd_alloc_array(count, sizeof *field->layer_m);
     field->herbs = wd_alloc_array(count, sizeof *field->herbs);
     struct work work = {.field = field, .world = world, .params = params};
@@ -306,6 +319,8 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
 void wd_canopy_field_finish(struct wd_canopy_field *field)
 {
     free(field->quarters);
+    free(field->high);
+    free(field->low);
     free(field->layer_m);
     free(field->herbs);
     *field = (struct wd_canopy_field){0};
@@ -325,22 +340,25 @@ bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
                                            .format = VK_FORMAT_R8G8B8A8_UNORM,
                                            .width = field->width,
                                            .height = field->height,
-                                           .layers = 2,
+                                           .layers = 4,
                                            .mips = 1,
                                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
     size_t count = (size_t)field->width * field->height;
-    uint8_t(*texels)[4] = wd_alloc_array(2 * count, sizeof *texels);
+    uint8_t(*texels)[4] = wd_alloc_array(4 * count, sizeof *texels);
     for (size_t i = 0; i < count; i++) {
-        for (int k = 0; k < 4; k++)
+        for (int k = 0; k < QUARTERS; k++) {
             texels[i][k] = root_byte(field->quarters[i][k]);
+            texels[2 * count + i][k] = root_byte(field->high[i][k]);
+            texels[3 * count + i][k] = root_byte(field->low[i][k]);
+        }
         for (int k = 0; k < 2; k++)
             texels[count + i][k] = root_byte(field->layer_m[i][k] / WD_CANOPY_MOST_M);
         texels[count + i][2] = root_byte(field->herbs[i][0] / WD_HERBS_MOST);
         texels[count + i][3] = root_byte(field->herbs[i][1] / WD_HERB_M);
     }
-    bool ok = wd_image_init(image, gpu, &params) &&
-              wd_image_upload(gpu, image, 0, 0, texels, count * sizeof *texels) &&
-              wd_image_upload(gpu, image, 1, 0, texels + count, count * sizeof *texels);
+    bool ok = wd_image_init(image, gpu, &params);
+    for (uint32_t layer = 0; ok && layer < params.layers; layer++)
+        ok = wd_image_upload(gpu, image, layer, 0, texels + layer * count, count * sizeof *texels);
     free(texels);
     return ok;
 }

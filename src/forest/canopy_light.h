@@ -7,10 +7,13 @@
 #include "world/world.h"
 
 /* The field on the CPU: for each cell, of the light that an even sky sends to level ground from the
- * east, north, west and south, the share that arrives; and between which heights over the ground the
- * leaves are that stop the rest. Herbs stop nothing of that: they are told apart. */
+ * east, north, west and south, the share that arrives, and the same of upright surfaces there that look that way, of
+ * light from above 30 degrees and from below; and between which heights over the ground the leaves are that stop the rest. Herbs
+ * stop nothing of that: they are told apart. */
 struct wd_canopy_field {
     float (*quarters)[4]; /* width * height, rows from the south */
+    float (*high)[4];     /* parallel: of upright surfaces, */
+    float (*low)[4];      /* and of the low sky */
     float (*layer_m)[2];  /* parallel: base and top; both 0 where no trees are */
     float (*herbs)[2];    /* parallel: layers of plants below WD_HERB_M, no swards, and their height */
     uint32_t width, height;
@@ -29,9 +32,10 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
                           const struct wd_canopy_field_params *params);
 void wd_canopy_field_finish(struct wd_canopy_field *field);
 
-/* Two layers of R8G8B8A8_UNORM; x runs east, y north over the field's cells. The first holds square
- * roots of the shares; the second those of base and top over WD_CANOPY_MOST_M, of herbs' layers over
- * WD_HERBS_MOST and of their height over WD_HERB_M. */
+/* Four layers of R8G8B8A8_UNORM; x runs east, y north over the field's cells. The first holds square
+ * roots of the shares of level ground; the second those of base and top over WD_CANOPY_MOST_M, of herbs' layers over
+ * WD_HERBS_MOST and of their height over WD_HERB_M; the others those of the shares of upright surfaces,
+ * of the sky above 30 degrees and below. */
 bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
                             const struct wd_canopy_field *field);
 

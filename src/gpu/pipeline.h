@@ -12,7 +12,7 @@ struct wd_spirv {
 };
 
 /* One descriptor set (set 0); binding i has type types[i]. All stages see all bindings. */
-enum { WD_MAX_BINDINGS = 16 };
+enum { WD_MAX_BINDINGS = 17 };
 struct wd_bindings {
     uint32_t count;
     VkDescriptorType types[WD_MAX_BINDINGS];

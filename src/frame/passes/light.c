@@ -1,5 +1,6 @@
 #include "frame/passes/light.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stddef.h>
 
@@ -14,6 +15,9 @@ static const uint32_t light_water_comp[] =
     ;
 static const uint32_t light_args_comp[] =
 #include "light_args.comp.inc"
+    ;
+static const uint32_t light_shafts_comp[] =
+#include "light_shafts.comp.inc"
     ;
 static const uint32_t light_tiles_comp[] =
 #include "light_tiles.comp.inc"
@@ -46,9 +50,9 @@ static struct wd_compute_params shading_params(void)
 {
     return (struct wd_compute_params){
         .shader = SPIRV(light_comp),
-        .bindings = {16,
+        .bindings = {17,
                      {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, TEXELS, TEXELS, TEXELS,
-                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER, IMAGE, IMAGE, IMAGE, BUFFER}},
+                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
 }
@@ -155,6 +159,18 @@ static bool init_sorting(struct wd_light_pass *pass, struct wd_gpu *gpu)
            wd_pipeline_init_compute(&pass->args, gpu, &args);
 }
 
+static bool init_shafts(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+{
+    const uint32_t constants[] = {compares(gpu)};
+    const struct wd_compute_params params = {
+        .shader = SPIRV(light_shafts_comp),
+        .bindings = {4, {UNIFORM, IMAGE, IMAGE, BUFFER}},
+        .push_size = sizeof(struct wd_light_push),
+        .constants = {1, constants},
+    };
+    return wd_pipeline_init_compute(pipeline, gpu, &params);
+}
+
 static bool init_velocity(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     const struct wd_compute_params params = {
@@ -168,7 +184,7 @@ static bool init_velocity(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_light_pass){0};
-    bool ok = init_sorting(pass, gpu) && init_velocity(&pass->velocity, gpu) &&
+    bool ok = init_sorting(pass, gpu) && init_shafts(&pass->shafts, gpu) && init_velocity(&pass->velocity, gpu) &&
               wd_sampler_init(&pass->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
               wd_sampler_init(&pass->shadow, gpu, WD_SAMPLER_SHADOW);
     if (!ok)
@@ -179,7 +195,7 @@ bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu)
 void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     struct wd_pipeline *others[] = {&pass->tiles, &pass->args, &pass->view, &pass->velocity,
-                                    &pass->water};
+                                    &pass->water, &pass->shafts};
     for (uint32_t list = 0; list < WD_TILE_LISTS; list++) {
         wd_pipeline_finish(&pass->light[list], gpu);
         wd_pipeline_finish(&pass->single[list], gpu);
@@ -191,6 +207,7 @@ void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu)
     if (pass->shadow)
         vkDestroySampler(gpu->device, pass->shadow, NULL);
     wd_buffer_finish(&pass->lists, gpu);
+    wd_buffer_finish(&pass->shaft_shares, gpu);
     wd_sun_field_finish(&pass->sun_field, gpu);
     *pass = (struct wd_light_pass){0};
 }
@@ -219,6 +236,25 @@ static float eye_over_ground_m(const struct wd_light_params *params)
     return (float)(eye_m[2] - (double)wd_terrain_height(terrain, eye_m[0], eye_m[1]));
 }
 
+/* Shafts are told apart so far from the eye, or as far as the maps of shadows reach, which end softly. */
+static const float SHAFTS_M = 300, WITHIN_MAPS = 0.9f;
+
+static float shafts_m(const struct wd_frame_uniforms *frame)
+{
+    return fminf(SHAFTS_M, WITHIN_MAPS * frame->cascades[WD_CASCADES - 1][WD_CASCADE_FAR_M]);
+}
+
+/* Optical depths of haze over that way between which shafts begin to show: in thinner haze the canopy's mean is
+ * enough. */
+static const float HAZE_THIN = 0.06f, HAZE_THICK = 0.12f;
+
+static float shafts_of(const struct wd_frame_uniforms *frame)
+{
+    float depth = frame->fog_per_m * SHAFTS_M;
+    float part = (depth - HAZE_THIN) / (HAZE_THICK - HAZE_THIN);
+    return frame->shadow_taps ? fminf(fmaxf(part, 0), 1) : 0;
+}
+
 static struct wd_light_push push_of(const struct wd_light_pass *pass,
                                     const struct wd_light_params *params)
 {
@@ -233,6 +269,8 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
         .has_rivers = params->forest->ground.terrain->water_m != NULL,
         .has_overlay = params->overlay == WD_OVERLAY_OVER,
         .level_cards = params->level_cards,
+        .shafts_m = shafts_m(params->frame),
+        .shafts = shafts_of(params->frame),
         .eye_over_ground_m = eye_over_ground_m(params),
         .extent_m = {(float)wd_terrain_extent_x_m(params->forest->ground.terrain),
                      (float)wd_terrain_extent_y_m(params->forest->ground.terrain)},
@@ -261,6 +299,33 @@ static bool fit_lists(struct wd_light_pass *pass, struct wd_cmd *cmd, uint64_t t
         return true;
     wd_cmd_defer_buffer(cmd, &pass->lists);
     return wd_buffer_init(&pass->lists, cmd->gpu, &params);
+}
+
+/* Where no shafts are asked for, the buffer is bound all the same. */
+static bool fit_shafts(struct wd_light_pass *pass, struct wd_cmd *cmd, uint64_t tiles)
+{
+    const struct wd_buffer_params params = {
+        .name = "shafts of light",
+        .size = tiles * WD_SHAFT_SLICES * sizeof(float),
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+    };
+    if (pass->shaft_shares.size == params.size)
+        return true;
+    wd_cmd_defer_buffer(cmd, &pass->shaft_shares);
+    return wd_buffer_init(&pass->shaft_shares, cmd->gpu, &params);
+}
+
+static void find_shafts(struct wd_light_pass *pass, struct wd_cmd *cmd,
+                        const struct wd_light_params *params, const struct wd_light_push *push)
+{
+    wd_cmd_use_buffer(cmd, &pass->shaft_shares, WD_USE_COMPUTE_WRITE);
+    const struct wd_binding bindings[] = {
+        params->uniforms, WD_BIND_IMAGE(&params->targets->shadow, pass->shadow),
+        WD_BIND_IMAGE(wd_targets_shadow(params->targets), pass->nearest), WD_BIND_BUFFER(&pass->shaft_shares)};
+    wd_cmd_bind(cmd, &pass->shafts, bindings);
+    wd_cmd_push(cmd, &pass->shafts, push, sizeof *push);
+    uint32_t tiles = push->tile_columns * push->tile_rows;
+    wd_cmd_dispatch_1d(cmd, (tiles + WD_TILE_THREADS - 1) / WD_TILE_THREADS);
 }
 
 static void sort_tiles(struct wd_light_pass *pass, struct wd_cmd *cmd,
@@ -315,7 +380,8 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     wd_sun_field_update(&pass->sun_field, cmd, params->forest->ground.terrain,
                         params->frame->sun_direction);
     const struct wd_light_push push = push_of(pass, params);
-    if (!fit_lists(pass, cmd, (uint64_t)push.tile_columns * push.tile_rows))
+    uint64_t tiles = (uint64_t)push.tile_columns * push.tile_rows;
+    if (!fit_lists(pass, cmd, tiles) || !fit_shafts(pass, cmd, tiles))
         cmd->failed = true;
     use_gbuffer(cmd, targets);
     if (push.has_overlay)
@@ -342,9 +408,13 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(&params->forest->canopy_light, params->forest->ground.sampler),
         WD_BIND_IMAGE(&params->forest->sky, params->forest->look_sampler),
         WD_BIND_BUFFER(&params->forest->ground.waters),
+        WD_BIND_BUFFER(&pass->shaft_shares),
     };
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);
+        if (push.shafts > 0)
+            find_shafts(pass, cmd, params, &push);
+        wd_cmd_use_buffer(cmd, &pass->shaft_shares, WD_USE_COMPUTE_READ);
         shade_lists(pass, cmd, params, bindings, &push);
         return;
     }

@@ -14,6 +14,8 @@ struct wd_light_pass {
     struct wd_pipeline single[WD_TILE_LISTS];  /* the same with single leaves: lists of trees */
     struct wd_pipeline water;                  /* what does */
     struct wd_pipeline view, velocity;
+    struct wd_pipeline shafts;                 /* of sunlight in haze */
+    struct wd_buffer shaft_shares;             /* float[tiles * WD_SHAFT_SLICES] */
     struct wd_buffer lists;                    /* struct wd_tile_lists and the lists */
     VkSampler nearest, shadow;
     struct wd_sun_field sun_field; /* of the newest forest */
