@@ -307,7 +307,7 @@ const float LOW_SKY_CLOUD = 0.11;
 
 /* What of the sky's light a free tree sends to an eye, over what is known of its own leaves: by path-traced rows of five
  * species, which had 0.89 to 1.06 of it. */
-const float SKY_OVER_TABLE = 1.08;
+const float SKY_OVER_TABLE = 1.07;
 
 float brighter_low_sky()
 {

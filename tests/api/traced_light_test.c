@@ -161,6 +161,18 @@ static void crowns_shine_against_the_light(void **state)
     assert_true(found.trees_pct > -5 && found.trees_pct < 25);
 }
 
+/* Oaks between the eye and a low sun in haze, whose shafts pass them: 0 %, and +16 where the canopy's mean
+ * stands for these. */
+static void crowns_shade_the_haze_before_them(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "oak", .trees = STAND, .size_m = "[60, 60]", .samples = 4,
+        .keys = "\"sun\": {\"azimuth_deg\": 0, \"elevation_deg\": 14}, \"fog\": {\"visibility_m\": 500}",
+        .camera = "\"position_m\": [30, 4, 1.7], \"look_at_m\": [30, 34, 8], \"fov_deg\": 40"});
+    assert_true(fabs(found.trees_pct) < 10);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -171,6 +183,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(tufts_stand_free),
         cmocka_unit_test(cards_reflect_as_upper_sides),
         cmocka_unit_test(crowns_shine_against_the_light),
+        cmocka_unit_test(crowns_shade_the_haze_before_them),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;

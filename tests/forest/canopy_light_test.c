@@ -53,6 +53,12 @@ static const float *at(const struct wd_canopy_field *field, double x_m, double y
     return field->quarters[row * field->width + column];
 }
 
+static const float *upright_at(float (*shares)[4], const struct wd_canopy_field *field, double x_m, double y_m)
+{
+    size_t column = (size_t)(x_m / field->cell_m), row = (size_t)(y_m / field->cell_m);
+    return shares[row * field->width + column];
+}
+
 static const float *layer_at(const struct wd_canopy_field *field, double x_m, double y_m)
 {
     size_t column = (size_t)(x_m / field->cell_m), row = (size_t)(y_m / field->cell_m);
@@ -67,6 +73,21 @@ static void open_ground_gets_all(void **state)
     for (size_t i = 0; i < (size_t)field.width * field.height; i++)
         for (int k = 0; k < 4; k++)
             assert_float_equal(field.quarters[i][k], 1, 1e-5);
+    wd_canopy_field_finish(&field);
+    free(world.cover);
+}
+
+/* Upright surfaces in a stand have the less of the sky the lower it is. */
+static void low_skies_are_darkest(void **state)
+{
+    (void)state;
+    struct wd_world world = stand_from(0);
+    struct wd_canopy_field field = field_of(&world, 1);
+    const float *high = upright_at(field.high, &field, 120, 120), *low = upright_at(field.low, &field, 120, 120);
+    for (int k = 0; k < 4; k++) {
+        assert_true(low[k] < 0.5f * high[k] && high[k] < at(&field, 120, 120)[k]);
+        assert_true(low[k] > 0);
+    }
     wd_canopy_field_finish(&field);
     free(world.cover);
 }
@@ -141,6 +162,9 @@ static void hills_hide_their_side(void **state)
     struct wd_canopy_field field = field_of(&world, 1);
     const float *foot = at(&field, 140, 120), *far = at(&field, 20, 120);
     assert_true(foot[0] < 0.3f && foot[2] > 0.999f);
+    const float *high = upright_at(field.high, &field, 140, 120), *low = upright_at(field.low, &field, 140, 120);
+    assert_true(low[0] < 1e-6f && low[2] > 0.999f && high[2] > 0.999f); /* nothing of the low sky behind the wall */
+    assert_true(high[0] <= foot[0]);
     assert_true(far[0] > foot[0] && far[0] < 0.95f);
     wd_canopy_field_finish(&field);
     free(world.cover);
@@ -176,8 +200,8 @@ static void herbs_are_apart(void **state)
 }
 
 /* Deep in a wide stand, of each of four rings of the sky what crowns cover of the area across its
- * rays, and a quarter more, stops them by Beer's law; cells of 8 m hold one tree or four of those
- * that stand 5 m apart. */
+ * rays, and more, the more ground their outlines cover together, stops them by Beer's law; cells of 8 m hold one tree
+ * or four of those that stand 5 m apart. */
 static void floors_get_what_crowns_do_not_cover(void **state)
 {
     (void)state;
@@ -185,12 +209,13 @@ static void floors_get_what_crowns_do_not_cover(void **state)
     struct wd_canopy_field field = field_of(&world, 1);
     const float *middle = at(&field, 0.5 * SIDE_M, 0.5 * SIDE_M);
     const float *seen = model.seen_m2;
-    float wanted = 0;
+    float wanted = 0, crown_m = WD_TREE_CROWN_M(trees[0]) / SPACING_M;
+    float apart = 0.94f + 0.25f * (3.14159f / 4 * crown_m * crown_m);
     for (int ring = 0; ring < 4; ring++) {
         float rise = sqrtf(1 - ((float)ring + 0.5f) / 4);
         float covered =
             wd_seen_m2(seen[0], seen[1], seen[2], rise) / (SPACING_M * SPACING_M * rise);
-        wanted += expf(-1.25f * covered) / 4;
+        wanted += expf(-apart * covered) / 4;
     }
     print_message("%.3f of the sky's light from the east, %.3f by Beer's law\n", (double)middle[0],
                   (double)wanted);
@@ -249,6 +274,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(open_ground_gets_all),
         cmocka_unit_test(stands_are_dark_and_edges_are_not),
+        cmocka_unit_test(low_skies_are_darkest),
         cmocka_unit_test(layers_are_as_high_as_their_trees),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(hills_hide_their_side),
