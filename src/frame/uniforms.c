@@ -108,6 +108,16 @@ static void fill_previous(struct wd_frame_uniforms *uniforms,
     wd_matrix_multiply(uniforms->previous_clip_from_rel, previous.clip_from_rel, shift);
 }
 
+/* Gaps of crowns throw images of the sun that are far wider than they are. Pictures of so many samples have one set of
+ * maps, and look for gaps at so many times as many places. */
+enum { MANY_SAMPLES = 4, MORE_TAPS = 3 };
+
+static uint32_t shadow_taps_of(const struct wd_scene *scene, const struct wd_uniforms_params *params)
+{
+    uint32_t taps = (uint32_t)scene->quality.shadow_taps;
+    return params->samples >= MANY_SAMPLES ? MORE_TAPS * taps : taps;
+}
+
 void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
                       struct wd_view cascades[WD_CASCADES], const struct wd_uniforms_params *params)
 {
@@ -118,7 +128,7 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
         .sample_count = params->sample_count,
         .adds = params->adds,
         .view_mode = params->view_mode,
-        .shadow_taps = (uint32_t)scene->quality.shadow_taps,
+        .shadow_taps = shadow_taps_of(scene, params),
     };
     struct wd_view steady;
     fill_camera(uniforms, view, &steady, params);

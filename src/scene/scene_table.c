@@ -193,11 +193,11 @@ static const struct wd_key quality_keys[] = {
      "Leaves of meshes that are shorter than this on screen thin out; of pictures of n samples, shorter "
      "than this over the root of n. 0: none do."},
     {"shadow_size", WD_KEY_INTEGER, IN(quality, shadow_size), 16, 16384, "2048",
-     "Texels a side of a shadow cascade; of pictures of 8 samples and more twice as many, up to 2048."},
+     "Texels a side of a shadow cascade; of pictures of 4 samples and more twice as many, up to 2048."},
     {"shadow_distance_m", WD_KEY_DOUBLE, IN(quality, shadow_distance_m), 1, 1e6, "2500",
      "Shadows reach this far from the camera, in metres."},
     {"shadow_taps", WD_KEY_INTEGER, IN(quality, shadow_taps), 0, 64, "5",
-     "Shadow look-ups a pixel; 0: no shadows of trees."},
+     "Shadow look-ups a pixel, of pictures of 4 samples and more three times as many; 0: no shadows of trees."},
     {"shadow_maps", WD_KEY_ENUM, IN(quality, shadow_maps), .fallback = "\"cascades\"",
      .choices = shadow_maps,
      .doc = "\"cascades\": five maps, finer near the camera; \"perspective\": one, warped toward it, for "
