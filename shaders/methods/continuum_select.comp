@@ -304,8 +304,18 @@ vec2 slope_under(vec3 foot, float wide_m)
 
 /* Gains keep what a whole tree covers. From below an eye stands among crowns and looks into their insides, where
  * leaves lie close and discs, larger and fewer, leave more holes: areas grow by so much. By path-traced crowns of
- * three stands, of which a twentieth to a tenth was missing. */
-const float FROM_BELOW = 0.3;
+ * three stands. */
+const float FROM_BELOW = 0.15;
+
+/* Away from the picture's middle a surface that faces the eye is seen slantingly by the picture's plane, which shows
+ * it larger: by so much, of what lies that far off. */
+const float MOST_ASLANT = 4.0;
+
+float shown_larger(vec3 middle, float distance_m)
+{
+    float axis_m = dot(vec3(view.clip_from_rel[0].w, view.clip_from_rel[1].w, view.clip_from_rel[2].w), middle);
+    return ORTHOGRAPHIC != 0u ? 1.0 : min(distance_m / max(axis_m, 1e-3), MOST_ASLANT);
+}
 
 /* `share` of the trees around stand for all: a tree is drawn as wide as the ground that it stands for
  * asks, as high as it is, and its splats grow with it. `place`: bit of the masks of put_off. */
@@ -352,7 +362,7 @@ void select_tree(uint index, float share, uint place)
     float each = min(wanted / float(WD_SPLAT_STRATA), float(WD_STRATUM_SPLATS));
     /* discs that grow cover more of each other */
     float grown = min(pow(share, -0.25), 1.2) / share;
-    float size = sqrt(grown) * view.pixels;
+    float size = sqrt(grown * shown_larger(middle, distance_m)) * view.pixels;
     vec2 radii = disc_radii(model_index, each, toward.z);
     splats.radius = size * radii.x;
     splats.wood_radius = size * radii.y;

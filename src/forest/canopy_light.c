@@ -153,7 +153,7 @@ static void settle_layer(struct wd_canopy_field *field, size_t cell, const struc
  * under an even sky, whose crowns have outlines of 0.85, 1.5 and 1.8 times the ground together. */
 static float crowns_apart(float outline)
 {
-    return fminf(fmaxf(0.94f + 0.25f * outline, 1.1f), 1.45f);
+    return fminf(1.1f + 0.088f * outline * outline, 1.45f);
 }
 
 static void settle_stand(struct work *work, size_t cell, struct sums sums)
