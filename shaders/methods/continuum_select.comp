@@ -307,11 +307,11 @@ vec2 slope_under(vec3 foot, float wide_m)
  * three stands. */
 const float FROM_BELOW = 0.15;
 
-/* Away from the picture's middle a surface that faces the eye is seen slantingly by the picture's plane, which shows
- * it larger: by so much, of what lies that far off. */
-const float MOST_ASLANT = 4.0;
+/* Way to a place over its part along the view axis. The picture's plane is aslant to ways away from its middle, and
+ * shows surfaces that face the eye larger by so much than others as far along the axis. */
+const float MOST_ASLANT = 3.0;
 
-float shown_larger(vec3 middle, float distance_m)
+float aslant(vec3 middle, float distance_m)
 {
     float axis_m = dot(vec3(view.clip_from_rel[0].w, view.clip_from_rel[1].w, view.clip_from_rel[2].w), middle);
     return ORTHOGRAPHIC != 0u ? 1.0 : min(distance_m / max(axis_m, 1e-3), MOST_ASLANT);
@@ -355,14 +355,15 @@ void select_tree(uint index, float share, uint place)
     float pixels_per_m = view.pixels / distance_m;
     float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m * view.detail;
     bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(random));
+    float larger = aslant(middle, distance_m);
     float wanted = max(view.density * finer_near(model_index, tall_px)
-                           * covered_px(tree, toward, pixels_per_m),
+                           * covered_px(tree, toward, pixels_per_m) * larger,
                        float(view.min_splats));
     wd_splat_tree splats;
     float each = min(wanted / float(WD_SPLAT_STRATA), float(WD_STRATUM_SPLATS));
     /* discs that grow cover more of each other */
     float grown = min(pow(share, -0.25), 1.2) / share;
-    float size = sqrt(grown * shown_larger(middle, distance_m)) * view.pixels;
+    float size = sqrt(grown * larger) * view.pixels;
     vec2 radii = disc_radii(model_index, each, toward.z);
     splats.radius = size * radii.x;
     splats.wood_radius = size * radii.y;

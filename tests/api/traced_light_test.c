@@ -16,7 +16,7 @@ struct shown {
 
 /* Light of trees and of the ground that lies in their shadow, over the path tracer's, less 100. */
 struct light {
-    double trees_pct, shade_pct;
+    double trees_pct, shade_pct, cover_pct;
 };
 
 static double green(const struct wd_picture *picture, size_t i)
@@ -65,8 +65,9 @@ static struct light against_traced(const struct shown *shown)
     assert_int_equal(wd_renderer_render(suite.renderer, &render, &drawn), WD_OK);
     suite_trace(&suite, forest, &render, 64, &traced);
     assert_int_equal(wd_picture_compare(&found, &traced, &drawn, NULL, &suite.log), WD_OK);
-    const struct light light = {found.tree_bias_pct, shade_pct(&drawn, &traced)};
-    print_message("light of trees %+.1f %%, of shaded ground %+.1f %%\n", light.trees_pct, light.shade_pct);
+    const struct light light = {found.tree_bias_pct, shade_pct(&drawn, &traced), found.coverage_bias_pct};
+    print_message("light of trees %+.1f %%, of shaded ground %+.1f %%, cover %+.1f %%\n", light.trees_pct, light.shade_pct,
+                  light.cover_pct);
     wd_picture_finish(&drawn);
     wd_picture_finish(&traced);
     assert_int_equal(wd_renderer_set_forest(suite.renderer, suite.forest), WD_OK);
@@ -173,6 +174,18 @@ static void crowns_shade_the_haze_before_them(void **state)
     assert_true(fabs(found.trees_pct) < 10);
 }
 
+/* Oaks 50 degrees from the middle of a wide view, whose plane shows them larger: +8 %, and -23 without. */
+static void wide_views_show_all_of_trees_at_their_edges(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "oak", .trees = "10,60,tree,14\n10,76,tree,15\n90,60,tree,13\n90,76,tree,14\n",
+        .size_m = "[100, 100]", .samples = 1,
+        .keys = "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40}, \"openness\": {\"tree\": 1}",
+        .camera = "\"position_m\": [50, 32, 1.7], \"look_at_m\": [50, 80, 7], \"fov_deg\": 100"});
+    assert_true(fabs(found.cover_pct) < 10);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -184,6 +197,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(cards_reflect_as_upper_sides),
         cmocka_unit_test(crowns_shine_against_the_light),
         cmocka_unit_test(crowns_shade_the_haze_before_them),
+        cmocka_unit_test(wide_views_show_all_of_trees_at_their_edges),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;
