@@ -174,7 +174,7 @@ static void crowns_shade_the_haze_before_them(void **state)
     assert_true(fabs(found.trees_pct) < 10);
 }
 
-/* Oaks 50 degrees from the middle of a wide view, whose plane shows them larger: +8 %, and -23 without. */
+/* Oaks 50 degrees from the middle of a wide view, whose plane shows them larger: +6 %, and -23 without. */
 static void wide_views_show_all_of_trees_at_their_edges(void **state)
 {
     (void)state;
