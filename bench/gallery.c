@@ -337,6 +337,10 @@ static bool read_options(struct options *options, int argc, char **argv)
     if (!options->directory || options->width < 2 || options->height < 2)
         fprintf(stderr, "usage: gallery DIR [--size WxH] [--samples N] [--paths N] [--data DIR] "
                         "[--only NAME] [--gpu NAME]\n");
+    if (options->directory && access(options->directory, W_OK) != 0) {
+        fprintf(stderr, "gallery: %s is no directory that can be written to\n", options->directory);
+        return false;
+    }
     return options->directory && options->width >= 2 && options->height >= 2;
 }
 

@@ -210,7 +210,7 @@ static void floors_get_what_crowns_do_not_cover(void **state)
     const float *middle = at(&field, 0.5 * SIDE_M, 0.5 * SIDE_M);
     const float *seen = model.seen_m2;
     float wanted = 0, crown_m = WD_TREE_CROWN_M(trees[0]) / SPACING_M;
-    float outline = 3.14159f / 4 * crown_m * crown_m, apart = 1.1f + 0.088f * outline * outline;
+    float outline = 3.14159f / 4 * crown_m * crown_m, apart = 1.2f + 0.3f * fmaxf(outline - 1.1f, 0);
     for (int ring = 0; ring < 4; ring++) {
         float rise = sqrtf(1 - ((float)ring + 0.5f) / 4);
         float covered =
