@@ -144,7 +144,7 @@ float darkest_stand(wd_shelter shelter)
  * meet more yet: by so much, by path-traced floors of scenes/bench75k.json. */
 float floor_way(wd_shelter shelter)
 {
-    return 1.0 + 0.45 * darkest_stand(shelter);
+    return 1.0 + 0.3 * darkest_stand(shelter);
 }
 
 /* The sun's own and that of the sky about it, on a surface that faces it. */

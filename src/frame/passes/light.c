@@ -252,7 +252,7 @@ static float shafts_of(const struct wd_frame_uniforms *frame)
 {
     float depth = frame->fog_per_m * SHAFTS_M;
     float part = (depth - HAZE_THIN) / (HAZE_THICK - HAZE_THIN);
-    return frame->shadow_taps ? fminf(fmaxf(part, 0), 1) : 0;
+    return frame->shadow_taps && shafts_m(frame) > 0 ? fminf(fmaxf(part, 0), 1) : 0;
 }
 
 static struct wd_light_push push_of(const struct wd_light_pass *pass,
