@@ -453,7 +453,8 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     float mean = wd_crown_lit(wd_crown_through(crown.radii_m, path_m, pixel.openness), curve.x, curve.y);
     float singly = mix(1.0, smoothstep(FEW_DISCS, MANY_DISCS, discs), is_tree(crown));
     float lit = mix(mean * sun.y, pixel.lit * sun.x, singly);
-    float tree_m = is_tree(crown) * min(0.5, 0.5 * tall_m); /* its own tree is in `lit` */
+    /* its own tree is in `lit`; shrubs are not much wider than half a metre */
+    float tree_m = is_tree(crown) * min(0.5, 0.25 * crown.radii_m.x);
     float ahead_m = place.ahead_m * (cascade < WD_LEAF_CASCADES ? mix(STAND_WAY, 1.0, free) : 1.0) + tree_m + texel_m;
     place.own = mix(lit, 1.0, known * mix(MAP_TELLS, 1.0, crown.sward));
     place.ahead_m = mix(ahead_m, pixel_m, known);
