@@ -8,8 +8,8 @@
 
 /* The field on the CPU: for each cell, of the light that an even sky sends to level ground from the
  * east, north, west and south, the share that arrives, and the same of upright surfaces there that look that way, of
- * light from above 30 degrees and from below; and between which heights over the ground the leaves are that stop the rest. Herbs
- * stop nothing of that: they are told apart. */
+ * light from above 30 degrees and from below; and between which heights over the ground the leaves are that stop the
+ * rest. Herbs stop nothing of that: they are told apart. */
 struct wd_canopy_field {
     float (*quarters)[4]; /* width * height, rows from the south */
     float (*high)[4];     /* parallel: of upright surfaces, */

@@ -82,14 +82,14 @@ static bool prepare_pipelines(struct wd_frame *frame)
            wd_light_pass_prepare(&frame->light, frame->gpu, &needs);
 }
 
-/* Pictures of so many samples draw their shadow maps once for all of these, and show finer shadows than one
+/* Pictures of WD_FINE_SAMPLES and more draw their shadow maps once for all, and show finer shadows than one
  * sample does: their maps are twice as wide, up to so many texels. FLIP of trees of 256 px falls by 0.016. */
-enum { FINE_SAMPLES = 4, FINE_TEXELS = 2048 };
+enum { FINE_TEXELS = 2048 };
 
 static uint32_t shadow_size_of(const struct wd_frame_params *params)
 {
     uint32_t size = (uint32_t)params->forest->scene->quality.shadow_size;
-    if (params->samples < FINE_SAMPLES || size >= FINE_TEXELS)
+    if (params->samples < WD_FINE_SAMPLES || size >= FINE_TEXELS)
         return size;
     return 2 * size < FINE_TEXELS ? 2 * size : FINE_TEXELS;
 }

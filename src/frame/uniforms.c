@@ -108,14 +108,14 @@ static void fill_previous(struct wd_frame_uniforms *uniforms,
     wd_matrix_multiply(uniforms->previous_clip_from_rel, previous.clip_from_rel, shift);
 }
 
-/* Gaps of crowns throw images of the sun that are far wider than they are. Pictures of so many samples have one set of
- * maps, and look for gaps at so many times as many places. */
-enum { MANY_SAMPLES = 4, MORE_TAPS = 3 };
+/* Gaps of crowns throw images of the sun that are far wider than they are. Pictures with one set of maps for all
+ * samples look for gaps at so many times as many places. */
+enum { MORE_TAPS = 3 };
 
 static uint32_t shadow_taps_of(const struct wd_scene *scene, const struct wd_uniforms_params *params)
 {
     uint32_t taps = (uint32_t)scene->quality.shadow_taps;
-    return params->samples >= MANY_SAMPLES ? MORE_TAPS * taps : taps;
+    return params->samples >= WD_FINE_SAMPLES ? MORE_TAPS * taps : taps;
 }
 
 void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,

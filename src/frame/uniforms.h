@@ -5,6 +5,9 @@
 #include "forest/forest.h"
 #include "frame/view.h"
 
+/* Pictures of so many samples draw their shadow maps once for all of these. */
+enum { WD_FINE_SAMPLES = 4 };
+
 struct wd_uniforms_params {
     const struct wd_forest_device *forest;
     struct wd_camera camera, previous_camera;
