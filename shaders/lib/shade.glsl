@@ -410,7 +410,7 @@ const float NEEDLES_AHEAD_M = 0.03;
 /* From within the darkest stands an eye sees, past discs, some that lie higher in their crowns, under more of the sun
  * and the sky, than the leaves that it would see: share of their light that these have, the sun's and the sky's. By
  * path-traced crowns of three stands, one of them so dark. */
-const vec2 PAST_DISCS = vec2(0.75, 0.78);
+const vec2 PAST_DISCS = vec2(0.87, 0.78);
 
 vec2 past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
 {

@@ -426,7 +426,7 @@ void select_tree(uint index, float share, uint place)
     store_tree(slot, splats);
     add_splats(slot, uint(ceil(shown * each * float(strata))));
     if (wood)
-        add_wood(slot, uint(ceil(shown * float(triangles))));
+        add_wood(slot, uint(ceil(wd_near_wood(shown) * float(triangles))));
 }
 
 /* How many times over a cluster's crowns may cover what is seen of it: what lies deeper is hidden all

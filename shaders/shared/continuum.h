@@ -161,17 +161,22 @@ WD_FUNC float wd_near_reach_m(WD_STRUCT wd_tree tree, float grain, float leaves_
     return WD_MAX(leaves_m, grain * WD_TREE_CROWN_M(tree) * grains);
 }
 
-/* Shares that show of a tree's mesh and of its splats. */
-WD_FUNC float wd_near_mesh(float distance_m, float near_m)
-{
-    float t = (WD_NEAR_REACH * near_m - distance_m) / ((WD_NEAR_REACH - 1.0f) * near_m);
-    return WD_CLAMP(2.0f * t, 0.0f, 1.0f);
-}
-
+/* Shares that show of a tree's mesh and of its splats: together all of its leaves. Were both whole where they meet,
+ * crowns seen from within would hide a quarter of the sky between them. */
 WD_FUNC float wd_near_splats(float distance_m, float near_m)
 {
-    float t = (distance_m - near_m) / ((WD_NEAR_REACH - 1.0f) * near_m);
-    return WD_CLAMP(2.0f * t, 0.0f, 1.0f);
+    return WD_CLAMP((distance_m - near_m) / ((WD_NEAR_REACH - 1.0f) * near_m), 0.0f, 1.0f);
+}
+
+WD_FUNC float wd_near_mesh(float distance_m, float near_m)
+{
+    return 1.0f - wd_near_splats(distance_m, near_m);
+}
+
+/* Of the splats' triangles of wood, large ones first: stems are whole before the mesh's go. */
+WD_FUNC float wd_near_wood(float splats)
+{
+    return WD_MIN(2.0f * splats, 1.0f);
 }
 
 /* Levels of the depth pyramid. A texel of level l holds the farthest depth of a square of 2^(l + 1)
