@@ -186,6 +186,17 @@ static void wide_views_show_all_of_trees_at_their_edges(void **state)
     assert_true(fabs(found.cover_pct) < 10);
 }
 
+/* A birch of which the eye sees leaves of its mesh and discs in turn: 1 % of its cover, and +17 where both were whole. */
+static void crowns_keep_their_cover_where_discs_follow_meshes(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "birch", .trees = "30,30,tree,15\n", .size_m = "[60, 60]", .samples = 4,
+        .keys = "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40}, \"methods\": {\"continuum\": {\"near_px\": 2.2}}",
+        .camera = "\"position_m\": [30, 16, 1.7], \"look_at_m\": [30, 30, 10], \"fov_deg\": 16"});
+    assert_true(fabs(found.cover_pct) < 6);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -198,6 +209,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(crowns_shine_against_the_light),
         cmocka_unit_test(crowns_shade_the_haze_before_them),
         cmocka_unit_test(wide_views_show_all_of_trees_at_their_edges),
+        cmocka_unit_test(crowns_keep_their_cover_where_discs_follow_meshes),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;
