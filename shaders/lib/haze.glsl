@@ -16,7 +16,7 @@ const wd_haze_place IN_THE_OPEN = wd_haze_place(0.0, vec2(0.0), 0.0);
 
 /* Share of the sky's light and of the sun's that does not come there. Haze takes light from all the sky alike, more of
  * it level than floors do. */
-const float HAZE_SKY_WAY = 1.12, HAZE_SUN_WAY = 0.67;
+const float HAZE_SKY_WAY = 1.2, HAZE_SUN_WAY = 0.67;
 
 vec2 haze_shade(wd_haze_place place)
 {

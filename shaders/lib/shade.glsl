@@ -412,10 +412,14 @@ const float NEEDLES_AHEAD_M = 0.03;
  * path-traced crowns of three stands, one of them so dark. */
 const vec2 PAST_DISCS = vec2(0.87, 0.78);
 
+/* Log2 of one over the sky's share on the floor of stands where none of that counts, and all. */
+const vec2 PAST_DISCS_FROM = vec2(3.2, 4.2);
+
 vec2 past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
 {
     float stand = is_disc(pixel) ? shelter.within * (1.0 - alone.share) : 0.0;
-    return mix(vec2(1.0), PAST_DISCS, stand * darkest_stand(shelter));
+    float darkest = smoothstep(PAST_DISCS_FROM.x, PAST_DISCS_FROM.y, -log2(shelter.floor_mean));
+    return mix(vec2(1.0), PAST_DISCS, stand * darkest);
 }
 
 /* Where trees show so many discs or fewer, a pixel's share of the sun is the mean that its depth in the crown leaves,
