@@ -161,8 +161,8 @@ WD_FUNC float wd_near_reach_m(WD_STRUCT wd_tree tree, float grain, float leaves_
     return WD_MAX(leaves_m, grain * WD_TREE_CROWN_M(tree) * grains);
 }
 
-/* Shares that show of a tree's mesh and of its splats: together all of its leaves. Were both whole where they meet,
- * crowns seen from within would hide a quarter of the sky between them. */
+/* Shares that show of a tree's mesh and of its splats: together all of its leaves. Were both whole where they meet, a
+ * crown would cover up to a sixth more there. */
 WD_FUNC float wd_near_splats(float distance_m, float near_m)
 {
     return WD_CLAMP((distance_m - near_m) / ((WD_NEAR_REACH - 1.0f) * near_m), 0.0f, 1.0f);

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "frame/uniforms.h"
+
 _Static_assert((int)WD_SPLAT_SIDES == (int)WD_SLICE_SIDES, "sides are copied whole");
 _Static_assert((int)WD_SPLAT_PLANES == (int)WD_FRUSTUM_PLANES, "planes are copied whole");
 
@@ -120,9 +122,6 @@ static bool holds_leaves(const struct wd_view *view)
     return view->cascade < WD_LEAF_CASCADES && !view->box.calm;
 }
 
-/* Pictures of so many samples have finer maps: one set is drawn for all of them. */
-static const float FINE_SAMPLES = 4.0f;
-
 /* Of the reach of meshes in the first cascade of others: it is for what lies close by; crowns farther off have
  * penumbras wider than discs. With all of it walks cost a tenth more, with a quarter an understory's FLIP
  * is 0.05 more, with this 0.002. */
@@ -139,7 +138,7 @@ struct wd_near_rule wd_continuum_near_rule(const struct wd_tree_draw *draw,
     if (options->near_px > 0.0)
         rule.reach = draw->view->pixels_per_radian * wd_continuum_detail(draw) *
                      near_farther(draw) / (float)options->near_px;
-    if (draw->pass == WD_PASS_SHADOW && draw->view->cascade == 0 && free_samples(draw) < FINE_SAMPLES)
+    if (draw->pass == WD_PASS_SHADOW && draw->view->cascade == 0 && free_samples(draw) < (float)WD_FINE_SAMPLES)
         rule.reach *= FIRST_REACH;
     rule.farthest_m = fmaxf(rule.leaves_m, rule.reach * forest->coarsest_m);
     return rule;
@@ -161,7 +160,7 @@ static uint32_t disc_texels(const struct wd_tree_draw *draw)
 {
     const struct wd_view *view = draw->view;
     float samples = free_samples(draw), largest_m = DISC_TEXEL_M / sqrtf(samples);
-    uint32_t texels = view->cascade < WD_LEAF_CASCADES || samples >= FINE_SAMPLES ? 1 : 2;
+    uint32_t texels = view->cascade < WD_LEAF_CASCADES || samples >= (float)WD_FINE_SAMPLES ? 1 : 2;
     while (view->cascade == 0 && texels < 4 &&
            2.0f * (float)texels <= largest_m * wd_texels_per_m(view))
         texels *= 2;

@@ -157,7 +157,7 @@ static void look_at_crowns(const struct stand *stand, struct sum *drawn, struct 
     painters_finish(&painters);
 }
 
-/* 0.91 to 1.06 of the traced; 1.20 in red if leaves let through a share of the side that is seen
+/* 1.00 to 1.12 of the traced; 1.20 in red if leaves let through a share of the side that is seen
  * and what lies lower in crowns is lit as what lies higher. */
 static void crowns_from_within_are_as_bright_as_traced(void **state)
 {
@@ -186,7 +186,7 @@ static void add_far(struct sum *sum, const struct wd_picture *picture)
             add(sum, picture, i);
 }
 
-/* 0.96 to 1.02 of the traced; 12 times as much in red if no tree shades the haze. */
+/* 0.91 to 0.97 of the traced; 12 times as much in red if no tree shades the haze. */
 static void haze_within_a_stand_is_as_dark_as_traced(void **state)
 {
     (void)state;
