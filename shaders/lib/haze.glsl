@@ -29,7 +29,7 @@ wd_haze_place haze_eye = IN_THE_OPEN, haze_end = IN_THE_OPEN;
 
 void know_eye()
 {
-    vec2 at = push.camera_m * push.canopy_scale;
+    vec2 at = canopy_at(push.camera_m);
     vec4 field = CANOPY_LIGHT_AT(at, 0.0), layers = CANOPY_LIGHT_AT(at, 1.0);
     haze_eye.floor_log = log2(dot(max(field * field, vec4(1e-3)), vec4(0.25)));
     haze_eye.layer_m = WD_CANOPY_MOST_M * layers.xy * layers.xy;

@@ -208,7 +208,7 @@ float map_holds_mesh(uint cascade)
 vec4 canopy_light_near(vec2 place_m, int layer)
 {
 #ifdef CANOPY_LIGHT
-    vec2 at = clamp(place_m * push.canopy_scale, 0.0, 0.9999);
+    vec2 at = clamp(canopy_at(place_m), 0.0, 0.9999);
     return texelFetch(CANOPY_LIGHT, ivec3(at * vec2(textureSize(CANOPY_LIGHT, 0).xy), layer), 0);
 #else
     return vec4(1.0);
@@ -251,6 +251,8 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     alone.lets.xy = skylit.xy * wd_skylit_above(pixel.openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(pixel.openness);
     alone.leaf = pixel.material >= WD_MATERIAL_LEAF ? is_tree(crown) : 0.0;
+    float above = canopy_above(shelter.layer_m, height_m);
+    alone.edge = past_edge(alone.low, alone.beside) * (above * (1.0 - alone.leaf));
     return alone;
 }
 
@@ -690,6 +692,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         light_past_neighbours(alone, pixel, crown, model, shelter, place);
     } else {
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, 0.0);
+        vec4 low = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
+        alone.edge = past_edge(low * low, shelter.through);
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);
     }
@@ -731,6 +735,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);
+    wide_way += (1.0 - wide_way) * low_about_sun(frame.sun_direction.z) * dot(frame.sunward, alone.edge);
     float close = pixel.surface == 0u ? 0.0 : mix(NEAR_SUN, NEAR_SUN_BLADES, place.sward);
     float about_sun = mix(wide_way, leaf_way, close);
     vec3 from_sun = frame.sun_irradiance * sun_share + frame.circumsolar * about_sun;

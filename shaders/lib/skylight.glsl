@@ -9,6 +9,12 @@
 #define CANOPY_LIGHT_AT(at, layer) vec4(1.0 - (layer))
 #endif
 
+/* Coordinates of a local place in it. */
+vec2 canopy_at(vec2 place_m)
+{
+    return (place_m - push.canopy_from_m) * push.canopy_scale;
+}
+
 /* What comes down to a place among leaves. */
 struct wd_shelter {
     vec4 through;     /* the share of the sky's quarters that no leaf stops */
@@ -33,8 +39,8 @@ float through_herbs(float layers)
 
 wd_shelter ground_shelter(wd_pixel pixel)
 {
-    vec4 field = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 0.0);
-    vec4 layers = CANOPY_LIGHT_AT((pixel.rel.xy + push.camera_m) * push.canopy_scale, 1.0);
+    vec4 field = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 0.0);
+    vec4 layers = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 1.0);
     wd_shelter shelter;
     shelter.layer_m = WD_CANOPY_MOST_M * layers.xy * layers.xy;
     shelter.herbs = WD_HERBS_MOST * layers.z * layers.z;
@@ -190,6 +196,25 @@ float sky_of_side(vec4 side, vec4 bright, vec4 faced)
     return dot(side, bright * faced) / max(even * dot(bright, faced), 1e-12);
 }
 
+/* Within an even stand a face looking out level has of its low sky's light about the square of what the ground has
+ * of the sky's. What it has beyond that comes in below crowns, from where the stand ends. */
+vec4 past_edge(vec4 low, vec4 level)
+{
+    return max(low - level * level, 0.0) * (1.0 - level);
+}
+
+/* Share of that which a face has. `light`: of the quarters that it looks to. */
+float from_edge(vec4 edge, vec4 light, float n_z)
+{
+    return sqrt(max(1.0 - n_z * n_z, 0.0)) * dot(edge, light) / max(dot(light, vec4(1.0)), 1e-12);
+}
+
+/* Share of the sky about the sun that lies low, by the sun's sine: by the floor of a path-traced plot, 8 m in. */
+float low_about_sun(float rise)
+{
+    return clamp(1.0 - 1.4 * rise, 0.0, 1.0);
+}
+
 /* Of a tree that stands free: low light comes in by its sides. What its own crown leaves is a table of its
  * model's (shared/sunlit.h). */
 struct wd_alone {
@@ -203,10 +228,11 @@ struct wd_alone {
     vec3 again;   /* times as much as without what its leaves scatter of that */
     vec3 scattered; /* irradiance of each side by what the crown's own leaves scatter of the sun */
     float leaf; /* 1: of a leaf of a crown; 0: of wood, herbs and the ground */
+    vec4 edge;  /* shares of the quarters' low light that come in below crowns, from where the stand ends */
 };
 
 const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(1.0), vec4(0.0),
-                                   vec3(1.0), vec3(0.0), 0.0);
+                                   vec3(1.0), vec3(0.0), 0.0, vec4(0.0));
 
 /* Of an even sky's light on an upright face so much comes from below 30 degrees, and of what level ground has a quarter:
  * what both have tells how much of any sky's does, of each colour. `upright`: irradiance of the face; `level`: of
@@ -280,8 +306,12 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
                         * sky_of_side(alone.side, bright, faced);
     vec3 beside_back = alone.again * sky_faced(alone, bright - bright * faced, flat_on, sky_of_back)
                        * sky_of_side(alone.side, bright, 1.0 - faced);
-    vec3 sky_front = mix(sky, beside_front * alone.lets.x, alone.known);
-    vec3 sky_back = mix(sky, beside_back * alone.lets.y, alone.known);
+    float edge_front = from_edge(alone.edge, bright * faced, n.z);
+    float edge_back = from_edge(alone.edge, bright - bright * faced, n.z);
+    vec3 low_front = edge_front * low_share(sky_of_front, 0.5 * open_sky);
+    vec3 low_back = edge_back * low_share(sky_of_back, 0.5 * open_sky);
+    vec3 sky_front = mix(sky + low_front, beside_front * alone.lets.x, alone.known);
+    vec3 sky_back = mix(sky + low_back, beside_back * alone.lets.y, alone.known);
     float rise = max(frame.sun_direction.z, 0.0);
     float longer = 0.67 / max(rise, 0.05);
     float beam = exp2(longer * log2(dot(frame.sunward, shelter.through)));
@@ -299,8 +329,9 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 upward = below * (open_sky * sky + with_scattered);
     float beside_lit = exp2(longer * log2(max(dot(frame.sunward, alone.beside), 1e-3)));
     vec3 beside = alone.again * floor_albedo * (sky_level(alone.beside) + sun * beside_lit);
-    vec3 upward_front = mix(upward, beside * alone.lets.z, alone.share);
-    vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
+    vec3 beyond = floor_albedo * (open_sky + sun);
+    vec3 upward_front = mix(upward + edge_front * beyond, beside * alone.lets.z, alone.share);
+    vec3 upward_back = mix(upward + edge_back * beyond, beside * alone.lets.w, alone.share);
     float up = 0.5 + 0.5 * n.z;
     wd_around around;
     vec3 again = alone.scattered * mix(mean, 1.0, alone.share); /* in a stand, `scattered` has deeper ones' */

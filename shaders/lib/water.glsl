@@ -100,7 +100,7 @@ vec4 mirrored_pixel(ivec2 at, vec3 direction, float water_m)
  * horizon at the height h lies sin2 h of the light that comes to level ground. */
 vec3 mirrored_unseen(vec3 rel, vec3 mirrored, vec3 sky)
 {
-    vec4 field = CANOPY_LIGHT_AT((rel.xy + push.camera_m) * push.canopy_scale, 0.0);
+    vec4 field = CANOPY_LIGHT_AT(canopy_at(rel.xy + push.camera_m), 0.0);
     vec4 toward = max(vec4(mirrored.x, mirrored.y, -mirrored.x, -mirrored.y), vec4(0.0));
     vec4 share = toward * toward / max(dot(toward, toward), 1e-6);
     float hidden = 1.0 - dot(field * field, share);

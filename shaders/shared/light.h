@@ -14,7 +14,8 @@ struct wd_light_push {
     uint32_t is_sea;     /* the water goes on beyond the terrain */
     uint32_t has_rivers; /* a map shows waters at their own heights */
     WD_VEC2(extent_m);   /* of the terrain */
-    WD_VEC2(canopy_scale); /* of the canopy's light: image coordinates = metres * scale */
+    WD_VEC2(canopy_from_m); /* of the canopy's light: image coordinates = (metres - from) * scale */
+    WD_VEC2(canopy_scale);
     uint32_t has_overlay; /* a method has blended trees over the G-buffer */
     float eye_over_ground_m; /* 1e6 where there is no ground */
     float shafts_m; /* way along the view axis within maps of shadows, on which these tell what haze has of the sun */

@@ -5,6 +5,7 @@
 
 #include "base/jobs.h"
 #include "base/memory.h"
+#include "forest/crowns_apart.h"
 #include "shared/light.h"
 #include "shared/tree_pose.h"
 #include "tree/vec.h"
@@ -13,16 +14,37 @@ static const float PI = 3.14159265f;
 
 /* --- the stand ----------------------------------------------------------------------------- */
 
-enum { CELLS_A_SIDE = 384 /* of a square */, MOST_CELLS = 4096 /* a side */, STEEPNESSES = 4, QUARTERS = 4, SIDES = 3 };
+enum { CELLS_A_SIDE = 384 /* of a square */, MOST_CELLS = 4096 /* a side */, QUARTERS = 4, SIDES = 3 };
+
+/* Rings of the sky, each told by rays of one elevation: three above 30 degrees, even in the squared cosine, and below
+ * three as wide as each other, for below crowns low light comes in at the edges of stands. */
+enum { RINGS = 6 };
+static const struct {
+    float rise;     /* sine of the elevation */
+    float level;    /* share of what an even sky sends to level ground, */
+    float high;     /* to upright faces from above 30 degrees, */
+    float low;      /* and from below */
+    float turn_deg; /* off the middle of its quarter, so that this is seen at several bearings */
+} rings[RINGS] = {
+    {0.93541435f, 0.25f, 0.148f, 0, -34}, {0.79056942f, 0.25f, 0.317f, 0, 11},
+    {0.61237244f, 0.25f, 0.535f, 0, -11}, {0.42261826f, 0.133f, 0, 0.30f, 34},
+    {0.25881905f, 0.087f, 0, 0.34f, -22}, {0.08715574f, 0.030f, 0, 0.36f, 5},
+};
 
 /* Crowns of a cell as a layer of leaves over the ground. */
 struct stand {
     float ground_m, base_m, top_m; /* above the world's zero */
-    float per_m[STEEPNESSES];      /* extinction of rays of each ring, a metre of height */
+    float per_m[RINGS];            /* extinction of rays of each ring, a metre of height */
+    float stems_per_m;             /* of level ways below crowns, a metre */
 };
 
 static const double LEAST_CELL_M = 8;
-static const float STEP_M = 3;        /* up */
+/* Of plots on level ground, which are small and whose edges are near, two crowns, but no less than this. */
+static const double LEAST_PLOT_CELL_M = 4, PLOT_CROWNS = 2;
+static const double MARGIN_HEIGHTS = 4; /* about a plot, of its tallest tree: beyond, nearly all light comes in */
+static const float LEVEL_M = 1;       /* from the lowest to the highest ground */
+static const float STEP_M = 3;        /* up, */
+static const float STEP_CELLS = 0.7f; /* and level, at most, close by */
 static const float FARTHEST_M = 3000; /* hills beyond are left to the sun's own shadow */
 static const float DARK = 6;          /* optical depth that ends a ray */
 
@@ -34,17 +56,11 @@ struct work {
     float highest_m; /* of all tops */
 };
 
-/* Rings of equal share of a level surface's light: even in the squared cosine of elevation. */
-static float ring_rise(int ring)
-{
-    return sqrtf(1 - ((float)ring + 0.5f) / STEEPNESSES);
-}
-
 /* Of a cell's trees, by its share of the ground: the area of crowns' outlines from above; what they
- * cover, seen level, from half above and from above; base and top, weighted by the first; by what
+ * cover, seen level, from half above and from above; how wide stems are; by what
  * is covered from above, first and second moments of the leaves' heights. Herbs are apart. */
 struct sums {
-    float outline, seen[SIDES], base_m, top_m;
+    float outline, seen[SIDES], stems_m;
     float leaves_m, leaves_m2;
     float herbs, herbs_m; /* layers of herbs, by them the mean of their tops */
 };
@@ -77,9 +93,10 @@ static void add_tree(struct sums *sums, const struct wd_canopy_field *field,
     float base_m = model->crown_base_m * height_m / model->height_m;
     float per_m2 = (float)(1 / (field->cell_m * field->cell_m)), seen[SIDES];
     float outline = PI * radius_m * radius_m * per_m2;
+    float stem_m = params->grown[model - params->models].dbh_m * 2 * radius_m / model->crown_m;
     seen_of(seen, model, height_m, radius_m, per_m2);
-    double x = tree->x_mm * 0.001 / field->cell_m - 0.5,
-           y = tree->y_mm * 0.001 / field->cell_m - 0.5;
+    double x = (tree->x_mm * 0.001 - field->from_m[0]) / field->cell_m - 0.5;
+    double y = (tree->y_mm * 0.001 - field->from_m[1]) / field->cell_m - 0.5;
     double i0 = floor(x), j0 = floor(y);
     for (int corner = 0; corner < 4; corner++) {
         double i = i0 + (corner & 1), j = j0 + (corner >> 1);
@@ -98,8 +115,7 @@ static void add_tree(struct sums *sums, const struct wd_canopy_field *field,
         to->outline += part * outline;
         for (int side = 0; side < SIDES; side++)
             to->seen[side] += part * seen[side];
-        to->base_m += part * outline * base_m;
-        to->top_m += part * outline * height_m;
+        to->stems_m += part * per_m2 * stem_m;
         add_heights(to, above, base_m, height_m);
     }
 }
@@ -128,8 +144,7 @@ static struct sums sums_on_demand(const struct work *work, float cover)
     float height_m = layer->mean_height_m, radius_m = sqrtf((float)layer->crown_area_m2 / PI);
     float base_m = height_m * model->crown_base_m / model->height_m;
     float outline = -logf(1 - cover), per_m2 = outline / fmaxf((float)layer->crown_area_m2, 0.1f);
-    struct sums sums = {
-        .outline = outline, .base_m = outline * base_m, .top_m = outline * height_m};
+    struct sums sums = {.outline = outline};
     seen_of(sums.seen, model, height_m, radius_m, per_m2);
     add_heights(&sums, sums.seen[SIDES - 1], base_m, height_m);
     return sums;
@@ -149,35 +164,40 @@ static void settle_layer(struct wd_canopy_field *field, size_t cell, const struc
 }
 
 /* Crowns that stand at random let e^-a of a ray's light through where they cover a of the area
- * across it. They keep apart and hide so much more, most where many lie over one another: by the floors of path-traced
- * stands under an even sky, whose crowns have outlines of 0.56, 0.85, 1.5 and 1.8 times the ground together. */
-static float crowns_apart(float outline)
+ * across it. Those that are planted keep apart and hide so much more, most where many lie over one another: by the
+ * floors of path-traced stands under an even sky, whose crowns have outlines of 0.56, 0.85, 1.5 and 1.8 times the
+ * ground together. Mapped ones, which may stand in groups, hide less, by the floors of two plots. */
+static float crowns_apart(float outline, float on_map)
 {
-    return fminf(1.2f + 0.3f * fmaxf(outline - 1.1f, 0), 1.45f);
+    float planted = fminf(1.14f + 0.3f * fmaxf(outline - 1.1f, 0), 1.39f);
+    return planted * powf(on_map / wd_planted_apart(outline), 0.35f);
 }
 
-static void settle_stand(struct work *work, size_t cell, struct sums sums)
+static void settle_stand(struct work *work, size_t cell, struct sums sums, float on_map)
 {
     const struct wd_canopy_field *field = work->field;
-    double x_m = ((double)(cell % field->width) + 0.5) * field->cell_m;
-    double y_m = ((double)(cell / field->width) + 0.5) * field->cell_m;
+    double x_m = field->from_m[0] + ((double)(cell % field->width) + 0.5) * field->cell_m;
+    double y_m = field->from_m[1] + ((double)(cell / field->width) + 0.5) * field->cell_m;
     struct stand *stand = &work->stands[cell];
     stand->ground_m = stand->base_m = stand->top_m =
         wd_terrain_height(&work->world->terrain, x_m, y_m);
-    if (sums.outline <= 0 && work->world->demand.count)
+    if (sums.outline <= 0 && work->world->demand.count) {
         sums = sums_on_demand(work, fminf(cover_at(work->world, x_m, y_m, field->cell_m), 0.98f));
+        on_map = wd_planted_apart(sums.outline);
+    }
     field->herbs[cell][0] = sums.herbs;
     field->herbs[cell][1] = sums.herbs > 0 ? sums.herbs_m / sums.herbs : 0;
     settle_layer(work->field, cell, &sums);
     if (sums.outline <= 0)
         return;
-    float deep_m = fmaxf((sums.top_m - sums.base_m) / sums.outline, 1);
-    stand->base_m += sums.base_m / sums.outline;
+    const float *layer_m = field->layer_m[cell];
+    float deep_m = fmaxf(layer_m[1] - layer_m[0], 1);
+    stand->base_m += layer_m[0];
     stand->top_m = stand->base_m + deep_m;
-    float apart = crowns_apart(sums.outline);
-    for (int ring = 0; ring < STEEPNESSES; ring++) {
-        float rise = ring_rise(ring),
-              seen = wd_seen_m2(sums.seen[0], sums.seen[1], sums.seen[2], rise);
+    float apart = crowns_apart(sums.outline, on_map);
+    stand->stems_per_m = sums.stems_m;
+    for (int ring = 0; ring < RINGS; ring++) {
+        float rise = rings[ring].rise, seen = wd_seen_m2(sums.seen[0], sums.seen[1], sums.seen[2], rise);
         stand->per_m[ring] = apart * seen / (rise * deep_m);
     }
     work->highest_m = fmaxf(work->highest_m, stand->top_m);
@@ -208,6 +228,20 @@ static void spread_layer(struct wd_canopy_field *field)
     field->layer_m = spread;
 }
 
+static float *apart_on_map(const struct work *work, const struct sums *sums)
+{
+    const struct wd_canopy_field *field = work->field;
+    size_t count = (size_t)field->width * field->height;
+    float *outline = wd_alloc_array(count, sizeof *outline);
+    for (size_t cell = 0; cell < count; cell++)
+        outline[cell] = sums[cell].outline;
+    const struct wd_crown_grid grid = {.outline = outline, .width = field->width, .height = field->height,
+                                       .cell_m = field->cell_m, .from_m = {field->from_m[0], field->from_m[1]}};
+    float *apart = wd_crowns_apart(work->world, &grid);
+    free(outline);
+    return apart;
+}
+
 static void settle_stands(struct work *work)
 {
     size_t count = (size_t)work->field->width * work->field->height;
@@ -215,8 +249,10 @@ static void settle_stands(struct work *work)
     for (size_t i = 0; i < work->world->tree_count; i++)
         add_tree(sums, work->field, work->params, &work->world->trees[i]);
     work->highest_m = work->world->terrain.min_m;
+    float *apart = apart_on_map(work, sums);
     for (size_t cell = 0; cell < count; cell++)
-        settle_stand(work, cell, sums[cell]);
+        settle_stand(work, cell, sums[cell], apart[cell]);
+    free(apart);
     free(sums);
     spread_layer(work->field);
 }
@@ -238,7 +274,8 @@ static float ray_through(const struct work *work, size_t cell, const struct ray 
     const float free_m = wd_maxf(work->highest_m, work->world->terrain.max_m);
     float x = (float)(cell % field->width) + 0.5f, y = (float)(cell / field->width) + 0.5f;
     float z = work->stands[cell].ground_m + 0.5f, depth = 0, gone_m = 0;
-    float step_m = STEP_M / ray->rise;
+    const float across = sqrtf(1 - ray->rise * ray->rise);
+    float step_m = wd_minf(STEP_M / ray->rise, STEP_CELLS / (cells_a_m * across));
     while (depth < DARK && gone_m < FARTHEST_M) {
         step_m = wd_maxf(step_m, 0.08f * gone_m);
         float half = 0.5f * step_m * cells_a_m;
@@ -251,7 +288,9 @@ static float ray_through(const struct work *work, size_t cell, const struct ray 
         if (0.5f * (low + high) < stand->ground_m - 2)
             return 0;
         float within = wd_minf(high, stand->top_m) - wd_maxf(low, stand->base_m);
-        depth += wd_maxf(within, 0) * stand->per_m[ray->ring];
+        float below = wd_minf(high, stand->base_m) - wd_maxf(low, stand->ground_m);
+        depth += wd_maxf(within, 0) * stand->per_m[ray->ring] +
+                 wd_maxf(below, 0) * stand->stems_per_m * across / ray->rise;
         x += 2 * half * ray->east;
         y += 2 * half * ray->north;
         z = high;
@@ -260,30 +299,23 @@ static float ray_through(const struct work *work, size_t cell, const struct ray 
     return expf(-depth);
 }
 
-/* Of an upright surface's light from above the lowest ring, the shares that come from each ring. Most of what the
- * lowest sends it comes from lower yet than its rays, which go twice as far through crowns. */
-static const float UPRIGHT[STEEPNESSES - 1] = {0.148f, 0.317f, 0.535f};
-
-/* Each ring is turned against the one before, so that a quarter is seen at several bearings. */
 static void fill_cell(const struct work *work, size_t cell)
 {
-    static const float turn_deg[STEEPNESSES] = {-34, 11, -11, 34};
     struct wd_canopy_field *field = work->field;
     for (int quarter = 0; quarter < QUARTERS; quarter++) {
-        float through[STEEPNESSES], sum = 0, high = 0;
-        for (int ring = 0; ring < STEEPNESSES; ring++) {
-            float rise = ring_rise(ring), across = sqrtf(1 - rise * rise);
-            float bearing = (90.0f * (float)quarter + turn_deg[ring]) * (PI / 180);
-            const struct ray ray = {across * cosf(bearing), across * sinf(bearing), rise, ring};
-            through[ring] = ray_through(work, cell, &ray);
-            sum += through[ring];
+        float level = 0, high = 0, low = 0;
+        for (int i = 0; i < RINGS; i++) {
+            float rise = rings[i].rise, across = sqrtf(1 - rise * rise);
+            float bearing = (90.0f * (float)quarter + rings[i].turn_deg) * (PI / 180);
+            const struct ray ray = {across * cosf(bearing), across * sinf(bearing), rise, i};
+            float through = ray_through(work, cell, &ray);
+            level += rings[i].level * through;
+            high += rings[i].high * through;
+            low += rings[i].low * through;
         }
-        for (int ring = 0; ring + 1 < STEEPNESSES; ring++)
-            high += UPRIGHT[ring] * through[ring];
-        float lowest = through[STEEPNESSES - 1];
-        field->quarters[cell][quarter] = sum / STEEPNESSES;
+        field->quarters[cell][quarter] = level;
         field->high[cell][quarter] = high;
-        field->low[cell][quarter] = 0.5f * (lowest + lowest * lowest);
+        field->low[cell][quarter] = low;
     }
 }
 
@@ -294,26 +326,66 @@ static void fill_row(void *user, size_t row)
         fill_cell(work, row * work->field->width + i);
 }
 
+struct trees {
+    double low_m[2], high_m[2], tallest_m;
+    double crown_m; /* mean diameter, of those that are no herbs */
+    size_t count;   /* of these */
+};
+
+static struct trees trees_of(const struct wd_world *world)
+{
+    struct trees trees = {.low_m = {INFINITY, INFINITY}, .high_m = {-INFINITY, -INFINITY}};
+    double crowns_m = 0;
+    for (size_t i = 0; i < world->tree_count; i++) {
+        const struct wd_tree *tree = &world->trees[i];
+        const double place_m[2] = {tree->x_mm * 0.001, tree->y_mm * 0.001};
+        for (int k = 0; k < 2; k++) {
+            trees.low_m[k] = fmin(trees.low_m[k], place_m[k]);
+            trees.high_m[k] = fmax(trees.high_m[k], place_m[k]);
+        }
+        trees.tallest_m = fmax(trees.tallest_m, (double)WD_TREE_HEIGHT_M(*tree));
+        if (WD_TREE_HEIGHT_M(*tree) >= WD_HERB_M) {
+            crowns_m += (double)WD_TREE_CROWN_M(*tree);
+            trees.count++;
+        }
+    }
+    trees.crown_m = crowns_m / (double)(trees.count ? trees.count : 1);
+    return trees;
+}
+
+/* The field covers the terrain; where that is level, its stored trees and so much about them that nearly all light comes
+ * in beyond. */
+static void lay_out(struct wd_canopy_field *field, const struct wd_world *world)
+{
+    const struct wd_terrain *terrain = &world->terrain;
+    const struct trees trees = trees_of(world);
+    bool is_plot = terrain->max_m - terrain->min_m < LEVEL_M && trees.count && !world->demand.count;
+    double from_m[2] = {0}, to_m[2] = {wd_terrain_extent_x_m(terrain), wd_terrain_extent_y_m(terrain)};
+    for (int k = 0; k < 2 && is_plot; k++) {
+        from_m[k] = fmax(from_m[k], trees.low_m[k] - MARGIN_HEIGHTS * trees.tallest_m);
+        to_m[k] = fmin(to_m[k], trees.high_m[k] + MARGIN_HEIGHTS * trees.tallest_m);
+    }
+    double x_m = to_m[0] - from_m[0], y_m = to_m[1] - from_m[1];
+    double cell_m = fmax(sqrt(x_m * y_m) / CELLS_A_SIDE, fmax(x_m, y_m) / MOST_CELLS);
+    double plot_cell_m = fmin(fmax(PLOT_CROWNS * trees.crown_m, LEAST_PLOT_CELL_M), LEAST_CELL_M);
+    cell_m = fmax(cell_m, is_plot ? plot_cell_m : LEAST_CELL_M);
+    *field = (struct wd_canopy_field){.width = (uint32_t)fmax(ceil(x_m / cell_m), 1),
+                                      .height = (uint32_t)fmax(ceil(y_m / cell_m), 1),
+                                      .cell_m = cell_m,
+                                      .from_m = {from_m[0], from_m[1]}};
+}
+
 void wd_canopy_field_init(struct wd_canopy_field *field,
                           const struct wd_canopy_field_params *params)
 {
-    const struct wd_world *world = params->world;
-    double x_m = wd_terrain_extent_x_m(&world->terrain);
-    double y_m = wd_terrain_extent_y_m(&world->terrain);
-    double cell_m = fmax(sqrt(x_m * y_m) / CELLS_A_SIDE, fmax(x_m, y_m) / MOST_CELLS);
-    cell_m = fmax(cell_m, LEAST_CELL_M);
-    *field = (struct wd_canopy_field){.width = (uint32_t)ceil(x_m / cell_m),
-                                      .height = (uint32_t)ceil(y_m / cell_m),
-                                      .cell_m = cell_m};
-    field->width = field->width ? field->width : 1;
-    field->height = field->height ? field->height : 1;
+    lay_out(field, params->world);
     size_t count = (size_t)field->width * field->height;
     field->quarters = wd_alloc_array(count, sizeof *field->quarters);
     field->high = wd_alloc_array(count, sizeof *field->high);
     field->low = wd_alloc_array(count, sizeof *field->low);
     field->layer_m = wd_alloc_array(count, sizeof *field->layer_m);
     field->herbs = wd_alloc_array(count, sizeof *field->herbs);
-    struct work work = {.field = field, .world = world, .params = params};
+    struct work work = {.field = field, .world = params->world, .params = params};
     work.stands = wd_alloc_array(count, sizeof *work.stands);
     settle_stands(&work);
     wd_jobs_run(params->threads, field->height, fill_row, &work);

@@ -4,6 +4,7 @@
 
 #include "gpu/memory.h"
 #include "shared/forest.h"
+#include "tree/grow.h"
 #include "world/world.h"
 
 /* The field on the CPU: for each cell, of the light that an even sky sends to level ground from the
@@ -18,11 +19,13 @@ struct wd_canopy_field {
     float (*herbs)[2];    /* parallel: layers of plants below WD_HERB_M, no swards, and their height */
     uint32_t width, height;
     double cell_m;
+    double from_m[2]; /* of the south-western corner, in the world's own coordinates */
 };
 
 struct wd_canopy_field_params {
     const struct wd_world *world;
     const struct wd_model *models; /* [species * variants + variant] */
+    const struct wd_tree_model *grown; /* parallel */
     uint32_t variants;
     unsigned threads;
 };

@@ -28,7 +28,8 @@ struct wd_forest_device {
     struct wd_image card_leaf;                /* share of leaves; mips as those of normals */
     struct wd_image canopy_light;   /* see forest/canopy_light.h */
     struct wd_image sky;            /* the world's map of the sky, or a black texel */
-    float canopy_light_scale[2];    /* its coordinates = local metres * scale */
+    float canopy_light_from_m[2];   /* its coordinates = (local metres - from) * scale */
+    float canopy_light_scale[2];
     float leaf_scatter[3];          /* root of what leaves absorb: wd_frame_uniforms */
     VkSampler look_sampler, card_sampler, point_sampler; /* point: normals and shadows of cards */
     struct wd_forest_meshes meshes;

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "forest/canopy_light.h"
+#include "forest/crowns_apart.h"
 #include "scene/species.h"
 #include "tree/coverage.h"
 #include "tree/grow.h"
@@ -38,31 +39,34 @@ static struct wd_model model = {.height_m = 20,
                                 .roughness = 0.4f,
                                 .seen_m2 = {45.2f, 36.2f, 22.6f}};
 
+static struct wd_tree_model stems = {.dbh_m = 0.3f};
+
 static struct wd_canopy_field field_of(const struct wd_world *world, unsigned threads)
 {
     struct wd_canopy_field field;
     wd_canopy_field_init(&field,
                          &(struct wd_canopy_field_params){
-                             .world = world, .models = &model, .variants = 1, .threads = threads});
+                             .world = world, .models = &model, .grown = &stems, .variants = 1, .threads = threads});
     return field;
+}
+
+/* The nearest cell. */
+static size_t cell_at(const struct wd_canopy_field *field, double x_m, double y_m)
+{
+    double column = floor((x_m - field->from_m[0]) / field->cell_m), row = floor((y_m - field->from_m[1]) / field->cell_m);
+    column = fmin(fmax(column, 0), field->width - 1);
+    row = fmin(fmax(row, 0), field->height - 1);
+    return (size_t)row * field->width + (size_t)column;
 }
 
 static const float *at(const struct wd_canopy_field *field, double x_m, double y_m)
 {
-    size_t column = (size_t)(x_m / field->cell_m), row = (size_t)(y_m / field->cell_m);
-    return field->quarters[row * field->width + column];
-}
-
-static const float *upright_at(float (*shares)[4], const struct wd_canopy_field *field, double x_m, double y_m)
-{
-    size_t column = (size_t)(x_m / field->cell_m), row = (size_t)(y_m / field->cell_m);
-    return shares[row * field->width + column];
+    return field->quarters[cell_at(field, x_m, y_m)];
 }
 
 static const float *layer_at(const struct wd_canopy_field *field, double x_m, double y_m)
 {
-    size_t column = (size_t)(x_m / field->cell_m), row = (size_t)(y_m / field->cell_m);
-    return field->layer_m[row * field->width + column];
+    return field->layer_m[cell_at(field, x_m, y_m)];
 }
 
 static void open_ground_gets_all(void **state)
@@ -83,7 +87,8 @@ static void low_skies_are_darkest(void **state)
     (void)state;
     struct wd_world world = stand_from(0);
     struct wd_canopy_field field = field_of(&world, 1);
-    const float *high = upright_at(field.high, &field, 120, 120), *low = upright_at(field.low, &field, 120, 120);
+    size_t middle = cell_at(&field, 120, 120);
+    const float *high = field.high[middle], *low = field.low[middle];
     for (int k = 0; k < 4; k++) {
         assert_true(low[k] < 0.5f * high[k] && high[k] < at(&field, 120, 120)[k]);
         assert_true(low[k] > 0);
@@ -110,6 +115,43 @@ static void stands_are_dark_and_edges_are_not(void **state)
     free(world.cover);
 }
 
+/* Low light comes in below crowns that begin at 8 m, past stems, the less the farther in. */
+static void low_light_comes_in_at_edges(void **state)
+{
+    (void)state;
+    struct wd_world world = stand_from(SIDE_M / 2);
+    struct wd_canopy_field field = field_of(&world, 1);
+    const float *near = field.low[cell_at(&field, 132, 120)], *far = field.low[cell_at(&field, 200, 120)];
+    assert_true(near[2] > 0.3f && near[0] < 0.1f); /* west, east */
+    assert_true(far[2] < 0.3f * near[2]);
+    float between_thin_stems = near[2];
+    wd_canopy_field_finish(&field);
+    stems.dbh_m = 1.5f;
+    field = field_of(&world, 1);
+    assert_true(field.low[cell_at(&field, 132, 120)][2] < 0.75f * between_thin_stems);
+    stems.dbh_m = 0.3f;
+    wd_canopy_field_finish(&field);
+    free(world.cover);
+}
+
+/* A plot on a wide plain has small cells. */
+static void plots_on_plains_are_resolved(void **state)
+{
+    (void)state;
+    struct wd_world world = {.terrain = {.width = 2, .height = 2, .cell_m = 6000, .height_m = heights_m}};
+    for (int i = 0; i < 100; i++)
+        trees[world.tree_count++] = (struct wd_tree){.x_mm = 3000000 + 3000 * (i % 10), .y_mm = 2000000 + 3000 * (i / 10),
+                                                     .size = 1000u | 200u << 16};
+    world.trees = trees;
+    wd_cover_init(&world, 1);
+    struct wd_canopy_field field = field_of(&world, 1);
+    assert_true(field.cell_m < 5 && field.width < 50 && field.height < 50);
+    assert_true(at(&field, 3013, 2013)[0] < 0.5f);
+    assert_true(at(&field, 2980, 2013)[2] > 0.95f);
+    wd_canopy_field_finish(&field);
+    free(world.cover);
+}
+
 /* Trees of one height are a layer from their crowns' base to their tops, herbs below them or not;
  * crowns reach into the next cell; lower trees under higher ones make it deeper. */
 static void layers_are_as_high_as_their_trees(void **state)
@@ -125,7 +167,7 @@ static void layers_are_as_high_as_their_trees(void **state)
     const float *within = layer_at(&field, 200, 120), *open = layer_at(&field, 12, 120);
     assert_float_equal(within[0], 8, 0.01f);
     assert_float_equal(within[1], 20, 0.01f);
-    assert_float_equal(layer_at(&field, 106, 120)[1], 20, 0.01f);
+    assert_float_equal(layer_at(&field, 110, 120)[1], 20, 0.01f);
     assert_float_equal(open[1], 0, 0);
     wd_canopy_field_finish(&field);
     for (size_t i = stand; i < world.tree_count; i++)
@@ -162,7 +204,8 @@ static void hills_hide_their_side(void **state)
     struct wd_canopy_field field = field_of(&world, 1);
     const float *foot = at(&field, 140, 120), *far = at(&field, 20, 120);
     assert_true(foot[0] < 0.3f && foot[2] > 0.999f);
-    const float *high = upright_at(field.high, &field, 140, 120), *low = upright_at(field.low, &field, 140, 120);
+    size_t cell = cell_at(&field, 140, 120);
+    const float *high = field.high[cell], *low = field.low[cell];
     assert_true(low[0] < 1e-6f && low[2] > 0.999f && high[2] > 0.999f); /* nothing of the low sky behind the wall */
     assert_true(high[0] <= foot[0]);
     assert_true(far[0] > foot[0] && far[0] < 0.95f);
@@ -201,7 +244,8 @@ static void herbs_are_apart(void **state)
 
 /* Deep in a wide stand, of each of four rings of the sky what crowns cover of the area across its
  * rays, and more, the more ground their outlines cover together, stops them by Beer's law; cells of 8 m hold one tree
- * or four of those that stand 5 m apart. */
+ * or four of those that stand 5 m apart, in rows that leave next to nothing free: as much as twice the layers would at
+ * random. */
 static void floors_get_what_crowns_do_not_cover(void **state)
 {
     (void)state;
@@ -210,7 +254,8 @@ static void floors_get_what_crowns_do_not_cover(void **state)
     const float *middle = at(&field, 0.5 * SIDE_M, 0.5 * SIDE_M);
     const float *seen = model.seen_m2;
     float wanted = 0, crown_m = WD_TREE_CROWN_M(trees[0]) / SPACING_M;
-    float outline = 3.14159f / 4 * crown_m * crown_m, apart = 1.2f + 0.3f * fmaxf(outline - 1.1f, 0);
+    float outline = 3.14159f / 4 * crown_m * crown_m, apart = 1.14f + 0.3f * fmaxf(outline - 1.1f, 0);
+    apart *= powf(2 / wd_planted_apart(outline), 0.35f);
     for (int ring = 0; ring < 4; ring++) {
         float rise = sqrtf(1 - ((float)ring + 0.5f) / 4);
         float covered =
@@ -274,6 +319,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(open_ground_gets_all),
         cmocka_unit_test(stands_are_dark_and_edges_are_not),
+        cmocka_unit_test(low_light_comes_in_at_edges),
+        cmocka_unit_test(plots_on_plains_are_resolved),
         cmocka_unit_test(low_skies_are_darkest),
         cmocka_unit_test(layers_are_as_high_as_their_trees),
         cmocka_unit_test(threads_change_nothing),
