@@ -215,6 +215,19 @@ vec4 canopy_light_near(vec2 place_m, int layer)
 #endif
 }
 
+/* Between texels by lot: in the mean over samples as smooth as of four. */
+vec4 canopy_light_about(vec2 place_m, int layer, float noise)
+{
+#ifdef CANOPY_LIGHT
+    vec2 lot = vec2(noise, fract(37.0 * noise)) - 0.5;
+    vec2 texels = vec2(textureSize(CANOPY_LIGHT, 0).xy);
+    vec2 at = clamp(canopy_at(place_m) * texels + lot, vec2(0.0), texels - 1.0);
+    return texelFetch(CANOPY_LIGHT, ivec3(at, layer), 0);
+#else
+    return vec4(1.0);
+#endif
+}
+
 /* A model's table holds for single plants, as far as they are no herbs. */
 float has_table(wd_crown crown)
 {
@@ -251,8 +264,9 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     alone.lets.xy = skylit.xy * wd_skylit_above(pixel.openness);
     alone.lets.zw = skylit.zw * wd_skylit_below(pixel.openness);
     alone.leaf = pixel.material >= WD_MATERIAL_LEAF ? is_tree(crown) : 0.0;
-    float above = canopy_above(shelter.layer_m, height_m);
-    alone.edge = past_edge(alone.low, alone.beside) * (above * (1.0 - alone.leaf));
+    float base_m = max(crown.center_rel.z - crown.radii_m.z - crown.foot_z, 0.1);
+    float below = mix(1.0, 1.0 - smoothstep(0.5 * base_m, base_m, height_m), is_tree(crown));
+    alone.edge = past_edge(alone.low, alone.beside) * (below * (1.0 - alone.leaf));
     return alone;
 }
 
@@ -692,7 +706,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         light_past_neighbours(alone, pixel, crown, model, shelter, place);
     } else {
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, 0.0);
-        vec4 low = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
+        vec4 low = canopy_light_about(pixel.rel.xy + push.camera_m, 3, noise);
         alone.edge = past_edge(low * low, shelter.through);
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);

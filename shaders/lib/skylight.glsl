@@ -203,6 +203,9 @@ vec4 past_edge(vec4 low, vec4 level)
     return max(low - level * level, 0.0) * (1.0 - level);
 }
 
+/* Of an even sky's light on an upright face so much comes from below 30 degrees. */
+const float LOW_OF_UPRIGHT = 0.61;
+
 /* Share of that which a face has. `light`: of the quarters that it looks to. */
 float from_edge(vec4 edge, vec4 light, float n_z)
 {
@@ -306,12 +309,9 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
                         * sky_of_side(alone.side, bright, faced);
     vec3 beside_back = alone.again * sky_faced(alone, bright - bright * faced, flat_on, sky_of_back)
                        * sky_of_side(alone.side, bright, 1.0 - faced);
-    float edge_front = from_edge(alone.edge, bright * faced, n.z);
-    float edge_back = from_edge(alone.edge, bright - bright * faced, n.z);
-    vec3 low_front = edge_front * low_share(sky_of_front, 0.5 * open_sky);
-    vec3 low_back = edge_back * low_share(sky_of_back, 0.5 * open_sky);
-    vec3 sky_front = mix(sky + low_front, beside_front * alone.lets.x, alone.known);
-    vec3 sky_back = mix(sky + low_back, beside_back * alone.lets.y, alone.known);
+    float edge = from_edge(alone.edge, bright * faced, n.z);
+    vec3 sky_front = mix(sky + LOW_OF_UPRIGHT * edge, beside_front * alone.lets.x, alone.known);
+    vec3 sky_back = mix(sky, beside_back * alone.lets.y, alone.known);
     float rise = max(frame.sun_direction.z, 0.0);
     float longer = 0.67 / max(rise, 0.05);
     float beam = exp2(longer * log2(dot(frame.sunward, shelter.through)));
@@ -329,9 +329,9 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 upward = below * (open_sky * sky + with_scattered);
     float beside_lit = exp2(longer * log2(max(dot(frame.sunward, alone.beside), 1e-3)));
     vec3 beside = alone.again * floor_albedo * (sky_level(alone.beside) + sun * beside_lit);
-    vec3 beyond = floor_albedo * (open_sky + sun);
-    vec3 upward_front = mix(upward + edge_front * beyond, beside * alone.lets.z, alone.share);
-    vec3 upward_back = mix(upward + edge_back * beyond, beside * alone.lets.w, alone.share);
+    vec3 beyond = 0.5 * floor_albedo * (open_sky + sun); /* ground before the stand, less what stems hide of it */
+    vec3 upward_front = mix(upward + edge * beyond, beside * alone.lets.z, alone.share);
+    vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
     float up = 0.5 + 0.5 * n.z;
     wd_around around;
     vec3 again = alone.scattered * mix(mean, 1.0, alone.share); /* in a stand, `scattered` has deeper ones' */

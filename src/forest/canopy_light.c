@@ -353,8 +353,8 @@ static struct trees trees_of(const struct wd_world *world)
     return trees;
 }
 
-/* The field covers the terrain; where that is level, its stored trees and so much about them that nearly all light comes
- * in beyond. */
+/* The field covers the terrain; where that is level, its stored trees and so much about them that nearly all
+ * light comes in beyond. */
 static void lay_out(struct wd_canopy_field *field, const struct wd_world *world)
 {
     const struct wd_terrain *terrain = &world->terrain;

@@ -53,7 +53,8 @@ static struct wd_canopy_field field_of(const struct wd_world *world, unsigned th
 /* The nearest cell. */
 static size_t cell_at(const struct wd_canopy_field *field, double x_m, double y_m)
 {
-    double column = floor((x_m - field->from_m[0]) / field->cell_m), row = floor((y_m - field->from_m[1]) / field->cell_m);
+    double column = floor((x_m - field->from_m[0]) / field->cell_m);
+    double row = floor((y_m - field->from_m[1]) / field->cell_m);
     column = fmin(fmax(column, 0), field->width - 1);
     row = fmin(fmax(row, 0), field->height - 1);
     return (size_t)row * field->width + (size_t)column;
@@ -140,8 +141,8 @@ static void plots_on_plains_are_resolved(void **state)
     (void)state;
     struct wd_world world = {.terrain = {.width = 2, .height = 2, .cell_m = 6000, .height_m = heights_m}};
     for (int i = 0; i < 100; i++)
-        trees[world.tree_count++] = (struct wd_tree){.x_mm = 3000000 + 3000 * (i % 10), .y_mm = 2000000 + 3000 * (i / 10),
-                                                     .size = 1000u | 200u << 16};
+        trees[world.tree_count++] = (struct wd_tree){
+            .x_mm = 3000000 + 3000 * (i % 10), .y_mm = 2000000 + 3000 * (i / 10), .size = 1000u | 200u << 16};
     world.trees = trees;
     wd_cover_init(&world, 1);
     struct wd_canopy_field field = field_of(&world, 1);

@@ -35,7 +35,8 @@ static double apart(void)
 {
     float outline[SIDE * SIDE];
     struct wd_world world = {.trees = trees, .tree_count = count};
-    double sum = 0, each = 0.25 * 3.14159265 * (double)(CROWN_M * CROWN_M) * (double)count / (SIDE * SIDE * CELL_M * CELL_M);
+    double squares_m2 = SIDE * SIDE * CELL_M * CELL_M, sum = 0;
+    double each = 0.25 * 3.14159265 * (double)(CROWN_M * CROWN_M) * (double)count / squares_m2;
     for (int i = 0; i < SIDE * SIDE; i++)
         outline[i] = (float)each;
     const struct wd_crown_grid grid = {.outline = outline, .width = SIDE, .height = SIDE, .cell_m = CELL_M};
