@@ -215,19 +215,6 @@ vec4 canopy_light_near(vec2 place_m, int layer)
 #endif
 }
 
-/* Between texels by lot: in the mean over samples as smooth as of four. */
-vec4 canopy_light_about(vec2 place_m, int layer, float noise)
-{
-#ifdef CANOPY_LIGHT
-    vec2 lot = vec2(noise, fract(37.0 * noise)) - 0.5;
-    vec2 texels = vec2(textureSize(CANOPY_LIGHT, 0).xy);
-    vec2 at = clamp(canopy_at(place_m) * texels + lot, vec2(0.0), texels - 1.0);
-    return texelFetch(CANOPY_LIGHT, ivec3(at, layer), 0);
-#else
-    return vec4(1.0);
-#endif
-}
-
 /* A model's table holds for single plants, as far as they are no herbs. */
 float has_table(wd_crown crown)
 {
@@ -426,7 +413,7 @@ const float NEEDLES_AHEAD_M = 0.03;
 /* From within the darkest stands an eye sees, past discs, some that lie higher in their crowns, under more of the sun
  * and the sky, than the leaves that it would see: share of their light that these have, the sun's and the sky's. By
  * path-traced crowns of three stands, one of them so dark. */
-const vec2 PAST_DISCS = vec2(0.87, 0.78);
+const vec2 PAST_DISCS = vec2(0.87, 0.66);
 
 /* Log2 of one over the sky's share on the floor of stands where none of that counts, and all. */
 const vec2 PAST_DISCS_FROM = vec2(3.2, 4.2);
@@ -706,7 +693,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         light_past_neighbours(alone, pixel, crown, model, shelter, place);
     } else {
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, 0.0);
-        vec4 low = canopy_light_about(pixel.rel.xy + push.camera_m, 3, noise);
+        vec4 low = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
         alone.edge = past_edge(low * low, shelter.through);
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);
