@@ -413,10 +413,10 @@ const float NEEDLES_AHEAD_M = 0.03;
 /* From within the darkest stands an eye sees, past discs, some that lie higher in their crowns, under more of the sun
  * and the sky, than the leaves that it would see: share of their light that these have, the sun's and the sky's. By
  * path-traced crowns of three stands, one of them so dark. */
-const vec2 PAST_DISCS = vec2(0.87, 0.66);
+const vec2 PAST_DISCS = vec2(0.87, 0.74);
 
 /* Log2 of one over the sky's share on the floor of stands where none of that counts, and all. */
-const vec2 PAST_DISCS_FROM = vec2(3.2, 4.2);
+const vec2 PAST_DISCS_FROM = vec2(2.9, 3.9);
 
 vec2 past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
 {
