@@ -243,10 +243,10 @@ static void herbs_are_apart(void **state)
     free(world.cover);
 }
 
-/* Deep in a wide stand, of each of four rings of the sky what crowns cover of the area across its
- * rays, and more, the more ground their outlines cover together, stops them by Beer's law; cells of 8 m hold one tree
- * or four of those that stand 5 m apart, in rows that leave next to nothing free: as much as twice the layers would at
- * random. */
+/* Deep in a wide stand, of each of four rings of the sky, the lowest of which the field tells by three, what crowns
+ * cover of the area across its rays, and more, the more ground their outlines cover together, stops them by Beer's
+ * law; cells of 8 m hold one tree or four of those that stand 5 m apart, in rows that leave next to nothing free: as
+ * much as twice the layers would at random. */
 static void floors_get_what_crowns_do_not_cover(void **state)
 {
     (void)state;

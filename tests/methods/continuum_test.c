@@ -149,7 +149,7 @@ static void other_ways_show_the_same(void **state)
         size_t lights = other_light(&drawn, &stored);
         print_message("%zu trees, %zu depths, %zu colours, %zu lights of %zu pixels differ\n", surfaces,
                       depths, albedos, lights, pixels_of(&a));
-        assert_in_range(lights, 0, pixels_of(&a) / 150);
+        assert_in_range(lights, 0, pixels_of(&a) / 150); /* found: 396; 366 while stems in stands were darker */
         assert_in_range(surfaces, 0, pixels_of(&a) / 1000);
         assert_in_range(depths, 0, pixels_of(&a) / 500);
         assert_in_range(albedos, 0, pixels_of(&a) / 100);
