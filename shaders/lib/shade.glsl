@@ -116,13 +116,14 @@ float through_layer(float over)
  * every side, and from the horizon ahead the more, the flatter the eye's ray. The integral over blades of
  * every direction, under an even sky, gave 0.023 (1 - sine)^2 for that, half of what a wall before such a
  * sky would get. `open`: share of the sky that reaches the sward. */
-vec3 sward_sheen(vec3 direction, float over, float open)
+vec3 sward_sheen(vec3 direction, float over, float open, vec4 low)
 {
     vec3 ahead = vec3(direction.xy * inversesqrt(dot(direction.xy, direction.xy) + 1e-6), 0.0);
     float flat_on = 1.0 - min(abs(direction.z), 1.0);
     vec3 horizon = SKY_EVEN(frame.sky_form, ahead) + SKY_ODD(frame.sky_form, ahead);
-    return open * (0.5 * WD_WAX * through_layer(over) * frame.sky_irradiance
-                   + 0.26 * flat_on * flat_on * flat_on * exp(-over) * max(horizon, vec3(0.0)));
+    vec4 toward = max(vec4(ahead.xy, -ahead.xy), vec4(0.0));
+    return 0.5 * WD_WAX * through_layer(over) * open * frame.sky_irradiance
+                   + 0.26 * max(dot(low, toward * toward), open) * flat_on * flat_on * flat_on * exp(-over) * max(horizon, vec3(0.0));
 }
 
 /* What light meets at a pixel. */
@@ -731,14 +732,14 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     bool one_leaf = ALL_SINGLE || pixel.lit >= 0.0;
     vec3 mirrored = mirrored_by_leaf(pixel, around, mirror, blade, sun_share);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),
-                     sward_sheen(pixel.direction, place.over, shelter.floor_mean), place.sward);
+                     sward_sheen(pixel.direction, place.over, shelter.floor_mean, alone.low), place.sward);
     vec3 skylit = past.y * (around.front * within_sky + sheen * place.waxed + around.back * transmitted);
-    float leaf_way = place.own * past_trees * mix(OVER_HILLS, 1.0, ground_share);
+    float over_hills = mix(OVER_HILLS, 1.0, ground_share), leaf_way = place.own * past_trees;
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);
     wide_way += (1.0 - wide_way) * low_about_sun(frame.sun_direction.z) * dot(frame.sunward, alone.edge);
     float close = pixel.surface == 0u ? 0.0 : mix(NEAR_SUN, NEAR_SUN_BLADES, place.sward);
-    float about_sun = mix(wide_way, leaf_way, close);
+    float about_sun = mix(wide_way, leaf_way, close) * over_hills;
     vec3 from_sun = frame.sun_irradiance * sun_share + frame.circumsolar * about_sun;
     vec3 light = from_sun * (sunlit + place.gloss) + skylit;
     return light * PER_PI;
