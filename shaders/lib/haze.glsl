@@ -27,17 +27,18 @@ vec2 haze_shade(wd_haze_place place)
 /* Where the eye is, and what is lit. */
 wd_haze_place haze_eye = IN_THE_OPEN, haze_end = IN_THE_OPEN;
 
-wd_haze_place haze_place_at(vec2 place_m, float height_m)
+float haze_floor_log(vec2 place_m)
 {
-    vec2 at = canopy_at(place_m);
-    vec4 field = CANOPY_LIGHT_AT(at, 0.0), layers = CANOPY_LIGHT_AT(at, 1.0);
-    float floor_log = log2(dot(max(field * field, vec4(1e-3)), vec4(0.25)));
-    return wd_haze_place(floor_log, WD_CANOPY_MOST_M * layers.xy * layers.xy, height_m);
+    vec4 field = CANOPY_LIGHT_AT(canopy_at(place_m), 0.0);
+    return log2(dot(max(field * field, vec4(1e-3)), vec4(0.25)));
 }
 
 void know_eye()
 {
-    haze_eye = haze_place_at(push.camera_m, push.eye_over_ground_m);
+    vec4 layers = CANOPY_LIGHT_AT(canopy_at(push.camera_m), 1.0);
+    haze_eye.floor_log = haze_floor_log(push.camera_m);
+    haze_eye.layer_m = WD_CANOPY_MOST_M * layers.xy * layers.xy;
+    haze_eye.height_m = push.eye_over_ground_m;
 }
 
 /* Hardly any way within a stand is as long as this. */
@@ -111,7 +112,9 @@ vec3 apply_haze(vec3 radiance, vec3 direction, float length_m, float sunlit)
     float part = clamp((top_m - low.height_m) / max(high.height_m - low.height_m, 1e-3), 0.0, 1.0);
     high.height_m = min(high.height_m, top_m);
     float middle_m = length_m * (rises ? 0.5 * part : 1.0 - 0.5 * part);
-    wd_haze_place between = haze_place_at(push.camera_m + direction.xy * middle_m, 0.5 * (low.height_m + high.height_m));
+    wd_haze_place between = wd_haze_place(haze_floor_log(push.camera_m + direction.xy * middle_m),
+                                          0.5 * (low.layer_m + high.layer_m),
+                                          0.5 * (low.height_m + high.height_m));
     vec2 shade = haze_shade(low) + 4.0 * haze_shade(between) + haze_shade(high);
     vec2 open = 1.0 - shade * (part * haze_reach(length_m * part) / 3.0);
 #ifdef SHAFT_AT

@@ -14,6 +14,7 @@ layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
 #include "lib/tree.glsl"
 #include "lib/look.glsl"
+#include "lib/grain.glsl"
 #include "lib/disc.glsl"
 #include "lib/flat_mirrors.glsl"
 
@@ -69,10 +70,11 @@ void detail_leaf(inout wd_surface leaf, float near)
     leaf.normal = normalize(leaf.normal + (dot(face, leaf.normal) < 0.0 ? -veins : veins));
 }
 
-void detail_wood(inout wd_surface wood, float near)
+void detail_wood(inout wd_surface wood, wd_grain grain, float near)
 {
-    wd_relief relief =
-        look_relief(look_details, look_frame(wood.normal, in_place.xyz, in_uv.xy), in_uv);
+    mat3 frame_of_uv = look_frame(wood.normal, in_place.xyz, in_uv.xy);
+    wd_relief relief = look_relief(look_details, frame_of_uv, in_uv + vec3(grain.aside, 0.0));
+    relief.normal = normalize(relief.normal - frame_of_uv * vec3(grain.slope, 0.0));
     float moss = smoothstep(0.0, 0.3, in_place.w - 0.55 * relief.rest * (1.0 - 0.5 * in_place.w));
     wood.albedo = mix(wood.albedo, MOSS * (0.6 + 0.8 * relief.rest), moss);
     wood.normal = normalize(mix(wood.normal, relief.normal, near * (1.0 - 0.6 * moss)));
@@ -93,17 +95,23 @@ void main()
     float noise = wd_hash_unit(in_flat.z);
     if (noise >= in_sun_show.a)
         discard;
-    vec4 look = texture(looks, seen_side());
+    uint material = in_flat.y & 3u;
+    wd_grain grain = NO_GRAIN;
+    if (DETAIL != 0u) {
+        vec2 wide = fwidth(in_uv.xy) * BARK_TILE_M;
+        if (material == WD_MATERIAL_WOOD)
+            grain = bark_grain(in_uv.xy, max(wide.x, wide.y));
+    }
+    vec4 look = texture(looks, seen_side() + vec3(grain.aside, 0.0));
     if (look.a < WD_LOOK_CUT)
         discard;
-    uint material = in_flat.y & 3u;
-    wd_surface surface = wd_surface(look.rgb * in_tint.rgb, normalize(in_normal), in_tint.a);
+    wd_surface surface = wd_surface(look.rgb * in_tint.rgb * grain.shade, normalize(in_normal), in_tint.a);
     if (DETAIL != 0u) {
         float near = 1.0 - smoothstep(RELIEF_WHOLE_M, RELIEF_NONE_M, length(in_place.xyz));
         if (material == WD_MATERIAL_LEAF)
             detail_leaf(surface, near);
         else
-            detail_wood(surface, near);
+            detail_wood(surface, grain, near);
     }
     if ((in_flat.y & 8u) != 0u)
         surface.albedo = level_color(push.level) * (0.3 + 0.7 * in_tint.a);

@@ -184,6 +184,10 @@ WD_FUNC float wd_spray_share(float distance_m, float reach)
 #define WD_LOOK_FLOWER 3
 #define WD_LOOK_LAYERS 4
 
+/* What bark's tile covers on a stem of common thickness. */
+#define WD_BARK_TILE_WIDTH_M 1.4f
+#define WD_BARK_TILE_HEIGHT_M 1.0f
+
 WD_FUNC uint32_t wd_vertex_layer(uint32_t kind)
 {
     return (kind & WD_VERTEX_FLOWER) != 0u ? WD_LOOK_FLOWER

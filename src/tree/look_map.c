@@ -13,6 +13,9 @@
 /* A wall within one texel says nothing of the surface beside it. */
 #define STEEPEST 2.0f
 
+/* Bark's cracks and plates have edges sharper than a texel, which is the mean of so many places each way. */
+enum { BARK_PLACES = 3 };
+
 /* Everything of a layer before it is put into bytes. */
 struct canvas {
     const struct wd_species *species;
@@ -68,6 +71,30 @@ static struct wd_look_point layer_point(const struct canvas *canvas, float u, fl
     default:
         return wd_leaf_point(canvas->species, u, v, soft);
     }
+}
+
+static void add_point(struct wd_look_point *sum, const struct wd_look_point *point, float weight)
+{
+    for (int i = 0; i < 3; i++)
+        sum->albedo[i] += weight * point->albedo[i];
+    sum->height_m += weight * point->height_m;
+    sum->roughness += weight * point->roughness;
+    sum->coverage += weight * point->coverage;
+    sum->through += weight * point->through;
+}
+
+static struct wd_look_point texel_point(const struct canvas *canvas, uint32_t x, uint32_t y)
+{
+    int places = canvas->layer == WD_LOOK_BARK ? BARK_PLACES : 1;
+    float step = 1 / (float)places, size = (float)canvas->size;
+    struct wd_look_point mean = {0};
+    for (int i = 0; i < places * places; i++) {
+        float u = ((float)x + ((float)(i % places) + 0.5f) * step) / size;
+        float v = ((float)y + ((float)(i / places) + 0.5f) * step) / size;
+        struct wd_look_point point = layer_point(canvas, u, v);
+        add_point(&mean, &point, step * step);
+    }
+    return mean;
 }
 
 /* Metres that the square covers. */
@@ -189,8 +216,7 @@ void wd_look_map_fill(const struct wd_look_map *map, const struct wd_species *sp
     }
     canvas.points = wd_alloc_array((size_t)map->size * map->size, sizeof *canvas.points);
     for (uint32_t i = 0; i < map->size * map->size; i++)
-        canvas.points[i] = layer_point(&canvas, ((float)(i % map->size) + 0.5f) / (float)map->size,
-                                       ((float)(i / map->size) + 0.5f) / (float)map->size);
+        canvas.points[i] = texel_point(&canvas, i % map->size, i / map->size);
     set_means(&canvas);
     encode(&canvas, map);
     free(canvas.points);

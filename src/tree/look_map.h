@@ -5,10 +5,6 @@
 #include "scene/species.h"
 #include "shared/tree.h"
 
-/* What bark's tile covers on a stem of common thickness. */
-#define WD_BARK_TILE_WIDTH_M 1.4f
-#define WD_BARK_TILE_HEIGHT_M 1.0f
-
 /* `size` x `size` texels, 4 bytes each; both owned by the caller. */
 struct wd_look_map {
     uint32_t size;
