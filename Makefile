@@ -30,6 +30,7 @@ suites: build ## weald bench in full, results and reports in docs/bench (stopped
 	@scripts/suites.sh $(BUILD)
 
 gallery: build ## the pictures of docs/gallery.md, path-traced ones beside them (DATA=DIR)
+	@scripts/deps.sh docs
 	@scripts/gallery.sh $(BUILD)
 
 install: build ## install program, library, headers and manual below PREFIX

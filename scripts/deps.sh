@@ -4,6 +4,7 @@
 #   deps.sh         what building and running need
 #   deps.sh test    and what the tests need
 #   deps.sh lint    and what the static checks need
+#   deps.sh docs    and what the gallery's pictures need
 set -eu
 cd "$(dirname "$0")/.."
 

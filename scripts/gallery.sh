@@ -7,12 +7,12 @@ set -eu
 cd "$(dirname "$0")/.."
 build=${1:-build}
 size=${2:-1920x1080}
-samples=${3:-6}
-paths=${4:-3}
+samples=${3:-16}
+paths=${4:-7}
 data=${DATA:-../shared/data}
 work=out/gallery-$size
 shown=docs/img/gallery
-most=400000
+most=390kb
 
 mkdir -p "$work" "$shown"
 if [ -d "$data" ]; then
@@ -21,13 +21,10 @@ else
     "$build/bench/gallery" "$work" --size "$size" --samples "$samples" --paths "$paths"
 fi
 
-# The best quality whose file is small enough to be kept in the repository.
+# At the best quality whose file is small enough to be kept in the repository.
 for picture in "$work"/*.png; do
     name=$(basename "$picture" .png)
-    for quality in 3 4 5 7 9 12 16; do
-        ffmpeg -v error -y -i "$picture" -q:v "$quality" "$shown/$name.jpg"
-        [ "$(wc -c <"$shown/$name.jpg")" -gt "$most" ] || break
-    done
+    convert "$picture" -sampling-factor 4:2:0 -interlace JPEG -define "jpeg:extent=$most" "$shown/$name.jpg"
 done
 
 # Rows of the page that carry <!-- NAME --> get their figures.
