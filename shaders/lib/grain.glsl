@@ -37,3 +37,12 @@ wd_grain bark_grain(vec2 uv, float footprint_m)
     grain.shade = max(grain.shade, 0.3);
     return grain;
 }
+
+/* Moss grows in patches of a hand's width: what is added to the share of the bark that it covers, 0 on average. */
+float moss_patches(vec2 uv, float share)
+{
+    vec2 place_m = uv * BARK_TILE_M;
+    float patches = wd_gradient_noise(grain_lattice(place_m * 11.0), 50u).x
+                    + 0.5 * wd_gradient_noise(grain_lattice(place_m * 40.0), 51u).x;
+    return 0.8 * patches * min(4.0 * share, 1.0);
+}

@@ -254,7 +254,8 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     alone.leaf = pixel.material >= WD_MATERIAL_LEAF ? is_tree(crown) : 0.0;
     float base_m = max(crown.center_rel.z - crown.radii_m.z - crown.foot_z, 0.1);
     float below = mix(1.0, 1.0 - smoothstep(0.5 * base_m, base_m, height_m), is_tree(crown));
-    alone.edge = past_edge(alone.low, alone.beside) * (below * (1.0 - alone.leaf));
+    alone.beneath = below * (1.0 - alone.leaf);
+    alone.edge = past_edge(alone.low, alone.beside) * alone.beneath;
     return alone;
 }
 
@@ -340,7 +341,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, alone.share * is_tree(crown));
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown).y, alone.share) : 1.0;
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
-    alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown));
+    alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown) * (1.0 - alone.beneath));
 }
 
 /* Mean normal of the sides of leaves that the eye sees (wd_leaves_seen_up), and how far their z spread, squared. */

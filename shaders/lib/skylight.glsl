@@ -73,6 +73,11 @@ float herbs_above(wd_shelter shelter, float height_m)
  * tree's own, looking down and looking up. By path-traced oaks and beeches, and three stands from within. */
 const float BELOW_LEAVES = 0.26, BELOW_LEAVES_UP = 0.08;
 
+/* The ground right beside a stem's foot is in the sun or not as the foot is, but a metre off it may be otherwise: how far
+ * the foot tells. With all of it feet in shade lacked the red that lit litter throws back (path-traced stems of
+ * scenes/bench75k.json, `walk`). */
+const float FLOOR_BESIDE = 0.75;
+
 /* `direction_z`: of the way from the eye. */
 float looks_up(float direction_z)
 {
@@ -97,7 +102,7 @@ wd_shelter tree_shelter(wd_pixel pixel, vec3 rel, wd_crown crown, wd_shelter she
     vec4 stand = own * exp2(under * log2(shelter.through));
     shelter.through = mix(stand, shelter.through * own * exp(-0.7 * over), herb);
     shelter.through *= through_herbs(herbs_above(shelter, rel.z - crown.foot_z));
-    shelter.low = exp2(min(crown.foot_z - pixel.rel.z, 0.0));
+    shelter.low = FLOOR_BESIDE * exp2(min(crown.foot_z - pixel.rel.z, 0.0));
     shelter.floor_herbs = log2(through_herbs(shelter.herbs));
     shelter.under *= mix(under, 1.0, herb);
     shelter.beside *= mix(sqrt(above), 1.0, herb);
@@ -231,11 +236,12 @@ struct wd_alone {
     vec3 again;   /* times as much as without what its leaves scatter of that */
     vec3 scattered; /* irradiance of each side by what the crown's own leaves scatter of the sun */
     float leaf; /* 1: of a leaf of a crown; 0: of wood, herbs and the ground */
+    float beneath; /* 1: of a stem beneath its crown's leaves, of herbs and the ground */
     vec4 edge;  /* shares of the quarters' low light that come in below crowns, from where the stand ends */
 };
 
 const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(1.0), vec4(0.0),
-                                   vec3(1.0), vec3(0.0), 0.0, vec4(0.0));
+                                   vec3(1.0), vec3(0.0), 0.0, 1.0, vec4(0.0));
 
 /* Of an even sky's light on an upright face so much comes from below 30 degrees, and of what level ground has a quarter:
  * what both have tells how much of any sky's does, of each colour. `upright`: irradiance of the face; `level`: of

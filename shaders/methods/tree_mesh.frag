@@ -75,7 +75,8 @@ void detail_wood(inout wd_surface wood, wd_grain grain, float near)
     mat3 frame_of_uv = look_frame(wood.normal, in_place.xyz, in_uv.xy);
     wd_relief relief = look_relief(look_details, frame_of_uv, in_uv + vec3(grain.aside, 0.0));
     relief.normal = normalize(relief.normal - frame_of_uv * vec3(grain.slope, 0.0));
-    float moss = smoothstep(0.0, 0.3, in_place.w - 0.55 * relief.rest * (1.0 - 0.5 * in_place.w));
+    float share = in_place.w + (in_place.w > 0.0 ? moss_patches(in_uv.xy, in_place.w) : 0.0);
+    float moss = smoothstep(0.0, 0.3, share - 0.55 * relief.rest * (1.0 - 0.5 * in_place.w));
     wood.albedo = mix(wood.albedo, MOSS * (0.6 + 0.8 * relief.rest), moss);
     wood.normal = normalize(mix(wood.normal, relief.normal, near * (1.0 - 0.6 * moss)));
 }

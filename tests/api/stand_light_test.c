@@ -186,7 +186,7 @@ static void add_far(struct sum *sum, const struct wd_picture *picture)
             add(sum, picture, i);
 }
 
-/* 0.91 to 0.97 of the traced; 12 times as much in red if no tree shades the haze. */
+/* 0.96 to 0.98 of the traced; 12 times as much in red if no tree shades the haze. */
 static void haze_within_a_stand_is_as_dark_as_traced(void **state)
 {
     (void)state;
