@@ -115,15 +115,17 @@ float through_layer(float over)
 /* Skylight that the wax of a sward's blades mirrors toward the eye, over a white wall's: as much from
  * every side, and from the horizon ahead the more, the flatter the eye's ray. The integral over blades of
  * every direction, under an even sky, gave 0.023 (1 - sine)^2 for that, half of what a wall before such a
- * sky would get. `open`: share of the sky that reaches the sward. */
+ * sky would get. `open`: share of the sky that reaches the sward; `low`: of the low sky of each quarter, which a
+ * flat ray goes on to where a meadow lies before a lake; in stands gaps below crowns let it through, too. */
 vec3 sward_sheen(vec3 direction, float over, float open, vec4 low)
 {
     vec3 ahead = vec3(direction.xy * inversesqrt(dot(direction.xy, direction.xy) + 1e-6), 0.0);
     float flat_on = 1.0 - min(abs(direction.z), 1.0);
     vec3 horizon = SKY_EVEN(frame.sky_form, ahead) + SKY_ODD(frame.sky_form, ahead);
     vec4 toward = max(vec4(ahead.xy, -ahead.xy), vec4(0.0));
+    float open_ahead = max(dot(low, toward * toward), open);
     return 0.5 * WD_WAX * through_layer(over) * open * frame.sky_irradiance
-                   + 0.26 * max(dot(low, toward * toward), open) * flat_on * flat_on * flat_on * exp(-over) * max(horizon, vec3(0.0));
+           + 0.26 * flat_on * flat_on * flat_on * exp(-over) * open_ahead * max(horizon, vec3(0.0));
 }
 
 /* What light meets at a pixel. */
@@ -268,8 +270,8 @@ vec3 scattered_again(vec3 leaf)
     return 0.08 * again / (1.0 - again);
 }
 
-/* Of light from the sky and the ground, what leaves of a tree that stands free scatter comes to its other leaves,
- * again and again: a photon that a leaf has scattered meets another one by this chance (Smolander and Stenberg
+/* Of light from the sky and the ground, what leaves of a tree that stands free scatter comes to its other leaves
+ * (and its boughs, not to the stem beneath them), again and again: a photon that a leaf has scattered meets another one by this chance (Smolander and Stenberg
  * 2005). Those that the eye sees lie outside and meet the fewer: by path-traced maples in October. */
 const float SEEN_RECOLLISION = 0.9;
 
