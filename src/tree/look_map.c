@@ -13,8 +13,9 @@
 /* A wall within one texel says nothing of the surface beside it. */
 #define STEEPEST 2.0f
 
-/* Bark's cracks and plates have edges sharper than a texel, which is the mean of so many places each way. */
-enum { BARK_PLACES = 3 };
+/* Bark's cracks and plates have edges sharper than texels, which are means of places: so many each way, and no more than
+ * so many in a tile, which finer maps show by themselves. */
+enum { BARK_PLACES = 3, BARK_TILE_PLACES = 768 };
 
 /* Everything of a layer before it is put into bytes. */
 struct canvas {
@@ -85,7 +86,8 @@ static void add_point(struct wd_look_point *sum, const struct wd_look_point *poi
 
 static struct wd_look_point texel_point(const struct canvas *canvas, uint32_t x, uint32_t y)
 {
-    int places = canvas->layer == WD_LOOK_BARK ? BARK_PLACES : 1;
+    bool bark = canvas->layer == WD_LOOK_BARK && BARK_PLACES * canvas->size <= BARK_TILE_PLACES;
+    int places = bark ? BARK_PLACES : 1;
     float step = 1 / (float)places, size = (float)canvas->size;
     struct wd_look_point mean = {0};
     for (int i = 0; i < places * places; i++) {
