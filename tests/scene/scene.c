@@ -236,6 +236,41 @@ static void allometry_inverts(void **state)
     }
 }
 
+/* Of heights over stems of stands, tables of yield have 60 to 100 at such heights; of those in the open it is 30 to 60
+ * (Hasenauer 1997). */
+static void stems_of_stands_are_slender(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"layers\": [{\"species\": {\"oak\": 1, \"beech\": 1, \"birch\": 1, \"maple\": 1, "
+                        "\"larch\": 1, \"pine\": 1, \"spruce\": 1}}]}"));
+    for (size_t i = 0; i < f->scene.species_file_count; i++) {
+        const struct wd_species *species = &f->scene.species[i];
+        double height_m = (double)species->typical_height_m;
+        double forest = 100 * height_m / wd_species_stem_of_height_cm(species, height_m);
+        double open = forest / wd_species_open_stem(species, height_m, 1);
+        if (forest < 60 || forest > 101 || open < 30 || open > 65)
+            fail_msg("%s: %.0f times its stem in stands, %.0f in the open", species->name, forest, open);
+    }
+}
+
+/* Chlorophyll leaves more red beside green than one would paint: PROSPECT-D's leaves of 35 to 65 ug/cm2 have 0.57 to
+ * 0.63 in what they reflect and 0.39 to 0.63 in what they let through. */
+static void green_leaves_are_not_too_green(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"layers\": [{\"species\": {\"oak\": 1, \"beech\": 1, \"birch\": 1, \"maple\": 1, "
+                        "\"larch\": 1, \"hazel\": 1, \"willow\": 1, \"catalpa\": 1, \"coconut\": 1, \"fern\": 1, "
+                        "\"angelique\": 1, \"bramble\": 1, \"grass\": 1, \"meadow\": 1, \"pine\": 1, "
+                        "\"spruce\": 1, \"camellia-red\": 1}}]}"));
+    for (size_t i = 0; i < f->scene.species_file_count; i++) {
+        const struct wd_species *species = &f->scene.species[i];
+        const float *upper = species->leaf.color, *through = species->leaf.transmittance;
+        double reflected = (double)(upper[0] / upper[1]), let_through = (double)(through[0] / through[1]);
+        if (reflected < 0.53 || reflected > 0.7 || let_through < 0.35 || let_through > 0.7)
+            fail_msg("%s: red over green is %.2f reflected, %.2f let through", species->name, reflected, let_through);
+    }
+}
+
 static void months_change_leaves(void **state)
 {
     struct fixture *f = *state;
@@ -318,6 +353,8 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(cameras_are_found_by_name, setup, teardown),
         cmocka_unit_test(own_scenes_load),
         cmocka_unit_test_setup_teardown(allometry_inverts, setup, teardown),
+        cmocka_unit_test_setup_teardown(stems_of_stands_are_slender, setup, teardown),
+        cmocka_unit_test_setup_teardown(green_leaves_are_not_too_green, setup, teardown),
         cmocka_unit_test_setup_teardown(months_change_leaves, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
