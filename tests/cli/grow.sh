@@ -22,6 +22,8 @@ sound() { python3 "$root/tests/cli/glb_check.py" "$@"; }
     expect 0 . grow oak --height 5 -o "$out/layers.exr" $small
     expect 0 'tiny.glb: ' export "$tiny" -o "$out/tiny.glb"
     expect 0 . check "$out/oak.glb" "$out/oak.obj"
+    check 'a model is read without standard input' sh -c "'$weald' check '$out/oak.obj' <&-"
+    check 'and without a place for messages' sh -c "'$weald' check '$out/oak.obj' <&- 2>&-"
 }
 cat >"$out/planted.json" <<EOF
 {"terrain": {"kind": "flat", "size_m": [40, 40]}, "variants": 2,
