@@ -135,6 +135,11 @@ expect 1 'allows' grow oak --height 100 -o "$out/a.glb"
 expect 1 'allowed is one of the two' grow oak --height 10 --age 50 -o "$out/a.glb"
 expect 1 'there is no form "flat"' grow oak --form flat -o "$out/a.png"
 expect 1 'no such file' grow none.obj -o "$out/a.glb"
+for option in --age --dbh --detail --month --seed --variants; do
+    expect 1 'it is a model, for which a height alone' grow "$out/oak.obj" "$option" 2 -o "$out/a.glb"
+done
+expect 1 'it is a model, for which a height alone' grow "$out/oak.obj" --open 1 -o "$out/a.glb"
+expect 1 'it is a model, for which a height alone' grow "$out/oak.obj" --season autumn -o "$out/a.glb"
 expect 1 'directory does not exist' grow oak -o "$out/none/a.glb"
 expect 1 'at most 10 are written' export "$tiny" --max-trees 10 -o "$out/a.glb"
 head -c 30000 "$out/oak.glb" >"$out/cut.glb"
