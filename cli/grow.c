@@ -91,7 +91,7 @@ static enum wd_result grow_all(struct cli_session *session, struct grown *grown)
     grown->items = calloc(total, sizeof *grown->items);
     for (uint32_t i = 0; i < total && result == WD_OK && grown->items; i++) {
         params.source = options->operands[i / variants];
-        params.seed = first + i % variants;
+        params.seed = options->grow_seed || variants > 1 ? first + i % variants : 0;
         if (!session->progress.report(session->progress.user, "trees", i, total))
             return WD_ERROR_INTERRUPTED;
         result = wd_specimen_create(&grown->items[i], &params);

@@ -24,8 +24,9 @@ static const struct cli_command commands[] = {
     {"grow", CLI_GROW, "SPECIES|FILE... -o FILE", 0, 64,
      "grow a tree, or read a model: as a picture, a GLB or an OBJ",
      "Grows one individual of a species, or reads an artist's model (.obj, .gltf, .glb, .fbx, .dae)\n"
-     "as a tree, and draws it on plain ground or writes it for other programs. Several stand side\n"
-     "by side. A .glb holds every level of detail (MSFT_lod) and all textures; metres, y up.",
+     "as a tree, and draws it on plain ground or writes it for other programs. A model takes --height\n"
+     "alone of what says how a species grows. Several stand side by side. A .glb holds every level of\n"
+     "detail (MSFT_lod) and all textures; metres, y up.",
      "  weald grow oak --age 80 --open 1 --seed 3 -o oak.glb\n"
      "  weald grow spruce --height 25 --open 1 -o spruce.png\n"
      "  weald grow birch --variants 5 --season autumn -o birches.png --size 1600x700\n"

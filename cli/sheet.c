@@ -118,14 +118,14 @@ static double typical_height(struct sheet *sheet, const char *source, bool *ages
     return info.height_m;
 }
 
-static enum wd_result draw_age(struct sheet *sheet, uint32_t row, uint32_t index, double height_m)
+static enum wd_result draw_age(struct sheet *sheet, uint32_t row, uint32_t index, double height_m, bool ages)
 {
     const struct column *column = &columns[index];
     const struct wd_specimen_params params = {
         .source = sheet->species[row],
         .height_m = height_m * column->size,
-        .openness = column->openness,
-        .month = column->month,
+        .openness = ages ? column->openness : 0,
+        .month = ages ? column->month : 0,
         .log = sheet->session->log,
     };
     struct wd_specimen *specimen;
@@ -227,10 +227,10 @@ static enum wd_result draw_form(struct sheet *sheet, uint32_t row, uint32_t inde
     return result;
 }
 
-static enum wd_result draw_forms(struct sheet *sheet, uint32_t row)
+static enum wd_result draw_forms(struct sheet *sheet, uint32_t row, bool ages)
 {
     const struct wd_specimen_params params = {
-        .source = sheet->species[row], .openness = 0.5, .log = sheet->session->log};
+        .source = sheet->species[row], .openness = ages ? 0.5 : 0, .log = sheet->session->log};
     struct wd_specimen *specimen;
     struct cli_shown full = {0};
     uint32_t zoom = cli_shown_zoom(sheet->cell_px);
@@ -251,8 +251,8 @@ static enum wd_result draw_row(struct sheet *sheet, uint32_t row)
     double height_m = typical_height(sheet, sheet->species[row], &ages, &result);
     for (uint32_t i = 0; i < AGES && result == WD_OK; i++)
         if (ages || columns[i].openness >= 1)
-            result = draw_age(sheet, row, i, height_m);
-    return result == WD_OK ? draw_forms(sheet, row) : result;
+            result = draw_age(sheet, row, i, height_m, ages);
+    return result == WD_OK ? draw_forms(sheet, row, ages) : result;
 }
 
 /* --- the sheet --------------------------------------------------------------------------- */

@@ -11,7 +11,8 @@ extern "C" {
 /* One individual: meshes in metres, z up, the trunk's foot at (0, 0, 0). Pure CPU. */
 struct wd_specimen;
 
-/* Zeroes are a typical tree of the species in summer. Models take height_m (scaling them) only. */
+/* Zeroes are a typical tree of the species in summer. Models take height_m (scaling them) only, any
+ * other value is refused. */
 struct wd_specimen_params {
     const char *source; /* a species ("oak": looked for in species/, ../species/ and among the
                            installed ones), a species file (.json) or a model (.obj, .gltf, .glb,

@@ -21,6 +21,24 @@ static bool find_source(struct wd_specimen *specimen, const char *source)
     return specimen->source != NULL;
 }
 
+/* A model is as it is, in any season. */
+static bool check_model(const struct wd_specimen *specimen, const struct wd_specimen_params *params)
+{
+    const struct {
+        const char *name;
+        double value;
+    } grown[] = {{"seed", params->seed},         {"dbh_m", params->dbh_m},   {"age_years", params->age_years},
+                 {"openness", params->openness}, {"detail", params->detail}, {"month", params->month}};
+    for (size_t i = 0; i < sizeof grown / sizeof *grown; i++)
+        if (grown[i].value != 0)
+            return wd_error(&specimen->log, "%s: found %s %g; it is a model, for which a height alone is allowed",
+                            specimen->source, grown[i].name, grown[i].value);
+    if (!(params->height_m >= 0 && params->height_m <= 130))
+        return wd_error(&specimen->log, "%s: cannot be made %g m high; allowed is 0 to 130", specimen->source,
+                        params->height_m);
+    return true;
+}
+
 static bool load_species(struct wd_specimen *specimen, const struct wd_specimen_params *params)
 {
     struct wd_species *species = &specimen->species;
@@ -28,11 +46,10 @@ static bool load_species(struct wd_specimen *specimen, const struct wd_specimen_
         !wd_species_load(species, specimen->source, &specimen->arena, &specimen->log))
         return false;
     if (species->model.file) {
+        if (!check_model(specimen, params))
+            return false;
         if (params->height_m > 0)
             species->model.height_m = (float)params->height_m;
-        if (!(params->height_m >= 0 && params->height_m <= 130))
-            return wd_error(&specimen->log, "%s: cannot be made %g m high; allowed is 0 to 130",
-                            specimen->source, params->height_m);
         return wd_species_import_models(species, 1, NULL, &specimen->log);
     }
     struct wd_species whole = *species;

@@ -102,7 +102,7 @@ char *wd_temporary_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
     int directory = slash ? (int)(slash + 1 - path) : 0;
-    return wd_format("%.*s.%d-%s", directory, path, (int)getpid(), path + directory);
+    return wd_format("%.*s.%d.%d-%s", directory, path, (int)getpid(), (int)gettid(), path + directory);
 }
 
 bool wd_output_open(struct wd_output_file *file, const char *path, const struct wd_log *log)
@@ -161,6 +161,8 @@ static pid_t writer_of(const char *name, const char *base)
     if (name[0] != '.' || name[1] < '0' || name[1] > '9')
         return 0;
     long process = strtol(name + 1, &end, 10);
+    if (*end == '.') /* and its thread */
+        end += 1 + strspn(end + 1, "0123456789");
     return *end == '-' && strcmp(end + 1, base) == 0 ? (pid_t)process : 0;
 }
 

@@ -41,7 +41,7 @@ void wd_output_discard(struct wd_output_file *file);
 void wd_output_sweep(const char *path);
 
 /* A fresh temporary name beside `path` (same directory and extension) for writers that insist on
- * opening by name. free() it. */
+ * opening by name; each thread has its own. free() it. */
 char *wd_temporary_name(const char *path);
 
 #endif

@@ -247,12 +247,13 @@ static bool scatter(struct path *path, const struct wd_trace_hit *hit)
 {
     struct wd_surface surface;
     struct wd_scattered scattered;
+    if (path->bounce >= path->tracer->bounces) /* only what escapes still brings light */
+        return false;
     wd_surface_at(&surface, path->tracer->scene, &path->ray, hit,
                   path->bounce == 0 ? path->tracer->pixel_rad : 0);
+    path->bounce++;
     add_sun(path, &surface);
     struct wd_vec3 eye = wd_v3_scale(path->ray.direction, -1);
-    if (path->bounce++ >= path->tracer->bounces)
-        return false;
     if (path->tracer->sky_map)
         add_map(path, &surface);
     if (!wd_scatter_sample(&scattered, &surface, eye, &path->sampler))

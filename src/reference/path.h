@@ -14,7 +14,7 @@ struct wd_tracer {
     const struct wd_trace_scene *scene;
     wd_sky_function *sky;
     const struct wd_sky_map *sky_map; /* in its place; or NULL */
-    uint32_t bounces;     /* times that light may be scattered */
+    uint32_t bounces;     /* times that light, of the sun and of the sky alike, may be scattered */
     float pixel_rad;      /* angle that a pixel spans */
     bool is_sea;          /* water goes on beyond the terrain */
 };

@@ -2,11 +2,14 @@
 
 /* Vertices of a fin and the valley before it: a blade, or as few as show it, a wedge from valley to valley. */
 enum { BLADE_VERTICES = 5, WEDGE_VERTICES = 2, LEAST_BLADED = 12, LEAST_WEDGED = 5 };
+/* Fins that climb less of a tree are none. */
+static const float LEAST_HEIGHT = 1e-4f;
 
 int wd_buttress_sides(const struct wd_species *species, int most)
 {
     int sides = (int)species->buttress.count * (most >= LEAST_BLADED ? BLADE_VERTICES : WEDGE_VERTICES);
-    return most >= LEAST_WEDGED && sides > most ? sides : most;
+    bool fins = species->buttress.height >= LEAST_HEIGHT && most >= LEAST_WEDGED && sides > most;
+    return fins ? sides : most;
 }
 
 /* How far a fin reaches at height z: a concave slope from the ground to its own top. */

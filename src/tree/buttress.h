@@ -5,7 +5,7 @@
 #include "tree/form.h"
 
 /* Sides of a trunk's rings that show its buttresses, more than `most`; `most` where there are less than
- * three or where it does not allow them. */
+ * three, where they have no height or where it does not allow them. */
 int wd_buttress_sides(const struct wd_species *species, int most);
 
 /* Place of vertex i of `sides` around a ring of the trunk, in stem radii along its two axes, at

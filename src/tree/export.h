@@ -43,7 +43,7 @@ struct wd_export {
 
 /* glTF 2.0 binary: metres, y up; levels by MSFT_lod, instances by EXT_mesh_gpu_instancing; colour,
  * normal and roughness maps within as PNG. The file appears whole or not at all. Refuses what
- * needs more than 2 GiB. */
+ * needs more than 2 GiB, and trees with ids over 2^24, which _TREE_ID, a float, would not tell apart. */
 bool wd_export_glb(const struct wd_export *what, const char *path, const struct wd_log *log);
 
 /* The full meshes with NAME.mtl and NAME-SPECIES-*.png beside them; metres, y up. */

@@ -7,6 +7,8 @@
 #include "tree/glb.h"
 
 static const uint64_t max_bytes = UINT64_C(1) << 31;
+/* glTF has no attributes of 32-bit integers; floats are whole up to here. */
+static const uint32_t max_id = UINT32_C(1) << 24;
 
 struct export {
     const struct wd_export *what;
@@ -309,6 +311,16 @@ static bool check_size(const struct wd_export *what, const char *path, const str
                     (double)max_bytes / 1e9);
 }
 
+static bool check_ids(const struct wd_export *what, const char *path, const struct wd_log *log)
+{
+    for (uint32_t i = 0; i < what->tree_count; i++)
+        for (uint32_t k = 0; k < what->trees[i].instance_count; k++)
+            if (what->trees[i].instances[k].id > max_id)
+                return wd_error(log, "%s: has a tree with the id %u; a GLB holds ids up to %u: take fewer trees",
+                                path, what->trees[i].instances[k].id, max_id);
+    return true;
+}
+
 static void put_scene(struct wd_glb *glb, const struct wd_export *what, json_t *roots)
 {
     json_t *scene = json_pack("{s:o}", "nodes", roots);
@@ -323,7 +335,7 @@ static void put_scene(struct wd_glb *glb, const struct wd_export *what, json_t *
 
 bool wd_export_glb(const struct wd_export *what, const char *path, const struct wd_log *log)
 {
-    if (!check_size(what, path, log))
+    if (!check_size(what, path, log) || !check_ids(what, path, log))
         return false;
     struct export export = {.what = what};
     wd_glb_init(&export.glb);

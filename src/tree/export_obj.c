@@ -1,3 +1,4 @@
+#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,7 +108,7 @@ static void put_vertices(struct obj *obj, const struct wd_export_tree *tree)
         float normal[3], uv[2];
         wd_unpack_normal(v->normal, normal);
         wd_unpack_uv(v->uv, uv);
-        fprintf(obj->text, "v %.5g %.5g %.5g %.3g %.3g %.3g\n",
+        fprintf(obj->text, "v %.4f %.4f %.4f %.3g %.3g %.3g\n",
                 (double)v->position_m[0] + tree->place_m, (double)v->position_m[2],
                 (double)-v->position_m[1], (v->tint & 255) / 255.0, (v->tint >> 8 & 255) / 255.0,
                 (v->tint >> 16 & 255) / 255.0);
@@ -154,24 +155,35 @@ static bool put_geometry(struct obj *obj)
     return wd_output_commit(&file, obj->log);
 }
 
+static bool put_files(struct obj *obj)
+{
+    char *library = wd_format("%s.mtl", obj->stem);
+    struct wd_output_file file;
+    bool ok = wd_output_open(&file, library, obj->log);
+    if (ok) {
+        obj->library = file.stream;
+        ok = put_materials(obj);
+        if (ok)
+            ok = wd_output_commit(&file, obj->log) && put_geometry(obj);
+        else
+            wd_output_discard(&file);
+    }
+    free(library);
+    return ok;
+}
+
 bool wd_export_obj(const struct wd_export *what, const char *path, const struct wd_log *log)
 {
     struct obj obj = {.what = what, .path = path, .stem = wd_strdup(path), .log = log};
     *strrchr(obj.stem, '.') = '\0';
     const char *slash = strrchr(obj.stem, '/');
     obj.base = slash ? slash + 1 : obj.stem;
-    char *library = wd_format("%s.mtl", obj.stem);
-    struct wd_output_file file;
-    bool ok = wd_output_open(&file, library, log);
-    if (ok) {
-        obj.library = file.stream;
-        ok = put_materials(&obj);
-        if (ok)
-            ok = wd_output_commit(&file, log) && put_geometry(&obj);
-        else
-            wd_output_discard(&file);
-    }
-    free(library);
+    /* numbers have points, whatever the program around has chosen */
+    locale_t plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), before = uselocale(plain);
+    bool ok = put_files(&obj);
+    uselocale(before);
+    if (plain)
+        freelocale(plain);
     free(obj.stem);
     return ok;
 }

@@ -341,6 +341,7 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     build_reduced_wood(&model->reduced, &skeleton, &foliage, &form);
     pack_leaves(model, &foliage, species);
     wd_foliage_sets(model->sets[0], &foliage, species);
+    model->flower_count = model->sets[0][WD_SET_FLOWERS].leaf_count; /* more than fit are left out */
     bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
     wd_foliage_sets_reduced(model->sets[1], &foliage, species,
                             needles ? REDUCED_SHOOTS : REDUCED_LEAVES);

@@ -184,12 +184,24 @@ static bool take(struct wd_model_file *model, int file, const char *path, const 
     return in_range(model) || wd_error(log, "%s: is malformed: an index is out of range", path);
 }
 
+/* Where a standard descriptor is closed a new file may get its number, which the reading process
+ * gives to /dev/null. */
+static int beyond_standard(int file)
+{
+    if (file < 0 || file > 2)
+        return file;
+    int moved = fcntl(file, F_DUPFD_CLOEXEC, 3), error = errno;
+    close(file);
+    errno = error;
+    return moved;
+}
+
 bool wd_model_file_read(struct wd_model_file *model, const char *path, const struct wd_log *log)
 {
     *model = (struct wd_model_file){0};
     if (!check_file(path, log))
         return false;
-    int file = memfd_create("weald-model", MFD_CLOEXEC);
+    int file = beyond_standard(memfd_create("weald-model", MFD_CLOEXEC));
     if (file < 0)
         return wd_error(log, "%s: no memory to read it into: %s", path, strerror(errno));
     pid_t child = fork();

@@ -58,11 +58,12 @@ static void set_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     const struct wd_branch *trunk = &skeleton->branches[0];
     float leader = form->species->apical_dominance, all = skeleton->nodes[0].load;
     float whole = form->height_m / form->species->decay.broken_at; /* before it broke */
+    float clear_m = wd_maxf(form->crown_base_m, 1e-3f); /* a crown may begin at the ground */
     float base = 0.5f * form->dbh_m, above = wd_maxf(whole - 1.3f, 0.3f * whole);
     for (size_t i = 0; i < trunk->node_count; i++) {
         struct wd_skeleton_node *node = &skeleton->nodes[trunk->first_node + i];
         float height = wd_clampf((whole - node->position_m.z) / above, 0, 1.1f);
-        float clear = 1 - 0.16f * wd_clampf(node->position_m.z / form->crown_base_m, 0, 1);
+        float clear = 1 - 0.16f * wd_clampf(node->position_m.z / clear_m, 0, 1);
         float carried = clear * sqrtf(node->load / all);
         float taper = (float)wd_dpow((double)height, 0.85);
         node->radius_m = wd_maxf(base * (leader > 0.85f ? taper : carried), TIP_RADIUS_M);

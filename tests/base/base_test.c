@@ -1,4 +1,5 @@
 #include <math.h>
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -143,6 +144,55 @@ static void an_output_appears_whole_or_not_at_all(void **state)
     free(path);
 }
 
+static void *write_again(void *path)
+{
+    struct wd_output_file file;
+    assert_true(wd_output_open(&file, path, NULL));
+    fputs("again", file.stream);
+    assert_true(wd_output_commit(&file, NULL));
+    return NULL;
+}
+
+static void threads_may_write_one_output(void **state)
+{
+    (void)state;
+    char directory[] = "/tmp/weald-test-XXXXXX";
+    assert_non_null(mkdtemp(directory));
+    char *path = wd_format("%s/out.txt", directory);
+    struct wd_output_file file;
+    pthread_t thread;
+    assert_true(wd_output_open(&file, path, NULL));
+    fputs("once", file.stream);
+    assert_int_equal(pthread_create(&thread, NULL, write_again, path), 0);
+    pthread_join(thread, NULL);
+    assert_true(wd_output_commit(&file, NULL));
+    unlink(path);
+    assert_int_equal(rmdir(directory), 0);
+    free(path);
+}
+
+/* As processes name them that are no more, with their thread and, once, without. */
+static void what_killed_writers_leave_is_swept(void **state)
+{
+    (void)state;
+    char directory[] = "/tmp/weald-test-XXXXXX";
+    assert_non_null(mkdtemp(directory));
+    char *path = wd_format("%s/out.txt", directory), *own = wd_temporary_name(path);
+    char *left[] = {wd_format("%s/.2147483646.2147483647-out.txt", directory),
+                    wd_format("%s/.2147483646-out.txt", directory),
+                    wd_format("%s/.2147483646.1-other.txt", directory), own};
+    for (int i = 0; i < 4; i++)
+        fclose(fopen(left[i], "w"));
+    wd_output_sweep(path);
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(wd_file_exists(left[i]), i >= 2);
+        unlink(left[i]);
+        free(left[i]);
+    }
+    assert_int_equal(rmdir(directory), 0);
+    free(path);
+}
+
 static void a_full_disk_leaves_nothing(void **state)
 {
     (void)state;
@@ -188,6 +238,8 @@ int main(void)
         cmocka_unit_test(every_index_is_worked_once),
         cmocka_unit_test(loops_tell_how_far_they_are),
         cmocka_unit_test(an_output_appears_whole_or_not_at_all),
+        cmocka_unit_test(threads_may_write_one_output),
+        cmocka_unit_test(what_killed_writers_leave_is_swept),
         cmocka_unit_test(a_full_disk_leaves_nothing),
         cmocka_unit_test(names_are_seen_from_their_file),
     };

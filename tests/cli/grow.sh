@@ -22,6 +22,8 @@ sound() { python3 "$root/tests/cli/glb_check.py" "$@"; }
     expect 0 . grow oak --height 5 -o "$out/layers.exr" $small
     expect 0 'tiny.glb: ' export "$tiny" -o "$out/tiny.glb"
     expect 0 . check "$out/oak.glb" "$out/oak.obj"
+    check 'a model is read without standard input' sh -c "'$weald' check '$out/oak.obj' <&-"
+    check 'and without a place for messages' sh -c "'$weald' check '$out/oak.obj' <&- 2>&-"
 }
 cat >"$out/planted.json" <<EOF
 {"terrain": {"kind": "flat", "size_m": [40, 40]}, "variants": 2,
@@ -133,6 +135,11 @@ expect 1 'allows' grow oak --height 100 -o "$out/a.glb"
 expect 1 'allowed is one of the two' grow oak --height 10 --age 50 -o "$out/a.glb"
 expect 1 'there is no form "flat"' grow oak --form flat -o "$out/a.png"
 expect 1 'no such file' grow none.obj -o "$out/a.glb"
+for option in --age --dbh --detail --month --seed --variants; do
+    expect 1 'it is a model, for which a height alone' grow "$out/oak.obj" "$option" 2 -o "$out/a.glb"
+done
+expect 1 'it is a model, for which a height alone' grow "$out/oak.obj" --open 1 -o "$out/a.glb"
+expect 1 'it is a model, for which a height alone' grow "$out/oak.obj" --season autumn -o "$out/a.glb"
 expect 1 'directory does not exist' grow oak -o "$out/none/a.glb"
 expect 1 'at most 10 are written' export "$tiny" --max-trees 10 -o "$out/a.glb"
 head -c 30000 "$out/oak.glb" >"$out/cut.glb"

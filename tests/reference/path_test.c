@@ -70,6 +70,11 @@ static void test_leaf_furnace(void **state)
     made_scene_finish(&made);
 }
 
+static struct wd_vec3 upper_sky(const struct wd_frame_uniforms *frame, struct wd_vec3 direction)
+{
+    return direction.z > 0.5f ? made_sky_white(frame, direction) : made_sky_black(frame, direction);
+}
+
 /* Level white ground returns what sun and sky bring it, over pi. */
 static void test_sky_energy(void **state)
 {
@@ -97,6 +102,33 @@ static void test_sky_energy(void **state)
         }
         made_scene_finish(&made);
     }
+}
+
+/* A roof's lower side, which ground about it lights, and the ground: as often as light may be scattered. */
+static void test_bounces(void **state)
+{
+    (void)state;
+    struct made_scene made;
+    made_scene_init(&made);
+    made_scene_set_look(&made, 188, 0);
+    made_scene_add_quad(&made, WD_V3(-50, -50, -1), WD_V3(100, 0, 0), WD_V3(0, 100, 0), 0);
+    made_scene_add_quad(&made, WD_V3(-1, -1, 1), WD_V3(2, 0, 0), WD_V3(0, 2, 0), 0);
+    made_scene_add_tree(&made, 0, 0, 0);
+    made_scene_build(&made);
+    const struct wd_vec3 roof = {0.1f, 0.2f, 1}, lit = {3, 4, -1};
+    for (int sky = 0; sky < 2; sky++) {
+        made.tracer.sky = sky ? upper_sky : made_sky_black;
+        for (int k = 0; k < 3; k++)
+            made.frame.sun_irradiance[k] = sky ? 0 : 2;
+        made.tracer.bounces = 1;
+        float once = made_scene_look(&made, lit, 256).y;
+        assert_true(once > 0.25f);
+        assert_true(made_scene_look(&made, roof, 256).y == 0);
+        made.tracer.bounces = 2;
+        assert_near(made_scene_look(&made, lit, 256).y, once, 0.01f);
+        assert_true(made_scene_look(&made, roof, 256).y > 0.05f);
+    }
+    made_scene_finish(&made);
 }
 
 /* The sun through a leaf, seen from below, and on its dull lower side. */
@@ -246,7 +278,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_white_furnace), cmocka_unit_test(test_leaf_furnace),
-        cmocka_unit_test(test_sky_energy),    cmocka_unit_test(test_transmission),
+        cmocka_unit_test(test_sky_energy),    cmocka_unit_test(test_bounces),
+        cmocka_unit_test(test_transmission),
         cmocka_unit_test(test_gloss),         cmocka_unit_test(test_convergence),
         cmocka_unit_test(test_threads),       cmocka_unit_test(test_sampler),
     };

@@ -5,6 +5,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <dirent.h>
+#include <locale.h>
 #include <unistd.h>
 
 #include "base/memory.h"
@@ -337,6 +338,15 @@ static void many_triangles_are_reduced_by_count(void **state)
 
 /* --- files of our own, whole and damaged -------------------------------------------------- */
 
+static void export_one(const char *name, const struct wd_export_tree *tree, const struct wd_log *log, bool expected)
+{
+    const struct wd_export what = {.trees = tree, .tree_count = 1};
+    char *path = path_of(name);
+    bool glb = strstr(name, ".glb") != NULL;
+    assert_int_equal(glb ? wd_export_glb(&what, path, log) : wd_export_obj(&what, path, log), expected);
+    free(path);
+}
+
 static struct wd_tree_model export_oak(const char *name)
 {
     struct wd_arena arena = {0};
@@ -347,11 +357,7 @@ static struct wd_tree_model export_oak(const char *name)
     const struct wd_export_tree tree = {
         .name = "oak", .species = &species, .levels = {&model.full, &model.reduced},
         .level_count = 2};
-    const struct wd_export what = {.trees = &tree, .tree_count = 1};
-    char *path = path_of(name);
-    bool glb = strstr(name, ".glb") != NULL;
-    assert_true(glb ? wd_export_glb(&what, path, NULL) : wd_export_obj(&what, path, NULL));
-    free(path);
+    export_one(name, &tree, NULL, true);
     wd_arena_finish(&arena);
     return model;
 }
@@ -372,6 +378,52 @@ static void exported_trees_come_back(void **state)
         drop(result);
         wd_tree_model_finish(&model);
     }
+}
+
+/* To 0.1 mm, with points, wherever a tree stands and whatever numbers look like to the program around. */
+static void places_in_text_are_exact(void **state)
+{
+    (void)state;
+    enum { MOST = 64 << 20 };
+    struct wd_arena arena = {0};
+    struct wd_species species = test_species(&arena, "fern");
+    struct wd_tree_model model = test_grow_tree(&species, 1, 0, 0);
+    const struct wd_export_tree tree = {
+        .name = "fern", .species = &species, .levels = {&model.full}, .level_count = 1, .place_m = 1234.5};
+    setlocale(LC_NUMERIC, "de_DE.UTF-8"); /* where there is one */
+    export_one("far.obj", &tree, NULL, true);
+    setlocale(LC_NUMERIC, "C");
+    char *text = malloc(MOST);
+    text[read_whole("far.obj", text, MOST - 1)] = '\0';
+    const char *line = strstr(text, "\nv ");
+    for (uint32_t i = 0; i < model.full.vertex_count; i++, line = strstr(line + 1, "\nv ")) {
+        double x, y;
+        assert_true(line && sscanf(line, "\nv %lf %lf", &x, &y) == 2);
+        assert_float_equal(x, 1234.5 + (double)model.full.vertices[i].position_m[0], 6e-5);
+        assert_float_equal(y, (double)model.full.vertices[i].position_m[2], 6e-5);
+    }
+    free(text);
+    wd_tree_model_finish(&model);
+    wd_arena_finish(&arena);
+}
+
+static void ids_that_no_float_holds_are_refused(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    struct wd_species species = test_species(&arena, "fern");
+    struct wd_tree_model model = test_grow_tree(&species, 1, 0, 0);
+    struct wd_export_instance places[2] = {{.across = 1, .up = 1, .id = 1u << 24}, {.across = 1, .up = 1, .id = 1}};
+    const struct wd_export_tree tree = {.name = "fern", .species = &species, .levels = {&model.full},
+                                        .level_count = 1, .instances = places, .instance_count = 2};
+    struct test_log log;
+    test_log_init(&log);
+    export_one("ids.glb", &tree, &log.log, true);
+    places[1].id = (1u << 24) + 1;
+    export_one("over.glb", &tree, &log.log, false);
+    assert_non_null(strstr(log.message, "16777217"));
+    wd_tree_model_finish(&model);
+    wd_arena_finish(&arena);
 }
 
 /* The first bytes of the binary chunk are the first vertex's position. */
@@ -556,6 +608,8 @@ int main(void)
         cmocka_unit_test(holes_of_textures_reach_the_look),
         cmocka_unit_test(many_triangles_are_reduced_by_count),
         cmocka_unit_test(exported_trees_come_back),
+        cmocka_unit_test(places_in_text_are_exact),
+        cmocka_unit_test(ids_that_no_float_holds_are_refused),
         cmocka_unit_test(a_position_that_is_no_number_is_an_error),
         cmocka_unit_test(normals_that_are_no_direction_are_told),
         cmocka_unit_test(damaged_files_end_in_a_message_or_a_tree),

@@ -1,4 +1,24 @@
+#include "tree/sunlit.h"
 #include "tree_test.h"
+
+static void assert_finite(const struct wd_tree_mesh *mesh)
+{
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            assert_true(isfinite(mesh->vertices[i].position_m[axis]));
+}
+
+/* How far wood reaches from the axis within 5 cm of the ground. */
+static float foot_m(const struct wd_tree_mesh *mesh)
+{
+    float reach = 0;
+    for (uint32_t i = 0; i < mesh->wood_index_count; i++) {
+        const float *p = mesh->vertices[mesh->indices[i]].position_m;
+        if (p[2] < 0.05f)
+            reach = fmaxf(reach, hypotf(p[0], p[1]));
+    }
+    return reach;
+}
 
 static void grow_absurd(struct wd_species *species, float detail)
 {
@@ -12,6 +32,9 @@ static void grow_absurd(struct wd_species *species, float detail)
      * 4,000 leaves of two and flowers of 120 triangles */
     assert_true(model.full.index_count / 3 < 700000);
     assert_true(model.reduced.index_count / 3 < 24500);
+    assert_int_equal(model.flower_count, model.sets[0][WD_SET_FLOWERS].leaf_count);
+    assert_finite(&model.full);
+    assert_finite(&model.reduced);
     wd_tree_model_finish(&model);
 }
 
@@ -40,8 +63,8 @@ static void absurd_species_are_bounded(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    for (int i = 0; i < 7; i++) {
-        struct wd_species species = test_species(&arena, i & 1 ? "snag" : "oak");
+    for (int i = 0; i < 8; i++) {
+        struct wd_species species = test_species(&arena, i == 7 ? "coconut" : i & 1 ? "snag" : "oak");
         if (i < 2)
             species.orders[0].spacing_m = species.orders[1].spacing_m = 1e-30f;
         if (i == 1 || i == 3)
@@ -54,7 +77,50 @@ static void absurd_species_are_bounded(void **state)
             species.allometry.crown_b = 1e-9, species.allometry.crown_a = 0;
         if (i == 6)
             species.orders[0].length_ratio = 4, species.orders[1].length_ratio = 4;
+        if (i == 7)
+            species.crown_base_forest = 0;
         grow_absurd(&species, 0);
+    }
+    wd_arena_finish(&arena);
+}
+
+/* Those that a mesh has no room for are nowhere asked for. */
+static void flowers_that_do_not_fit_are_left_out(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    struct wd_species species = test_species(&arena, "oak");
+    species.flower.count = 20000;
+    species.flower.petals = 60;
+    struct wd_tree_model model = test_grow_tree(&species, 1, 0, 0);
+    assert_in_range(model.flower_count, 100, 10000);
+    wd_tree_sunlit_fit(&model);
+    uint32_t open = 0;
+    for (uint32_t i = 0; i < model.flower_count; i++)
+        open += model.leaves[model.leaf_count + i].open != 0;
+    assert_true(open > model.flower_count / 2); /* they stand where light reaches */
+    wd_tree_model_finish(&model);
+    wd_arena_finish(&arena);
+}
+
+/* Buttresses without height are none; a crown that begins at the ground leaves the stem its foot. */
+static void a_stem_stands_on_a_sound_foot(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    for (int i = 0; i < 4; i++) {
+        struct wd_species species = test_species(&arena, i < 2 ? "angelique" : "oak");
+        float openness = i == 3 ? 1 : 0;
+        if (i < 2)
+            species.buttress.height = i == 0 ? 0 : 1e-40f;
+        else
+            species.crown_base_open = species.crown_base_forest = 0;
+        struct wd_tree_model model = test_grow_tree(&species, 1, 0, openness);
+        assert_finite(&model.full);
+        assert_finite(&model.reduced);
+        assert_true(foot_m(&model.full) > 0.5f * model.dbh_m);
+        assert_true(foot_m(&model.reduced) > 0.4f * model.dbh_m);
+        wd_tree_model_finish(&model);
     }
     wd_arena_finish(&arena);
 }
@@ -63,7 +129,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(absurd_species_are_bounded),
+        cmocka_unit_test(a_stem_stands_on_a_sound_foot),
         cmocka_unit_test(crowded_species_are_bounded),
+        cmocka_unit_test(flowers_that_do_not_fit_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
