@@ -44,5 +44,5 @@ float moss_patches(vec2 uv, float share)
     vec2 place_m = uv * BARK_TILE_M;
     float patches = wd_gradient_noise(grain_lattice(place_m * 11.0), 50u).x
                     + 0.5 * wd_gradient_noise(grain_lattice(place_m * 40.0), 51u).x;
-    return 0.8 * patches * min(4.0 * share, 1.0);
+    return 0.6 * patches * min(4.0 * share, 1.0);
 }

@@ -29,7 +29,7 @@ layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_surface;
 
-const vec3 MOSS = vec3(0.040, 0.062, 0.016);
+const vec3 MOSS = vec3(0.066, 0.086, 0.026);
 
 struct wd_surface {
     vec3 albedo, normal;
@@ -76,7 +76,7 @@ void detail_wood(inout wd_surface wood, wd_grain grain, float near)
     wd_relief relief = look_relief(look_details, frame_of_uv, in_uv + vec3(grain.aside, 0.0));
     relief.normal = normalize(relief.normal - frame_of_uv * vec3(grain.slope, 0.0));
     float share = in_place.w + (in_place.w > 0.0 ? moss_patches(in_uv.xy, in_place.w) : 0.0);
-    float moss = smoothstep(0.0, 0.3, share - 0.55 * relief.rest * (1.0 - 0.5 * in_place.w));
+    float moss = 0.85 * smoothstep(0.0, 0.6, share - 0.55 * relief.rest * (1.0 - 0.5 * in_place.w));
     wood.albedo = mix(wood.albedo, MOSS * (0.6 + 0.8 * relief.rest), moss);
     wood.normal = normalize(mix(wood.normal, relief.normal, near * (1.0 - 0.6 * moss)));
 }
