@@ -128,6 +128,12 @@ static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_fore
            make_lists(c, gpu, c->most_trees < LEAST_TREES ? c->most_trees : LEAST_TREES);
 }
 
+static void continuum_forget(void *state)
+{
+    struct continuum *c = state;
+    c->history.width = c->history.height = 0;
+}
+
 static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
 {
     struct continuum *c = state;
@@ -137,7 +143,7 @@ static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
         wd_buffer_finish(buffers[i], gpu);
     wd_continuum_forest_finish(&c->forest, gpu);
     wd_selection_finish(&c->near);
-    c->history.width = c->history.height = 0;
+    continuum_forget(c);
 }
 
 /* --- one view ---------------------------------------------------------------------------- */
@@ -667,6 +673,7 @@ const struct wd_method wd_method_continuum = {
     .draw = continuum_draw,
     .merge = continuum_merge,
     .keep = continuum_keep,
+    .forget = continuum_forget,
     .discs = continuum_discs,
     .check = continuum_check,
 };
