@@ -76,17 +76,29 @@ static void continuum_finish(void *state, struct wd_gpu *gpu)
 
 /* --- forest ------------------------------------------------------------------------------ */
 
+/* Their capacity is 0 until all are there. */
 static bool make_lists(struct continuum *c, struct wd_gpu *gpu, uint32_t trees)
 {
     uint32_t items = trees > LEAST_ITEMS / ITEMS_A_TREE ? trees * ITEMS_A_TREE : LEAST_ITEMS;
-    c->tree_capacity = trees;
-    c->item_capacity = items;
-    return make_work(&c->trees, gpu, "splat trees", trees * sizeof(struct wd_splat_tree),
-                     VK_FORMAT_R32G32B32A32_UINT) &&
-           make_work(&c->items, gpu, "splat items", items * sizeof(struct wd_splat_item),
-                     VK_FORMAT_R32G32_UINT) &&
-           make_work(&c->wood_items, gpu, "wood items", items * sizeof(struct wd_splat_item),
-                     VK_FORMAT_R32G32_UINT);
+    c->tree_capacity = c->item_capacity = 0;
+    bool ok = make_work(&c->trees, gpu, "splat trees", trees * sizeof(struct wd_splat_tree),
+                        VK_FORMAT_R32G32B32A32_UINT) &&
+              make_work(&c->items, gpu, "splat items", items * sizeof(struct wd_splat_item),
+                        VK_FORMAT_R32G32_UINT) &&
+              make_work(&c->wood_items, gpu, "wood items", items * sizeof(struct wd_splat_item),
+                        VK_FORMAT_R32G32_UINT);
+    if (ok) {
+        c->tree_capacity = trees;
+        c->item_capacity = items;
+    }
+    return ok;
+}
+
+/* Trees that lists for a view of so many pixels hold. */
+static uint32_t trees_in_lists(const struct continuum *c, uint64_t pixels)
+{
+    uint64_t trees = pixels / PIXELS_A_TREE > LEAST_TREES ? pixels / PIXELS_A_TREE : LEAST_TREES;
+    return trees < c->most_trees ? (uint32_t)trees : c->most_trees;
 }
 
 /* All of the world, or what the device can bind. */
@@ -125,7 +137,7 @@ static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_fore
            wd_buffer_upload(gpu, &c->lost, 0, &none, sizeof none) &&
            make_work(&c->groups, gpu, "splat groups", sizeof(struct wd_splat_groups),
                      VK_FORMAT_UNDEFINED) &&
-           make_lists(c, gpu, c->most_trees < LEAST_TREES ? c->most_trees : LEAST_TREES);
+           make_lists(c, gpu, trees_in_lists(c, 0));
 }
 
 static void continuum_forget(void *state)
@@ -160,8 +172,7 @@ static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_
 
 static bool fit_lists(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
 {
-    uint32_t trees = (uint32_t)((uint64_t)view->width * view->height / PIXELS_A_TREE);
-    trees = trees < c->most_trees ? trees : c->most_trees;
+    uint32_t trees = trees_in_lists(c, (uint64_t)view->width * view->height);
     if (c->tree_capacity >= trees)
         return true;
     wd_cmd_defer_buffer(cmd, &c->trees);

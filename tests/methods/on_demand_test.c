@@ -431,6 +431,29 @@ static void abandoned_frames_leave_nothing(void **state)
     frame_test_finish(&test);
 }
 
+/* A picture for whose lists memory does not do is followed by a smaller one as if nothing had been. */
+static void lists_without_memory_are_made_anew(void **state)
+{
+    (void)state;
+    enum { MANY_LINES = 16384, LITTLE = 1 << 24 };
+    struct frame_test test;
+    struct frame_picture before, after;
+    frame_test_init(&test, root, &(struct frame_test_params){.settings = WOODS});
+    test.gpu.properties.limits.maxStorageBufferRange *= 2; /* as if longer lists could be bound than the first */
+    frame_test_draw(&test, "continuum", OVER, &before);
+    uint64_t most = test.gpu.max_buffer_size;
+    test.height = MANY_LINES;
+    test.gpu.max_buffer_size = LITTLE;
+    frame_test_abandon(&test, "continuum", OVER);
+    test.height = 0;
+    test.gpu.max_buffer_size = most;
+    frame_test_draw(&test, "continuum", OVER, &after);
+    assert_same_pictures(&before, &after);
+    frame_picture_finish(&before);
+    frame_picture_finish(&after);
+    frame_test_finish(&test);
+}
+
 /* As many of a picture's pixels show trees as where all trees are stored. */
 static void cover_is_that_of_stored_trees(void **state)
 {
@@ -499,6 +522,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(far_views_plant_after_cascades),
         cmocka_unit_test(kept_cascades_are_as_if_drawn),
         cmocka_unit_test(abandoned_frames_leave_nothing),
+        cmocka_unit_test(lists_without_memory_are_made_anew),
         cmocka_unit_test(cover_is_that_of_stored_trees),
         cmocka_unit_test(others_refuse),
     };
