@@ -457,11 +457,21 @@ static void record_rounds(struct continuum *c, const struct wd_tree_draw *draw)
     wd_cmd_scope_end(cmd);
 }
 
+/* What was uploaded for the forest, for all the passes of a view. */
+static void use_forest_buffers(struct continuum *c, struct wd_cmd *cmd)
+{
+    struct wd_buffer *buffers[] = {&c->forest.splats, &c->forest.looks, &c->forest.lit,
+                                   &c->forest.wood, &c->forest.models};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        wd_cmd_use_buffer(cmd, buffers[i], WD_USE_SHADER_READ);
+}
+
 static void continuum_select(void *state, const struct wd_tree_draw *draw)
 {
     struct continuum *c = state;
     struct wd_cmd *cmd = draw->cmd;
     const struct wd_near_rule near = wd_continuum_near_rule(draw, &c->forest);
+    use_forest_buffers(c, cmd);
     wd_cmd_scope_begin(cmd, "pages");
     select_pages(c, draw);
     wd_cmd_scope_end(cmd);
