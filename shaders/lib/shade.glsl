@@ -543,7 +543,7 @@ void know_petals(inout wd_place place, wd_pixel pixel, wd_lit_leaves model)
 wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2 sunlit, uint cascade)
 {
     wd_place place = ground_place(pixel);
-    float branches = pixel.lit < 0.0 ? smoothstep(1.0, 0.8, length(pixel.facing)) : 0.0;
+    float branches = pixel.lit < 0.0 ? 1.0 - smoothstep(0.8, 1.0, length(pixel.facing)) : 0.0;
     float fine = mix(map_holds_leaves(cascade, free), map_tells_leaves(cascade, 0.0), free * branches);
     float many = branches * (1.0 - fine);
     shade_by_crown(place, crown, curve, pixel.openness, free, mix(sunlit.x, 1.0, many), cascade);

@@ -21,5 +21,6 @@ float water_distance(vec3 ray)
 {
     float drop = frame.water_level_m - float(frame.camera_mm[2]) * 0.001 - frame.camera_frac_m.z;
     float at = drop / ray.z;
-    return ray.z < -1e-6 && at > 0.0 && at < WATER_NONE_M ? at : -1.0;
+    bool is_water = frame.water_level_m > -WATER_NONE_M; /* rays are as long as they like */
+    return is_water && ray.z < -1e-6 && at > 0.0 && at < WATER_NONE_M ? at : -1.0;
 }

@@ -62,7 +62,7 @@ void detail_leaf(inout wd_surface leaf, float near)
     wd_relief relief =
         look_relief(look_details, look_frame(face, in_place.xyz, in_uv.xy), seen_side());
     float lit = dot(face, in_sun_show.xyz);
-    float through = mix(1.0, vein_through(relief.rest), near * smoothstep(0.05, -0.05, lit));
+    float through = mix(1.0, vein_through(relief.rest), near * (1.0 - smoothstep(-0.05, 0.05, lit)));
     leaf.albedo *= through;
     /* Seen or lit at a flat angle, veins hide their own far sides. */
     float seen_lit = min(abs(dot(leaf.normal, normalize(in_place.xyz))), abs(dot(leaf.normal, in_sun_show.xyz)));

@@ -43,17 +43,20 @@ WD_FUNC WD_VECTOR wd_sun_disc_toward(WD_FRAME_IN WD_VECTOR direction)
 }
 
 /* Metres of air at full density that a ray of this length from the camera passes: haze thins
- * exponentially with height. */
+ * exponentially with height. Told from the ray's lower end, where it is thickest: from there up the
+ * integral cannot overflow, however high the camera is. */
 WD_FUNC float wd_fog_path_m(WD_FRAME_IN WD_VECTOR direction, float length_m)
 {
     float eye_z = WD_FLOAT(WD_FRAME(camera_mm[2])) * 0.001f;
     float per_height = 1.0f / WD_FRAME(fog_height_m);
-    float at_eye = WD_EXP(WD_CLAMP((WD_FRAME(fog_base_m) - eye_z) * per_height, -20.0f, 1.5f));
-    float fall = direction.z * length_m * per_height;
-    float mean = 1.0f - 0.5f * fall;
-    if (WD_ABS(fall) > 1e-3f)
-        mean = (1.0f - WD_EXP(-WD_MAX(fall, -8.0f))) / fall;
-    return at_eye * mean * length_m;
+    float rise_m = direction.z * length_m;
+    float low_z = eye_z + WD_MIN(rise_m, 0.0f);
+    float at_low = WD_EXP(WD_CLAMP((WD_FRAME(fog_base_m) - low_z) * per_height, -20.0f, 1.5f));
+    float rise = WD_ABS(rise_m * per_height);
+    float mean = 1.0f - 0.5f * rise;
+    if (rise > 1e-3f)
+        mean = (1.0f - WD_EXP(-rise)) / rise;
+    return at_low * mean * length_m;
 }
 
 /* Share of the light that comes through. Air scatters blue more than haze does: extinction per

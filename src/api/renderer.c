@@ -239,8 +239,10 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
         if (!wd_frame_begin(&frame->ring, &cmd))
             return WD_ERROR_DEVICE;
         wd_frame_record(frame, &cmd, i);
-        if (!wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE))
+        if (!wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE)) {
+            wd_frame_abandoned(frame);
             return WD_ERROR_DEVICE;
+        }
         if (i == 0 && !wd_frames_wait(&frame->ring))
             return WD_ERROR_DEVICE;
         if (i == 0)

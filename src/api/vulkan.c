@@ -67,8 +67,10 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
     wd_frame_record(&renderer->frame, &cmd, 0);
     const struct wd_frame_target copy = {target->image, target->format, target->layout_after};
     wd_frame_copy(&renderer->frame, &cmd, &copy);
-    if (!wd_frame_submit(&cmd, target->wait, target->signal))
+    if (!wd_frame_submit(&cmd, target->wait, target->signal)) {
+        wd_frame_abandoned(&renderer->frame);
         return WD_ERROR_DEVICE;
+    }
     renderer->frame_ms = (wd_clock_s() - start) * 1e3;
     wd_renderer_keep_times(renderer);
     renderer->gpu_ms = true_clock ? scopes_ms(&renderer->frame.ring) : 0.0;

@@ -114,11 +114,24 @@ bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *para
     return frame->method_state && prepare_pipelines(frame) && prepare_velocity(frame);
 }
 
-void wd_frame_drop_forest(struct wd_frame *frame)
+static void forget_pictures(struct wd_frame *frame)
 {
     memset(frame->kept, 0, sizeof frame->kept);
     wd_accumulate_pass_reset(&frame->accumulate);
     frame->gathered = (struct wd_gathered){0};
+}
+
+void wd_frame_abandoned(struct wd_frame *frame)
+{
+    forget_pictures(frame);
+    wd_pages_forget(&frame->params.forest->pages);
+    wd_methods_forget(&frame->methods);
+    wd_light_pass_forget(&frame->light);
+}
+
+void wd_frame_drop_forest(struct wd_frame *frame)
+{
+    forget_pictures(frame);
     wd_methods_drop_forest(&frame->methods, frame->gpu);
     wd_light_pass_drop_forest(&frame->light, frame->gpu);
 }
@@ -463,8 +476,4 @@ void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index)
         record_gathering(&r);
     if (index + 1 == frame->params.samples)
         record_display(&r);
-    if (cmd->failed) {
-        memset(frame->kept, 0, sizeof frame->kept);
-        wd_accumulate_pass_reset(&frame->accumulate);
-    }
 }

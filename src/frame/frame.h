@@ -80,6 +80,9 @@ struct wd_frame_target {
 /* Records the copy of the display (sRGB-encoded bytes) into the image; the last thing in a frame. */
 void wd_frame_copy(struct wd_frame *frame, struct wd_cmd *cmd, const struct wd_frame_target *target);
 
+/* Forgets what the device was to hold after a recorded frame; call when wd_frame_submit has returned false. */
+void wd_frame_abandoned(struct wd_frame *frame);
+
 /* Forgets what the passes keep of a forest; call before it is destroyed. */
 void wd_frame_drop_forest(struct wd_frame *frame);
 

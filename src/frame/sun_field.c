@@ -132,6 +132,11 @@ void wd_sun_field_update(struct wd_sun_field *field, struct wd_cmd *cmd,
         wd_cmd_use_buffer(cmd, &field->heights, WD_USE_COMPUTE_READ);
 }
 
+void wd_sun_field_forget(struct wd_sun_field *field)
+{
+    field->terrain = NULL;
+}
+
 void wd_sun_field_finish(struct wd_sun_field *field, struct wd_gpu *gpu)
 {
     wd_buffer_finish(&field->heights, gpu);

@@ -19,6 +19,8 @@ struct wd_sun_field {
  * shaders read it. A change costs a few milliseconds a million samples. */
 void wd_sun_field_update(struct wd_sun_field *field, struct wd_cmd *cmd,
                          const struct wd_terrain *terrain, const float sun_direction[3]);
+/* The device never ran what was recorded: it is made anew. */
+void wd_sun_field_forget(struct wd_sun_field *field);
 void wd_sun_field_finish(struct wd_sun_field *field, struct wd_gpu *gpu);
 
 /* The field itself: out[width * height] for heights[width * height], `toward_x`, `toward_y` the

@@ -65,6 +65,17 @@ static void add_side_plane(struct wd_frustum *frustum, const double forward[3], 
     plane[3] = 0.0f;
 }
 
+/* Both sides along an axis, along which the picture of `size_px` is shifted by `offset_px`: by whole pixels, with half
+ * of one to spare, so that all places in a pixel share a frustum. */
+static void add_side_planes(struct wd_frustum *frustum, const double forward[3], const double axis[3],
+                            double half_extent, float offset_px, uint32_t size_px)
+{
+    const double back[3] = {-axis[0], -axis[1], -axis[2]};
+    double spare = 1.0 / size_px, shift = 2.0 * round((double)offset_px) / size_px;
+    add_side_plane(frustum, forward, axis, half_extent * (1.0 + spare - shift));
+    add_side_plane(frustum, forward, back, half_extent * (1.0 + spare + shift));
+}
+
 void wd_view_init(struct wd_view *view, const struct wd_view_params *params)
 {
     double right[3], forward[3], up[3];
@@ -87,11 +98,8 @@ void wd_view_init(struct wd_view *view, const struct wd_view_params *params)
         view->clip_from_rel[k][0] += (float)(forward[k] * 2.0 * params->offset_px[0] / params->width);
         view->clip_from_rel[k][1] += (float)(forward[k] * 2.0 * params->offset_px[1] / params->height);
     }
-    const double left[3] = {-right[0], -right[1], -right[2]}, down[3] = {-up[0], -up[1], -up[2]};
-    add_side_plane(&view->frustum, forward, right, half_width);
-    add_side_plane(&view->frustum, forward, left, half_width);
-    add_side_plane(&view->frustum, forward, up, half_height);
-    add_side_plane(&view->frustum, forward, down, half_height);
+    add_side_planes(&view->frustum, forward, right, half_width, params->offset_px[0], params->width);
+    add_side_planes(&view->frustum, forward, up, half_height, -params->offset_px[1], params->height);
     float *near = view->frustum.planes[view->frustum.count++];
     for (int k = 0; k < 3; k++)
         near[k] = (float)forward[k];

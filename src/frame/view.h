@@ -50,7 +50,7 @@ struct wd_view_params {
     uint32_t width, height;
     float near_m;
     uint32_t samples;   /* 0 counts as 1 */
-    float offset_px[2]; /* of this sample within its pixel, -0.5..0.5 */
+    float offset_px[2]; /* of this sample: within its pixel, -0.5..0.5, and by its place on the lens */
 };
 /* A camera's view. */
 void wd_view_init(struct wd_view *view, const struct wd_view_params *params);

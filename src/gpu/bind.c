@@ -137,6 +137,8 @@ static bool write_set(struct wd_cmd *cmd, VkDescriptorSet set, const struct wd_b
     for (uint32_t i = 0; i < types->count; i++) {
         VkDescriptorType type = types->types[i];
         assert(!is_texels(type) || bindings[i].buffer->texels);
+        /* the wait for a transfer makes nothing visible to shaders: a use must have been declared since */
+        assert(!bindings[i].buffer || bindings[i].buffer->last_use != WD_USE_TRANSFER_WRITE);
         if (is_texels(type))
             images[i] = (VkDescriptorImageInfo){0};
         else if (!is_buffer(type))

@@ -106,7 +106,8 @@ struct wd_binding {
 #define WD_BIND_IMAGE(i, s) ((struct wd_binding){.view = (i)->view, .sampler = (s)})
 #define WD_BIND_STORAGE_IMAGE(i)                                                                   \
     ((struct wd_binding){.view = (i)->stored ? (i)->stored : (i)->view})
-/* Binds the pipeline and a fresh descriptor set with `bindings[pipeline->bindings.count]`. */
+/* Binds the pipeline and a fresh descriptor set with `bindings[pipeline->bindings.count]`. Buffers that a transfer
+ * has written must have been declared as used since. */
 void wd_cmd_bind(struct wd_cmd *cmd, const struct wd_pipeline *pipeline,
                  const struct wd_binding *bindings);
 void wd_cmd_push(struct wd_cmd *cmd, const struct wd_pipeline *pipeline, const void *data,

@@ -113,6 +113,7 @@ static bool init_external(struct wd_gpu *gpu, const struct wd_gpu_params *params
         wd_warn(gpu->log, "validation belongs to the instance, which is external: not enabled");
     struct wd_candidate candidate;
     wd_candidate_init(&candidate, external->physical_device);
+    wd_candidate_take_family(&candidate, external->queue_family);
     if (candidate.problem) {
         wd_error(gpu->log, "the external Vulkan device \"%s\" cannot be used: %s",
                  candidate.properties.deviceName, candidate.problem);
@@ -128,7 +129,6 @@ static bool init_external(struct wd_gpu *gpu, const struct wd_gpu_params *params
     gpu->instance = external->instance;
     gpu->device = external->device;
     gpu->queue = external->queue;
-    gpu->queue_family = external->queue_family;
     return true;
 }
 

@@ -39,7 +39,8 @@ static int speed_rank(VkPhysicalDeviceType type)
     }
 }
 
-static bool find_queue_family(struct wd_candidate *candidate)
+/* The first family from `first` on, before `end`, that does for all work. */
+static bool find_queue_family(struct wd_candidate *candidate, uint32_t first, uint32_t end)
 {
     const VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
     uint32_t count = 0;
@@ -47,13 +48,20 @@ static bool find_queue_family(struct wd_candidate *candidate)
     VkQueueFamilyProperties *families = wd_alloc_array(count, sizeof *families);
     vkGetPhysicalDeviceQueueFamilyProperties(candidate->handle, &count, families);
     bool found = false;
-    for (uint32_t i = 0; i < count && !found; i++) {
+    for (uint32_t i = first; i < count && i < end && !found; i++) {
         found = (families[i].queueFlags & wanted) == wanted;
         candidate->queue_family = i;
         candidate->timestamp_bits = families[i].timestampValidBits;
     }
     free(families);
     return found;
+}
+
+void wd_candidate_take_family(struct wd_candidate *candidate, uint32_t family)
+{
+    if (!candidate->problem && (family == UINT32_MAX || !find_queue_family(candidate, family, family + 1)))
+        candidate->problem =
+            wd_format("its queue family %u is not there or not for both graphics and compute", family);
 }
 
 void wd_candidate_init(struct wd_candidate *candidate, VkPhysicalDevice handle)
@@ -73,7 +81,7 @@ void wd_candidate_init(struct wd_candidate *candidate, VkPhysicalDevice handle)
     char *missing = wd_features_missing(&supported);
     if (missing)
         candidate->problem = wd_format("it lacks the feature %s", missing);
-    else if (!find_queue_family(candidate))
+    else if (!find_queue_family(candidate, 0, UINT32_MAX))
         candidate->problem = wd_strdup("it has no queue for both graphics and compute");
     free(missing);
 }

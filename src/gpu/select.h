@@ -16,6 +16,9 @@ struct wd_candidate {
 /* Reads what one device can do; free() candidate->problem. */
 void wd_candidate_init(struct wd_candidate *candidate, VkPhysicalDevice handle);
 
+/* In place of the family that it found: one that the caller's queue is of. */
+void wd_candidate_take_family(struct wd_candidate *candidate, uint32_t family);
+
 /* Picks by wd_gpu_params.name. The choice has no problem. */
 bool wd_select_device(struct wd_candidate *choice, VkInstance instance, const char *name,
                       const struct wd_log *log);

@@ -76,17 +76,29 @@ static void continuum_finish(void *state, struct wd_gpu *gpu)
 
 /* --- forest ------------------------------------------------------------------------------ */
 
+/* Their capacity is 0 until all are there. */
 static bool make_lists(struct continuum *c, struct wd_gpu *gpu, uint32_t trees)
 {
     uint32_t items = trees > LEAST_ITEMS / ITEMS_A_TREE ? trees * ITEMS_A_TREE : LEAST_ITEMS;
-    c->tree_capacity = trees;
-    c->item_capacity = items;
-    return make_work(&c->trees, gpu, "splat trees", trees * sizeof(struct wd_splat_tree),
-                     VK_FORMAT_R32G32B32A32_UINT) &&
-           make_work(&c->items, gpu, "splat items", items * sizeof(struct wd_splat_item),
-                     VK_FORMAT_R32G32_UINT) &&
-           make_work(&c->wood_items, gpu, "wood items", items * sizeof(struct wd_splat_item),
-                     VK_FORMAT_R32G32_UINT);
+    c->tree_capacity = c->item_capacity = 0;
+    bool ok = make_work(&c->trees, gpu, "splat trees", trees * sizeof(struct wd_splat_tree),
+                        VK_FORMAT_R32G32B32A32_UINT) &&
+              make_work(&c->items, gpu, "splat items", items * sizeof(struct wd_splat_item),
+                        VK_FORMAT_R32G32_UINT) &&
+              make_work(&c->wood_items, gpu, "wood items", items * sizeof(struct wd_splat_item),
+                        VK_FORMAT_R32G32_UINT);
+    if (ok) {
+        c->tree_capacity = trees;
+        c->item_capacity = items;
+    }
+    return ok;
+}
+
+/* Trees that lists for a view of so many pixels hold. */
+static uint32_t trees_in_lists(const struct continuum *c, uint64_t pixels)
+{
+    uint64_t trees = pixels / PIXELS_A_TREE > LEAST_TREES ? pixels / PIXELS_A_TREE : LEAST_TREES;
+    return trees < c->most_trees ? (uint32_t)trees : c->most_trees;
 }
 
 /* All of the world, or what the device can bind. */
@@ -125,7 +137,13 @@ static bool continuum_use_forest(void *state, struct wd_gpu *gpu, struct wd_fore
            wd_buffer_upload(gpu, &c->lost, 0, &none, sizeof none) &&
            make_work(&c->groups, gpu, "splat groups", sizeof(struct wd_splat_groups),
                      VK_FORMAT_UNDEFINED) &&
-           make_lists(c, gpu, c->most_trees < LEAST_TREES ? c->most_trees : LEAST_TREES);
+           make_lists(c, gpu, trees_in_lists(c, 0));
+}
+
+static void continuum_forget(void *state)
+{
+    struct continuum *c = state;
+    c->history.width = c->history.height = 0;
 }
 
 static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
@@ -137,7 +155,7 @@ static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
         wd_buffer_finish(buffers[i], gpu);
     wd_continuum_forest_finish(&c->forest, gpu);
     wd_selection_finish(&c->near);
-    c->history.width = c->history.height = 0;
+    continuum_forget(c);
 }
 
 /* --- one view ---------------------------------------------------------------------------- */
@@ -154,8 +172,7 @@ static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_
 
 static bool fit_lists(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
 {
-    uint32_t trees = (uint32_t)((uint64_t)view->width * view->height / PIXELS_A_TREE);
-    trees = trees < c->most_trees ? trees : c->most_trees;
+    uint32_t trees = trees_in_lists(c, (uint64_t)view->width * view->height);
     if (c->tree_capacity >= trees)
         return true;
     wd_cmd_defer_buffer(cmd, &c->trees);
@@ -440,11 +457,21 @@ static void record_rounds(struct continuum *c, const struct wd_tree_draw *draw)
     wd_cmd_scope_end(cmd);
 }
 
+/* What was uploaded for the forest, for all the passes of a view. */
+static void use_forest_buffers(struct continuum *c, struct wd_cmd *cmd)
+{
+    struct wd_buffer *buffers[] = {&c->forest.splats, &c->forest.looks, &c->forest.lit,
+                                   &c->forest.wood, &c->forest.models};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        wd_cmd_use_buffer(cmd, buffers[i], WD_USE_SHADER_READ);
+}
+
 static void continuum_select(void *state, const struct wd_tree_draw *draw)
 {
     struct continuum *c = state;
     struct wd_cmd *cmd = draw->cmd;
     const struct wd_near_rule near = wd_continuum_near_rule(draw, &c->forest);
+    use_forest_buffers(c, cmd);
     wd_cmd_scope_begin(cmd, "pages");
     select_pages(c, draw);
     wd_cmd_scope_end(cmd);
@@ -667,6 +694,7 @@ const struct wd_method wd_method_continuum = {
     .draw = continuum_draw,
     .merge = continuum_merge,
     .keep = continuum_keep,
+    .forget = continuum_forget,
     .discs = continuum_discs,
     .check = continuum_check,
 };

@@ -53,6 +53,7 @@ static void grid_select(void *state, const struct wd_tree_draw *draw)
     struct grid *grid = state;
     const struct wd_level_rule rule = wd_level_rule_of(draw->forest, draw->view, draw->pass);
     float cards_m = wd_level_card_distance(&rule, draw->forest->max_tree_height_m);
+    wd_cmd_use_buffer(draw->cmd, &grid->list, WD_USE_SHADER_READ);
     wd_selection_clear(&grid->selection);
     grid->range_count = 0;
     wd_cell_list_fill(&grid->seen, &grid->cells, draw->view);

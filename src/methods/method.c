@@ -116,6 +116,14 @@ void wd_methods_drop_forest(struct wd_methods *open, struct wd_gpu *gpu)
         drop_forest(&open->slots[i], gpu);
 }
 
+void wd_methods_forget(struct wd_methods *open)
+{
+    for (uint32_t i = 0; i < open->count; i++) {
+        if (open->slots[i].method->forget)
+            open->slots[i].method->forget(open->slots[i].state);
+    }
+}
+
 void wd_methods_finish(struct wd_methods *open, struct wd_gpu *gpu)
 {
     for (uint32_t i = 0; i < open->count; i++)

@@ -42,6 +42,8 @@ struct wd_method {
     void (*merge)(void *state, const struct wd_tree_draw *draw);
     /* Outside of any rendering, with the camera's depth complete: what it saw, for the next frame. */
     void (*keep)(void *state, const struct wd_tree_draw *draw);
+    /* The newest frame was abandoned: nothing that `keep` or other functions left for later ones is there. */
+    void (*forget)(void *state);
     /* With no frame in flight: discs that the newest view of the camera was drawn with. */
     uint64_t (*discs)(void *state, struct wd_gpu *gpu);
     /* With no frame in flight: warns of what newest frames could not hold. */
@@ -90,6 +92,7 @@ struct wd_methods {
 void *wd_methods_open(struct wd_methods *methods, struct wd_gpu *gpu,
                       const struct wd_method *method, struct wd_forest_device *forest);
 void wd_methods_drop_forest(struct wd_methods *methods, struct wd_gpu *gpu);
+void wd_methods_forget(struct wd_methods *methods); /* after an abandoned frame */
 void wd_methods_finish(struct wd_methods *methods, struct wd_gpu *gpu);
 
 #endif

@@ -224,11 +224,15 @@ static void populate(struct patch_state *patch, const struct wd_tree_draw *draw,
     uint32_t *table = wd_alloc_array(2 * words, sizeof *table);
     fill_half(table, patch, index, draw->forest->world, false);
     fill_half(table + words, patch, index, draw->forest->world, true);
-    if (!wd_buffer_init(&resident->table, draw->cmd->gpu, &params) ||
-        !wd_buffer_upload(draw->cmd->gpu, &resident->table, 0, table, params.size))
-        draw->cmd->failed = true;
-    patch->resident_count++;
+    bool ok = wd_buffer_init(&resident->table, draw->cmd->gpu, &params) &&
+              wd_buffer_upload(draw->cmd->gpu, &resident->table, 0, table, params.size);
     free(table);
+    if (ok) {
+        patch->resident_count++;
+    } else {
+        wd_buffer_finish(&resident->table, draw->cmd->gpu);
+        draw->cmd->failed = true;
+    }
 }
 
 /* Drops the patch that has not been drawn for longest, unless it is in use now. */

@@ -151,7 +151,7 @@ static const struct wd_key ground_keys[] = {
     {"litter", WD_KEY_COLOR, IN(ground, litter), .fallback = "[0.1, 0.07, 0.045]",
      .doc = "Colour of litter below trees (linear albedo)."},
     {"rock_slope_deg", WD_KEY_DOUBLE, IN(ground, rock_slope_deg), 0, 90, "40",
-     "Slopes steeper than this show rock, in degrees."},
+     "Slopes steeper than this show rock, in degrees.", .flags = WD_KEY_EXCLUSIVE_MIN},
     {"snow_line_m", WD_KEY_DOUBLE, IN(ground, snow_line_m), -12000, 12000, "0",
      "Snow lies above this height over the world's zero, in metres; 0: nowhere."},
     {"tree_line_m", WD_KEY_DOUBLE, IN(ground, tree_line_m), -12000, 12000, "0",

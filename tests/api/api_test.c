@@ -323,6 +323,28 @@ static void the_same_picture_twice(void **state)
 
 /* Trees stand where they stand whatever draws them: as much of the picture is covered by them as
  * octree covers, by the same trees. */
+/* Rays of a view that is nearly half a turn high fall by many metres a metre along its axis. Where they meet nothing
+ * there is no water either: no part of the picture is left as the one before was. */
+static void the_widest_view_is_lit_all_over(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_render_params params = suite_params(suite->forest, "over");
+    params.camera = (struct wd_camera){{-400, 150, 60}, -1.5707963, 0, 3.1}; /* away from the ground */
+    params.layers = WD_LAYER_COLOR;
+    struct wd_picture shown[2];
+    for (int i = 0; i < 2; i++) {
+        struct wd_picture before = render_layers(suite, i ? "walk" : "over", WD_LAYER_COLOR);
+        wd_picture_finish(&before);
+        shown[i] = render(suite, &params);
+    }
+    for (size_t i = 0; i < 3 * (size_t)PIXELS; i++) {
+        assert_true(shown[0].color[i] > 0 && isfinite(shown[0].color[i]));
+        assert_true(shown[0].color[i] == shown[1].color[i]);
+    }
+    wd_picture_finish(&shown[0]);
+    wd_picture_finish(&shown[1]);
+}
+
 static void methods_agree(void **state)
 {
     struct suite *suite = *state;
@@ -642,6 +664,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(every_layer_holds_what_it_says, &suite),
         cmocka_unit_test_prestate(depths_lead_to_the_trees, &suite),
         cmocka_unit_test_prestate(the_same_picture_twice, &suite),
+        cmocka_unit_test_prestate(the_widest_view_is_lit_all_over, &suite),
         cmocka_unit_test_prestate(methods_agree, &suite),
         cmocka_unit_test_prestate(layers_fade_with_distance, &suite),
         cmocka_unit_test_prestate(wd_method_names_are_known, &suite),

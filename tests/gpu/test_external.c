@@ -98,6 +98,30 @@ static void enabled_features_are_believed_where_possible(void **state)
     destroy_external(&external);
 }
 
+static void the_queue_is_of_its_own_family(void **state)
+{
+    struct gpu_test *test = *state;
+    struct wd_gpu_external external;
+    make_external(&external);
+    uint32_t count = 0;
+    vkGetPhysicalDeviceQueueFamilyProperties(external.physical_device, &count, NULL);
+    VkQueueFamilyProperties *families = calloc(count, sizeof *families);
+    vkGetPhysicalDeviceQueueFamilyProperties(external.physical_device, &count, families);
+    struct wd_gpu gpu;
+    assert_true(wd_gpu_init(&gpu, &(struct wd_gpu_params){.external = &external}, &test->log));
+    assert_int_equal(gpu.queue_family, external.queue_family);
+    assert_int_equal(gpu.timestamp_bits, families[external.queue_family].timestampValidBits);
+    wd_gpu_finish(&gpu);
+    const uint32_t wrong[] = {count, UINT32_MAX};
+    for (size_t i = 0; i < 2; i++) {
+        external.queue_family = wrong[i];
+        assert_false(wd_gpu_init(&gpu, &(struct wd_gpu_params){.external = &external}, &test->log));
+        assert_logged(test, "queue family");
+    }
+    free(families);
+    destroy_external(&external);
+}
+
 static void null_handle_is_an_error(void **state)
 {
     struct gpu_test *test = *state;
@@ -166,6 +190,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         LOG_TEST(external_device_is_used_and_left_alone),
         LOG_TEST(enabled_features_are_believed_where_possible),
+        LOG_TEST(the_queue_is_of_its_own_family),
         LOG_TEST(null_handle_is_an_error),
         cmocka_unit_test_setup_teardown(foreign_image_is_drawn_into, gpu_setup, gpu_teardown),
     };

@@ -62,10 +62,8 @@ static struct wd_camera camera_of(const struct wd_scene_camera *from)
     return camera;
 }
 
-void frame_test_draw(struct frame_test *test, const char *method, uint32_t camera,
-                     struct frame_picture *picture)
+static void record(struct frame_test *test, const char *method, uint32_t camera, struct wd_cmd *cmd)
 {
-    struct wd_cmd cmd;
     struct wd_frame_params params = {
         .forest = &test->forest,
         .method = wd_method_find(method),
@@ -82,14 +80,30 @@ void frame_test_draw(struct frame_test *test, const char *method, uint32_t camer
         &test->world.terrain, params.camera.position_m[0], params.camera.position_m[1]);
     params.previous_camera = params.camera;
     assert_true(wd_frame_prepare(&test->frame, &params));
-    assert_true(wd_frame_begin(&test->frame.ring, &cmd));
-    wd_frame_record(&test->frame, &cmd, 0);
+    assert_true(wd_frame_begin(&test->frame.ring, cmd));
+    wd_frame_record(&test->frame, cmd, 0);
+}
+
+void frame_test_abandon(struct frame_test *test, const char *method, uint32_t camera)
+{
+    struct wd_cmd cmd;
+    record(test, method, camera, &cmd);
+    cmd.failed = true;
+    assert_false(wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE));
+    wd_frame_abandoned(&test->frame);
+}
+
+void frame_test_draw(struct frame_test *test, const char *method, uint32_t camera,
+                     struct frame_picture *picture)
+{
+    struct wd_cmd cmd;
+    record(test, method, camera, &cmd);
     assert_true(wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE));
     assert_true(wd_frames_wait(&test->frame.ring));
     struct wd_targets *targets = &test->frame.targets;
     *picture = (struct frame_picture){
-        .width = params.width,
-        .height = params.height,
+        .width = targets->width,
+        .height = targets->height,
         .surface = read_image(test, &targets->surface),
         .albedo = read_image(test, &targets->albedo),
         .depth = read_image(test, &targets->depth),

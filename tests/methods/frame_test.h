@@ -36,6 +36,8 @@ struct frame_picture {
 /* Draws the scene's camera of that index; arrays are to be freed with frame_picture_finish. */
 void frame_test_draw(struct frame_test *test, const char *method, uint32_t camera,
                      struct frame_picture *picture);
+/* Records the same, and fails at its end, as where memory has run out. */
+void frame_test_abandon(struct frame_test *test, const char *method, uint32_t camera);
 void frame_picture_finish(struct frame_picture *picture);
 
 #endif

@@ -379,6 +379,81 @@ static void kept_cascades_are_as_if_drawn(void **state)
     frame_test_finish(&test);
 }
 
+static void assert_same_pictures(const struct frame_picture *picture, const struct frame_picture *other)
+{
+    size_t different = 0;
+    assert_true(covered(picture) > pixels_of(picture) / 5);
+    for (size_t i = 0; i < pixels_of(picture); i++) {
+        assert_true(picture->depth[i] == other->depth[i]);
+        different += picture->albedo[i] != other->albedo[i];
+    }
+    assert_in_range(different, 0, pixels_of(picture) / 1000);
+}
+
+static uint8_t *read_display(struct frame_test *test)
+{
+    struct wd_image *display = &test->frame.targets.display;
+    size_t size = (size_t)4 * display->width * display->height;
+    uint8_t *bytes = wd_alloc(size);
+    assert_true(wd_image_read(&test->gpu, display, 0, 0, bytes, size));
+    return bytes;
+}
+
+/* What an abandoned frame would have planted, swept, drawn into maps and kept is not taken to be there. */
+static void abandoned_frames_leave_nothing(void **state)
+{
+    (void)state;
+    struct frame_test test;
+    struct frame_picture before, after, fresh;
+    const char *steep[sizeof WOODS / sizeof *WOODS + 1] = {"terrain.relief_m=400"};
+    memcpy(steep + 1, WOODS, sizeof WOODS);
+    frame_test_init(&test, root, &(struct frame_test_params){.settings = steep});
+    frame_test_draw(&test, "continuum", WALK, &before);
+    test.scene.sun.azimuth_deg = 20; /* hills stand before it */
+    test.scene.sun.elevation_deg = 5;
+    frame_test_abandon(&test, "continuum", OVER);
+    frame_test_draw(&test, "continuum", OVER, &after);
+    uint8_t *display = read_display(&test);
+    wd_frame_drop_forest(&test.frame);
+    frame_test_draw(&test, "continuum", OVER, &fresh);
+    uint8_t *expected = read_display(&test);
+    assert_same_pictures(&after, &fresh);
+    size_t different = 0;
+    for (size_t i = 0; i < 4 * pixels_of(&after); i++)
+        different += abs(display[i] - expected[i]) > 2;
+    print_message("%zu bytes of light differ\n", different);
+    assert_in_range(different, 0, pixels_of(&after) / 1000);
+    free(display);
+    free(expected);
+    frame_picture_finish(&before);
+    frame_picture_finish(&after);
+    frame_picture_finish(&fresh);
+    frame_test_finish(&test);
+}
+
+/* A picture for whose lists memory does not do is followed by a smaller one as if nothing had been. */
+static void lists_without_memory_are_made_anew(void **state)
+{
+    (void)state;
+    enum { MANY_LINES = 16384, LITTLE = 1 << 24 };
+    struct frame_test test;
+    struct frame_picture before, after;
+    frame_test_init(&test, root, &(struct frame_test_params){.settings = WOODS});
+    test.gpu.properties.limits.maxStorageBufferRange *= 2; /* as if longer lists could be bound than the first */
+    frame_test_draw(&test, "continuum", OVER, &before);
+    uint64_t most = test.gpu.max_buffer_size;
+    test.height = MANY_LINES;
+    test.gpu.max_buffer_size = LITTLE;
+    frame_test_abandon(&test, "continuum", OVER);
+    test.height = 0;
+    test.gpu.max_buffer_size = most;
+    frame_test_draw(&test, "continuum", OVER, &after);
+    assert_same_pictures(&before, &after);
+    frame_picture_finish(&before);
+    frame_picture_finish(&after);
+    frame_test_finish(&test);
+}
+
 /* As many of a picture's pixels show trees as where all trees are stored. */
 static void cover_is_that_of_stored_trees(void **state)
 {
@@ -446,8 +521,12 @@ int main(int argc, char **argv)
         cmocka_unit_test(jumps_show_all_and_refine),
         cmocka_unit_test(far_views_plant_after_cascades),
         cmocka_unit_test(kept_cascades_are_as_if_drawn),
+        cmocka_unit_test(abandoned_frames_leave_nothing),
+        cmocka_unit_test(lists_without_memory_are_made_anew),
         cmocka_unit_test(cover_is_that_of_stored_trees),
         cmocka_unit_test(others_refuse),
     };
+    if (argc > 2)
+        cmocka_set_test_filter(argv[2]);
     return cmocka_run_group_tests(tests, open_woods, close_woods);
 }

@@ -125,6 +125,7 @@ static void checks_across_keys_hold(void **state)
         {"{\"terrain\": {\"size_m\": [0, 1]}}", "terrain.size_m: found 0 x 1; either both"},
         {"{\"terrain\": {\"kind\": \"diamond-square\", \"size_m\": [0, 0]}}", "both must be above 0"},
         {"{\"terrain\": {\"size_m\": [5, -1]}}", "terrain.size_m[1]: found -1"},
+        {"{\"ground\": {\"rock_slope_deg\": 0}}", "ground.rock_slope_deg: found 0"},
         {"{\"layers\": [{\"species\": {\"oak\": 0}}]}", "the shares sum to 0"},
         {"{\"layers\": [{\"species\": {}}]}", "the shares sum to 0"},
         {"{\"layers\": [{\"species\": {\"oak\": -1}}]}", "layers[0].species.oak: found -1"},

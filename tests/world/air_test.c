@@ -82,6 +82,39 @@ static void test_height(void **state)
     assert_float_equal(wd_fog_through(&frame, up, 5000).y, there, 1e-4);
 }
 
+/* Haze between the camera and what it sees, metres of air at full density, in many short steps. */
+static double summed_path_m(double eye_m, double direction_z, double length_m, double height_m)
+{
+    enum { STEPS = 200000 };
+    double sum_m = 0;
+    for (int i = 0; i < STEPS; i++) {
+        double z_m = eye_m + direction_z * length_m * (i + 0.5) / STEPS;
+        sum_m += exp(-z_m / height_m) * length_m / STEPS;
+    }
+    return sum_m;
+}
+
+/* From far over the haze all of it lies before the ground; up from the ground it is as much. */
+static void test_far_over_the_haze(void **state)
+{
+    (void)state;
+    static const double heights[] = {0.5, 7, 10, 12, 20, 40};
+    const double height_m = 1200, sine = 0.8;
+    struct wd_frame_uniforms frame = air_of(30000, height_m, 35);
+    struct wd_vec3 down = {0, 0.6f, -0.8f}, up = {0, 0.6f, 0.8f};
+    for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
+        double eye_m = heights[i] * height_m, length_m = eye_m / sine;
+        double summed_m = summed_path_m(eye_m, -sine, length_m, height_m);
+        frame.camera_mm[2] = (int32_t)(eye_m * 1000);
+        assert_float_equal(wd_fog_path_m(&frame, down, (float)length_m), summed_m, 1e-3 * summed_m);
+        double above_m = summed_path_m(eye_m, -sine, 0.5 * length_m, height_m);
+        assert_float_equal(wd_fog_path_m(&frame, down, (float)(0.5 * length_m)), above_m,
+                           1e-3 * above_m + 1e-3);
+        frame.camera_mm[2] = 0;
+        assert_float_equal(wd_fog_path_m(&frame, up, (float)length_m), summed_m, 1e-3 * summed_m);
+    }
+}
+
 /* Night: whatever the sun's depth, light is finite, above nothing, and far below day's. */
 static void test_night(void **state)
 {
@@ -107,6 +140,7 @@ int main(void)
         cmocka_unit_test(test_visibility),
         cmocka_unit_test(test_ridges_to_50_km),
         cmocka_unit_test(test_height),
+        cmocka_unit_test(test_far_over_the_haze),
         cmocka_unit_test(test_night),
     };
     return cmocka_run_group_tests_name("air", tests, NULL, NULL);

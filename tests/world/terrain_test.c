@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "logged.h"
+#include "shared/grid.h"
 #include "shared/hash.h"
 #include "world/terrain_parts.h"
 
@@ -405,6 +406,24 @@ static void hash_is_even_and_uncorrelated(void **state)
     assert_float_equal(wd_hash_unit(0xffffffffu), 1 - ldexp(1, -24), 0);
 }
 
+/* However many samples there are, a place lies between two of them. */
+static void places_lie_between_samples(void **state)
+{
+    (void)state;
+    static const uint32_t counts[] = {2, 3, 1025, 32769, 40001, 1u << 20};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        uint32_t samples = counts[i];
+        const float places[] = {-5, 0, 0.5f, 1, (float)(samples - 1), (float)samples, 1e9f};
+        for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+            float along = wd_grid_along(places[k], samples);
+            uint32_t cell = wd_grid_cell(along, samples);
+            assert_true(cell + 1 < samples);
+            assert_true(along >= (float)cell && along <= (float)(cell + 1));
+            assert_true(along == fminf(fmaxf(places[k], 0), (float)(samples - 1)));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -425,6 +444,7 @@ int main(void)
         cmocka_unit_test(nothing_known_stays_missing),
         cmocka_unit_test(smooth_sampling_is_exact_and_never_overshoots),
         cmocka_unit_test(hash_is_even_and_uncorrelated),
+        cmocka_unit_test(places_lie_between_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

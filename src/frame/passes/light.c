@@ -212,6 +212,11 @@ void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu)
     *pass = (struct wd_light_pass){0};
 }
 
+void wd_light_pass_forget(struct wd_light_pass *pass)
+{
+    wd_sun_field_forget(&pass->sun_field);
+}
+
 void wd_light_pass_drop_forest(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     wd_sun_field_finish(&pass->sun_field, gpu);

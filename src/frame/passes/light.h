@@ -64,6 +64,8 @@ void wd_light_pass_record_velocity(struct wd_light_pass *pass, struct wd_cmd *cm
                                    const struct wd_light_params *params,
                                    struct wd_buffer *velocity_px);
 
+/* After an abandoned frame. */
+void wd_light_pass_forget(struct wd_light_pass *pass);
 /* Forgets what is kept of a forest; no frame that uses it may be in flight. */
 void wd_light_pass_drop_forest(struct wd_light_pass *pass, struct wd_gpu *gpu);
 
