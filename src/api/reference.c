@@ -132,12 +132,9 @@ static uint64_t picture_key(const struct work *work)
                               work->tracer.bounces, work->params->stream, work->params->places,
                               (double)work->job.view.lens_m,
                               (double)work->job.view.focus_m};
-    uint64_t key = wd_world_hash(&work->reference->forest->world);
+    uint64_t key = wd_forest_key(work->reference->forest);
     key = XXH64(&work->frame, sizeof work->frame, key);
     key = XXH64(numbers, sizeof numbers, key);
-    const struct wd_sky_map *sky = &work->reference->forest->world.sky;
-    key = XXH64(sky->rgb ? (const void *)sky->rgb : numbers,
-                (size_t)sky->width * sky->height * 3 * sizeof *sky->rgb, key);
     for (uint32_t i = 0; i < models->count; i++) {
         const struct wd_tree_mesh *mesh = &models->models[i].grown.full;
         key = XXH64(mesh->vertices, mesh->vertex_count * sizeof *mesh->vertices, key);
