@@ -13,6 +13,7 @@
 #include "reference/checkpoint.h"
 #include "reference/display.h"
 #include "shared/air.h"
+#include "world/on_demand.h"
 #include "world/surroundings.h"
 
 enum { MAX_SIZE = 16384, MAX_SAMPLES = 1 << 20, DEFAULT_SAMPLES = 64, DEFAULT_BOUNCES = 8 };
@@ -268,7 +269,8 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
                                    struct wd_picture *picture)
 {
     *picture = (struct wd_picture){0};
-    if (!check(reference, params))
+    if (!check(reference, params) ||
+        !wd_demand_is_none(&reference->forest->world.demand, "the path tracer", &reference->log))
         return WD_ERROR_INPUT;
     reference->stats = (struct wd_reference_stats){0};
     struct work work = {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "output/exr.h"
+#include "weald/reference.h"
 
 enum { PIXELS = PICTURE_WIDTH * PICTURE_HEIGHT, MIDDLE = PIXELS / 2 + PICTURE_WIDTH / 2 };
 
@@ -196,6 +197,33 @@ static void impossible_pictures_are_refused(void **state)
         params.max_error_px = errors[i];
         assert_refused(suite, &params, "0.25 to 32 are possible");
     }
+}
+
+static void trees_on_demand_need_continuum(void **state)
+{
+    struct suite *suite = *state;
+    const char *const settings[] = {"planting=on_demand", NULL};
+    const struct wd_forest_params forest_params = {
+        .scene_path = suite->small_path, .settings = settings, .log = suite->log};
+    struct wd_forest *forest;
+    assert_int_equal(wd_forest_create(&forest, &forest_params), WD_OK);
+    assert_int_equal(wd_renderer_set_forest(suite->renderer, forest), WD_OK);
+    struct wd_render_params params = suite_params(forest, "over");
+    params.method = "octree";
+    assert_refused(suite, &params, "method octree needs all trees in memory");
+
+    const struct wd_reference_params reference_params = {.log = suite->log};
+    const struct wd_reference_picture_params trace = {
+        .camera = params.camera, .width = 8, .height = 6, .samples = 1};
+    struct wd_reference *reference;
+    struct wd_picture picture;
+    suite_clear(suite);
+    assert_int_equal(wd_reference_create(&reference, forest, &reference_params), WD_OK);
+    assert_int_equal(wd_reference_render(reference, &trace, &picture), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "the path tracer needs all trees in memory"));
+    wd_reference_destroy(&reference);
+    assert_int_equal(wd_renderer_set_forest(suite->renderer, suite->forest), WD_OK);
+    wd_forest_destroy(&forest);
 }
 
 static void without_a_forest_nothing_is_drawn(void **state)
@@ -636,6 +664,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(seeds_are_whole_numbers, &suite),
         cmocka_unit_test_prestate(a_seed_is_a_world, &suite),
         cmocka_unit_test_prestate(too_many_trees_are_refused, &suite),
+        cmocka_unit_test_prestate(trees_on_demand_need_continuum, &suite),
         cmocka_unit_test_prestate(without_a_forest_nothing_is_drawn, &suite),
         cmocka_unit_test_prestate(impossible_pictures_are_refused, &suite),
         cmocka_unit_test_prestate(a_wish_to_stop_stops, &suite),
