@@ -1,5 +1,6 @@
 /* The public interface, through a small scene on software Vulkan.
  *   test-api ROOT   (the folder of the sources) */
+#include "../base/comma_locale.h"
 #include "suite.h"
 
 #include <math.h>
@@ -9,6 +10,7 @@
 
 #include "output/exr.h"
 #include "weald/reference.h"
+#include "weald/tree.h"
 
 enum { PIXELS = PICTURE_WIDTH * PICTURE_HEIGHT, MIDDLE = PIXELS / 2 + PICTURE_WIDTH / 2 };
 
@@ -151,6 +153,37 @@ static void too_many_trees_are_refused(void **state)
     suite_clear(suite);
     assert_int_equal(wd_forest_create(&forest, &params), WD_ERROR_INPUT);
     assert_true(suite_logged(suite, "100"));
+}
+
+/* A list of trees, and what a tree is cut to, in a program that writes numbers with commas. */
+static void files_have_points_in_numbers(void **state)
+{
+    struct suite *suite = *state;
+    const char *path = suite_path(suite, "trees.csv");
+    char line[256], source[1100];
+    const struct wd_specimen_params params = {
+        .source = source, .clip = "1.5x0.6x1.8", .log = suite->log};
+    struct wd_specimen *specimen;
+    locale_t comma = comma_locale();
+    snprintf(source, sizeof source, "%s/species/beech.json", suite->root);
+    if (!comma) {
+        print_message("there is no locale with decimal commas: skipped\n");
+        skip();
+    }
+    locale_t before = uselocale(comma);
+    enum wd_result listed = wd_forest_write(suite->forest, path, 0, NULL, &suite->log);
+    enum wd_result cut = wd_specimen_create(&specimen, &params);
+    uselocale(before);
+    freelocale(comma);
+    wd_specimen_destroy(&specimen);
+    assert_true(listed == WD_OK && cut == WD_OK);
+    FILE *file = fopen(path, "r");
+    assert_true(fgets(line, sizeof line, file) && fgets(line, sizeof line, file));
+    fclose(file);
+    unsigned commas = 0;
+    for (const char *at = line; *at; at++)
+        commas += *at == ',';
+    assert_int_equal(commas, 7);
 }
 
 /* --- what is refused --------------------------------------------------------------------- */
@@ -663,6 +696,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(unknown_cameras_are_named, &suite),
         cmocka_unit_test_prestate(seeds_are_whole_numbers, &suite),
         cmocka_unit_test_prestate(a_seed_is_a_world, &suite),
+        cmocka_unit_test_prestate(files_have_points_in_numbers, &suite),
         cmocka_unit_test_prestate(too_many_trees_are_refused, &suite),
         cmocka_unit_test_prestate(trees_on_demand_need_continuum, &suite),
         cmocka_unit_test_prestate(without_a_forest_nothing_is_drawn, &suite),

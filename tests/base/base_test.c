@@ -16,6 +16,8 @@
 #include "base/jobs.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/point_locale.h"
+#include "comma_locale.h"
 
 static void elementary_functions_are_accurate(void **state)
 {
@@ -32,6 +34,27 @@ static void elementary_functions_are_accurate(void **state)
     }
     assert_true(wd_dpow(0.0, 2.0) == 0.0 && wd_dpow(3.0, 0.0) == 1.0);
     assert_true(wd_datan2(0.0, 0.0) == 0.0);
+}
+
+static void numbers_have_points(void **state)
+{
+    (void)state;
+    char text[16];
+    struct wd_point_locale point;
+    locale_t comma = comma_locale(), before;
+    if (!comma) {
+        print_message("there is no locale with decimal commas: skipped\n");
+        skip();
+    }
+    before = uselocale(comma);
+    wd_point_locale_enter(&point);
+    snprintf(text, sizeof text, "%.2f", 1.25);
+    wd_point_locale_leave(&point);
+    assert_string_equal(text, "1.25");
+    snprintf(text, sizeof text, "%.2f", 1.25);
+    uselocale(before);
+    freelocale(comma);
+    assert_string_equal(text, "1,25");
 }
 
 static void srgb_round_trips(void **state)
@@ -184,6 +207,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(elementary_functions_are_accurate),
+        cmocka_unit_test(numbers_have_points),
         cmocka_unit_test(srgb_round_trips),
         cmocka_unit_test(every_index_is_worked_once),
         cmocka_unit_test(loops_tell_how_far_they_are),
