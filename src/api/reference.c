@@ -26,6 +26,7 @@ struct wd_reference {
     unsigned threads;
     struct wd_progress progress;
     struct wd_log log;
+    struct wd_shared_log shared_log; /* to it, for threads */
     struct wd_reference_stats stats;
 };
 
@@ -34,7 +35,7 @@ struct wd_reference {
 static void embree_error(void *user, enum RTCError code, const char *text)
 {
     const struct wd_reference *reference = user;
-    wd_error(&reference->log, "Embree: %s (error %d)", text, (int)code);
+    wd_error(&reference->shared_log.log, "Embree: %s (error %d)", text, (int)code);
 }
 
 /* Pictures differ between instruction sets by rounding; AVX2 is what most machines have. */
@@ -58,6 +59,7 @@ enum wd_result wd_reference_create(struct wd_reference **result, const struct wd
                                        .threads = params->threads,
                                        .progress = params->progress,
                                        .log = params->log};
+    wd_shared_log_init(&reference->shared_log, &reference->log);
     reference->device = open_device(reference);
     if (!reference->device) {
         wd_error(&reference->log, "Embree cannot be started (error %d)",
@@ -66,7 +68,7 @@ enum wd_result wd_reference_create(struct wd_reference **result, const struct wd
         return WD_ERROR_MEMORY;
     }
     if (!wd_trace_models_init(&reference->models, reference->device, &forest->scene,
-                              reference->threads, &reference->log)) {
+                              reference->threads, &reference->shared_log.log)) {
         wd_reference_destroy(&reference);
         return WD_ERROR_INPUT;
     }
@@ -81,6 +83,7 @@ void wd_reference_destroy(struct wd_reference **reference)
     wd_trace_models_finish(&(*reference)->models);
     if ((*reference)->device)
         rtcReleaseDevice((*reference)->device);
+    wd_shared_log_finish(&(*reference)->shared_log);
     free(*reference);
     *reference = NULL;
 }
