@@ -92,6 +92,30 @@ static void cameras_and_paths_go_by_name(void **state)
     assert_true(fabs(camera.yaw_rad - 20.0 / 57.29577951308232) < 1e-9);
 }
 
+/* Zooming in and out again, and looking up: curves through such keys would lead beyond what there is. */
+static void paths_stay_within_their_keys(void **state)
+{
+    struct suite *suite = *state;
+    const char *const settings[] = {
+        "paths=[{\"name\": \"zoom\", \"duration_s\": 3, \"keys\": ["
+        "{\"position_m\": [0, 0, 9], \"fov_deg\": 100, \"pitch_deg\": 0},"
+        "{\"position_m\": [1, 0, 9], \"fov_deg\": 10, \"pitch_deg\": 89},"
+        "{\"position_m\": [2, 0, 9], \"fov_deg\": 10, \"pitch_deg\": 89},"
+        "{\"position_m\": [3, 0, 9], \"fov_deg\": 100, \"pitch_deg\": 0}]}]", NULL};
+    const struct wd_forest_params params = {
+        .scene_path = suite->small_path, .settings = settings, .log = suite->log};
+    const double degree = 3.14159265358979323846 / 180;
+    struct wd_forest *forest;
+    struct wd_camera camera;
+    assert_int_equal(wd_forest_create(&forest, &params), WD_OK);
+    for (int i = 0; i <= 30; i++) {
+        assert_int_equal(wd_forest_get_path_camera(forest, "zoom", 0.1 * i, &camera, NULL), WD_OK);
+        assert_true(camera.fov_rad > 9.999 * degree && camera.fov_rad < 100.001 * degree);
+        assert_true(fabs(camera.pitch_rad) < 90.001 * degree);
+    }
+    wd_forest_destroy(&forest);
+}
+
 static void unknown_cameras_are_named(void **state)
 {
     struct suite *suite = *state;
@@ -694,6 +718,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(there_is_nothing_beyond_the_last, &suite),
         cmocka_unit_test_prestate(cameras_and_paths_go_by_name, &suite),
         cmocka_unit_test_prestate(unknown_cameras_are_named, &suite),
+        cmocka_unit_test_prestate(paths_stay_within_their_keys, &suite),
         cmocka_unit_test_prestate(seeds_are_whole_numbers, &suite),
         cmocka_unit_test_prestate(a_seed_is_a_world, &suite),
         cmocka_unit_test_prestate(files_have_points_in_numbers, &suite),
