@@ -46,7 +46,7 @@ static const struct cli_option option_table[] = {
      "draw a contact sheet of the species (default: of all) by age and season, with levels of "
      "detail"},
     {"max-trees", 0, "N", CLI_KIND_WHOLE, AT(max_trees), 1, UINT32_MAX, CLI_EXPORT,
-     "refuse forests of more trees than this (default: 1000000)"},
+     "refuse forests of more trees than this (default: 1000000; of a .csv any number)"},
     {"camera", 0, "NAME", CLI_KIND_TEXT, AT(camera), 0, 0, PICTURE_COMMANDS,
      "a camera of the scene (default: its first)"},
     {"path", 0, "NAME", CLI_KIND_TEXT, AT(path), 0, 0, PICTURE_COMMANDS,

@@ -126,6 +126,13 @@ static bool choose_methods(struct bench *bench)
     return ok;
 }
 
+void bench_label(char label[64], const char *name)
+{
+    snprintf(label, 64, "%.63s", name);
+    for (char *at = label; (at = strpbrk(at, ",/\n"));)
+        *at = ' '; /* commas and lines part results, strokes folders */
+}
+
 char *bench_path(const struct bench *bench, const char *format, ...)
 {
     char name[256], *path = NULL;
@@ -171,8 +178,10 @@ static bool prepare(struct bench *bench)
 
 /* --- running ----------------------------------------------------------------------------------- */
 
-static bool row_missing(const struct bench *bench, const char *scene, const char *camera)
+static bool row_missing(const struct bench *bench, const char *scene, const char *camera_name)
 {
+    char camera[64];
+    bench_label(camera, camera_name);
     for (size_t i = 0; bench->methods[i]; i++)
         if (!bench_results_find(bench, scene, camera, bench->methods[i]))
             return true;
@@ -180,15 +189,16 @@ static bool row_missing(const struct bench *bench, const char *scene, const char
 }
 
 static enum wd_result measure_row(struct bench_stage *stage, const struct wd_camera *camera,
-                                  const char *camera_name, const char *method)
+                                  const char *camera_label, const char *method)
 {
     struct bench *bench = stage->bench;
     struct bench_row row = {0};
     struct wd_forest_info info;
     wd_forest_get_info(stage->forest, &info);
     snprintf(row.scene, sizeof row.scene, "%s", stage->scene);
-    snprintf(row.camera, sizeof row.camera, "%s", camera_name);
+    snprintf(row.camera, sizeof row.camera, "%s", camera_label);
     snprintf(row.method, sizeof row.method, "%s", method);
+    snprintf(row.forest, sizeof row.forest, "%016llx", (unsigned long long)stage->forest_key);
     for (uint32_t i = 0; i < BENCH_COLUMNS; i++)
         row.values[i] = NAN;
     row.values[BENCH_TREES] = (double)info.tree_count;
@@ -223,16 +233,18 @@ static enum wd_result measure_cameras(struct bench_stage *stage)
     const char *name;
     for (uint32_t i = 0; result == WD_OK && (name = wd_forest_camera_name(stage->forest, i)); i++) {
         struct wd_camera camera;
+        char label[64];
         if (!is_measured(bench->suite, i, name))
             continue;
+        bench_label(label, name);
         result = wd_forest_get_camera(stage->forest, name, &camera);
         for (size_t m = 0; result == WD_OK && bench->methods[m]; m++) {
             if (cli_session_interrupted(bench->session))
                 return WD_ERROR_INTERRUPTED;
-            if (bench_results_find(bench, stage->scene, name, bench->methods[m]))
+            if (bench_results_find(bench, stage->scene, label, bench->methods[m]))
                 continue;
             cli_say(bench->session, "%s, %s: %s\n", stage->scene, name, bench->methods[m]);
-            result = measure_row(stage, &camera, name, bench->methods[m]);
+            result = measure_row(stage, &camera, label, bench->methods[m]);
         }
     }
     return result;
@@ -312,6 +324,9 @@ static enum wd_result run_scene(struct bench *bench, const char *path, const cha
     double begin_s = cli_seconds();
     enum wd_result result = wd_forest_create(&stage.forest, &params);
     stage.start_s = cli_seconds() - begin_s;
+    stage.forest_key = result == WD_OK ? wd_forest_key(stage.forest) : 0;
+    if (result == WD_OK && !bench_results_fit(&stage))
+        result = WD_ERROR_INPUT;
     if (result == WD_OK && !everything_known(bench, stage.forest, label)) {
         result = open_renderer(&stage);
         if (result == WD_OK)
@@ -363,9 +378,9 @@ static enum wd_result run_suite(struct bench *bench)
         for (int s = 0; result == WD_OK && (s == 0 || (i == 0 && suite->settings[s])); s++) {
             const char *setting = options->operand_count || i > 0 ? NULL : suite->settings[s];
             const char *value = setting ? strchr(setting, '=') + 1 : NULL;
-            snprintf(label, sizeof label, "%.40s%s%s", name, value ? " " : "", value ? value : "");
-            for (char *comma; (comma = strchr(label, ','));)
-                *comma = ' '; /* it parts columns of the results */
+            char whole[256];
+            snprintf(whole, sizeof whole, "%.40s%s%s", name, value ? " " : "", value ? value : "");
+            bench_label(label, whole);
             result = run_scene(bench, path, label, setting);
             if (options->operand_count)
                 break;

@@ -42,7 +42,8 @@ enum { BENCH_BOUNDARIES = BENCH_COLUMNS - BENCH_BOUNDARY_STEP };
 const char *bench_column_name(uint32_t column);
 
 struct bench_row {
-    char scene[64], camera[64], method[32];
+    char scene[64], camera[64], method[32]; /* labels: bench_label */
+    char forest[20]; /* its key, as hexadecimal digits */
     char passes[480]; /* "name=gpu_ms+cpu_ms;..." */
     double values[BENCH_COLUMNS];
 };
@@ -88,6 +89,7 @@ struct bench_stage {
     struct bench *bench;
     const char *scene; /* label in the results */
     struct wd_forest *forest;
+    uint64_t forest_key;
     struct wd_renderer *renderer;
     struct wd_reference *reference; /* NULL until a picture of it is needed */
     double start_s;
@@ -96,6 +98,8 @@ struct bench_stage {
 /* Rows of results on disk: results.csv, a line as soon as it is measured. */
 bool bench_results_load(struct bench *bench);
 bool bench_results_add(struct bench *bench, const struct bench_row *row);
+/* Whether the rows that are there of the stage's scene, if any, were measured in its forest; else it is said. */
+bool bench_results_fit(const struct bench_stage *stage);
 const struct bench_row *bench_results_find(const struct bench *bench, const char *scene,
                                            const char *camera, const char *method);
 
@@ -143,6 +147,11 @@ bool bench_same_place(const struct bench_row *a, const struct bench_row *b);
 /* Whether no method at that place is both faster and lower in `column`. */
 bool bench_is_best(const struct bench *bench, const struct bench_row *row, uint32_t column);
 
+/* A name as it stands in columns of results and in files' names. */
+void bench_label(char label[64], const char *name);
+/* DIRECTORY/NAME appears with what `print` says, whole or not at all. */
+bool bench_write(const struct bench *bench, const char *name,
+                 void (*print)(FILE *to, const struct bench *bench));
 /* DIRECTORY/NAME as printf's; free() it. */
 __attribute__((format(printf, 2, 3))) char *bench_path(const struct bench *bench,
                                                        const char *format, ...);

@@ -1,7 +1,6 @@
 /* The report: one file that needs no other and no script: plots as SVG, pictures inside. */
 #include "bench.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -321,16 +320,5 @@ static void print_report(FILE *to, const struct bench *bench)
 
 bool bench_write_html(const struct bench *bench)
 {
-    char *path = bench_path(bench, "report.html"), *temporary = bench_path(bench, ".report.tmp");
-    FILE *file = fopen(temporary, "w");
-    bool ok = file != NULL;
-    if (ok) {
-        print_report(file, bench);
-        ok = fclose(file) == 0 && rename(temporary, path) == 0;
-    }
-    if (!ok)
-        cli_fail(bench->session, "%s cannot be written: %s", path, strerror(errno));
-    free(path);
-    free(temporary);
-    return ok;
+    return bench_write(bench, "report.html", print_report);
 }

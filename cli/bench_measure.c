@@ -120,19 +120,27 @@ static enum wd_result open_reference(struct bench_stage *stage)
                             : wd_reference_create(&stage->reference, stage->forest, &params);
 }
 
-/* The file's name tells what the picture depends on, but for changes of light in the scene file. */
+/* The file's name tells what the picture depends on. */
+static char *truth_path(const struct bench_stage *stage, const char *name,
+                        const struct wd_reference_picture_params *params)
+{
+    const struct wd_camera *camera = &params->camera;
+    char text[192];
+    snprintf(text, sizeof text, "%.17g %.17g %.17g %.17g %.17g %.17g %u %.17g", camera->position_m[0],
+             camera->position_m[1], camera->position_m[2], camera->yaw_rad, camera->pitch_rad,
+             camera->fov_rad, params->bounces, params->time_s);
+    return bench_path(stage->bench, "reference/%s-%s-%016llx-%ux%u-%u-%u.exr", stage->scene, name,
+                      (unsigned long long)cli_key_text(stage->forest_key, text), params->width,
+                      params->height, params->samples, params->stream);
+}
+
 enum wd_result bench_truth(struct bench_stage *stage, const char *name,
                            const struct wd_reference_picture_params *params,
                            struct wd_picture *picture)
 {
     struct bench *bench = stage->bench;
-    struct wd_forest_info info;
     struct stat status;
-    wd_forest_get_info(stage->forest, &info);
-    char *path =
-        bench_path(bench, "reference/%s-%s-%016llx-%ux%u-%u-%u.exr", stage->scene, name,
-                   (unsigned long long)info.hash, params->width, params->height, params->samples,
-                   params->stream);
+    char *path = truth_path(stage, name, params);
     enum wd_result result = WD_OK;
     if (stat(path, &status) == 0) {
         result = wd_picture_read_exr(picture, path, &bench->session->log);

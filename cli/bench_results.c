@@ -1,5 +1,5 @@
 /* results.csv is both what a run leaves and what an interrupted one goes on from. Its first line
- * names the suite, the effort and the sizes; results of others are not mixed in. */
+ * names the suite, the effort and the sizes, each row the forest; results of others are not mixed in. */
 #include "bench.h"
 
 #include <errno.h>
@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const char *bench_column_name(uint32_t column)
 {
@@ -35,7 +36,7 @@ static void print_heads(const struct bench *bench, FILE *to)
     for (uint32_t i = 0; i < bench->session->options->settings.count; i++)
         fprintf(to, " %s", bench->session->options->settings.words[i]);
     fprintf(to, "\n");
-    fprintf(to, "scene,camera,method");
+    fprintf(to, "scene,camera,method,forest");
     for (uint32_t i = 0; i < BENCH_COLUMNS; i++)
         fprintf(to, ",%s", bench_column_name(i));
     fprintf(to, ",passes\n");
@@ -51,6 +52,21 @@ const struct bench_row *bench_results_find(const struct bench *bench, const char
             return row;
     }
     return NULL;
+}
+
+bool bench_results_fit(const struct bench_stage *stage)
+{
+    char key[sizeof stage->bench->rows->forest];
+    snprintf(key, sizeof key, "%016llx", (unsigned long long)stage->forest_key);
+    for (size_t i = 0; i < stage->bench->row_count; i++) {
+        const struct bench_row *row = &stage->bench->rows[i];
+        if (!strcmp(row->scene, stage->scene) && strcmp(row->forest, key) != 0)
+            return cli_fail(stage->bench->session,
+                            "%s/results.csv: holds results of %s by other settings, files or code; name "
+                            "another directory or remove it",
+                            stage->bench->directory, stage->scene);
+    }
+    return true;
 }
 
 static void keep(struct bench *bench, const struct bench_row *row)
@@ -81,7 +97,8 @@ static bool parse_row(char *line, struct bench_row *row)
     char number[64];
     if (!take(&line, row->scene, sizeof row->scene) ||
         !take(&line, row->camera, sizeof row->camera) ||
-        !take(&line, row->method, sizeof row->method))
+        !take(&line, row->method, sizeof row->method) ||
+        !take(&line, row->forest, sizeof row->forest))
         return false;
     for (uint32_t i = 0; i < BENCH_COLUMNS; i++) {
         if (!take(&line, number, sizeof number))
@@ -98,7 +115,7 @@ static bool parse_row(char *line, struct bench_row *row)
 
 static void print_row(const struct bench_row *row, FILE *to)
 {
-    fprintf(to, "%s,%s,%s", row->scene, row->camera, row->method);
+    fprintf(to, "%s,%s,%s,%s", row->scene, row->camera, row->method, row->forest);
     for (uint32_t i = 0; i < BENCH_COLUMNS; i++) {
         if (isnan(row->values[i]))
             fprintf(to, ",");
@@ -108,15 +125,31 @@ static void print_row(const struct bench_row *row, FILE *to)
     fprintf(to, ",%s\n", row->passes);
 }
 
-static bool write_all(struct bench *bench, const char *path)
+static void print_all(FILE *to, const struct bench *bench)
 {
-    FILE *file = fopen(path, "w");
-    if (!file)
-        return cli_fail(bench->session, "%s cannot be written: %s", path, strerror(errno));
-    print_heads(bench, file);
+    print_heads(bench, to);
     for (size_t i = 0; i < bench->row_count; i++)
-        print_row(&bench->rows[i], file);
-    return fclose(file) == 0 || cli_fail(bench->session, "%s: %s", path, strerror(errno));
+        print_row(&bench->rows[i], to);
+}
+
+bool bench_write(const struct bench *bench, const char *name,
+                 void (*print)(FILE *to, const struct bench *bench))
+{
+    char *path = bench_path(bench, "%s", name), *temporary = bench_path(bench, ".%s.tmp", name);
+    FILE *file = fopen(temporary, "w");
+    bool ok = file != NULL;
+    if (ok) {
+        print(file, bench);
+        ok = !ferror(file);
+        ok = fclose(file) == 0 && ok && rename(temporary, path) == 0;
+    }
+    if (!ok) {
+        cli_fail(bench->session, "%s cannot be written: %s", path, strerror(errno));
+        unlink(temporary);
+    }
+    free(path);
+    free(temporary);
+    return ok;
 }
 
 static bool read_rows(struct bench *bench, FILE *file, const char *path)
@@ -154,7 +187,7 @@ bool bench_results_load(struct bench *bench)
     if (file)
         fclose(file);
     bench->resumed = bench->row_count;
-    ok = ok && write_all(bench, path); /* without a line that was cut off */
+    ok = ok && bench_write(bench, "results.csv", print_all); /* without a line that was cut off */
     free(path);
     return ok;
 }
@@ -207,28 +240,24 @@ static void print_json_row(FILE *to, const struct bench_row *row)
     fputc('}', to);
 }
 
+static void print_json(FILE *to, const struct bench *bench)
+{
+    char *machine = bench_machine_text(bench);
+    fprintf(to, "{\n  \"suite\": \"%s\", \"effort\": \"%s\",\n  \"machine\": ", bench->suite->name,
+            bench->effort.name);
+    print_json_text(to, machine);
+    fprintf(to, ",\n  \"rows\": [\n");
+    for (size_t i = 0; i < bench->row_count; i++) {
+        print_json_row(to, &bench->rows[i]);
+        fprintf(to, "%s\n", i + 1 < bench->row_count ? "," : "");
+    }
+    fprintf(to, "  ]\n}\n");
+    free(machine);
+}
+
 bool bench_write_json(const struct bench *bench)
 {
-    char *path = bench_path(bench, "results.json"), *machine = bench_machine_text(bench);
-    FILE *file = fopen(path, "w");
-    bool ok = file != NULL;
-    if (ok) {
-        fprintf(file, "{\n  \"suite\": \"%s\", \"effort\": \"%s\",\n  \"machine\": ",
-                bench->suite->name, bench->effort.name);
-        print_json_text(file, machine);
-        fprintf(file, ",\n  \"rows\": [\n");
-        for (size_t i = 0; i < bench->row_count; i++) {
-            print_json_row(file, &bench->rows[i]);
-            fprintf(file, "%s\n", i + 1 < bench->row_count ? "," : "");
-        }
-        fprintf(file, "  ]\n}\n");
-        ok = fclose(file) == 0;
-    }
-    if (!ok)
-        cli_fail(bench->session, "%s cannot be written: %s", path, strerror(errno));
-    free(path);
-    free(machine);
-    return ok;
+    return bench_write(bench, "results.json", print_json);
 }
 
 static void print_cell(double value, const char *format, int width)

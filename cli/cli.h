@@ -110,6 +110,8 @@ void cli_session_film_progress(struct cli_session *session, uint64_t frame, uint
 /* Takes the bar off the screen before something else is printed. */
 void cli_meter_clear(struct cli_meter *meter);
 double cli_seconds(void);
+/* `key` with a text hashed into it (FNV-1a). */
+uint64_t cli_key_text(uint64_t key, const char *text);
 
 __attribute__((format(printf, 2, 3))) void cli_say(struct cli_session *session, const char *format,
                                                    ...); /* standard output unless --quiet */

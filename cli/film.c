@@ -99,7 +99,7 @@ static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *pai
 
 /* --- going on with a film ---------------------------------------------------------------- */
 
-/* All that frames follow from and that the renderer or the forest does not know of (FNV-1a). */
+/* All that frames follow from and that the renderer or the forest does not know of. */
 static uint64_t film_key(const struct cli_film *film, uint64_t key)
 {
     const struct cli_options *options = film->session->options;
@@ -113,8 +113,7 @@ static uint64_t film_key(const struct cli_film *film, uint64_t key)
                  options->reference, options->bounces, params->time_s, params->max_error_px,
                  options->budget_ms) < 0)
         abort();
-    for (const char *at = text; *at; at++)
-        key = (key ^ (uint8_t)*at) * 0x100000001b3u;
+    key = cli_key_text(key, text);
     free(text);
     return key;
 }

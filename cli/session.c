@@ -12,6 +12,13 @@
 #define QUIET_SECONDS 2.0
 #define REDRAW_SECONDS 0.1
 
+uint64_t cli_key_text(uint64_t key, const char *text)
+{
+    for (; *text; text++)
+        key = (key ^ (uint8_t)*text) * 0x100000001b3u;
+    return key;
+}
+
 double cli_seconds(void)
 {
     struct timespec now;

@@ -38,7 +38,7 @@ struct viewer_state {
     struct viewer_motion motion;
     struct viewer_hold holds[VIEWER_HOLD_KEYS];
     double look_yaw_rad, look_pitch_rad; /* turned since the last step */
-    const char *method;
+    const char *method, *drawn_method; /* the latter of the newest frame; NULL: there is none */
     const char *camera_name; /* of the camera last jumped to */
     uint32_t camera_index;   /* the scene's first, then the saved ones */
     enum wd_view_mode view;

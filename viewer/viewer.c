@@ -222,6 +222,22 @@ static enum wd_result draw_forest(struct viewer_state *viewer,
     return wd_renderer_draw(viewer->renderer, &params, &target);
 }
 
+/* A method that is refused, as those are that need all trees in memory where some are planted on demand,
+ * leaves the one before. */
+static enum wd_result draw_by_method(struct viewer_state *viewer,
+                                     const struct viewer_overlay_frame *frame, uint32_t index)
+{
+    enum wd_result result = draw_forest(viewer, frame, index);
+    if (result == WD_ERROR_INPUT && viewer->drawn_method && viewer->method != viewer->drawn_method) {
+        viewer_notice(viewer, "method %s cannot draw this forest", viewer->method);
+        viewer->method = viewer->drawn_method;
+        result = draw_forest(viewer, frame, index);
+    }
+    if (result == WD_OK)
+        viewer->drawn_method = viewer->method;
+    return result;
+}
+
 /* Without a true clock on the device the time from frame to frame is what there is; the window system
  * may hold it up to its own pace. */
 static void note_time(struct viewer_state *viewer, double frame_ms)
@@ -249,7 +265,7 @@ static enum wd_result draw_frame(struct viewer_state *viewer)
 
     struct viewer_texts texts;
     struct viewer_panels_content content = viewer_status(viewer, &texts);
-    enum wd_result result = draw_forest(viewer, frame, index);
+    enum wd_result result = draw_by_method(viewer, frame, index);
     if (result != WD_OK)
         return result;
     if (!viewer_overlay_draw(&viewer->overlay, frame, &viewer->swapchain, index, &content))

@@ -109,7 +109,8 @@ enum wd_result wd_forest_get_camera(const struct wd_forest *forest, const char *
                                     struct wd_camera *camera);
 
 /* The camera on path `name` (NULL: the first) at `time_s`, clamped to the path's duration;
- * `*duration_s` may be NULL. Catmull-Rom through the path's keys. */
+ * `*duration_s` may be NULL. Catmull-Rom through the path's keys, field of view within those of the keys
+ * before and after. */
 enum wd_result wd_forest_get_path_camera(const struct wd_forest *forest, const char *name,
                                          double time_s, struct wd_camera *camera,
                                          double *duration_s);

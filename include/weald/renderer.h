@@ -130,8 +130,8 @@ struct wd_picture {
 
 /* Draws one picture. Deterministic for the same device.
  *   picture  overwritten; free with wd_picture_finish
- * Errors: WD_ERROR_INPUT (size, method, no forest), WD_ERROR_DEVICE, WD_ERROR_MEMORY,
- * WD_ERROR_INTERRUPTED (through the renderer's progress, stage "samples"). */
+ * Errors: WD_ERROR_INPUT (size, no forest, a method that is not there or cannot draw trees on demand),
+ * WD_ERROR_DEVICE, WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED (through the renderer's progress, stage "samples"). */
 enum wd_result wd_renderer_render(struct wd_renderer *renderer,
                                   const struct wd_render_params *params,
                                   struct wd_picture *picture);

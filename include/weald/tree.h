@@ -86,7 +86,7 @@ void wd_forest_set_specimen_form(struct wd_forest *forest, enum wd_specimen_form
  * layer. As ".glb": each individual's meshes once (MSFT_lod), its trees as instances
  * (EXT_mesh_gpu_instancing, with tree ids), the ground as a mesh; metres, y up, about the middle of
  * the ground, whose true coordinates are in the root's extras.
- *   max_trees  of a .glb; 0: a million; a forest with more is refused
+ *   max_trees  a forest with more is refused; 0: a million in a .glb, any number in a .csv
  * Errors: as wd_specimens_write; WD_ERROR_INTERRUPTED. */
 enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path, uint64_t max_trees,
                                const struct wd_progress *progress, const struct wd_log *log);

@@ -116,8 +116,10 @@ static void interpolate(const struct wd_camera keys[4], double t, struct wd_came
     for (int k = 0; k < 3; k++)
         camera->position_m[k] = catmull_rom(values[k], t);
     camera->yaw_rad = catmull_rom(values[3], t);
-    camera->pitch_rad = catmull_rom(values[4], t);
-    camera->fov_rad = catmull_rom(values[5], t);
+    /* the curve may leave the keys' range: not over the zenith, and no view without or beyond an angle */
+    camera->pitch_rad = fmin(fmax(catmull_rom(values[4], t), -0.5 * PI), 0.5 * PI);
+    camera->fov_rad = fmin(fmax(catmull_rom(values[5], t), fmin(values[5][1], values[5][2])),
+                           fmax(values[5][1], values[5][2]));
 }
 
 static const struct wd_scene_path *find_path(const struct wd_forest *forest, const char *name)

@@ -86,6 +86,8 @@ static uint64_t world_key(uint64_t key, const struct wd_world *world)
     key = array_key(key, terrain->height_m, samples, sizeof *terrain->height_m);
     key = array_key(key, terrain->hole, samples, 1);
     key = array_key(key, terrain->water_m, samples, sizeof *terrain->water_m);
+    key = array_key(key, world->sky.sun_direction, 3, sizeof(float));
+    key = array_key(key, world->sky.sun_irradiance, 3, sizeof(float));
     return array_key(key, world->sky.rgb, (size_t)world->sky.width * world->sky.height * 3,
                      sizeof *world->sky.rgb);
 }

@@ -13,6 +13,7 @@
 #include "reference/checkpoint.h"
 #include "reference/display.h"
 #include "shared/air.h"
+#include "world/on_demand.h"
 #include "world/surroundings.h"
 
 enum { MAX_SIZE = 16384, MAX_SAMPLES = 1 << 20, DEFAULT_SAMPLES = 64, DEFAULT_BOUNCES = 8 };
@@ -25,6 +26,7 @@ struct wd_reference {
     unsigned threads;
     struct wd_progress progress;
     struct wd_log log;
+    struct wd_shared_log shared_log; /* to it, for threads */
     struct wd_reference_stats stats;
 };
 
@@ -33,7 +35,7 @@ struct wd_reference {
 static void embree_error(void *user, enum RTCError code, const char *text)
 {
     const struct wd_reference *reference = user;
-    wd_error(&reference->log, "Embree: %s (error %d)", text, (int)code);
+    wd_error(&reference->shared_log.log, "Embree: %s (error %d)", text, (int)code);
 }
 
 /* Pictures differ between instruction sets by rounding; AVX2 is what most machines have. */
@@ -57,6 +59,7 @@ enum wd_result wd_reference_create(struct wd_reference **result, const struct wd
                                        .threads = params->threads,
                                        .progress = params->progress,
                                        .log = params->log};
+    wd_shared_log_init(&reference->shared_log, &reference->log);
     reference->device = open_device(reference);
     if (!reference->device) {
         wd_error(&reference->log, "Embree cannot be started (error %d)",
@@ -65,7 +68,7 @@ enum wd_result wd_reference_create(struct wd_reference **result, const struct wd
         return WD_ERROR_MEMORY;
     }
     if (!wd_trace_models_init(&reference->models, reference->device, &forest->scene,
-                              reference->threads, &reference->log)) {
+                              reference->threads, &reference->shared_log.log)) {
         wd_reference_destroy(&reference);
         return WD_ERROR_INPUT;
     }
@@ -80,6 +83,7 @@ void wd_reference_destroy(struct wd_reference **reference)
     wd_trace_models_finish(&(*reference)->models);
     if ((*reference)->device)
         rtcReleaseDevice((*reference)->device);
+    wd_shared_log_finish(&(*reference)->shared_log);
     free(*reference);
     *reference = NULL;
 }
@@ -132,12 +136,9 @@ static uint64_t picture_key(const struct work *work)
                               work->tracer.bounces, work->params->stream, work->params->places,
                               (double)work->job.view.lens_m,
                               (double)work->job.view.focus_m};
-    uint64_t key = wd_world_hash(&work->reference->forest->world);
+    uint64_t key = wd_forest_key(work->reference->forest);
     key = XXH64(&work->frame, sizeof work->frame, key);
     key = XXH64(numbers, sizeof numbers, key);
-    const struct wd_sky_map *sky = &work->reference->forest->world.sky;
-    key = XXH64(sky->rgb ? (const void *)sky->rgb : numbers,
-                (size_t)sky->width * sky->height * 3 * sizeof *sky->rgb, key);
     for (uint32_t i = 0; i < models->count; i++) {
         const struct wd_tree_mesh *mesh = &models->models[i].grown.full;
         key = XXH64(mesh->vertices, mesh->vertex_count * sizeof *mesh->vertices, key);
@@ -271,7 +272,8 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
                                    struct wd_picture *picture)
 {
     *picture = (struct wd_picture){0};
-    if (!check(reference, params))
+    if (!check(reference, params) ||
+        !wd_demand_is_none(&reference->forest->world.demand, "the path tracer", &reference->log))
         return WD_ERROR_INPUT;
     reference->stats = (struct wd_reference_stats){0};
     struct work work = {

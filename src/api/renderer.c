@@ -168,6 +168,8 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
         wd_error(&renderer->log, "no method \"%s\": see wd_method_names", name);
         return WD_ERROR_INPUT;
     }
+    if (!wd_method_can_draw(method, &renderer->forest->world, &renderer->log))
+        return WD_ERROR_INPUT;
     uint32_t samples = params->samples ? params->samples : 1;
     const struct wd_frame_params frame = {
         .forest = &renderer->device,

@@ -2,14 +2,18 @@
 #include <stdio.h>
 
 #include "api/specimen.h"
+#include "base/point_locale.h"
 #include "tree/clip.h"
 
 /* "1.2x0.6x1.8", and nothing after it. */
 static bool parse_box(const char *text, float size_m[3])
 {
     int end = 0;
-    return sscanf(text, "%fx%fx%f%n", &size_m[0], &size_m[1], &size_m[2], &end) == 3 &&
-           text[end] == 0;
+    struct wd_point_locale point;
+    wd_point_locale_enter(&point);
+    int sizes = sscanf(text, "%fx%fx%f%n", &size_m[0], &size_m[1], &size_m[2], &end);
+    wd_point_locale_leave(&point);
+    return sizes == 3 && text[end] == 0;
 }
 
 bool wd_specimen_set_clip(struct wd_specimen *specimen, const char *clip)

@@ -62,17 +62,18 @@ static uint32_t model_of(const struct scene_export *export, const struct wd_tree
     return WD_TREE_SPECIES(*tree) * export->variants + WD_TREE_VARIANT(*tree) % export->variants;
 }
 
-static bool grow_models(struct scene_export *export, const struct wd_progress *progress,
+static enum wd_result grow_models(struct scene_export *export, const struct wd_progress *progress,
                         const struct wd_log *log)
 {
     const struct wd_scene *scene = &export->forest->scene;
     for (uint32_t i = 0; i < export->model_count; i++) {
-        if (!wd_progress_report(progress, "growing trees", i, export->model_count) ||
-            !wd_variant_grow(&export->models[i], scene, i, log))
-            return false;
+        if (!wd_progress_report(progress, "growing trees", i, export->model_count))
+            return WD_ERROR_INTERRUPTED;
+        if (!wd_variant_grow(&export->models[i], scene, i, log))
+            return WD_ERROR_INPUT;
         wd_variant_describe(&export->described[i], scene, i, &export->models[i]);
     }
-    return true;
+    return WD_OK;
 }
 
 static void place_tree(struct wd_export_instance *instance, const struct wd_tree *tree,
@@ -187,13 +188,12 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
                                const struct wd_progress *progress, const struct wd_log *log)
 {
     const struct wd_terrain *terrain = &forest->world.terrain;
-    uint64_t most = max_trees ? max_trees : DEFAULT_MAX_TREES;
+    bool csv = has_ending(path, ".csv");
+    uint64_t most = max_trees ? max_trees : csv ? UINT64_MAX : DEFAULT_MAX_TREES;
     struct scene_export export = {.forest = forest, .variants = (uint32_t)forest->scene.variants};
     if (!wd_demand_is_none(&forest->world.demand, path, log))
         return WD_ERROR_INPUT;
-    if (has_ending(path, ".csv"))
-        return wd_tree_list_write(forest, path, progress, log);
-    if (!has_ending(path, ".glb")) {
+    if (!csv && !has_ending(path, ".glb")) {
         wd_error(log, "%s: forests are written as .glb or .csv", path);
         return WD_ERROR_INPUT;
     }
@@ -202,6 +202,8 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
                  forest->world.tree_count, (unsigned long long)most);
         return WD_ERROR_INPUT;
     }
+    if (csv)
+        return wd_tree_list_write(forest, path, progress, log);
     export.model_count = (uint32_t)forest->scene.species_file_count * export.variants;
     export.models = wd_alloc_array(export.model_count + 1, sizeof *export.models);
     export.described = wd_alloc_array(export.model_count + 1, sizeof *export.described);
@@ -210,8 +212,8 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
     origin[0] = 0.5 * wd_terrain_extent_x_m(terrain);
     origin[1] = 0.5 * wd_terrain_extent_y_m(terrain);
     origin[2] = wd_terrain_height(terrain, origin[0], origin[1]);
-    enum wd_result result = WD_ERROR_INTERRUPTED;
-    if (grow_models(&export, progress, log)) {
+    enum wd_result result = grow_models(&export, progress, log);
+    if (result == WD_OK) {
         place_trees(&export);
         make_ground(&export);
         export.what.trees = export.trees;

@@ -1,6 +1,7 @@
 #include "api/tree_list.h"
 
 #include "base/file.h"
+#include "base/point_locale.h"
 
 /* `text` between quotes, quotes in it doubled (RFC 4180). */
 static void put_quoted(FILE *stream, const char *text)
@@ -21,11 +22,14 @@ static void put_tree(FILE *stream, const struct wd_forest *forest, uint32_t id)
     uint32_t index = world->tree_of_id[id], layer = world->layer_of_tree[index];
     const struct wd_tree *tree = &world->trees[index];
     const double *origin_m = world->terrain.origin_m;
+    struct wd_point_locale point;
+    wd_point_locale_enter(&point);
     fprintf(stream, "%u,", id);
     put_quoted(stream, scene->species_files[WD_TREE_SPECIES(*tree)].name);
     fprintf(stream, ",%.3f,%.3f,%.3f,%.2f,%.2f,", origin_m[0] + tree->x_mm * 0.001,
             origin_m[1] + tree->y_mm * 0.001, tree->z_mm * 0.001, WD_TREE_HEIGHT_M(*tree),
             WD_TREE_CROWN_M(*tree));
+    wd_point_locale_leave(&point);
     put_quoted(stream, layer < scene->layer_count ? scene->layers[layer].name : "inventory");
     putc('\n', stream);
 }

@@ -3,11 +3,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-static void log_message(const struct wd_log *log, enum wd_log_level level, const char *format,
-                        va_list args)
+static void deliver(const struct wd_log *log, enum wd_log_level level, const char *message)
 {
-    char message[2048];
-    vsnprintf(message, sizeof message, format, args);
     if (log && log->sink) {
         log->sink(log->user, level, message);
         return;
@@ -15,6 +12,14 @@ static void log_message(const struct wd_log *log, enum wd_log_level level, const
     if (level > WD_LOG_WARNING)
         return;
     fprintf(stderr, "weald: %s%s\n", level == WD_LOG_WARNING ? "warning: " : "", message);
+}
+
+static void log_message(const struct wd_log *log, enum wd_log_level level, const char *format,
+                        va_list args)
+{
+    char message[2048];
+    vsnprintf(message, sizeof message, format, args);
+    deliver(log, level, message);
 }
 
 bool wd_error(const struct wd_log *log, const char *format, ...)
@@ -48,6 +53,27 @@ void wd_debug(const struct wd_log *log, const char *format, ...)
     va_start(args, format);
     log_message(log, WD_LOG_DEBUG, format, args);
     va_end(args);
+}
+
+static void deliver_in_turn(void *user, enum wd_log_level level, const char *message)
+{
+    struct wd_shared_log *shared = user;
+    pthread_mutex_lock(&shared->turn);
+    deliver(shared->to, level, message);
+    pthread_mutex_unlock(&shared->turn);
+}
+
+void wd_shared_log_init(struct wd_shared_log *shared, const struct wd_log *to)
+{
+    *shared = (struct wd_shared_log){.log = {deliver_in_turn, shared}, .to = to};
+    pthread_mutex_init(&shared->turn, NULL);
+}
+
+void wd_shared_log_finish(struct wd_shared_log *shared)
+{
+    if (shared->log.sink)
+        pthread_mutex_destroy(&shared->turn);
+    *shared = (struct wd_shared_log){0};
 }
 
 bool wd_progress_report(const struct wd_progress *progress, const char *stage, uint64_t done,

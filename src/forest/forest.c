@@ -37,7 +37,7 @@ static void grow_model(void *user, size_t index)
     if (atomic_load(&work->failed))
         return;
     if (!wd_growth_get(&work->grown[index], &forest->model_keys[index], &forest->cache,
-                       work->params->scene, (uint32_t)index, work->params->log))
+                       work->params->scene, (uint32_t)index, &forest->log.log))
         atomic_store(&work->failed, true);
 }
 
@@ -335,7 +335,8 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
     forest->host_models = wd_alloc_array(slots, sizeof *forest->host_models);
     forest->model_keys = wd_alloc_array(slots, sizeof *forest->model_keys);
     forest->cache.directory = params->cache_dir ? wd_strdup(params->cache_dir) : NULL;
-    forest->cache.log = params->log;
+    wd_shared_log_init(&forest->log, params->log);
+    forest->cache.log = &forest->log.log;
     struct preparation work = {
         .forest = forest,
         .params = params,
@@ -385,6 +386,7 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
     free(forest->model_keys);
     free((char *)forest->cache.directory);
     free(forest->host_fades);
+    wd_shared_log_finish(&forest->log);
     *forest = (struct wd_forest_device){0};
 }
 

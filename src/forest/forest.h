@@ -37,6 +37,7 @@ struct wd_forest_device {
     uint64_t *model_keys;      /* what names each model's content in the cache */
     struct wd_bake_cache cache;
     struct wd_layer_fade *host_fades;
+    struct wd_shared_log log;    /* for threads that make models */
     struct wd_progress progress; /* told while a method bakes what it needs; {0}: nobody is */
     uint32_t model_count, variants;
     float max_tree_height_m;

@@ -185,7 +185,7 @@ static bool make_cards(struct wd_forest_device *forest, struct wd_gpu *gpu, stru
                        const struct wd_card_form *form, struct wd_image *images[WD_PLANES],
                        uint32_t first, uint32_t count)
 {
-    struct made_cards made = {forest, form, gpu->log, first, {{.found = false}}};
+    struct made_cards made = {forest, form, &forest->log.log, first, {{.found = false}}};
     bool ok = true;
     wd_jobs_run(0, count, prepare_cards, &made);
     for (uint32_t i = 0; i < count && ok; i++) {

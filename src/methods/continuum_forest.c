@@ -278,7 +278,7 @@ static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
     size_t species = forest->scene->species_file_count;
     struct sampling work = {
         .forest = forest,
-        .log = gpu->log,
+        .log = &forest->log.log,
         .splats = wd_alloc_array(forest->model_count, sizeof *work.splats),
         .looks = wd_alloc_array(species, WD_LOOK_BYTES),
     };

@@ -86,14 +86,19 @@ static struct wd_method_slot *open_slot(struct wd_methods *open, struct wd_gpu *
     return slot;
 }
 
+bool wd_method_can_draw(const struct wd_method *method, const struct wd_world *world,
+                        const struct wd_log *log)
+{
+    char who[64];
+    snprintf(who, sizeof who, "method %s", method->name);
+    return method->on_demand || wd_demand_is_none(&world->demand, who, log);
+}
+
 void *wd_methods_open(struct wd_methods *open, struct wd_gpu *gpu, const struct wd_method *method,
                       struct wd_forest_device *forest)
 {
     _Static_assert(sizeof methods / sizeof *methods <= WD_METHODS_MAX, "a slot for each method");
-    const struct wd_demand *demand = &forest->world->demand;
-    char who[64];
-    snprintf(who, sizeof who, "method %s", method->name);
-    if (!method->on_demand && !wd_demand_is_none(demand, who, gpu->log))
+    if (!wd_method_can_draw(method, forest->world, gpu->log))
         return NULL;
     struct wd_method_slot *slot = open_slot(open, gpu, method);
     if (!slot)

@@ -87,6 +87,10 @@ struct wd_methods {
     uint32_t count;
 };
 
+/* False, logged, where the method needs all trees in memory and some of the world are planted on demand. */
+bool wd_method_can_draw(const struct wd_method *method, const struct wd_world *world,
+                        const struct wd_log *log);
+
 /* The state of `method`, made for `forest`; NULL when it could not be made (logged). No frame that
  * uses the method may be in flight when the forest is another one. */
 void *wd_methods_open(struct wd_methods *methods, struct wd_gpu *gpu,

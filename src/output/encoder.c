@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
+#include "base/point_locale.h"
 
 enum { MAX_ARGUMENTS = 48 };
 
@@ -25,7 +26,10 @@ static void build_arguments(struct arguments *arguments, const struct wd_encoder
                             const char *output)
 {
     snprintf(arguments->size, sizeof arguments->size, "%ux%u", params->width, params->height);
+    struct wd_point_locale point;
+    wd_point_locale_enter(&point);
     snprintf(arguments->rate, sizeof arguments->rate, "%.6f", params->frame_rate);
+    wd_point_locale_leave(&point);
     snprintf(arguments->crf, sizeof arguments->crf, "%d", params->crf);
     const char *const list[] = {
         params->ffmpeg, "-hide_banner", "-nostdin", "-loglevel", "error", "-xerror", "-y",

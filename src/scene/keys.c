@@ -70,9 +70,10 @@ static bool report(const struct wd_keys_place *place, const char *key, bool at_k
     char path[256], message[1024];
     write_path(steps, count, path, sizeof path);
     vsnprintf(message, sizeof message, format, arguments);
-    const char *setting = wd_keys_setting_of(reader, path);
+    const char *rest, *setting = wd_keys_setting_of(reader, path, &rest);
     if (setting)
-        return wd_error(reader->log, "%s: setting %s: %s", reader->path, setting, message);
+        return wd_error(reader->log, "%s: setting %s: %s%s%s", reader->path, setting, rest,
+                        rest[0] ? ": " : "", message);
     struct wd_json_spot spot = wd_json_spot_at(
         reader->text, wd_json_find(reader->clean, reader->size, steps, count, at_key));
     return wd_error(reader->log, "%s:%u:%u: %s%s%s", reader->path, spot.line, spot.column, path,

@@ -114,7 +114,7 @@ struct wd_keys_input {
     /* "key.key=value" each, in place of what the text says, ended by NULL; or NULL. The value is
      * JSON, or else a text. A number stands for an item of a list; "@key" for what the root's key
      * says, so that "methods.@method.depth=7" sets an option of the chosen method. Errors of a
-     * value that was set name the setting instead of a line. */
+     * value that was set, and within it, name the setting instead of a line. */
     const char *const *settings;
 };
 bool wd_keys_read_input(const struct wd_keys *table, const struct wd_keys_input *input,

@@ -39,8 +39,10 @@ bool wd_keys_error_at_key(const struct wd_keys_place *place, const char *key, co
 bool wd_keys_apply_settings(struct wd_keys_reader *reader, const struct wd_keys *table,
                             json_t *root);
 void wd_keys_settings_finish(struct wd_keys_reader *reader);
-/* The setting that a value at that path ("layers[0].name") came with, or NULL. */
-const char *wd_keys_setting_of(const struct wd_keys_reader *reader, const char *path);
+/* The newest setting that a value at that path ("layers[0].name") came with, or NULL. `rest`: where the
+ * value is in what was set, "" if it is that. */
+const char *wd_keys_setting_of(const struct wd_keys_reader *reader, const char *path,
+                               const char **rest);
 
 /* What a key takes, for messages: "a number from 0 to 1". */
 const char *wd_keys_allowed(const struct wd_key *key, char *buffer, size_t size);

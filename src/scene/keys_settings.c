@@ -1,4 +1,5 @@
 /* keys_settings.c: values from outside a file, put into its JSON before it is read. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,29 +60,59 @@ static bool expand_path(char path[MAX_PATH], const struct wd_keys_reader *reader
     return true;
 }
 
-/* The object or list below `parent` at `step`; an object that is not there yet is made. */
-static json_t *step_into(json_t *parent, const char *step)
+/* Which item of a list a step means. */
+static bool index_of(const struct wd_keys_reader *reader, const char *setting, const json_t *list,
+                     const char *step, size_t *index)
 {
-    if (json_is_array(parent))
-        return json_array_get(parent, strtoul(step, NULL, 10));
-    json_t *child = json_object_get(parent, step);
+    char why[256];
+    size_t count = json_array_size(list), digits = strspn(step, "0123456789");
+    *index = strtoul(step, NULL, 10);
+    if (digits > 0 && step[digits] == '\0' && *index < count)
+        return true;
+    snprintf(why, sizeof why, "there is no item \"%.60s\" in the list; it has %zu, numbered from 0", step,
+             count);
+    for (size_t i = 0; i < count; i++) {
+        const char *name = json_string_value(json_object_get(json_array_get(list, i), "name"));
+        if (name && strcmp(name, step) == 0)
+            snprintf(why, sizeof why, "items of a list go by number, and \"%.60s\" is %zu", step, i);
+    }
+    return refuse(reader, setting, why);
+}
+
+/* The object or list below `parent` at `step`; an object that is not there yet is made. NULL: refused. */
+static json_t *step_into(const struct wd_keys_reader *reader, const char *setting, json_t *parent,
+                         const char *step)
+{
+    size_t index;
+    if (json_is_array(parent) && !index_of(reader, setting, parent, step, &index))
+        return NULL;
+    json_t *child = json_is_array(parent) ? json_array_get(parent, index)
+                                          : json_object_get(parent, step);
     if (!child && json_is_object(parent)) {
         child = json_object();
         json_object_set_new(parent, step, child);
     }
+    if (!json_is_object(child) && !json_is_array(child)) {
+        refuse(reader, setting, "its path leads through something that has no keys");
+        return NULL;
+    }
     return child;
 }
 
-static bool put(json_t *parent, const char *step, const char *text)
+static bool put(const struct wd_keys_reader *reader, const char *setting, json_t *parent,
+                const char *step)
 {
+    const char *text = strchr(setting, '=') + 1;
+    size_t index;
+    if (json_is_array(parent) && !index_of(reader, setting, parent, step, &index))
+        return false;
     json_t *value = json_loads(text, JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, NULL);
     if (!value)
         value = json_string(text);
     if (!value)
-        return false;
-    if (json_is_array(parent))
-        return json_array_set_new(parent, strtoul(step, NULL, 10), value) == 0;
-    return json_object_set_new(parent, step, value) == 0;
+        return refuse(reader, setting, "the value is no text");
+    return json_is_array(parent) ? json_array_set_new(parent, index, value) == 0
+                                 : json_object_set_new(parent, step, value) == 0;
 }
 
 static bool apply(const struct wd_keys_reader *reader, json_t *root, const char *path,
@@ -91,15 +122,11 @@ static bool apply(const struct wd_keys_reader *reader, json_t *root, const char 
     strcpy(steps, path);
     json_t *parent = root;
     char *step = steps;
-    for (char *dot; (dot = strchr(step, '.')) != NULL; step = dot + 1) {
+    for (char *dot; parent && (dot = strchr(step, '.')) != NULL; step = dot + 1) {
         *dot = '\0';
-        parent = step_into(parent, step);
-        if (!json_is_object(parent) && !json_is_array(parent))
-            return refuse(reader, setting, "its path leads through something that has no keys");
+        parent = step_into(reader, setting, parent, step);
     }
-    if (!put(parent, step, strchr(setting, '=') + 1))
-        return refuse(reader, setting, "there is no such item in the list, or the value is no text");
-    return true;
+    return parent && put(reader, setting, parent, step);
 }
 
 bool wd_keys_apply_settings(struct wd_keys_reader *reader, const struct wd_keys *table,
@@ -129,24 +156,33 @@ void wd_keys_settings_finish(struct wd_keys_reader *reader)
     reader->setting_paths = NULL;
 }
 
-/* "a[0].b" and "a.0.b" are the same. */
-static bool same_path(const char *path, const char *setting)
+/* What a path goes on with after the setting's, "" where they are the same; NULL: it is not below. "a[0].b"
+ * and "a.0.b" are the same. */
+static const char *below(const char *path, const char *setting)
 {
-    for (; *path; path++) {
+    for (; *path && *setting; path++) {
         if (*path == ']')
             continue;
         char step = *path == '[' ? '.' : *path;
         if (*setting++ != step)
-            return false;
+            return NULL;
     }
-    return *setting == '\0';
+    path += *path == ']';
+    if (*setting || !strchr(".[", *path))
+        return NULL;
+    return path + (*path == '.');
 }
 
-const char *wd_keys_setting_of(const struct wd_keys_reader *reader, const char *path)
+const char *wd_keys_setting_of(const struct wd_keys_reader *reader, const char *path,
+                               const char **rest)
 {
+    const char *newest = NULL;
     for (size_t i = 0; reader->setting_paths && reader->settings[i]; i++) {
-        if (reader->setting_paths[i] && same_path(path, reader->setting_paths[i]))
-            return reader->settings[i];
+        const char *after = reader->setting_paths[i] ? below(path, reader->setting_paths[i]) : NULL;
+        if (!after)
+            continue;
+        newest = reader->settings[i];
+        *rest = after;
     }
-    return NULL;
+    return newest;
 }

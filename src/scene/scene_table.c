@@ -53,7 +53,8 @@ static const struct wd_keys terrain_table = {
 #define TIME(member) offsetof(struct wd_scene_time, member)
 static const struct wd_key time_keys[] = {
     {"date", WD_KEY_STRING, TIME(date),
-     .doc = "Day as \"YYYY-MM-DD\": the season that leaves show; summer where absent."},
+     .doc = "Day as \"YYYY-MM-DD\": the season that leaves show, but those of artists' models; "
+            "summer where absent."},
     {"clock", WD_KEY_STRING, TIME(clock),
      .doc = "Time of day as \"HH:MM\" or \"HH:MM:SS\": where the sun stands then. Needs date, "
             "latitude_deg and longitude_deg."},

@@ -36,7 +36,8 @@ static void set_sun(struct wd_scene *scene, struct wd_moment moment)
                     &scene->sun.elevation_deg);
 }
 
-/* Species show the season; south of the equator it is half a year later. */
+/* Species show the season, but for artists' models, which tell of one alone; south of the equator it is half
+ * a year later. */
 static bool set_season(struct wd_scene *scene, const struct wd_moment *moment,
                        const struct wd_log *log)
 {
@@ -46,6 +47,8 @@ static bool set_season(struct wd_scene *scene, const struct wd_moment *moment,
     bool ok = true;
     for (size_t i = 0; i < scene->species_file_count; i++) {
         struct wd_species species = scene->species[i];
+        if (species.model.file)
+            continue;
         ok = wd_species_in_month(&scene->species[i], &species, month, log) && ok;
     }
     return ok;

@@ -1,10 +1,10 @@
-#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/point_locale.h"
 #include "tree/export.h"
 
 struct obj {
@@ -178,12 +178,10 @@ bool wd_export_obj(const struct wd_export *what, const char *path, const struct 
     *strrchr(obj.stem, '.') = '\0';
     const char *slash = strrchr(obj.stem, '/');
     obj.base = slash ? slash + 1 : obj.stem;
-    /* numbers have points, whatever the program around has chosen */
-    locale_t plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), before = uselocale(plain);
+    struct wd_point_locale point;
+    wd_point_locale_enter(&point);
     bool ok = put_files(&obj);
-    uselocale(before);
-    if (plain)
-        freelocale(plain);
+    wd_point_locale_leave(&point);
     free(obj.stem);
     return ok;
 }

@@ -149,6 +149,23 @@ static bool transform(OGRCoordinateTransformationH change, double *x, double *y,
     return true;
 }
 
+char *wd_crs_in_metres_at(const char *crs, double x, double y, const struct wd_log *log)
+{
+    OGRSpatialReferenceH parsed = wd_crs_parse(crs, "coordinate system", log);
+    bool known = parsed != NULL, metric = known && wd_crs_is_metric(parsed);
+    wd_crs_free(parsed);
+    if (metric)
+        return wd_strdup(crs);
+    if (!known || !wd_reproject(crs, "EPSG:4326", &x, &y, 1, log))
+        return NULL;
+    OGRSpatialReferenceH utm = wd_crs_utm_at(x, y);
+    char *wkt = utm ? wd_crs_wkt(utm) : NULL;
+    if (!wkt)
+        wd_error(log, "%s: there is no UTM zone at (%.9g, %.9g)", crs, x, y);
+    wd_crs_free(utm);
+    return wkt;
+}
+
 bool wd_reproject(const char *from_crs, const char *to_crs, double *x, double *y, size_t count,
                   const struct wd_log *log)
 {

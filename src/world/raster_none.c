@@ -25,6 +25,14 @@ char *wd_crs_wkt_in_metres(const char *crs, const struct wd_log *log)
     return NULL;
 }
 
+char *wd_crs_in_metres_at(const char *crs, double x, double y, const struct wd_log *log)
+{
+    (void)x;
+    (void)y;
+    refuse(crs, log);
+    return NULL;
+}
+
 bool wd_raster_load(struct wd_raster *raster, const struct wd_scene *scene,
                     const struct wd_scene_map *map, const struct wd_terrain *terrain,
                     enum wd_resampling resampling, uint64_t max_samples, const struct wd_log *log)

@@ -38,8 +38,6 @@ static bool make_flat(struct wd_terrain *terrain, const struct wd_scene_terrain 
     if (!is_positive(size_m[0]) || !is_positive(size_m[1]))
         return wd_error(log, "terrain.size_m: is %g x %g; both must be above 0", size_m[0],
                         size_m[1]);
-    if (wanted->target_crs && !(terrain->crs = wd_crs_wkt_in_metres(wanted->target_crs, log)))
-        return false;
     terrain->cell_m = flat_cell(size_m);
     double columns = ceil(size_m[0] / terrain->cell_m * (1 - 1e-9));
     double rows = ceil(size_m[1] / terrain->cell_m * (1 - 1e-9));
@@ -68,6 +66,9 @@ static bool make(struct wd_terrain *terrain, const struct wd_scene *scene, uint3
                  const struct wd_log *log)
 {
     const struct wd_scene_terrain *wanted = &scene->terrain;
+    if (wanted->kind != WD_TERRAIN_RASTER && wanted->target_crs &&
+        !(terrain->crs = wd_crs_wkt_in_metres(wanted->target_crs, log)))
+        return false;
     switch (wanted->kind) {
     case WD_TERRAIN_FLAT:
         return make_flat(terrain, wanted, max_samples, log);

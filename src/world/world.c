@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 #include <xxhash.h>
 
 #include "base/memory.h"
@@ -229,7 +230,20 @@ static void hash_words(XXH64_state_t *state, const uint32_t *words, size_t count
     }
 }
 
-/* Layers on demand: their numbers and what their tables hold. */
+static void hash_map(XXH64_state_t *state, const struct wd_placement *placement)
+{
+    const struct wd_place_layer *layer = &placement->input.layer;
+    const uint32_t words[5] = {layer->map_kind, layer->map_width, layer->map_height,
+                               layer->map_half_mm[0], layer->map_half_mm[1]};
+    hash_words(state, words, 5);
+    for (size_t i = 0; i < (size_t)layer->map_width * layer->map_height; i++) {
+        uint32_t word;
+        memcpy(&word, &placement->map[i], sizeof word);
+        hash_words(state, &word, 1);
+    }
+}
+
+/* Layers on demand: their numbers and what their maps and tables hold. */
 static void hash_demand(XXH64_state_t *state, const struct wd_demand *demand)
 {
     for (uint32_t i = 0; i < demand->count; i++) {
@@ -241,6 +255,8 @@ static void hash_demand(XXH64_state_t *state, const struct wd_demand *demand)
                                    layer->variants,      demand->layers[i].first_id};
         hash_words(state, words, 8);
         hash_words(state, placement->table, placement->table_count);
+        if (placement->map)
+            hash_map(state, placement);
     }
 }
 

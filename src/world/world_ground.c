@@ -4,10 +4,9 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <strings.h>
-#include <string.h>
 
 #include "base/memory.h"
+#include "world/terrain_parts.h"
 
 static const double margin_m = 50.0;
 
@@ -46,24 +45,19 @@ static bool bound(struct bounds *bounds, const struct wd_inventory *inventories,
 }
 
 /* The coordinate system of ground that has none: that of the first inventory that names one, or
- * the UTM zone of its first tree where it is in degrees. */
-static char *choose_crs(const struct wd_inventory *inventories, size_t count)
+ * the UTM zone of its first tree where it is in degrees or feet; NULL where none names one. */
+static bool choose_crs(char **crs, const struct wd_inventory *inventories, size_t count,
+                       const struct wd_log *log)
 {
-    static const char *const degrees[] = {"EPSG:4326", "EPSG:4258", "EPSG:4269"};
+    *crs = NULL;
     for (size_t i = 0; i < count; i++) {
-        const char *frame = inventories[i].wanted->frame;
         if (wd_inventory_frame(inventories[i].wanted) != WD_FRAME_CRS)
             continue;
-        for (size_t k = 0; k < sizeof degrees / sizeof *degrees; k++) {
-            if (strcasecmp(frame, degrees[k]) != 0)
-                continue;
-            const struct wd_inventory_tree *tree = &inventories[i].trees[0];
-            double zone = fmin(fmax(floor((tree->x + 180.0) / 6.0) + 1.0, 1.0), 60.0);
-            return wd_format("EPSG:%d", (tree->y < 0.0 ? 32700 : 32600) + (int)zone);
-        }
-        return wd_strdup(frame);
+        const struct wd_inventory_tree *tree = &inventories[i].trees[0];
+        *crs = wd_crs_in_metres_at(inventories[i].wanted->frame, tree->x, tree->y, log);
+        return *crs != NULL;
     }
-    return NULL;
+    return true;
 }
 
 static bool has_place(const struct wd_inventory *inventories, size_t count)
@@ -115,8 +109,6 @@ static bool make_up(struct wd_terrain *terrain, const struct wd_inventory *inven
         fit_flat(&scene, window_m, &bounds, params->log);
     if (!wd_terrain_init(terrain, &scene, params->seed, 0, params->progress, params->log))
         return false;
-    if (crs && !terrain->crs)
-        terrain->crs = wd_strdup(crs);
     if (!fit && placed)
         lay_under(terrain, &bounds);
     return true;
@@ -134,9 +126,10 @@ bool wd_world_make_terrain(struct wd_terrain *terrain, const struct wd_inventory
     if (!made_up || (!fit && !has_place(inventories, count)))
         return wd_terrain_init(terrain, params->scene, params->seed, 0, params->progress,
                                params->log);
-    char *chosen = wanted->target_crs ? wd_strdup(wanted->target_crs)
-                                      : choose_crs(inventories, count);
-    bool ok = make_up(terrain, inventories, params, fit, chosen);
+    char *chosen = NULL;
+    bool ok = wanted->target_crs || choose_crs(&chosen, inventories, count, params->log);
+    ok = ok && make_up(terrain, inventories, params, fit,
+                       wanted->target_crs ? wanted->target_crs : chosen);
     free(chosen);
     return ok;
 }

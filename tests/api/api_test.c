@@ -1,5 +1,6 @@
 /* The public interface, through a small scene on software Vulkan.
  *   test-api ROOT   (the folder of the sources) */
+#include "../base/comma_locale.h"
 #include "suite.h"
 
 #include <math.h>
@@ -8,6 +9,8 @@
 #include <string.h>
 
 #include "output/exr.h"
+#include "weald/reference.h"
+#include "weald/tree.h"
 
 enum { PIXELS = PICTURE_WIDTH * PICTURE_HEIGHT, MIDDLE = PIXELS / 2 + PICTURE_WIDTH / 2 };
 
@@ -89,6 +92,30 @@ static void cameras_and_paths_go_by_name(void **state)
     assert_true(fabs(camera.yaw_rad - 20.0 / 57.29577951308232) < 1e-9);
 }
 
+/* Zooming in and out again, and looking up: curves through such keys would lead beyond what there is. */
+static void paths_stay_within_their_keys(void **state)
+{
+    struct suite *suite = *state;
+    const char *const settings[] = {
+        "paths=[{\"name\": \"zoom\", \"duration_s\": 3, \"keys\": ["
+        "{\"position_m\": [0, 0, 9], \"fov_deg\": 100, \"pitch_deg\": 0},"
+        "{\"position_m\": [1, 0, 9], \"fov_deg\": 10, \"pitch_deg\": 89},"
+        "{\"position_m\": [2, 0, 9], \"fov_deg\": 10, \"pitch_deg\": 89},"
+        "{\"position_m\": [3, 0, 9], \"fov_deg\": 100, \"pitch_deg\": 0}]}]", NULL};
+    const struct wd_forest_params params = {
+        .scene_path = suite->small_path, .settings = settings, .log = suite->log};
+    const double degree = 3.14159265358979323846 / 180;
+    struct wd_forest *forest;
+    struct wd_camera camera;
+    assert_int_equal(wd_forest_create(&forest, &params), WD_OK);
+    for (int i = 0; i <= 30; i++) {
+        assert_int_equal(wd_forest_get_path_camera(forest, "zoom", 0.1 * i, &camera, NULL), WD_OK);
+        assert_true(camera.fov_rad > 9.999 * degree && camera.fov_rad < 100.001 * degree);
+        assert_true(fabs(camera.pitch_rad) < 90.001 * degree);
+    }
+    wd_forest_destroy(&forest);
+}
+
 static void unknown_cameras_are_named(void **state)
 {
     struct suite *suite = *state;
@@ -152,6 +179,37 @@ static void too_many_trees_are_refused(void **state)
     assert_true(suite_logged(suite, "100"));
 }
 
+/* A list of trees, and what a tree is cut to, in a program that writes numbers with commas. */
+static void files_have_points_in_numbers(void **state)
+{
+    struct suite *suite = *state;
+    const char *path = suite_path(suite, "trees.csv");
+    char line[256], source[1100];
+    const struct wd_specimen_params params = {
+        .source = source, .clip = "1.5x0.6x1.8", .log = suite->log};
+    struct wd_specimen *specimen;
+    locale_t comma = comma_locale();
+    snprintf(source, sizeof source, "%s/species/beech.json", suite->root);
+    if (!comma) {
+        print_message("there is no locale with decimal commas: skipped\n");
+        skip();
+    }
+    locale_t before = uselocale(comma);
+    enum wd_result listed = wd_forest_write(suite->forest, path, 0, NULL, &suite->log);
+    enum wd_result cut = wd_specimen_create(&specimen, &params);
+    uselocale(before);
+    freelocale(comma);
+    wd_specimen_destroy(&specimen);
+    assert_true(listed == WD_OK && cut == WD_OK);
+    FILE *file = fopen(path, "r");
+    assert_true(fgets(line, sizeof line, file) && fgets(line, sizeof line, file));
+    fclose(file);
+    unsigned commas = 0;
+    for (const char *at = line; *at; at++)
+        commas += *at == ',';
+    assert_int_equal(commas, 7);
+}
+
 /* --- what is refused --------------------------------------------------------------------- */
 
 static void assert_refused(struct suite *suite, const struct wd_render_params *params,
@@ -196,6 +254,33 @@ static void impossible_pictures_are_refused(void **state)
         params.max_error_px = errors[i];
         assert_refused(suite, &params, "0.25 to 32 are possible");
     }
+}
+
+static void trees_on_demand_need_continuum(void **state)
+{
+    struct suite *suite = *state;
+    const char *const settings[] = {"planting=on_demand", NULL};
+    const struct wd_forest_params forest_params = {
+        .scene_path = suite->small_path, .settings = settings, .log = suite->log};
+    struct wd_forest *forest;
+    assert_int_equal(wd_forest_create(&forest, &forest_params), WD_OK);
+    assert_int_equal(wd_renderer_set_forest(suite->renderer, forest), WD_OK);
+    struct wd_render_params params = suite_params(forest, "over");
+    params.method = "octree";
+    assert_refused(suite, &params, "method octree needs all trees in memory");
+
+    const struct wd_reference_params reference_params = {.log = suite->log};
+    const struct wd_reference_picture_params trace = {
+        .camera = params.camera, .width = 8, .height = 6, .samples = 1};
+    struct wd_reference *reference;
+    struct wd_picture picture;
+    suite_clear(suite);
+    assert_int_equal(wd_reference_create(&reference, forest, &reference_params), WD_OK);
+    assert_int_equal(wd_reference_render(reference, &trace, &picture), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "the path tracer needs all trees in memory"));
+    wd_reference_destroy(&reference);
+    assert_int_equal(wd_renderer_set_forest(suite->renderer, suite->forest), WD_OK);
+    wd_forest_destroy(&forest);
 }
 
 static void without_a_forest_nothing_is_drawn(void **state)
@@ -655,9 +740,12 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(there_is_nothing_beyond_the_last, &suite),
         cmocka_unit_test_prestate(cameras_and_paths_go_by_name, &suite),
         cmocka_unit_test_prestate(unknown_cameras_are_named, &suite),
+        cmocka_unit_test_prestate(paths_stay_within_their_keys, &suite),
         cmocka_unit_test_prestate(seeds_are_whole_numbers, &suite),
         cmocka_unit_test_prestate(a_seed_is_a_world, &suite),
+        cmocka_unit_test_prestate(files_have_points_in_numbers, &suite),
         cmocka_unit_test_prestate(too_many_trees_are_refused, &suite),
+        cmocka_unit_test_prestate(trees_on_demand_need_continuum, &suite),
         cmocka_unit_test_prestate(without_a_forest_nothing_is_drawn, &suite),
         cmocka_unit_test_prestate(impossible_pictures_are_refused, &suite),
         cmocka_unit_test_prestate(a_wish_to_stop_stops, &suite),

@@ -82,6 +82,31 @@ static void test_resume(void **state)
     wd_reference_destroy(&reference);
 }
 
+/* Turned leaves on the same trees are another picture. */
+static void test_other_leaves(void **state)
+{
+    struct suite *suite = suite_of(state);
+    struct wd_reference *stopping = open_reference(suite, stop_half_way);
+    struct wd_reference_picture_params params = picture_params(suite);
+    struct wd_reference *reference;
+    struct wd_forest *autumn;
+    struct wd_picture picture;
+    const char *const settings[] = {"time.date=2026-09-25", NULL};
+    const struct wd_forest_params forest_params = {
+        .scene_path = suite->small_path, .settings = settings, .log = suite->log};
+    const struct wd_reference_params reference_params = {.log = suite->log};
+    params.checkpoint = suite_path(suite, "summer.partial");
+    assert_int_equal(wd_reference_render(stopping, &params, &picture), WD_ERROR_INTERRUPTED);
+    wd_reference_destroy(&stopping);
+    assert_int_equal(wd_forest_create(&autumn, &forest_params), WD_OK);
+    assert_int_equal(wd_reference_create(&reference, autumn, &reference_params), WD_OK);
+    suite_clear(suite);
+    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "another scene, camera"));
+    wd_reference_destroy(&reference);
+    wd_forest_destroy(&autumn);
+}
+
 static void test_bad_input(void **state)
 {
     struct suite *suite = suite_of(state);
@@ -114,6 +139,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(test_agreement, &suite),
         cmocka_unit_test_prestate(test_resume, &suite),
+        cmocka_unit_test_prestate(test_other_leaves, &suite),
         cmocka_unit_test_prestate(test_bad_input, &suite),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,8 +13,8 @@ enum { WIDTH = 64, HEIGHT = 32 };
 static struct suite suite;
 
 /* A map of one radiance above the horizon and black below, but for one value of the last texel. */
-static const char *write_map(const char *name, const char *const channels[3], uint32_t width,
-                             float odd)
+static const char *write_map_with_sun(const char *name, const char *const channels[3],
+                                      uint32_t width, float odd, float sun)
 {
     static float rgb[3][WIDTH * HEIGHT];
     const char *path = suite_path(&suite, name);
@@ -22,12 +22,20 @@ static const char *write_map(const char *name, const char *const channels[3], ui
         for (int k = 0; k < 3; k++)
             rgb[k][at] = at < width * HEIGHT / 2 ? 0.5f + 0.25f * (float)k : 0;
     rgb[1][width * HEIGHT - 1] = odd;
+    for (int k = 0; k < 3; k++)
+        rgb[k][width * HEIGHT / 4] += sun;
     const struct wd_exr_channel planes[3] = {{channels[0], WD_EXR_FLOAT, rgb[0], 1},
                                              {channels[1], WD_EXR_FLOAT, rgb[1], 1},
                                              {channels[2], WD_EXR_FLOAT, rgb[2], 1}};
     const struct wd_exr_params params = {width, HEIGHT, planes, 3, NULL, 0};
     assert_true(wd_exr_write(path, &params, &suite.log));
     return path;
+}
+
+static const char *write_map(const char *name, const char *const channels[3], uint32_t width,
+                             float odd)
+{
+    return write_map_with_sun(name, channels, width, odd, 0);
 }
 
 static const char *const RGB[3] = {"R", "G", "B"};
@@ -150,12 +158,28 @@ static void bad_maps_are_refused(void **state)
     expect_refused(good, "sky.sun=moon", "sun");
 }
 
+/* The sky without the sun is the same, the file is of the same name. */
+static void another_sun_is_another_forest(void **state)
+{
+    (void)state;
+    uint64_t keys[2];
+    for (int i = 0; i < 2; i++) {
+        struct wd_forest *forest = NULL;
+        const char *map = write_map_with_sun("sun.exr", RGB, WIDTH, 0, i ? 2000 : 1000);
+        assert_int_equal(open_forest(&forest, map, "sky.sun=file"), WD_OK);
+        keys[i] = wd_forest_key(forest);
+        wd_forest_destroy(&forest);
+    }
+    assert_true(keys[0] != keys[1]);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_map_is_the_sky),
         cmocka_unit_test(drawn_as_traced),
         cmocka_unit_test(bad_maps_are_refused),
+        cmocka_unit_test(another_sun_is_another_forest),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;

@@ -1,6 +1,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
+#include <stdatomic.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -17,6 +18,8 @@
 #include "base/jobs.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/point_locale.h"
+#include "comma_locale.h"
 
 static void elementary_functions_are_accurate(void **state)
 {
@@ -33,6 +36,69 @@ static void elementary_functions_are_accurate(void **state)
     }
     assert_true(wd_dpow(0.0, 2.0) == 0.0 && wd_dpow(3.0, 0.0) == 1.0);
     assert_true(wd_datan2(0.0, 0.0) == 0.0);
+}
+
+static void numbers_have_points(void **state)
+{
+    (void)state;
+    char text[16];
+    struct wd_point_locale point;
+    locale_t comma = comma_locale(), before;
+    if (!comma) {
+        print_message("there is no locale with decimal commas: skipped\n");
+        skip();
+    }
+    before = uselocale(comma);
+    wd_point_locale_enter(&point);
+    snprintf(text, sizeof text, "%.2f", 1.25);
+    wd_point_locale_leave(&point);
+    assert_string_equal(text, "1.25");
+    snprintf(text, sizeof text, "%.2f", 1.25);
+    uselocale(before);
+    freelocale(comma);
+    assert_string_equal(text, "1,25");
+}
+
+/* A sink that takes its time, and logs itself. */
+struct taker {
+    struct wd_log own;
+    atomic_int inside;
+    unsigned count, overlaps, passed_on;
+};
+
+static void take_slowly(void *user, enum wd_log_level level, const char *message)
+{
+    struct taker *taker = user;
+    (void)message;
+    if (level == WD_LOG_INFO) {
+        taker->passed_on++;
+        return;
+    }
+    taker->overlaps += atomic_fetch_add(&taker->inside, 1) > 0;
+    usleep(500);
+    if (taker->count++ == 0)
+        wd_info(&taker->own, "the first");
+    atomic_fetch_sub(&taker->inside, 1);
+}
+
+static void log_once(void *user, size_t index)
+{
+    struct wd_shared_log *shared = user;
+    wd_warn(&shared->log, "%zu", index);
+}
+
+static void threads_log_one_at_a_time(void **state)
+{
+    (void)state;
+    struct taker taker = {.own = {take_slowly, &taker}};
+    struct wd_shared_log shared;
+    wd_shared_log_init(&shared, &taker.own);
+    wd_jobs_run(4, 64, log_once, &shared);
+    wd_shared_log_finish(&shared);
+    wd_shared_log_finish(&shared);
+    assert_int_equal(taker.count, 64);
+    assert_int_equal(taker.overlaps, 0);
+    assert_int_equal(taker.passed_on, 1);
 }
 
 static void srgb_round_trips(void **state)
@@ -234,6 +300,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(elementary_functions_are_accurate),
+        cmocka_unit_test(numbers_have_points),
+        cmocka_unit_test(threads_log_one_at_a_time),
         cmocka_unit_test(srgb_round_trips),
         cmocka_unit_test(every_index_is_worked_once),
         cmocka_unit_test(loops_tell_how_far_they_are),

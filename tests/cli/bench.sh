@@ -62,6 +62,26 @@ if [ "$weald" ]; then
     expect 1 'reference/grove-.* 40 x 30 pixels, not 128 x 96' bench "$grove" --suite quality --quick --methods octree --gpu software -o "$out"
 fi
 
+# a camera's name that would part columns and folders; a scene that has changed since
+far=$scratch/far.json
+sed -e 's|"south"|"9 km, north/west"|' -e "s|\.\./\.\./species|$root/species|g" "$grove" >"$far"
+expect 0 'results.csv' bench "$far" --suite quality --quick --methods octree --gpu software \
+    -o "$scratch/far"
+check 'one name, one column' grep -q '^far,9 km  north west,octree,' "$scratch/far/results.csv"
+check 'and one file' [ -s "$scratch/far/pictures/far-9 km  north west-reference.png" ]
+expect 0 '1 results are there already' bench "$far" --suite quality --quick --methods octree \
+    --gpu software -o "$scratch/far"
+sed -i 's|\[20, -25, 12\]|[20, -20, 12]|' "$far"
+cp "$scratch/far/results.csv" "$scratch/before.csv"
+expect 1 'holds results of far by other' bench "$far" --suite quality --quick --methods octree \
+    --gpu software -o "$scratch/far"
+check 'which stay' cmp "$scratch/before.csv" "$scratch/far/results.csv"
+rm "$scratch/far/results.csv"
+expect 0 'results.csv' bench "$far" --suite quality --quick --methods octree --gpu software \
+    -o "$scratch/far"
+check 'a moved camera has a truth of its own' [ "$(ls "$scratch/far/reference" | wc -l)" -eq 4 ]
+check 'nothing half written' [ -z "$(find "$scratch/far" -name '.*.tmp')" ]
+
 if command -v chromium >/dev/null; then
     timeout 60 chromium --headless --no-sandbox --disable-gpu --dump-dom \
         "file://$out/report.html" 2>/dev/null >"$scratch/dom" || true

@@ -60,7 +60,7 @@ expect 1 'setting methods.@method.max_cul_depth=3: .*did you mean "max_cull_dept
 expect 1 'whole number from 1 to 16' info "$tiny" --method octree --option max_cull_depth=17
 expect 1 'setting methods.@method.faithful=true: unknown key; separate takes: none' info "$tiny" --method separate --faithful
 expect 1 'did you mean "speed_mps"\?' info "$tiny" --set wind.sped_mps=0
-expect 1 'no such item' info "$tiny" --set cameras.99=1
+expect 1 'no item "99" in the list; it has' info "$tiny" --set cameras.99=1
 expect 1 'leads through' info "$tiny" --set seed.x=1
 expect 0 'max_cull_depth +a whole number from 1 to 16 \(default 7; G5\)' methods
 expect 0 '^octree' methods octree

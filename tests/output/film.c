@@ -1,3 +1,4 @@
+#include "../base/comma_locale.h"
 #include "limits.h"
 #include "output/film.h"
 #include "output/image.h"
@@ -60,6 +61,25 @@ static void films_hold_their_frames(void **state)
 }
 
 /* A flat colour comes back through the matrix and range that the film says it has. */
+static void films_need_no_locale(void **state)
+{
+    struct fixture *f = *state;
+    struct wd_film_writer film;
+    struct wd_film_writer_params params = {in_folder(f, "a.mp4"), 64, 48, .frame_rate = 12.5};
+    locale_t comma = comma_locale();
+    if (!comma) {
+        print_message("there is no locale with decimal commas: skipped\n");
+        skip();
+    }
+    locale_t before = uselocale(comma);
+    bool ok = wd_film_writer_open(&film, &params, &f->log) && add_frames(&film, 64, 48, 3, &f->log) &&
+              wd_film_writer_commit(&film, &f->log);
+    uselocale(before);
+    freelocale(comma);
+    assert_true(ok);
+    assert_int_equal(count_frames(f->path), 3);
+}
+
 static void colours_are_kept(void **state)
 {
     struct fixture *f = *state;
@@ -225,6 +245,7 @@ int main(void)
     signal(SIGPIPE, SIG_DFL);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(films_hold_their_frames, setup, teardown),
+        cmocka_unit_test_setup_teardown(films_need_no_locale, setup, teardown),
         cmocka_unit_test_setup_teardown(colours_are_kept, setup, teardown),
         cmocka_unit_test_setup_teardown(discarded_films_leave_nothing, setup, teardown),
         cmocka_unit_test_setup_teardown(sequences_are_written_frame_by_frame, setup, teardown),

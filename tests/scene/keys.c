@@ -295,7 +295,15 @@ static void settings_that_are_wrong_are_named(void **state)
         {"whole=0.5", "f.json: setting whole=0.5: found 0.5; allowed is a whole number"},
         {"whoel=1", "setting whoel=1: unknown key; did you mean \"whole\"?"},
         {"list.0.size_m=11", "setting list.0.size_m=11: found 11"},
-        {"list.5=1", "there is no such item"},
+        {"list.5=1", "there is no item \"5\" in the list; it has 2, numbered from 0"},
+        {"list.nonsense.size_m=1", "there is no item \"nonsense\" in the list"},
+        {"list.0x.size_m=1", "there is no item \"0x\" in the list"},
+        {"list.-1=1", "there is no item \"-1\" in the list"},
+        {"list.99999999999999999999=1", "there is no item \"99999999999999999999\" in the list"},
+        {"list.pine.size_m=1", "items of a list go by number, and \"pine\" is 1"},
+        {"leaf={\"size_m\":11}", "setting leaf={\"size_m\":11}: size_m: found 11"},
+        {"list.0={\"size_m\":11}", "setting list.0={\"size_m\":11}: size_m: found 11"},
+        {"list=[{},{\"size_m\":11}]", "setting list=[{},{\"size_m\":11}]: [1].size_m: found 11"},
         {"whole.a.b=1", "leads through something that has no keys"},
         {"whole", "must read KEY=VALUE"},
         {"=1", "must read KEY=VALUE"},
@@ -306,7 +314,7 @@ static void settings_that_are_wrong_are_named(void **state)
     struct fixture f = {0};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         const char *const settings[] = {wrong[i].setting, NULL};
-        assert_false(read_set(&f, "{\"whole\": 1, \"list\": [{}]}", settings));
+        assert_false(read_set(&f, "{\"whole\": 1, \"list\": [{}, {\"name\": \"pine\"}]}", settings));
         assert_true(logged(&f.log, wrong[i].message));
     }
     wd_arena_finish(&f.arena);

@@ -289,6 +289,25 @@ static void months_change_leaves(void **state)
     assert_false(wd_species_in_month(&in, oak, (double)NAN, NULL));
 }
 
+/* A model's file knows one season only. */
+static void dates_leave_models_as_they_are(void **state)
+{
+    struct fixture *f = *state;
+    char *model = wd_path_beside(f->scene_path, "a.obj"); /* it is not opened here */
+    fclose(fopen(model, "wb"));
+    bool loaded = load(f, "{\"species\": {\"own\": \"a.obj\"}, \"time\": {\"date\": \"2026-10-25\"},"
+                          " \"layers\": [{\"species\": {\"own\": 1, \"oak\": 1}}]}");
+    unlink(model);
+    free(model);
+    assert_true(loaded);
+    const struct wd_species *own = &f->scene.species[wd_scene_find_species(&f->scene, "own")];
+    const struct wd_species *oak = &f->scene.species[wd_scene_find_species(&f->scene, "oak")];
+    assert_true(oak->leaf.season_color[0][0] > 0);
+    assert_float_equal(own->leaf.color[1], 0.1, 1e-6);
+    assert_float_equal(own->leaf.transmittance[1], 0.11, 1e-6);
+    assert_true(own->leaf.season_color[0][0] == 0 && own->leaf.season_count[0] == 0);
+}
+
 /* Whether the scene plants models that lie with the data. */
 static bool needs_models(const char *path)
 {
@@ -357,6 +376,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(stems_of_stands_are_slender, setup, teardown),
         cmocka_unit_test_setup_teardown(green_leaves_are_not_too_green, setup, teardown),
         cmocka_unit_test_setup_teardown(months_change_leaves, setup, teardown),
+        cmocka_unit_test_setup_teardown(dates_leave_models_as_they_are, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

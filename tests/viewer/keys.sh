@@ -222,6 +222,16 @@ echo "ok   five frames a second"
 xdotool key Escape
 ended 0 'Escape ends the viewer'
 
+start --method continuum --set planting=on_demand
+expect 'trees on demand' '.method == "continuum" and .frames > 2'
+xdotool key m
+remember
+expect 'M leaves the method that alone can draw them' '.method == "continuum" and
+    .frames > $before.frames + 1'
+grep -q 'needs all trees in memory' "$scratch/log" || fail "M: nothing is said"
+xdotool key Escape
+ended 0 'and the viewer goes on'
+
 start --gpu-validate
 expect 'the viewer is valid Vulkan' '.frames > 3'
 xdotool key t windowsize "$window" 300 200

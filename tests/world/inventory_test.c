@@ -277,6 +277,31 @@ static void test_degrees(void **state)
     assert_true(world.terrain.origin_m[0] == 499950.0);
     wd_world_finish(&world);
 
+    /* fractal ground, by a system that is no less in degrees: 0.001 of latitude */
+    small_scene_hills(&small);
+    small.inventories[0].frame = "EPSG:4283";
+    write_file("lon,lat\n147.0,-35.0\n147.0,-35.001\n");
+    make_or_fail(&small, &world);
+    assert_non_null(strstr(world.terrain.crs, "55S"));
+    assert_in_range(tree_at(&world, 0).y_mm - tree_at(&world, 1).y_mm, 110850, 110950);
+    wd_world_finish(&world);
+
+    /* ... and by one in feet, of which 100 are 30.48 m */
+    small.inventories[0].frame = "EPSG:2227";
+    write_file("x,y\n6000000,2100000\n6000000,2100100\n");
+    make_or_fail(&small, &world);
+    assert_non_null(strstr(world.terrain.crs, "10N"));
+    assert_in_range(tree_at(&world, 1).y_mm - tree_at(&world, 0).y_mm, 30440, 30490);
+    wd_world_finish(&world);
+
+    /* which nobody can ask for */
+    small.scene.terrain.target_crs = "EPSG:2227";
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "\"EPSG:2227\" is not a projected system in metres");
+    small_scene_init(&small);
+    small.scene.terrain.size_m[0] = small.scene.terrain.size_m[1] = 0.0;
+    small_scene_inventory(&small, path);
+
     /* metres of a CRS that is named */
     small.inventories[0].frame = "EPSG:32610";
     write_file("x,y\n493471,5821351\n493571,5821251\n");

@@ -104,6 +104,29 @@ static void test_values(void **state)
     wd_world_finish(&world);
 }
 
+/* The hash of a world knows the maps of layers that are planted on demand. */
+static void test_hash_on_demand(void **state)
+{
+    (void)state;
+    uint64_t hashes[2];
+    for (int i = 0; i < 2; i++) {
+        struct small_scene small;
+        struct wd_world world;
+        small_scene_init(&small);
+        small.scene.planting = WD_PLANTING_ON_DEMAND;
+        struct wd_scene_layer *layer = small_scene_layer(&small);
+        layer->map.file = path;
+        layer->map.crs = "local";
+        layer->map.value_range[1] = 200.0f;
+        write_grid(16, 12, i ? land_cover : slanted);
+        open_world(&small, &world);
+        assert_int_equal(world.demand.count, 1);
+        hashes[i] = wd_world_hash(&world);
+        wd_world_finish(&world);
+    }
+    assert_true(hashes[0] != hashes[1]);
+}
+
 /* Three round crowns on grass of 0.5 m. */
 static const double peaks[3][3] = {{100, 150, 30}, {110, 150, 22}, {300, 60, 12}};
 static double canopy(uint32_t column, uint32_t row)
@@ -198,6 +221,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_classes),
         cmocka_unit_test(test_values),
+        cmocka_unit_test(test_hash_on_demand),
         cmocka_unit_test(test_canopy),
         cmocka_unit_test(test_quesnel_canopy),
         cmocka_unit_test(test_missing_map),
