@@ -2,7 +2,7 @@
 BUILD ?= build
 PREFIX ?= /usr/local
 
-.PHONY: run test deps build lint bench suites gallery install clean help
+.PHONY: run test deps build lint bench suites pictures gallery install clean help
 .DEFAULT_GOAL := help
 
 run: deps ## build, then show scenes/valley.json: in a window, or as out/valley.png
@@ -28,6 +28,10 @@ bench: deps ## measure everything, or one figure with ONLY=NAME (of soak: SECOND
 
 suites: build ## weald bench in full, results and reports in docs/bench (stopped, it goes on)
 	@scripts/suites.sh $(BUILD)
+
+pictures: build ## the drawn pictures of README.md and docs (DATA=DIR)
+	@scripts/deps.sh docs
+	@scripts/pictures.sh $(BUILD)
 
 gallery: build ## the pictures of docs/gallery.md, path-traced ones beside them (DATA=DIR)
 	@scripts/deps.sh docs

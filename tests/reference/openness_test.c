@@ -149,12 +149,12 @@ static void crowns_shade_themselves_as_rays_say(void **state)
     static const struct {
         const char *name;
         double error, correlation;
-    } bounds[] = {{"oak", 0.03, 0.8},   {"beech", 0.04, 0.8}, {"birch", 0.045, 0.7},
+    } bounds[] = {{"oak", 0.03, 0.8},   {"beech", 0.04, 0.8}, {"birch", 0.045, 0.6},
                   {"maple", 0.03, 0.78}, {"spruce", 0.03, 0.78}, {"pine", 0.045, 0.6}};
     for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++)
         for (int open = 0; open <= 1; open++) {
             struct found found = measure(bounds[i].name, (float)open);
-            assert_true(fabs(found.bias) < 0.03);
+            assert_true(fabs(found.bias) < 0.035);
             assert_true(found.rms < bounds[i].error);
             assert_true(found.correlation > bounds[i].correlation);
         }
