@@ -38,7 +38,7 @@ static const struct wd_keys model_table = {"model", model_keys, SIZE(model), NUL
 static const struct wd_key leaf_keys[] = {
     {"color", WD_KEY_COLOR, IN(leaf, color), .fallback = "[0.066, 0.111, 0.034]",
      .doc = "Colour that transmittance belongs to (linear albedo)."},
-    {"transmittance", WD_KEY_COLOR, IN(leaf, transmittance), .fallback = "[0.06, 0.106, 0.004]",
+    {"transmittance", WD_KEY_COLOR, IN(leaf, transmittance), .fallback = "[0.06, 0.106, 0.012]",
      .doc = "Light let through by a leaf of that colour (linear)."},
     {"color_spread", WD_KEY_FLOAT, IN(leaf, color_spread), 0, 1, "0.2",
      "Spread of brightness and hue between trees."},
