@@ -63,11 +63,25 @@ static void sample_species(struct sampled *sampled, const char *name)
     free(rgba);
 }
 
-static void sampled_finish(struct sampled *sampled)
+/* Each species is grown once, for the first test that asks for it. */
+static struct sampled samples[SPECIES_COUNT];
+
+static struct sampled *sampled_of(int species)
 {
-    wd_tree_points_finish(&sampled->points);
-    wd_tree_model_finish(&sampled->model);
-    wd_arena_finish(&sampled->arena);
+    if (!samples[species].points.count)
+        sample_species(&samples[species], test_species_names[species]);
+    return &samples[species];
+}
+
+static int finish_samples(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SPECIES_COUNT; s++) {
+        wd_tree_points_finish(&samples[s].points);
+        wd_tree_model_finish(&samples[s].model);
+        wd_arena_finish(&samples[s].arena);
+    }
+    return 0;
 }
 
 static void numbers_are_ordered(void **state)
@@ -165,8 +179,7 @@ static void prefixes_are_spread_better_than_chance(void **state)
 {
     (void)state;
     for (int s = 0; s < SPECIES_COUNT; s++) {
-        struct sampled sampled;
-        sample_species(&sampled, test_species_names[s]);
+        const struct wd_tree_points *points = &sampled_of(s)->points;
         for (uint32_t n = 400; n <= 1600; n *= 2) {
             uint32_t prefix[1600], chance[1600];
             double sum = 0;
@@ -175,11 +188,10 @@ static void prefixes_are_spread_better_than_chance(void **state)
             for (uint32_t round = 0; round < 8; round++) {
                 for (uint32_t i = 0; i < n; i++)
                     chance[i] = wd_hash3(round, i, 77) % POINTS;
-                sum += unevenness(&sampled.points, chance, n) / 8;
+                sum += unevenness(points, chance, n) / 8;
             }
-            assert_true(unevenness(&sampled.points, prefix, n) < 0.75 * sum);
+            assert_true(unevenness(points, prefix, n) < 0.75 * sum);
         }
-        sampled_finish(&sampled);
     }
 }
 
@@ -227,11 +239,9 @@ static void windows_keep_the_means(void **state)
 {
     (void)state;
     for (int s = 0; s < SPECIES_COUNT; s++) {
-        struct sampled sampled;
         double whole[8], part[8], variance[8], normals = 0, heights = 0;
         int windows = 0;
-        sample_species(&sampled, test_species_names[s]);
-        const struct wd_tree_points *points = &sampled.points;
+        const struct wd_tree_points *points = &sampled_of(s)->points;
         mean_of(points, 0, POINTS, whole);
         variance_of(points, whole, variance);
         float area = points->leaf_area_m2 + points->wood_area_m2;
@@ -255,7 +265,6 @@ static void windows_keep_the_means(void **state)
          * are spread by place, less by height */
         bool hangs = strcmp(test_species_names[s], "willow") == 0;
         assert_true(heights < (hangs ? 0.15 : 0.1) * windows);
-        sampled_finish(&sampled);
     }
 }
 
@@ -326,28 +335,26 @@ static void cover(const struct sampled *sampled, size_t first, size_t count, dou
 static void few_discs_show_open_wood(void **state)
 {
     (void)state;
-    struct sampled sampled;
-    sample_species(&sampled, "oak");
-    fit_gains(&sampled);
+    struct sampled *oak = sampled_of(0);
+    assert_string_equal(oak->species.name, "oak");
+    fit_gains(oak);
     for (int side = 0; side < 2; side++) {
-        assert_true(sampled.fits.wood_light.gains[side][4] < 0.95f);
-        assert_float_equal(sampled.fits.thin[side], 1, 0.1f);
+        assert_true(oak->fits.wood_light.gains[side][4] < 0.95f);
+        assert_float_equal(oak->fits.thin[side], 1, 0.1f);
     }
-    sampled_finish(&sampled);
 }
 
 static void discs_cover_what_the_mesh_covers(void **state)
 {
     (void)state;
     for (int s = 0; s < MANY_LEAVES; s++) {
-        struct sampled sampled;
-        sample_species(&sampled, test_species_names[s]);
-        fit_gains(&sampled);
+        struct sampled *sampled = sampled_of(s);
+        fit_gains(sampled);
         for (size_t count = 64; count <= POINTS; count *= 4) {
             double discs = 0, mesh = 0;
             for (size_t window = 0; window < 4 && (window + 1) * count <= POINTS; window++) {
                 double one, other;
-                cover(&sampled, window * count, count, &one, &other);
+                cover(sampled, window * count, count, &one, &other);
                 discs += one;
                 mesh += other;
             }
@@ -356,7 +363,6 @@ static void discs_cover_what_the_mesh_covers(void **state)
                 fail_msg("%s, %zu points: %.0f pixels, the mesh covers %.0f",
                          test_species_names[s], count, discs, mesh);
         }
-        sampled_finish(&sampled);
     }
 }
 
@@ -584,5 +590,5 @@ int main(void)
         cmocka_unit_test(models_tell_how_their_leaves_stand),
         cmocka_unit_test(broken_meshes_give_none_or_few),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, finish_samples);
 }
