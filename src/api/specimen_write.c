@@ -63,7 +63,7 @@ static uint32_t model_of(const struct scene_export *export, const struct wd_tree
 }
 
 static enum wd_result grow_models(struct scene_export *export, const struct wd_progress *progress,
-                        const struct wd_log *log)
+                                  const struct wd_log *log)
 {
     const struct wd_scene *scene = &export->forest->scene;
     for (uint32_t i = 0; i < export->model_count; i++) {
