@@ -84,8 +84,9 @@ static void add(struct sum *sum, const struct wd_picture *picture, size_t pixel)
     sum->pixels++;
 }
 
+/* `most`: of red and green, and of blue. */
 static void check_light(const char *part, const struct sum *drawn, const struct sum *traced,
-                        double most)
+                        double most, double most_blue)
 {
     for (size_t k = 0; k < 3; k++) {
         double ratio = drawn->light[k] / drawn->pixels * traced->pixels / traced->light[k];
@@ -94,7 +95,8 @@ static void check_light(const char *part, const struct sum *drawn, const struct 
                       : k == 1 ? "green"
                                : "blue",
                       ratio);
-        assert_true(ratio > 1 / most && ratio < most);
+        double bound = k == 2 ? most_blue : most;
+        assert_true(ratio > 1 / bound && ratio < bound);
     }
 }
 
@@ -128,7 +130,7 @@ static void a_dark_floor_is_as_bright_as_traced(void **state)
         wd_picture_finish(&picture);
         wd_picture_finish(&truth);
     }
-    check_light("floor of a dark stand", &drawn, &traced, 1.15);
+    check_light("floor of a dark stand", &drawn, &traced, 1.15, 1.15);
     painters_finish(&painters);
 }
 
@@ -158,14 +160,14 @@ static void look_at_crowns(const struct stand *stand, struct sum *drawn, struct 
     painters_finish(&painters);
 }
 
-/* 1.04 to 1.08 of the traced, 1.21 in blue, most of which wax mirrors; 1.20 in red if leaves let through a share of the side that is seen
- * and what lies lower in crowns is lit as what lies higher. */
+/* 1.05 to 1.08 of the traced, 1.21 in blue, most of which wax mirrors; 1.20 in red if leaves let through a share of the
+ * side that is seen * and what lies lower in crowns is lit as what lies higher. */
 static void crowns_from_within_are_as_bright_as_traced(void **state)
 {
     (void)state;
     struct sum drawn = {0}, traced = {0};
     look_at_crowns(&dark, &drawn, &traced);
-    check_light("crowns of a dark stand", &drawn, &traced, 1.24);
+    check_light("crowns of a dark stand", &drawn, &traced, 1.13, 1.24);
 }
 
 /* 1.002; 0.978 if discs are as large from below as from above. */
@@ -204,7 +206,7 @@ static void haze_within_a_stand_is_as_dark_as_traced(void **state)
         wd_picture_finish(&picture);
         wd_picture_finish(&truth);
     }
-    check_light("haze within a dark stand", &drawn, &traced, 1.3);
+    check_light("haze within a dark stand", &drawn, &traced, 1.3, 1.3);
     painters_finish(&painters);
 }
 
@@ -222,7 +224,7 @@ static void haze_between_stands_is_as_bright_as_traced(void **state)
     look(&painters, &camera, &picture, &truth);
     add_far(&drawn, &picture, 300, 1500);
     add_far(&traced, &truth, 300, 1500);
-    check_light("haze over a lake", &drawn, &traced, 1.25);
+    check_light("haze over a lake", &drawn, &traced, 1.25, 1.25);
     wd_picture_finish(&picture);
     wd_picture_finish(&truth);
     painters_finish(&painters);

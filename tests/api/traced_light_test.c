@@ -102,7 +102,7 @@ static const char *const STAND = "26,30,tree,14\n34,30,tree,15\n26,38,tree,13\n3
 #define AS_CARDS "\"quality\": {\"mesh_distance_m\": 0, \"reduced_distance_m\": 0}"
 #define FROM_AFAR "\"position_m\": [30, -30, 8], \"look_at_m\": [30, 30, 8], \"fov_deg\": 20"
 
-/* Under a low sun: +11 %, nine less with what grass sends up. */
+/* Under a low sun: +11 %; with what grass sends up nine less (measured when it was +5). */
 static void snow_lights_trees_from_below(void **state)
 {
     (void)state;
@@ -113,7 +113,8 @@ static void snow_lights_trees_from_below(void **state)
     assert_true(found.trees_pct > 5 && found.trees_pct < 15);
 }
 
-/* Maples in October, under clouds: +7 %, and five less where those of open stands scattered as an even layer of leaves. */
+/* Maples in October, under clouds: +7 %; where those of open stands scatter as an even layer of leaves five less (measured
+ * when it was +2). */
 static void pale_leaves_light_each_other(void **state)
 {
     (void)state;

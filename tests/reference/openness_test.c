@@ -1,5 +1,6 @@
 /* The openness to the sky that trees carry (tree/density.h) against rays through their full mesh. */
 #include <math.h>
+#include <string.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -154,7 +155,8 @@ static void crowns_shade_themselves_as_rays_say(void **state)
     for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++)
         for (int open = 0; open <= 1; open++) {
             struct found found = measure(bounds[i].name, (float)open);
-            assert_true(fabs(found.bias) < 0.035);
+            /* birches of few leaves, many of which stand for several */
+            assert_true(fabs(found.bias) < (strcmp(bounds[i].name, "birch") ? 0.03 : 0.035));
             assert_true(found.rms < bounds[i].error);
             assert_true(found.correlation > bounds[i].correlation);
         }

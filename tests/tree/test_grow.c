@@ -284,8 +284,9 @@ static void reduced_mesh_keeps_area_and_coverage(void **state)
                 double two = coverage(reduced, &species, model.height_m, azimuth, up);
                 print_message("%s open %d view %d: reduced covers %+.1f%%\n",
                               test_species_names[s], open, view, 100 * (two / one - 1));
-                /* 6.7 % for a spruce of a stand, whose crown is 4.3 m wide: reduced shoots stand out */
-                assert_float_equal(two / one, 1, 0.07);
+                /* of a spruce of a stand, whose crown is 4.3 m wide, reduced shoots stand out: 6.7 % */
+                bool narrow = strcmp(test_species_names[s], "spruce") == 0 && !open;
+                assert_float_equal(two / one, 1, narrow ? 0.07 : 0.055);
             }
             wd_tree_model_finish(&model);
         }
