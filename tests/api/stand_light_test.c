@@ -161,7 +161,7 @@ static void look_at_crowns(const struct stand *stand, struct sum *drawn, struct 
 }
 
 /* 1.05 to 1.08 of the traced, 1.21 in blue, most of which wax mirrors; 1.20 in red if leaves let through a share of the
- * side that is seen * and what lies lower in crowns is lit as what lies higher. */
+ * side that is seen and what lies lower in crowns is lit as what lies higher. */
 static void crowns_from_within_are_as_bright_as_traced(void **state)
 {
     (void)state;

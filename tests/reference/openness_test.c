@@ -1,10 +1,10 @@
 /* The openness to the sky that trees carry (tree/density.h) against rays through their full mesh. */
 #include <math.h>
-#include <string.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 #include <embree3/rtcore.h>
