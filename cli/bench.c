@@ -324,9 +324,12 @@ static enum wd_result run_scene(struct bench *bench, const char *path, const cha
     double begin_s = cli_seconds();
     enum wd_result result = wd_forest_create(&stage.forest, &params);
     stage.start_s = cli_seconds() - begin_s;
-    stage.forest_key = result == WD_OK ? wd_forest_key(stage.forest) : 0;
-    if (result == WD_OK && !bench_results_fit(&stage))
-        result = WD_ERROR_INPUT;
+    if (result == WD_OK) {
+        stage.forest_key = wd_forest_key(stage.forest);
+        stage.reference_key = wd_reference_key(stage.forest);
+        if (!bench_results_fit(&stage))
+            result = WD_ERROR_INPUT;
+    }
     if (result == WD_OK && !everything_known(bench, stage.forest, label)) {
         result = open_renderer(&stage);
         if (result == WD_OK)

@@ -89,7 +89,7 @@ struct bench_stage {
     struct bench *bench;
     const char *scene; /* label in the results */
     struct wd_forest *forest;
-    uint64_t forest_key;
+    uint64_t forest_key, reference_key;
     struct wd_renderer *renderer;
     struct wd_reference *reference; /* NULL until a picture of it is needed */
     double start_s;

@@ -130,7 +130,7 @@ static char *truth_path(const struct bench_stage *stage, const char *name,
              camera->position_m[1], camera->position_m[2], camera->yaw_rad, camera->pitch_rad,
              camera->fov_rad, params->bounces, params->time_s);
     return bench_path(stage->bench, "reference/%s-%s-%016llx-%ux%u-%u-%u.exr", stage->scene, name,
-                      (unsigned long long)cli_key_text(stage->forest_key, text), params->width,
+                      (unsigned long long)cli_key_text(stage->reference_key, text), params->width,
                       params->height, params->samples, params->stream);
 }
 

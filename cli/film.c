@@ -122,7 +122,7 @@ static uint64_t film_key(const struct cli_film *film, uint64_t key)
 static enum wd_result take_kept(struct cli_film *film, const struct cli_painter *painter)
 {
     uint64_t key = painter->renderer ? wd_renderer_key(painter->renderer)
-                                     : wd_forest_key(film->forest), before;
+                                     : wd_reference_key(film->forest), before;
     enum wd_result result = wd_film_keep(film->output, film_key(film, key), film->frame_count);
     do {
         before = film->frames_done;

@@ -54,6 +54,10 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
                                    const struct wd_reference_picture_params *params,
                                    struct wd_picture *picture);
 
+/* wd_forest_key without settings of methods (methods.* of struct wd_forest_params), which change no
+ * path-traced picture. Thread-safe. */
+uint64_t wd_reference_key(const struct wd_forest *forest);
+
 /* Of the newest picture. */
 struct wd_reference_stats {
     uint64_t rays;

@@ -10,11 +10,12 @@ struct wd_forest {
     struct wd_world world;
     struct wd_log log;
     uint64_t key; /* of scene and species files and settings, as they were when they were read */
+    uint64_t methods_key; /* of settings of methods, which are not in `key` */
 };
 
 /* A number for weald's own sources. */
 uint64_t wd_code_key(void);
-/* Sets forest->key from the files that its scene was just loaded from. */
+/* Sets the forest's keys from the files that its scene was just loaded from. */
 bool wd_forest_key_files(struct wd_forest *forest, const struct wd_forest_params *params);
 
 #endif

@@ -47,8 +47,12 @@ bool wd_forest_key_files(struct wd_forest *forest, const struct wd_forest_params
     bool ok = add_file(&key, params->scene_path, &forest->log);
     for (size_t i = 0; ok && i < scene->species_file_count; i++)
         ok = add_file(&key, scene->species_files[i].value, &forest->log);
-    for (size_t i = 0; params->settings && params->settings[i]; i++)
-        key = text_key(key, params->settings[i]);
+    forest->methods_key = 0;
+    for (size_t i = 0; params->settings && params->settings[i]; i++) {
+        const char *setting = params->settings[i];
+        uint64_t *of = strncmp(setting, "methods.", 8) == 0 ? &forest->methods_key : &key;
+        *of = text_key(*of, setting);
+    }
     forest->key = key;
     return ok;
 }
@@ -92,7 +96,7 @@ static uint64_t world_key(uint64_t key, const struct wd_world *world)
                      sizeof *world->sky.rgb);
 }
 
-uint64_t wd_forest_key(const struct wd_forest *forest)
+uint64_t wd_reference_key(const struct wd_forest *forest)
 {
     const struct wd_scene *scene = &forest->scene;
     uint64_t key = world_key(forest->key ^ WD_CODE_KEY, &forest->world);
@@ -105,4 +109,10 @@ uint64_t wd_forest_key(const struct wd_forest *forest)
                             3 * (size_t)species->clip->volume.vertex_count, sizeof(float));
     }
     return key;
+}
+
+uint64_t wd_forest_key(const struct wd_forest *forest)
+{
+    uint64_t key = wd_reference_key(forest);
+    return XXH64(&forest->methods_key, sizeof forest->methods_key, key);
 }

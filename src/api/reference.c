@@ -136,7 +136,7 @@ static uint64_t picture_key(const struct work *work)
                               work->tracer.bounces, work->params->stream, work->params->places,
                               (double)work->job.view.lens_m,
                               (double)work->job.view.focus_m};
-    uint64_t key = wd_forest_key(work->reference->forest);
+    uint64_t key = wd_reference_key(work->reference->forest);
     key = XXH64(&work->frame, sizeof work->frame, key);
     key = XXH64(numbers, sizeof numbers, key);
     for (uint32_t i = 0; i < models->count; i++) {

@@ -17,32 +17,30 @@ pops() {
     mv "$dir/reference" "$truths"
 }
 
-# trees that vanish at once pop more than those that fade away: both beside the truth in which they fade
-grove=$root/tests/cli/grove.json
-vanish() {
-    pops "$1" "$grove" grove --methods patch --set "layers.0.fade_far_m=[$2]"
-    step=$(jq '[.rows[] | .popping_p999_pct] | add' "$dir/results.json")
-}
-vanish faded 15,45
-faded=$step
-vanish at-once 30,30.01
-check "popping: $step at once, $faded faded" jq -ne "$step > 1.3 * $faded and $faded > 0"
-
 # One oak that a boundary passes over while the eye comes nearer: the step is told for that boundary and no
 # other, and is larger where levels change at once.
 oak=$root/tests/forest/one.json
+grove=$root/tests/cli/grove.json
 steps() {
     name=$1
     shift
     pops "$name" "$oak" oak --set cameras.0.fov_deg=30 "$@"
     found=$(jq -c '.rows[0] | [.step_full_reduced_pct, .step_reduced_billboard_pct,
         .step_full_billboard_pct, .step_billboard_canopy_pct]' "$dir/results.json")
+    over_all=$(jq '.rows[0].popping_p999_pct' "$dir/results.json")
 }
 
-# boundary WHAT INDEX RATIO HARD SOFT: the step at INDEX, alone, and RATIO times the soft one's
+hard() {
+    hard=$found
+    hard_over_all=$over_all
+}
+
+# boundary WHAT INDEX RATIO HARD SOFT: the step at INDEX, alone, and RATIO times the soft one's; over all
+# more changes at once, too
 boundary() {
     check "$1: only there: $4" jq -ne "[$4 | to_entries[] | select(.value != null) | .key] == [$2]"
     check "$1: a step of $4 at once, $5 blended" jq -ne "$4[$2] > 0.5 and $4[$2] > $3 * $5[$2]"
+    check "$1: over all $hard_over_all at once, $over_all blended" jq -ne "$hard_over_all > $over_all"
 }
 
 steps lod-full --methods lod --set methods.lod.full_m=50 --set methods.lod.reduced_m=100 \
@@ -53,14 +51,14 @@ check "lod, full to reduced: only there: $found" \
 near='--methods lod --set methods.lod.full_m=5 --set methods.lod.reduced_m=50'
 # shellcheck disable=SC2086
 steps lod-hard $near --set methods.lod.faithful=true
-hard=$found
+hard
 # shellcheck disable=SC2086
 steps lod-soft $near
 boundary 'lod, reduced to billboard' 1 2 "$hard" "$found"
 
 steps patch-hard --methods patch --set methods.patch.near_begin_m=49.9 \
     --set methods.patch.near_end_m=50 --set quality.mesh_distance_m=5
-hard=$found
+hard
 steps patch-soft --methods patch --set methods.patch.near_begin_m=44 \
     --set methods.patch.near_end_m=50 --set quality.mesh_distance_m=5
 boundary 'patch, reduced to billboard' 1 4 "$hard" "$found"
@@ -69,7 +67,7 @@ full='--methods dissolve --set methods.dissolve.billboard_m=49.4 --set methods.d
     --set methods.dissolve.leaves_begin_m=200 --set methods.dissolve.leaves_end_m=300'
 # shellcheck disable=SC2086
 steps dissolve-hard $full --set methods.dissolve.overlap_m=0.01
-hard=$found
+hard
 # shellcheck disable=SC2086
 steps dissolve-soft $full --set methods.dissolve.overlap_m=8
 boundary 'dissolve, full to billboard' 2 1.3 "$hard" "$found"
