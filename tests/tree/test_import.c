@@ -395,14 +395,18 @@ static void places_in_text_are_exact(void **state)
     setlocale(LC_NUMERIC, "C");
     char *text = malloc(MOST);
     text[read_whole("far.obj", text, MOST - 1)] = '\0';
-    const char *line = strstr(text, "\nv ");
-    for (uint32_t i = 0; i < model.full.vertex_count; i++, line = strstr(line + 1, "\nv ")) {
-        assert_non_null(line);
-        char *rest; /* sscanf would go to the text's end for each line */
-        double x = strtod(line + strlen("\nv "), &rest), y = strtod(rest, NULL);
-        assert_float_equal(x, 1234.5 + (double)model.full.vertices[i].position_m[0], 6e-5);
-        assert_float_equal(y, (double)model.full.vertices[i].position_m[2], 6e-5);
+    uint32_t count = 0;
+    for (char *line = text, *end; count < model.full.vertex_count && (end = strchr(line, '\n')); line = end + 1) {
+        *end = '\0'; /* what looks for the end of a string would go to the text's for each line */
+        if (strncmp(line, "v ", 2) != 0)
+            continue;
+        const struct wd_tree_vertex *vertex = &model.full.vertices[count++];
+        char *rest;
+        double x = strtod(line + 2, &rest), y = strtod(rest, NULL);
+        assert_float_equal(x, 1234.5 + (double)vertex->position_m[0], 6e-5);
+        assert_float_equal(y, (double)vertex->position_m[2], 6e-5);
     }
+    assert_int_equal(count, model.full.vertex_count);
     free(text);
     wd_tree_model_finish(&model);
     wd_arena_finish(&arena);
