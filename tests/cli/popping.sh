@@ -52,8 +52,10 @@ near='--methods lod --set methods.lod.full_m=5 --set methods.lod.reduced_m=50'
 # shellcheck disable=SC2086
 steps lod-hard $near --set methods.lod.faithful=true
 hard
+traced=$(ls "$truths" | wc -l)
 # shellcheck disable=SC2086
 steps lod-soft $near
+check 'settings of methods ask for no truth of their own' [ "$(ls "$truths" | wc -l)" -eq "$traced" ]
 boundary 'lod, reduced to billboard' 1 2 "$hard" "$found"
 
 steps patch-hard --methods patch --set methods.patch.near_begin_m=49.9 \
