@@ -33,18 +33,30 @@ float slenderness(wd_crown crown)
     return smoothstep(1.5, 3.2, crown.radii_m.z / crown.radii_m.x);
 }
 
-/* Leaves that the eye sees from the sun's side are those that the sun reaches: the nearer both
- * directions, the fewer shaded leaves are seen (Kuusk 1985). From above, most of the others lie in the
- * shade of neighbours; a forest's edge, seen level, has few. The deeper crowns are for their width, the
- * more they shade one another and the more of a slanting view that takes (Li and Strahler 1992). Factors
- * on the light that an even cloud of leaves would return, set by the path tracer's curves over closed
- * stands of beech and spruce (docs/lighting.md). */
-float sunlit_seen(vec3 eye, wd_crown crown)
+/* Herbs have no table of what their leaves send to an eye: those that it sees from the sun's side are those that the sun
+ * reaches, the nearer both directions, the more so (Kuusk 1985). A factor on the light that an even cloud of leaves
+ * would return. */
+float herbs_sunlit(vec3 eye)
 {
-    float apart = angle_of(dot(eye, frame.sun_direction)), slender = slenderness(crown);
-    float wide = mix(0.95, mix(0.36, 0.24, slender), smoothstep(0.0, 0.64, eye.z));
-    float hot = mix(mix(0.4, 2.2, slender), 2.8, smoothstep(0.2, 1.05, eye.z));
+    float apart = angle_of(dot(eye, frame.sun_direction));
+    float wide = mix(0.95, 0.36, smoothstep(0.0, 0.64, eye.z)), hot = mix(0.4, 2.8, smoothstep(0.2, 1.05, eye.z));
     return wide + hot * exp(-1.9 * apart);
+}
+
+/* Of trees in closed stands an eye sees the tops, and neighbours' shade where the sun does not come from behind it: so
+ * much of what a model's table says of the whole tree. The sides of slender crowns that face away from the sun lie in one
+ * another's shade (Li and Strahler 1992). By path-traced stands of five species under suns of 20 and 50 degrees, seen
+ * from nine sides (docs/lighting.md). */
+float stand_sunlit(vec3 eye, wd_crown crown)
+{
+    float apart = angle_of(dot(eye, frame.sun_direction));
+    vec2 sunward = frame.sun_direction.xy * inversesqrt(max(dot(frame.sun_direction.xy, frame.sun_direction.xy), 1e-6));
+    float above = smoothstep(0.8, 0.98, eye.z), low_sun = 1.0 - smoothstep(0.3, 0.8, frame.sun_direction.z);
+    float dark = smoothstep(0.35, -0.35, dot(eye.xy, sunward)) * smoothstep(0.6, 0.95, eye.z);
+    float hot = mix(mix(0.75, 0.83, smoothstep(0.5, 0.8, eye.z)), 0.7, low_sun);
+    float seen = mix(hot, mix(0.63, 0.67, low_sun), smoothstep(0.2, 1.4, apart)) * mix(1.0, mix(1.18, 1.5, low_sun), above);
+    seen *= mix(1.25, 1.0, smoothstep(0.1, 0.45, eye.z));
+    return seen * (1.0 - 0.6 * slenderness(crown) * dark);
 }
 
 #include "lib/lit_leaves.glsl"
@@ -316,6 +328,10 @@ const float LOW_SKY_CLOUD = 0.11;
  * species, which had 0.89 to 1.06 of it. */
 const float SKY_OVER_TABLE = 1.07;
 
+/* Between slender crowns of a stand an eye looks down to their lower parts, which one place for all of a card does not
+ * tell: share of the sky's light. By path-traced stands of spruces, birches and pines under clouds. */
+const float SLENDER_SKY = 0.8;
+
 float brighter_low_sky()
 {
     float level = frame.sky_form[0].y + frame.sky_form[3].y + frame.sky_form[6].y;
@@ -330,8 +346,8 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
 {
     bool one_leaf = ALL_SINGLE || pixel.lit >= 0.0;
     float over = pow(canopy_above(shelter.layer_m, place.rel.z - crown.foot_z), NEIGHBOURS_OVER);
-    float from_above = smoothstep(0.15, 0.5, -pixel.direction.z) * (1.0 - shelter.within);
-    from_above *= one_leaf ? has_table(crown) : 0.0;
+    float from_above = smoothstep(0.15, 0.45, -pixel.direction.z) * (1.0 - shelter.within);
+    from_above *= has_table(crown);
     float hidden = mix(1.0, over, from_above);
     alone.sides = exp2(hidden * log2(max(alone.beside, 1e-3)));
     alone.high = exp2(hidden * log2(max(alone.high, 1e-3)));
@@ -342,6 +358,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.lets.xy *= 1.0 + alone.share * low_sky * brighter_low_sky();
     alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, alone.share * is_tree(crown));
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown).y, alone.share) : 1.0;
+    alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
     alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown) * (1.0 - alone.beneath));
 }
@@ -362,7 +379,7 @@ void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float open
     wd_crown_way way = crown_way(crown, place.rel);
     float path_m = way.ends_m - way.begins_m;
     float through = wd_crown_through(crown.radii_m, path_m, openness);
-    place.own = mix(through, wd_crown_lit(through, curve.x, curve.y) * factor, free);
+    place.own = mix(through, wd_crown_lit(through, curve.x, curve.y) * factor, has_table(crown));
     float left_m = max(way.ends_m, crown_card_m(crown, place.rel)); /* all of the tree itself */
     place.ahead_m = mix(path_m, left_m, free) + cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
 }
@@ -513,10 +530,8 @@ void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, float
         place.reflects = mix(vec3(1.0), paler, lower.y) * all;
         place.reflects_sky = mix(vec3(1.0), paler, lower.z) * all;
         vec3 through = mix(paler * through_below, vec3(1.0), upper) * all;
-        place.reflects *= mix(1.0 / place.reflects.g, 1.0, free);
-        place.reflects_sky *= mix(1.0 / place.reflects_sky.g, 1.0, free);
-        place.transmittance *= through * mix(as_seen / through.g, 1.0, free);
-        place.waxed_lit = mix(place.waxed_lit, 1.0 - lower.yz, free);
+        place.transmittance *= through;
+        place.waxed_lit = 1.0 - lower.yz;
     } else {
         place.transmittance *= as_seen;
     }
@@ -602,7 +617,8 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     bool reduced = !card && pixel.lit < 0.0 && !pictured;
     plain = max(plain, reduced ? MESH_SINGLE * fine * is_tree(crown) : 0.0);
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), max(near, plain));
-    place.sides = mix(mix(blades * sunlit_seen(eye, crown), sunlit, free), blades, mapped);
+    vec2 whole = mix(even * herbs_sunlit(eye), sunlit * mix(stand_sunlit(eye, crown), 1.0, free), has_table(crown));
+    place.sides = mix(whole, blades, mapped);
     place.transmittance = leaf_transmittance(model);
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
     place.body = 1.0 - WAX_CLOUD * place.waxed * (1.0 - sward);
@@ -616,7 +632,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     vec2 wax = unpackHalf2x16(model.cloud_wax);
     float mirrors = WD_WAX * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
-    place.gloss = mix(place.gloss, shines * mirrors * (place.sides.x + place.sides.y), free);
+    place.gloss = mix(place.gloss, shines * mirrors * (place.sides.x + place.sides.y), has_table(crown));
     place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), free);
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
@@ -690,11 +706,10 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
             place = leaf_place(pixel, crown, model, alone.share, sunlit, hot, cascade);
         else
             place = wood_place(pixel, crown, unpackHalf2x16(model.sun_curve), alone.share, sunlit, cascade);
-        facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction),
-                     alone.share * place.cloud);
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, pixel.rel.z - crown.foot_z);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
         light_past_neighbours(alone, pixel, crown, model, shelter, place);
+        facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction), alone.share * place.cloud);
     } else {
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, 0.0);
         vec4 low = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);

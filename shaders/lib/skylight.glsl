@@ -303,7 +303,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
      * crowns from within. What an eye over the stand sees of upright faces looks out of a gap. */
     float own = min(mean * exp2(-shelter.under), 1.0), own4 = own * own * own * own;
     float up_to = looks_up(-eye_z), low = mix(0.40, 0.33, up_to);
-    float upright = mix(low + (0.85 - low) * own + 0.15 * own4, 1.0, smoothstep(0.15, 0.5, eye_z));
+    float upright = mix(low + (0.85 - low) * own + 0.15 * own4, 1.0, max(smoothstep(0.15, 0.5, eye_z), 0.35 * (1.0 - shelter.within)));
     float near = mix(1.0, NEXT_LEAVES, alone.leaf * up_to);
     vec3 gain = mix(vec3(1.0), exp2((s - 1.0) * log2(mean)), near);
     gain = mix(gain, max(gain, alone.again), alone.leaf); /* of its own crown where the stand is open */
