@@ -488,6 +488,15 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.ahead_m = mix(ahead_m, pixel_m, known);
 }
 
+/* A leaf that an eye below sees from the side that the sun reaches is tilted from both: others next to it, and its own
+ * folds and arch, which neither maps nor its tree's ways tell, leave it less of the sun, the least against the light. By
+ * path-traced oaks, beeches, birches and spruces whose upper sides alone reflect. */
+float lit_side_from_below(vec3 eye, wd_crown crown)
+{
+    float below = smoothstep(0.3, -0.1, eye.z) * is_tree(crown);
+    return mix(1.0, mix(0.66, 0.38, smoothstep(0.5, -0.7, dot(eye, frame.sun_direction))), below);
+}
+
 /* A disc of a leaf is lit as the leaf that it is. */
 void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float free, vec2 sun,
                 uint cascade)
@@ -498,10 +507,11 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.normal = pixel.normal;
     place.cloud = 0.0;
     float cosine = dot(pixel.normal, frame.sun_direction);
-    place.sides = vec2(max(cosine, 0.0), max(-cosine, 0.0));
+    float from_below = lit_side_from_below(-pixel.direction, crown);
+    place.sides = vec2(max(cosine, 0.0) * from_below, max(-cosine, 0.0));
     place.waxed = pixel.above;
     place.body = 1.0 - pixel.above * (1.0 - crown.sward) * wd_grazing(abs(dot(pixel.normal, pixel.direction)));
-    place.gloss = leaf_coat(pixel.normal, -pixel.direction, leaf_roughness(model)) * pixel.above;
+    place.gloss = leaf_coat(pixel.normal, -pixel.direction, leaf_roughness(model)) * pixel.above * from_below;
     place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), leaf_roughness(model));
 }
 

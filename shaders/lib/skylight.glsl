@@ -305,7 +305,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     float up_to = looks_up(-eye_z), low = mix(0.40, 0.33, up_to);
     float upright = mix(low + (0.85 - low) * own + 0.15 * own4, 1.0, max(smoothstep(0.15, 0.5, eye_z), 0.35 * (1.0 - shelter.within)));
     float near = mix(1.0, NEXT_LEAVES, alone.leaf * up_to);
-    vec3 gain = mix(vec3(1.0), exp2((s - 1.0) * log2(mean)), near);
+    vec3 gain = 1.0 + (exp2((s - 1.0) * log2(mean)) - 1.0) * (near * out_of_crowns(s, mean));
     gain = mix(gain, max(gain, alone.again), alone.leaf); /* of its own crown where the stand is open */
     vec3 sky = reach * gain * mix(upright, 1.0, abs(n.z));
     vec4 bright = quarters_bright(), faced = faced_quarters(n.xy);

@@ -126,7 +126,7 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
     vec3 normal = splat_normal(disc);
     float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
     float open = wd_disc_open(seen, WD_TREE_CLOSE(tree));
-    float share = (wood ? max(facing, 0.0) : 2.0 * abs(facing)) * open;
+    float share = (wood ? max(facing, 0.0) : 2.0 * max(facing * WD_TREE_UPPER(tree), -facing)) * open;
     float radius = (wood ? tree.wood_radius : tree.radius) * inverse * sqrt(share);
     vec2 center = (clip.xy * inverse * 0.5 + 0.5) * vec2(view.width, view.height);
     wd_outline outline = disc_outline(radius);
