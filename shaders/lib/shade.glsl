@@ -46,16 +46,16 @@ float herbs_sunlit(vec3 eye)
 /* Of trees in closed stands an eye sees the tops, and neighbours' shade where the sun does not come from behind it: so
  * much of what a model's table says of the whole tree. The sides of slender crowns that face away from the sun lie in one
  * another's shade (Li and Strahler 1992). By path-traced stands of five species under suns of 20 and 50 degrees, seen
- * from nine sides (docs/lighting.md). */
+ * from eleven angles (docs/lighting.md). */
 float stand_sunlit(vec3 eye, wd_crown crown)
 {
     float apart = angle_of(dot(eye, frame.sun_direction));
-    vec2 sunward = frame.sun_direction.xy * inversesqrt(max(dot(frame.sun_direction.xy, frame.sun_direction.xy), 1e-6));
+    vec2 sunward = normalize(frame.sun_direction.xy + 1e-6);
     float above = smoothstep(0.8, 0.98, eye.z), low_sun = 1.0 - smoothstep(0.3, 0.8, frame.sun_direction.z);
-    float dark = smoothstep(0.35, -0.35, dot(eye.xy, sunward)) * smoothstep(0.6, 0.95, eye.z);
+    float dark = (1.0 - smoothstep(-0.35, 0.35, dot(eye.xy, sunward))) * smoothstep(0.6, 0.95, eye.z);
     float hot = mix(mix(0.75, 0.83, smoothstep(0.5, 0.8, eye.z)), 0.7, low_sun);
-    float seen = mix(hot, mix(0.63, 0.67, low_sun), smoothstep(0.2, 1.4, apart)) * mix(1.0, mix(1.18, 1.5, low_sun), above);
-    seen *= mix(1.25, 1.0, smoothstep(0.1, 0.45, eye.z));
+    float seen = mix(hot, mix(0.63, 0.67, low_sun), smoothstep(0.2, 1.4, apart));
+    seen *= mix(1.0, mix(1.18, 1.5, low_sun), above) * mix(1.25, 1.0, smoothstep(0.1, 0.45, eye.z));
     return seen * (1.0 - 0.6 * slenderness(crown) * dark);
 }
 
@@ -330,7 +330,7 @@ const float SKY_OVER_TABLE = 1.07;
 
 /* Between slender crowns of a stand an eye looks down to their lower parts, which one place for all of a card does not
  * tell: share of the sky's light. By path-traced stands of spruces, birches and pines under clouds. */
-const float SLENDER_SKY = 0.8;
+const float SLENDER_SKY = 0.88;
 
 float brighter_low_sky()
 {
@@ -370,9 +370,9 @@ vec4 leaves_seen(vec3 eye)
     return vec4(0.6 * eye.xy, z, max(0.45 - z * z, 0.0));
 }
 
-/* What a tree's own leaves leave of the sun, by depth in the crown, behind which the map is then asked. Of
- * trees that stand free what is left to places is known (wd_crown_lit), with a factor of the model's
- * own; in closed stands, where crowns reach into one another, depth alone is right. */
+/* What a tree's own leaves leave of the sun, by depth in the crown, behind which the map is then asked. What is left to
+ * places of a model that has tables is known (wd_crown_lit), with a factor of the model's own; of herbs depth alone says
+ * it. */
 void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float openness, float free,
                     float factor, uint cascade)
 {
@@ -490,11 +490,13 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
 
 /* A leaf that an eye below sees from the side that the sun reaches is tilted from both: others next to it, and its own
  * folds and arch, which neither maps nor its tree's ways tell, leave it less of the sun, the least against the light. By
- * path-traced oaks, beeches, birches and spruces whose upper sides alone reflect. */
-float lit_side_from_below(vec3 eye, wd_crown crown)
+ * path-traced oaks, beeches, birches and spruces whose upper sides alone reflect; meshes, half of it, by stands from
+ * within. */
+float lit_side_from_below(vec3 eye, wd_crown crown, float of_mesh)
 {
-    float below = smoothstep(0.3, -0.1, eye.z) * is_tree(crown);
-    return mix(1.0, mix(0.66, 0.38, smoothstep(0.5, -0.7, dot(eye, frame.sun_direction))), below);
+    float below = (1.0 - smoothstep(-0.1, 0.3, eye.z)) * is_tree(crown) * (1.0 - 0.5 * of_mesh);
+    float with_light = smoothstep(-0.7, 0.5, dot(eye, frame.sun_direction));
+    return mix(1.0, mix(0.38, 0.66, with_light), below);
 }
 
 /* A disc of a leaf is lit as the leaf that it is. */
@@ -507,7 +509,7 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.normal = pixel.normal;
     place.cloud = 0.0;
     float cosine = dot(pixel.normal, frame.sun_direction);
-    float from_below = lit_side_from_below(-pixel.direction, crown);
+    float from_below = lit_side_from_below(-pixel.direction, crown, pixel.lit >= 1.0 ? 1.0 : 0.0);
     place.sides = vec2(max(cosine, 0.0) * from_below, max(-cosine, 0.0));
     place.waxed = pixel.above;
     place.body = 1.0 - pixel.above * (1.0 - crown.sward) * wd_grazing(abs(dot(pixel.normal, pixel.direction)));
@@ -520,12 +522,11 @@ const float SKY_SINE = 0.55;
 
 /* A pixel of many leaves has the mean colour of the sides that are seen. Of these, light from above is reflected for
  * the most part by upper ones, which are less pale, and comes through lower ones. By the albedo of a lower side goes
- * what it lets through, too, less the more it is the paler in green (look maps). What light stands have was fitted
- * by how green they are: this gives them its hue alone. */
-void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, float free)
+ * what it lets through, too, less the more it is the paler in green (look maps). */
+void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model)
 {
     vec3 paler = paler_below(model);
-    float through_below = 1.0 / max(paler.g, 1e-3), as_seen = mix(through_below, 1.0, place.waxed);
+    float through_below = 1.0 / max(paler.g, 1e-3);
     place.reflects = place.reflects_sky = vec3(1.0);
     place.waxed_lit = vec2(place.waxed);
     if (!ALL_SINGLE && pixel.lit < 0.0) {
@@ -534,7 +535,7 @@ void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, float
         bool any_way = (model.paler & WD_PALER_ANY_WAY) != 0u;
         vec3 lower = vec3(wd_lower_sides(level ? 0.0 : eye), wd_lower_sides(eye + sun), wd_lower_sides(eye + SKY_SINE));
         lower = any_way ? vec3(0.5) : lower;
-        place.waxed = any_way ? mix(place.waxed, 0.5, free) : place.waxed;
+        place.waxed = any_way ? 0.5 : place.waxed;
         float upper = any_way ? 0.5 : 1.0 / (1.0 + exp(3.0 * (sun - eye)));
         vec3 all = 1.0 / mix(vec3(1.0), paler, lower.x);
         place.reflects = mix(vec3(1.0), paler, lower.y) * all;
@@ -543,7 +544,7 @@ void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, float
         place.transmittance *= through;
         place.waxed_lit = 1.0 - lower.yz;
     } else {
-        place.transmittance *= as_seen;
+        place.transmittance *= mix(through_below, 1.0, place.waxed);
     }
 }
 
@@ -643,7 +644,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     vec2 wax = unpackHalf2x16(model.cloud_wax);
     float mirrors = WD_WAX * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
     place.gloss = mix(place.gloss, shines * mirrors * (place.sides.x + place.sides.y), has_table(crown));
-    place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), free);
+    place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), has_table(crown));
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
@@ -652,7 +653,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     vec2 in_stands = mix(vec2(1.0), STAND_DISC_SUN, is_tree(crown));
     vec2 on_discs = vec2(hot, sunlit.x) * mix(in_stands, vec2(free_disc_light(eye, crown).x, 1.0), free);
     light_disc(place, pixel, crown, model, free, on_discs, cascade);
-    tell_sides(place, pixel, model, free);
+    tell_sides(place, pixel, model);
     know_petals(place, pixel, model);
     return place;
 }

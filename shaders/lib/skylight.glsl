@@ -282,6 +282,10 @@ vec3 out_of_crowns(vec3 scatter, float mean)
  * stands, one of them in autumn. */
 const float NEXT_LEAVES = 1.8;
 
+/* An eye over a stand that looks at it level sees its edge, whose upright faces have so much of what those of a gap have
+ * over those within. By the path-traced overview of bench/light.json under clouds. */
+const float OF_EDGE = 0.35;
+
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
  * unit, where a ray of the eye goes on to from one leaf.
  * `past_trees`: the sun's share at the place. */
@@ -303,7 +307,8 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
      * crowns from within. What an eye over the stand sees of upright faces looks out of a gap. */
     float own = min(mean * exp2(-shelter.under), 1.0), own4 = own * own * own * own;
     float up_to = looks_up(-eye_z), low = mix(0.40, 0.33, up_to);
-    float upright = mix(low + (0.85 - low) * own + 0.15 * own4, 1.0, max(smoothstep(0.15, 0.5, eye_z), 0.35 * (1.0 - shelter.within)));
+    float out_of_gap = max(smoothstep(0.15, 0.5, eye_z), OF_EDGE * (1.0 - shelter.within));
+    float upright = mix(low + (0.85 - low) * own + 0.15 * own4, 1.0, out_of_gap);
     float near = mix(1.0, NEXT_LEAVES, alone.leaf * up_to);
     vec3 gain = 1.0 + (exp2((s - 1.0) * log2(mean)) - 1.0) * (near * out_of_crowns(s, mean));
     gain = mix(gain, max(gain, alone.again), alone.leaf); /* of its own crown where the stand is open */

@@ -10,6 +10,7 @@
 #include "picture_key.h"
 #include "tree/clip_mesh.h"
 #include "tree/import.h"
+#include "weald/reference.h"
 
 static const size_t MAX_TEXT_BYTES = (size_t)1 << 30;
 
