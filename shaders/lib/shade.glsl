@@ -628,7 +628,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     bool reduced = !card && pixel.lit < 0.0 && !pictured;
     plain = max(plain, reduced ? MESH_SINGLE * fine * is_tree(crown) : 0.0);
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), max(near, plain));
-    vec2 whole = mix(even * herbs_sunlit(eye), sunlit * mix(stand_sunlit(eye, crown), 1.0, free), has_table(crown));
+    vec2 whole = mix(blades * herbs_sunlit(eye), sunlit * mix(stand_sunlit(eye, crown), 1.0, free), has_table(crown));
     place.sides = mix(whole, blades, mapped);
     place.transmittance = leaf_transmittance(model);
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */

@@ -198,6 +198,19 @@ static void crowns_keep_their_cover_where_discs_follow_meshes(void **state)
     assert_true(fabs(found.cover_pct) < 6);
 }
 
+/* A beech's discs from below, the sun behind the eye and no sky: -3 %, and +13 where they show upper sides as they do from
+ * above, lit alike. */
+static void upper_sides_are_rare_from_below(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "beech", .trees = "30,30,tree,18\n", .size_m = "[60, 60]", .samples = 16,
+        .keys = "\"sun\": {\"azimuth_deg\": 270, \"elevation_deg\": 50}, \"sky\": {\"strength\": 0.0001}, "
+                "\"methods\": {\"continuum\": {\"near_px\": 1000}}",
+        .camera = "\"position_m\": [15, 30, 1.7], \"look_at_m\": [30, 30, 11], \"fov_deg\": 25"});
+    assert_true(fabs(found.trees_pct) < 8);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -211,6 +224,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(crowns_shade_the_haze_before_them),
         cmocka_unit_test(wide_views_show_all_of_trees_at_their_edges),
         cmocka_unit_test(crowns_keep_their_cover_where_discs_follow_meshes),
+        cmocka_unit_test(upper_sides_are_rare_from_below),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;
