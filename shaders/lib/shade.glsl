@@ -494,7 +494,7 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
  * within. */
 float lit_side_from_below(vec3 eye, wd_crown crown, float of_mesh)
 {
-    float below = (1.0 - smoothstep(-0.1, 0.3, eye.z)) * is_tree(crown) * (1.0 - 0.5 * of_mesh);
+    float below = (1.0 - smoothstep(-0.3, 0.0, eye.z)) * is_tree(crown) * (1.0 - 0.5 * of_mesh);
     float with_light = smoothstep(-0.7, 0.5, dot(eye, frame.sun_direction));
     return mix(1.0, mix(0.38, 0.66, with_light), below);
 }
