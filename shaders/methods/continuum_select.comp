@@ -413,8 +413,7 @@ void select_tree(uint index, float share, uint place)
     splats.first_wood = model_word(model_index, WD_WORD_WOOD_FIRST);
     splats.offset = (wd_hash_mix(random) * WD_WINDOW_STEP + frame.sample_index * uint(ceil(each)))
                     & (WD_STRATUM_SPLATS - 1u);
-    float upper = ORTHOGRAPHIC != 0u ? 1.0 : upper_share(model_index, toward.z);
-    splats.offset |= uint(upper * 255.0 + 0.5) << 16 | (wood ? 0x80000000u : 0u);
+    splats.offset |= uint(upper_share(model_index, toward.z) * 255.0 + 0.5) << 16 | (wood ? 0x80000000u : 0u);
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
     splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);
