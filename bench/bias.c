@@ -43,6 +43,7 @@ static const int stretches[BIAS_HEIGHTS] = {1, 2, 2, 4};
 static const int reference_zoom[BIAS_HEIGHTS] = {4, 8, 8, 8};
 /* Path-traced with one path through the middle of each pixel, so that few leave noise. */
 static const int traced_zoom[BIAS_HEIGHTS] = {2, 4, 8, 16};
+enum { QUICKER = 2 }; /* so much less fine are both where that is enough */
 static const int reference_shifts[BIAS_HEIGHTS] = {2, 1, 1, 1};
 static const int shifts[BIAS_HEIGHTS] = {1, 2, 4, 4}; /* squared: pictures a form */
 /* What small trees leave to chance is drawn anew in each sample of a picture, while the first samples of
@@ -139,6 +140,11 @@ static void keep_shown(struct bias_shown *shown, struct wd_picture *picture)
     wd_picture_finish(picture);
 }
 
+static int zoom_of(const struct bias_stand *stand, const int zooms[BIAS_HEIGHTS], int height)
+{
+    return stand->quick ? zooms[height] / QUICKER : zooms[height];
+}
+
 static bool show(struct bias_shown *shown, struct wd_renderer *renderer,
                  const struct wd_render_params *params)
 {
@@ -172,7 +178,7 @@ bool bias_trace_radiance(double *radiance, struct wd_reference *tracer,
     for (int i = 0; i < stretches[height]; i++) {
         struct bias_shown part;
         struct wd_render_params params =
-            view_of(stand, height, view, traced_zoom[height], i, 0, 0);
+            view_of(stand, height, view, zoom_of(stand, traced_zoom, height), i, 0, 0);
         if (!trace(&part, tracer, &params))
             return false;
         sum += part.radiance * part.covered;
@@ -204,7 +210,7 @@ static void add_reference(struct bias_shown *sum, struct bias_shown *part, int z
 bool bias_show_reference(struct bias_shown *sum, struct wd_renderer *renderer,
                          const struct bias_stand *stand, int height, int view)
 {
-    int side = reference_shifts[height], count = side * side, zoom = reference_zoom[height];
+    int side = reference_shifts[height], count = side * side, zoom = zoom_of(stand, reference_zoom, height);
     *sum = (struct bias_shown){0};
     for (int i = 0; i < count * stretches[height]; i++) {
         struct bias_shown part;

@@ -21,6 +21,7 @@ struct bias_stand {
     char folder[32], scene[64];
     double height_m, spacing_m;
     double width_m; /* of one tree, about */
+    bool quick;     /* a fourth of the samples that what is compared with has else */
 };
 
 /* What trees show in a picture: pixels and radiance. */

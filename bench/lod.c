@@ -108,6 +108,7 @@ static bool run_species(struct lod_bench *bench, const char *species)
     char path[300];
     snprintf(path, sizeof path, "species/%s.json", species);
     bool ok = bias_stand_init(&stand, path);
+    stand.quick = bench->choice->quick;
     for (int form = 0; form < BIAS_FORMS && ok; form++)
         if (form == 0 || bench->choice->forms >> form & 1)
             ok = run_form(bench, &stand, species, form);

@@ -10,6 +10,7 @@ struct lod_choice {
     unsigned forms;             /* bit i: bias_forms[i] */
     unsigned heights;           /* bit i: bias_height_px[i] */
     bool used;                  /* forms only where they are drawn by default */
+    bool quick;                 /* of bias_stand */
 };
 
 struct lod_case {

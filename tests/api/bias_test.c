@@ -65,6 +65,7 @@ static void measure_row(struct wd_renderer *renderer, const struct row *row)
     struct bias_shown reference;
     double drawn, traced;
     assert_true(bias_stand_init(&stand, row->species));
+    stand.quick = true;
     take(renderer, &stand, "reference", &forest);
     assert_true(bias_show_reference(&reference, renderer, &stand, row->height, FROM_ABOVE));
     assert_int_equal(wd_reference_create(&tracer, forest, &(struct wd_reference_params){0}), WD_OK);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { SAMPLES = 8 };
+enum { SAMPLES = 24 };
 
 static struct suite suite;
 static struct wd_picture sharp; /* as small.json says */
@@ -22,6 +22,7 @@ static struct wd_picture shot(const char *setting, const char *other,
     assert_int_equal(wd_renderer_set_forest(suite.renderer, forest), WD_OK);
     struct wd_render_params render = suite_params(forest, "walk");
     render.samples = SAMPLES;
+    render.method = "continuum";
     render.layers = WD_LAYER_COLOR | WD_LAYER_DISPLAY;
     render.previous_camera = previous;
     assert_int_equal(wd_renderer_render(suite.renderer, &render, &picture), WD_OK);
