@@ -406,8 +406,6 @@ static void the_same_picture_twice(void **state)
     wd_picture_finish(&other);
 }
 
-/* Trees stand where they stand whatever draws them: as much of the picture is covered by them as
- * octree covers, by the same trees. */
 /* Rays of a view that is nearly half a turn high fall by many metres a metre along its axis. Where they meet nothing
  * there is no water either: no part of the picture is left as the one before was. */
 static void the_widest_view_is_lit_all_over(void **state)
@@ -430,6 +428,8 @@ static void the_widest_view_is_lit_all_over(void **state)
     wd_picture_finish(&shown[1]);
 }
 
+/* Trees stand where they stand whatever draws them: as much of the picture is covered by them as
+ * octree covers, by the same trees. */
 static void methods_agree(void **state)
 {
     struct suite *suite = *state;

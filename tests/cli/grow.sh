@@ -90,7 +90,7 @@ expect 1 'not closed' grow beech --clip "$out/open.obj" -o "$out/a.glb"
 expect 1 'it has no branches' grow fern --clip 1x1x1 -o "$out/a.glb"
 expect 1 'allowed is one of the two' grow beech --clip 1x1x1 --height 2 -o "$out/a.glb"
 cat >"$out/hedge.json" <<EOF
-{"terrain": {"kind": "flat", "size_m": [8, 8]}, "variants": 1,
+{"terrain": {"kind": "flat", "size_m": [4, 4]}, "variants": 1,
  "species": {"hedge": "$root/species/beech.json"}, "clips": {"hedge": {"box_m": [1.1, 0.7, 1.7]}},
  "layers": [{"species": "hedge", "spacing_m": 0.8, "yaw_deg": 0, "height_m": 1.7, "aspect": 1}]}
 EOF
