@@ -78,7 +78,7 @@ boundary 'dissolve, full to billboard' 2 1.3 1.05
 # trees that give way to the canopy's map, and trees that do not
 canopy() {
     pops "canopy-$1" "$grove" canopy --methods zfield --set methods.zfield.near_m=0 \
-        --set layers.0.spacing_m=3 --set methods.zfield.rows=4 --set methods.zfield.fade=0 \
+        --set layers.0.spacing_m=3 --set methods.zfield.rows=4 --set methods.zfield.size=32 --set methods.zfield.fade=0 \
         --set "methods.zfield.range_m=$1"
     found=$(jq -c '[.rows[] | .step_billboard_canopy_pct]' "$dir/results.json")
 }

@@ -41,7 +41,7 @@ static void variants_look_different(void **state)
     for (int s = 0; s < SPECIES_COUNT; s++) {
         struct wd_species species = test_species(&arena, test_species_names[s]);
         for (uint32_t v = 0; v < VARIANTS; v++) {
-            struct wd_grow_params params = {.seed = v + 1, .detail = 0.4f, .openness = 0.35f};
+            struct wd_grow_params params = {.seed = v + 1, .detail = 0.2f, .openness = 0.35f};
             struct wd_tree_model model;
             assert_true(wd_tree_grow(&model, &species, &params, NULL));
             draw(&model, &species, covered[v]);
