@@ -491,12 +491,14 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
 /* A leaf that an eye below sees from the side that the sun reaches is tilted from both: others next to it, and its own
  * folds and arch, which neither maps nor its tree's ways tell, leave it less of the sun, the least against the light. By
  * path-traced oaks, beeches, birches and spruces whose upper sides alone reflect; meshes, half of it, by stands from
- * within. */
-float lit_side_from_below(vec3 eye, wd_crown crown, float of_mesh)
+ * within. Snow lies over folds and is lit as it is. */
+float lit_side_from_below(wd_pixel pixel, wd_crown crown)
 {
+    vec3 eye = -pixel.direction;
+    float of_mesh = pixel.lit >= 1.0 ? 1.0 : 0.0;
     float below = (1.0 - smoothstep(-0.3, 0.0, eye.z)) * is_tree(crown) * (1.0 - 0.5 * of_mesh);
     float with_light = smoothstep(-0.7, 0.5, dot(eye, frame.sun_direction));
-    return mix(1.0, mix(0.38, 0.66, with_light), below);
+    return mix(1.0, mix(0.38, 0.66, with_light), below * (1.0 - pixel.snow));
 }
 
 /* A disc of a leaf is lit as the leaf that it is. */
@@ -509,7 +511,7 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.normal = pixel.normal;
     place.cloud = 0.0;
     float cosine = dot(pixel.normal, frame.sun_direction);
-    float from_below = lit_side_from_below(-pixel.direction, crown, pixel.lit >= 1.0 ? 1.0 : 0.0);
+    float from_below = lit_side_from_below(pixel, crown);
     place.sides = vec2(max(cosine, 0.0) * from_below, max(-cosine, 0.0));
     place.waxed = pixel.above;
     place.body = 1.0 - pixel.above * (1.0 - crown.sward) * wd_grazing(abs(dot(pixel.normal, pixel.direction)));

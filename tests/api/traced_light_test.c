@@ -211,6 +211,18 @@ static void upper_sides_are_rare_from_below(void **state)
     assert_true(fabs(found.trees_pct) < 8);
 }
 
+/* A spruce under snow, looked up to with the sun behind the eye: -4 %; -12 if its snow has as little of the sun as upper sides
+ * of bare leaves that are seen from below. */
+static void snow_is_bright_from_below(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "spruce", .trees = "30,30,tree,18\n", .size_m = "[60, 60]", .samples = 16,
+        .keys = "\"sun\": {\"azimuth_deg\": 240, \"elevation_deg\": 20}, \"ground\": {\"snow\": 1}",
+        .camera = "\"position_m\": [10, 30, 1.7], \"look_at_m\": [30, 30, 11], \"fov_deg\": 25"});
+    assert_true(fabs(found.trees_pct) < 8);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -225,6 +237,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(wide_views_show_all_of_trees_at_their_edges),
         cmocka_unit_test(crowns_keep_their_cover_where_discs_follow_meshes),
         cmocka_unit_test(upper_sides_are_rare_from_below),
+        cmocka_unit_test(snow_is_bright_from_below),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;
