@@ -1,6 +1,7 @@
 #!/bin/sh
-# Every test: the release build on software Vulkan, and what needs no GPU again from another
-# compiler at -O1 under ASan and UBSan. Hashes of worlds and trees are part of both and must not move.
+# Every test: the release build on software Vulkan, then what needs no GPU again under ASan and
+# UBSan, then the worlds and trees again from another compiler at -O0: their hashes are part of
+# the tests and must not move.
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-build}
@@ -37,13 +38,17 @@ meson introspect "$build" --tests | grep -q '"name"' ||
     meson setup --reconfigure -Dtests=enabled "$build" >/dev/null
 scripts/build.sh "$build"
 
-# Tests of windows wait, and linkers and many tests have one thread: the other build fills the processors
+# Tests of windows wait, and linkers and many tests have one thread: the other builds fill the processors
 # meanwhile.
-step sanitizers scripts/test-sanitizers.sh >"$scratch/sanitizers" 2>&1 </dev/null &
+others() {
+    step sanitizers scripts/test-sanitizers.sh
+    step 'second compiler at -O0' scripts/test-determinism.sh
+}
+others >"$scratch/others" 2>&1 </dev/null &
 step release meson test -C "$build" --no-rebuild --print-errorlogs
-echo 'waiting for the sanitizers'
+echo 'waiting for the sanitizers and the second compiler'
 wait $!
-cat "$scratch/sanitizers"
+cat "$scratch/others"
 
 printf '\n'
 [ ! -s "$scratch/failed" ] || {

@@ -18,16 +18,6 @@ static int floor_int(float x)
     return at - (x < (float)at);
 }
 
-/* The lattice's neighbours of a place, and how far it is from the first to the second, eased. */
-static float cell_of(float x, int period, uint32_t *first, uint32_t *second)
-{
-    int at = floor_int(x);
-    float u = x - (float)at;
-    *first = wrapped(at, period);
-    *second = *first + 1 == (uint32_t)period ? 0 : *first + 1;
-    return u * u * (3 - 2 * u);
-}
-
 static float between(uint32_t key, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, float u, float v)
 {
     float low = wd_mixf(wd_hash_unit(wd_hash3(key, x0, y0)), wd_hash_unit(wd_hash3(key, x1, y0)), u);
@@ -35,14 +25,7 @@ static float between(uint32_t key, uint32_t x0, uint32_t y0, uint32_t x1, uint32
     return wd_mixf(low, high, v);
 }
 
-float wd_tile_noise(uint32_t key, float x, float y, int period_x, int period_y)
-{
-    uint32_t x0, y0, x1, y1;
-    float u = cell_of(x, period_x, &x0, &x1), v = cell_of(y, period_y, &y0, &y1);
-    return between(key, x0, y0, x1, y1, u, v);
-}
-
-/* cell_of at four places. */
+/* The lattice's neighbours of four places, and how far each is from the first to the second, eased. */
 static inline void cells_of(const float x[4], const int period[4], uint32_t first[4], uint32_t second[4], float eased[4])
 {
     int at[4];
@@ -59,6 +42,14 @@ static inline void cells_of(const float x[4], const int period[4], uint32_t firs
         first[i] = (uint32_t)at[i];
         second[i] = at[i] + 1 == period[i] ? 0 : (uint32_t)at[i] + 1;
     }
+}
+
+float wd_tile_noise(uint32_t key, float x, float y, int period_x, int period_y)
+{
+    uint32_t first[4], second[4];
+    float eased[4];
+    cells_of((float[4]){x, y}, (int[4]){period_x, period_y, 1, 1}, first, second, eased);
+    return between(key, first[0], first[1], second[0], second[1], eased[0], eased[1]);
 }
 
 /* Octaves side by side, four lanes of one loop each. */

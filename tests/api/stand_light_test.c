@@ -23,11 +23,14 @@ static struct painters {
     struct wd_reference *reference;
 } painters;
 
-static void painters_finish(void)
+/* A teardown: 0 is success. */
+static int painters_finish(void **state)
 {
+    (void)state;
     wd_reference_destroy(&painters.reference);
-    wd_renderer_set_forest(suite.renderer, suite.forest);
+    enum wd_result result = wd_renderer_set_forest(suite.renderer, suite.forest);
     wd_forest_destroy(&painters.forest);
+    return result != WD_OK;
 }
 
 static void paint(const struct stand *stand)
@@ -39,7 +42,7 @@ static void paint(const struct stand *stand)
         .scene_path = scene, .settings = stand->settings, .log = suite.log};
     if (painters.stand == stand)
         return;
-    painters_finish();
+    assert_int_equal(painters_finish(NULL), 0);
     painters.stand = stand;
     assert_int_equal(wd_forest_create(&painters.forest, &forest), WD_OK);
     assert_int_equal(wd_renderer_set_forest(suite.renderer, painters.forest), WD_OK);
@@ -237,8 +240,7 @@ int main(int argc, char **argv)
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;
-    int failed = cmocka_run_group_tests_name("stand_light", tests, NULL, NULL);
-    painters_finish();
+    int failed = cmocka_run_group_tests_name("stand_light", tests, NULL, painters_finish);
     suite_finish(&suite);
     return failed;
 }

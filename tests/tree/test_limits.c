@@ -38,13 +38,13 @@ static void grow_absurd(struct wd_species *species, float detail)
     wd_tree_model_finish(&model);
 }
 
-/* What fills a plant of each form with more than anybody could look at: every other way for each. */
+/* What fills a plant of each form with more than anybody could look at. */
 static void crowded_species_are_bounded(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
     for (int s = 0; s < SPECIES_COUNT; s++)
-        for (int i = s % 2; i < 4; i += 2) {
+        for (int i = 0; i < 4; i++) {
             struct wd_species species = test_species(&arena, test_species_names[s]);
             species.leaf.count = i == 0 ? 0 : 2000000;
             species.stems.count = 200;
@@ -79,7 +79,7 @@ static void absurd_species_are_bounded(void **state)
             species.orders[0].length_ratio = 4, species.orders[1].length_ratio = 4;
         if (i == 7)
             species.crown_base_forest = 0;
-        grow_absurd(&species, i == 4 ? 0.05f : 0);
+        grow_absurd(&species, i == 4 ? 0.05f : 0); /* 4 takes half a minute in full under sanitizers */
     }
     wd_arena_finish(&arena);
 }

@@ -4,7 +4,7 @@
 #include "tree/leaf_outline.h"
 #include "tree/look_map.h"
 
-enum { SIZE = 64, TEXELS = SIZE * SIZE };
+enum { SIZE = 128, TEXELS = SIZE * SIZE };
 
 static uint8_t albedo[4 * TEXELS], detail[4 * TEXELS];
 
