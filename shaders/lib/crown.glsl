@@ -20,8 +20,9 @@ wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
     crown.foot_z = foot_rel.z;
     crown.center_rel = foot_rel + vec3(0.0, 0.0, 0.5 * (height_m + base_m));
     crown.radii_m = max(vec3(radius_m, radius_m, 0.5 * (height_m - base_m)), vec3(0.1));
-    float closes = model.roughness <= -1.0 ? 1.0 : 1.0 - smoothstep(0.22, 0.35, crown.radii_m.z);
-    crown.sward = model.roughness < 0.0 ? closes : 0.0;
+    float roughness = unpackHalf2x16(model.rough_flat).x;
+    float closes = roughness <= -1.0 ? 1.0 : 1.0 - smoothstep(0.22, 0.35, crown.radii_m.z);
+    crown.sward = roughness < 0.0 ? closes : 0.0;
     return crown;
 }
 

@@ -36,14 +36,14 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
 
 float leaf_roughness(wd_lit_leaves model)
 {
-    return fract(abs(model.roughness));
+    return fract(abs(unpackHalf2x16(model.rough_flat).x));
 }
 
 wd_lit_leaves lit_leaves(int model)
 {
     vec4 a = uintBitsToFloat(texelFetch(lit_models, model)), b = uintBitsToFloat(texelFetch(lit_models, model + 1));
     return wd_lit_leaves(floatBitsToUint(a.x), floatBitsToUint(a.y), floatBitsToUint(a.z), floatBitsToUint(a.w),
-                         floatBitsToUint(b.x), floatBitsToUint(b.y), floatBitsToUint(b.z), b.w);
+                         floatBitsToUint(b.x), floatBitsToUint(b.y), floatBitsToUint(b.z), floatBitsToUint(b.w));
 }
 
 vec3 unpack_ratios(uint packed)

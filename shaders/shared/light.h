@@ -21,6 +21,7 @@ struct wd_light_push {
     float shafts_m; /* way along the view axis within maps of shadows, on which these tell what haze has of the sun */
     float shafts;   /* how far they do, by how thick it is: 0..1 */
     uint32_t level_cards; /* cards show pictures taken level, whatever way the eye looks */
+    uint32_t few_tiles;   /* all tiles without water are of WD_TILE_LIST_DRY */
 };
 
 /* Greatest height of a canopy that the image of its light can tell. */
@@ -39,6 +40,7 @@ struct wd_light_push {
 #define WD_PART_WATER 8u
 #define WD_PART_ALL 15u
 #define WD_TILE_LISTS 6
+#define WD_TILE_LIST_DRY 4u /* all parts but water */
 #define WD_SHAFT_SLICES 16 /* parts of the way through haze, of a tile (lib/shafts.glsl) */
 #define WD_SKY_M 1e9f     /* distances from here on are the sky's */
 

@@ -91,8 +91,9 @@ struct wd_lit_leaves {
     uint32_t through;             /* WD_PALER_*: transmittance of a leaf over its upper side's albedo, linear */
     uint32_t again_low;           /* two half floats: recollision and low_sky of struct wd_tree_model */
     uint32_t near_shade;          /* at WD_NEAR_SHADE_M, and the power: two half floats */
-    float roughness;              /* of leaves, the root of GGX's alpha; minus that of a grass's blades, and
-                                     less 1 where these close over the ground */
+    uint32_t rough_flat;          /* two half floats: roughness of leaves, the root of GGX's alpha, minus that of a grass's
+                                     blades, and less 1 where these close over the ground; and struct wd_tree_model's
+                                     flatness, of needles that of leaves turned every way */
 };
 
 #ifdef __STDC_VERSION__

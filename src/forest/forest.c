@@ -262,19 +262,27 @@ static bool closes_over_ground(const struct preparation *work, uint32_t index)
     return layers >= CLOSED_LAYERS;
 }
 
+static void set_roughness(struct wd_lit_leaves *leaves, float roughness)
+{
+    float rough_flat[2];
+    wd_unpack_uv(leaves->rough_flat, rough_flat);
+    leaves->rough_flat = wd_pack_uv(roughness, rough_flat[1]);
+}
+
 /* What wd_lit_leaves tells of grasses by its roughness: -1 less where they close over the ground; as of other
  * plants where none do, so that tufts stand free. */
 static void tell_swards(struct wd_lit_model *lit, const struct preparation *work)
 {
+    const struct wd_model *models = work->forest->host_models;
     uint32_t count = work->forest->model_count;
     bool sward = false;
     for (uint32_t i = 0; i < count; i++) {
         bool closes = closes_over_ground(work, i);
-        lit[i].leaves.roughness -= closes ? 1.0f : 0.0f;
+        set_roughness(&lit[i].leaves, models[i].roughness - (closes ? 1.0f : 0.0f));
         sward |= closes;
     }
     for (uint32_t i = 0; i < count && !sward; i++)
-        lit[i].leaves.roughness = fabsf(lit[i].leaves.roughness);
+        set_roughness(&lit[i].leaves, fabsf(models[i].roughness));
 }
 
 static bool make_lit_models(struct preparation *work, struct wd_gpu *gpu)

@@ -75,7 +75,7 @@ static bool prepare_pipelines(struct wd_frame *frame)
 {
     const struct wd_frame_params *params = &frame->params;
     const struct wd_light_needs needs = {params->forest, params->view_mode,
-                                         leaves_of(params->method)};
+                                         leaves_of(params->method), params->width, params->height};
     return wd_tree_pipelines_prepare(&frame->trees, frame->gpu, params->forest,
                                      params->method->cards) &&
            wd_terrain_pass_prepare(&frame->terrain, frame->gpu, &params->forest->ground) &&

@@ -57,6 +57,7 @@ struct wd_tree_model {
                            they white: toward the sun, and what wd_cloud_wax_rise adds; 0: not known yet */
     float near_shade[2]; /* at WD_NEAR_SHADE_M, and the power; 0: not known yet */
     float recollision;   /* chance that what a leaf has scattered meets another of its tree; 0: not known yet */
+    float flatness;      /* mean |z| of leaves' faces: 0.5 of leaves turned every way, 1 of level ones; 0: not known yet */
     float low_sky;       /* how much more of a sky that is brighter low down its leaves let through than of an even one, by
                             how much brighter an upright face's is; 0: not known yet */
     float spray_reach;           /* of wd_spray_share; 0 without twigs */

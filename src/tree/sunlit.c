@@ -333,6 +333,21 @@ static float find_low_sky(const struct fit *fit, const struct wd_tree_points *po
     return comes[0] > 0 ? 1.5f / LOW_UPRIGHT * (float)(all[1] / all[0] - comes[1] / comes[0]) : 0;
 }
 
+static float find_flatness(const struct wd_tree_points *points)
+{
+    double sum = 0;
+    size_t leaves = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        if (!(points->points[i].kind & WD_POINT_LEAF))
+            continue;
+        float face[3];
+        wd_unpack_normal(points->points[i].face, face);
+        sum += (double)fabsf(face[2]);
+        leaves++;
+    }
+    return leaves ? (float)(sum / (double)leaves) : 0;
+}
+
 /* How many places are lit of those where depth leaves as much of the sun: 1 - exp(-a x^b), a line through
  * logarithms. Whichever way the eye and the sun are, it is nearly the same curve. */
 static void fit_curve(struct fit *fit, const struct wd_tree_points *points,
@@ -514,6 +529,7 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
             shown[i] = shown_at(fit, &points, i);
         fit_curve(fit, &points, shown);
         model->recollision = find_recollision(fit, &points, shown);
+        model->flatness = find_flatness(&points);
         model->low_sky = find_low_sky(fit, &points, shown);
         fit_near(model->near_shade, fit, &points, &model->full);
         send(fit, &points, shown);

@@ -142,6 +142,8 @@ static float petal_leaf_green(const struct wd_species *species)
 void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species *species,
                                const struct wd_model *model, const struct wd_tree_model *grown)
 {
+    const float EVERY_WAY = 0.5f; /* mean |z| of faces turned so */
+    bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
     lit->leaves = (struct wd_lit_leaves){
         .base_petals = wd_pack_uv(model->crown_base_m / model->height_m, petal_leaf_green(species)),
         .cloud_wax = wd_pack_uv(grown->cloud_wax[0], grown->cloud_wax[1]),
@@ -150,7 +152,7 @@ void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species
         .through = pack_ratios(model->transmittance),
         .again_low = wd_pack_uv(grown->recollision, grown->low_sky),
         .near_shade = wd_pack_uv(grown->near_shade[0], grown->near_shade[1]),
-        .roughness = model->roughness,
+        .rough_flat = wd_pack_uv(model->roughness, needles ? EVERY_WAY : grown->flatness),
     };
     for (uint32_t kind = WD_SUNLIT_CARDS; kind <= WD_SUNLIT_LEAVES; kind++)
         pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * kind, grown, kind);

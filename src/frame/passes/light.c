@@ -40,6 +40,15 @@ static const VkDescriptorType UNIFORM = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 
 enum { WET_LIST = WD_TILE_LISTS - 1 };
 
+/* To software devices a list's shader is 0.06 s of work at each start, and a second where they have not kept it from another.
+ * Small pictures have one for all that is dry; of larger ones it would make the light pass up to a sixth slower. */
+static const uint32_t FEW_PIXELS = 320 * 240;
+
+static bool has_few_tiles(const struct wd_gpu *gpu, uint32_t width, uint32_t height)
+{
+    return gpu->software && (uint64_t)width * height <= FEW_PIXELS;
+}
+
 /* Lists of trees and no water, which most of a forest's pixels are in. */
 static bool has_single(uint32_t list)
 {
@@ -97,9 +106,11 @@ static bool has_water(const struct wd_forest_device *forest)
 }
 
 /* What shades a list or, at WD_TILE_LISTS, the water of the last one; NULL where no such picture has any. */
-static struct wd_pipeline *shading_of(struct wd_light_pass *pass, uint32_t list,
+static struct wd_pipeline *shading_of(struct wd_light_pass *pass, const struct wd_gpu *gpu, uint32_t list,
                                       const struct wd_light_needs *needs)
 {
+    if (list < WD_TILE_LIST_DRY && has_few_tiles(gpu, needs->width, needs->height))
+        return NULL;
     if (list >= WET_LIST && !has_water(needs->forest))
         return NULL;
     if (list == WD_TILE_LISTS)
@@ -119,7 +130,7 @@ static void prepare_list(void *user, size_t index)
 {
     struct preparation *work = user;
     uint32_t list = (uint32_t)index;
-    struct wd_pipeline *pipeline = shading_of(work->pass, list, work->needs);
+    struct wd_pipeline *pipeline = shading_of(work->pass, work->gpu, list, work->needs);
     if (!pipeline || pipeline->pipeline)
         return;
     bool water = pipeline == &work->pass->water;
@@ -138,7 +149,7 @@ bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
     if (needs->view_mode != WD_MODE_LIT)
         return pass->view.pipeline || init_view(&pass->view, gpu);
     for (uint32_t list = 0; list <= WD_TILE_LISTS; list++) {
-        const struct wd_pipeline *pipeline = shading_of(pass, list, needs);
+        const struct wd_pipeline *pipeline = shading_of(pass, gpu, list, needs);
         missing += pipeline && !pipeline->pipeline;
     }
     if (missing)
@@ -260,7 +271,7 @@ static float shafts_of(const struct wd_frame_uniforms *frame)
     return frame->shadow_taps && shafts_m(frame) > 0 ? fminf(fmaxf(part, 0), 1) : 0;
 }
 
-static struct wd_light_push push_of(const struct wd_light_pass *pass,
+static struct wd_light_push push_of(const struct wd_light_pass *pass, const struct wd_gpu *gpu,
                                     const struct wd_light_params *params)
 {
     return (struct wd_light_push){
@@ -274,6 +285,7 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass,
         .has_rivers = params->forest->ground.terrain->water_m != NULL,
         .has_overlay = params->overlay == WD_OVERLAY_OVER,
         .level_cards = params->level_cards,
+        .few_tiles = has_few_tiles(gpu, params->targets->width, params->targets->height),
         .shafts_m = shafts_m(params->frame),
         .shafts = shafts_of(params->frame),
         .eye_over_ground_m = eye_over_ground_m(params),
@@ -369,7 +381,7 @@ static void shade_lists(struct wd_light_pass *pass, struct wd_cmd *cmd,
                         const struct wd_light_params *params, const struct wd_binding *bindings,
                         const struct wd_light_push *push)
 {
-    for (uint32_t list = 0; list < WET_LIST; list++) {
+    for (uint32_t list = push->few_tiles ? WD_TILE_LIST_DRY : 0; list < WET_LIST; list++) {
         bool single = params->leaves == WD_LEAVES_SINGLE && has_single(list);
         shade_list(pass, cmd, single ? &pass->single[list] : &pass->light[list], list, bindings, push);
     }
@@ -386,7 +398,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     struct wd_targets *targets = params->targets;
     wd_sun_field_update(&pass->sun_field, cmd, params->forest->ground.terrain,
                         params->frame->sun_direction);
-    const struct wd_light_push push = push_of(pass, params);
+    const struct wd_light_push push = push_of(pass, cmd->gpu, params);
     uint64_t tiles = (uint64_t)push.tile_columns * push.tile_rows;
     if (!fit_lists(pass, cmd, tiles) || !fit_shafts(pass, cmd, tiles))
         cmd->failed = true;
@@ -440,7 +452,7 @@ bool wd_light_pass_inputs(struct wd_light_pass *pass, struct wd_cmd *cmd,
     wd_cmd_use_buffer(cmd, &pass->sun_field.heights, WD_USE_SHADER_READ);
     wd_cmd_use_image(cmd, &params->targets->shadow, WD_USE_SHADER_READ);
     *inputs = (struct wd_light_inputs){
-        .push = push_of(pass, params),
+        .push = push_of(pass, cmd->gpu, params),
         .shadow_map = WD_BIND_IMAGE(&params->targets->shadow, pass->shadow),
         .sun_heights = WD_BIND_BUFFER(&pass->sun_field.heights),
         .canopy_light = WD_BIND_IMAGE(&params->forest->canopy_light, params->forest->ground.sampler),
@@ -465,7 +477,7 @@ void wd_light_pass_record_velocity(struct wd_light_pass *pass, struct wd_cmd *cm
         models_or_trees(&params->forest->models, params->forest),
         WD_BIND_BUFFER(velocity_px),
     };
-    const struct wd_light_push push = push_of(pass, params);
+    const struct wd_light_push push = push_of(pass, cmd->gpu, params);
     wd_cmd_bind(cmd, &pass->velocity, bindings);
     wd_cmd_push(cmd, &pass->velocity, &push, sizeof push);
     wd_cmd_dispatch(cmd, push.tile_columns, push.tile_rows, 1);

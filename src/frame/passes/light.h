@@ -31,6 +31,7 @@ struct wd_light_needs {
     const struct wd_forest_device *forest;
     uint32_t view_mode; /* WD_MODE_* */
     enum wd_leaf_kinds leaves;
+    uint32_t width, height; /* of the picture */
 };
 bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
                            const struct wd_light_needs *needs);
