@@ -1,11 +1,14 @@
 #include "tree/points.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/color.h"
+#include "base/dmath.h"
 #include "base/memory.h"
 #include "tree/progressive.h"
 #include "tree/random.h"
+#include "tree/silhouette.h"
 
 /* Triangles of wood, then of leaves, each along its own curve, with the area up to each. */
 struct surface {
@@ -34,7 +37,43 @@ static double triangle_area(const struct wd_tree_mesh *mesh, size_t triangle)
     return area > 0 && area < 1e12 ? area : 0;
 }
 
-static void order_part(struct surface *surface, size_t first, size_t count)
+static bool is_petal(const struct wd_tree_mesh *mesh, size_t triangle)
+{
+    return wd_vertex_layer(mesh->vertices[mesh->indices[3 * triangle]].kind) == WD_LOOK_FLOWER;
+}
+
+/* Petals lie over one another, where few points a flower would show all of them: share of what they would cover side by
+ * side that they cover, seen from around and from above. 1 without petals. */
+static double petals_seen(const struct wd_tree_mesh *mesh)
+{
+    enum { ROUND = 5, VIEWS = ROUND + 1 };
+    struct wd_silhouette *views = wd_alloc_array(VIEWS, sizeof *views);
+    struct wd_tree_mesh petals = {.vertices = mesh->vertices, .vertex_count = mesh->vertex_count,
+                                  .indices = wd_alloc_array(mesh->index_count + 1, sizeof *mesh->indices)};
+    double shown = 0, all = 0;
+    for (size_t i = 0; i < mesh->index_count / 3; i++)
+        for (size_t k = 0; k < 3 && is_petal(mesh, i); k++)
+            petals.indices[petals.index_count++] = mesh->indices[3 * i + k];
+    for (int view = 0; view < VIEWS && petals.index_count; view++) {
+        double turn = 2 * WD_PI * view / ROUND, up = view < ROUND ? 0.3 : 1.4;
+        float level = (float)wd_dcos(up);
+        wd_silhouette_init(&views[view], mesh, WD_V3(level * (float)wd_dcos(turn), level * (float)wd_dsin(turn),
+                                                     (float)wd_dsin(up)));
+        wd_silhouette_cover(&views[view], 1, &petals, 0, petals.index_count);
+        double px_per_m = (double)views[view].scale;
+        shown += (double)wd_silhouette_count(&views[view]) / (px_per_m * px_per_m);
+        for (size_t i = 0; i < petals.index_count / 3; i++) {
+            struct wd_vec3 a = corner(&petals, 3 * i), b = wd_v3_sub(corner(&petals, 3 * i + 1), a);
+            struct wd_vec3 across = wd_v3_cross(b, wd_v3_sub(corner(&petals, 3 * i + 2), a));
+            all += 0.5 * (double)fabsf(wd_v3_dot(across, views[view].toward));
+        }
+    }
+    free(petals.indices);
+    free(views);
+    return all > 0 ? fmin(shown / all, 1) : 1;
+}
+
+static void order_part(struct surface *surface, size_t first, size_t count, double petals)
 {
     struct wd_vec3 *centers = wd_alloc_array(count ? count : 1, sizeof *centers);
     double *areas = wd_alloc_array(count ? count : 1, sizeof *areas);
@@ -43,7 +82,7 @@ static void order_part(struct surface *surface, size_t first, size_t count)
         for (size_t k = 0; k < 3; k++)
             sum = wd_v3_add(sum, corner(surface->mesh, 3 * (first + i) + k));
         centers[i] = wd_v3_scale(sum, 1 / 3.0f);
-        areas[i] = triangle_area(surface->mesh, first + i);
+        areas[i] = triangle_area(surface->mesh, first + i) * (is_petal(surface->mesh, first + i) ? petals : 1);
     }
     wd_curve_order(surface->order + first, centers, count);
     for (size_t i = first; i < first + count; i++) {
@@ -65,8 +104,8 @@ static void surface_init(struct surface *surface, const struct wd_tree_mesh *mes
         .wood_count = wood < count ? wood : count,
     };
     wd_srgb_table(surface->linear);
-    order_part(surface, 0, surface->wood_count);
-    order_part(surface, surface->wood_count, count - surface->wood_count);
+    order_part(surface, 0, surface->wood_count, 1);
+    order_part(surface, surface->wood_count, count - surface->wood_count, petals_seen(mesh));
 }
 
 static void surface_finish(struct surface *surface)

@@ -1,10 +1,10 @@
 /* points.h: a tree's surface as points in progressive order, for drawing it from afar.
  *
- * Every point stands for the same area of the full mesh, so the first n of N points, each with
- * N / n times its area, are a fair sample of it, whatever n: leaves and wood by their area, colours
- * and normals as often as they occur, well spread over the tree (stratified along a Hilbert curve
- * by an Owen-scrambled sequence). So is each window of n points from a multiple of n on, n a power
- * of two: the next window each frame gives the whole tree in time. */
+ * Every point stands for the same area of the full mesh (of petals, which lie over one another, of what they
+ * cover), so the first n of N points, each with N / n times its area, are a fair sample of it, whatever n:
+ * leaves and wood by their area, colours and normals as often as they occur, well spread over the tree
+ * (stratified along a Hilbert curve by an Owen-scrambled sequence). So is each window of n points from a
+ * multiple of n on, n a power of two: the next window each frame gives the whole tree in time. */
 #ifndef WD_TREE_POINTS_H
 #define WD_TREE_POINTS_H
 

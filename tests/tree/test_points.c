@@ -392,7 +392,7 @@ static void ways_mix_their_neighbours(void **state)
     }
 }
 
-static void add_plate(struct wd_tree_mesh *mesh, float half_m, float z_m)
+static void add_plate_of(struct wd_tree_mesh *mesh, uint32_t kind, float half_m, float z_m)
 {
     uint32_t first = mesh->vertex_count;
     const float up[3] = {0, 0, 1};
@@ -401,9 +401,37 @@ static void add_plate(struct wd_tree_mesh *mesh, float half_m, float z_m)
             mesh, &(struct wd_tree_vertex){.position_m = {i & 1 ? half_m : -half_m,
                                                           i & 2 ? half_m : -half_m, z_m},
                                            .normal = wd_pack_normal(up),
-                                           .kind = WD_VERTEX_LEAF});
+                                           .kind = kind});
     wd_tree_mesh_add_triangle(mesh, first, first + 1, first + 2);
     wd_tree_mesh_add_triangle(mesh, first + 2, first + 1, first + 3);
+}
+
+static void add_plate(struct wd_tree_mesh *mesh, float half_m, float z_m)
+{
+    add_plate_of(mesh, WD_VERTEX_LEAF, half_m, z_m);
+}
+
+/* Nine petals on one another have about as many points as one leaf of their size. */
+static void petals_count_as_far_as_they_are_seen(void **state)
+{
+    (void)state;
+    static const uint8_t rgba[4 * WD_LOOK_LAYERS];
+    const struct wd_point_look look = {rgba, 1};
+    struct wd_tree_points points;
+    struct wd_tree_mesh mesh = {0};
+    add_plate(&mesh, 1, 0);
+    for (int i = 0; i < 9; i++)
+        add_plate_of(&mesh, WD_VERTEX_LEAF | WD_VERTEX_FLOWER, 1, 2 + 1e-3f * (float)i);
+    wd_tree_mesh_update_bounds(&mesh);
+    assert_true(wd_tree_points_build(&points, &mesh, &look, 4000));
+    double petals = 0;
+    for (size_t i = 0; i < points.count; i++)
+        petals += points.points[i].position_m[2] > 1;
+    print_message("of nine petals and a leaf %.0f %% of points lie on petals\n", 100 * petals / 4000);
+    assert_true(petals > 0.47 * 4000 && petals < 0.55 * 4000);
+    assert_float_equal(points.leaf_area_m2, 8, 0.6f);
+    wd_tree_points_finish(&points);
+    wd_tree_mesh_finish(&mesh);
 }
 
 /* Under a plate as wide as it is high above, the sky shows round about and not above. */
@@ -591,6 +619,7 @@ int main(void)
         cmocka_unit_test(discs_cover_what_the_mesh_covers),
         cmocka_unit_test(ways_mix_their_neighbours),
         cmocka_unit_test(plates_shade_what_is_below),
+        cmocka_unit_test(petals_count_as_far_as_they_are_seen),
         cmocka_unit_test(rays_find_the_same_ways_open),
         cmocka_unit_test(models_tell_how_their_leaves_stand),
         cmocka_unit_test(broken_meshes_give_none_or_few),

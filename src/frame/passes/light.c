@@ -42,7 +42,7 @@ enum { WET_LIST = WD_TILE_LISTS - 1 };
 
 /* To software devices a list's shader is 0.06 s of work at each start, and a second where they have not kept it from another.
  * Small pictures have one for all that is dry; of larger ones it would make the light pass up to a sixth slower. */
-static const uint32_t FEW_PIXELS = 320 * 240;
+static const uint32_t FEW_PIXELS = 400 * 300;
 
 static bool has_few_tiles(const struct wd_gpu *gpu, uint32_t width, uint32_t height)
 {
