@@ -295,6 +295,15 @@ uint wood_triangles(uint model, float tall_px)
     return min(uint(tall_px * tall_px * 0.006 + tall_px), model_word(model, WD_WORD_WOOD_COUNT));
 }
 
+/* Discs stand for the wood that is not there as triangles, of which few large ones are most: its share. */
+float wood_missing(uint model, uint triangles)
+{
+    uint all = model_word(model, WD_WORD_WOOD_COUNT);
+    float first = max(float(wd_first_wood(all)), 1.0);
+    float times = pow(float(triangles) / first, model_float(model, WD_WORD_WOOD_FALLS));
+    return triangles >= all ? 0.0 : pow(max(model_float(model, WD_WORD_THIN_SHARE), 1e-3), times);
+}
+
 /* Slope of the ground that a tree stands for when it is `wide_m` wide. */
 vec2 slope_under(vec3 foot, float wide_m)
 {
@@ -378,9 +387,7 @@ void select_tree(uint index, float share, uint place)
     splats.radius = size * radii.x;
     splats.wood_radius = size * radii.y;
     uint triangles = wood ? wood_triangles(model_index, tall_px) : 0u;
-    /* Discs stand for the wood that is not there as triangles: few large ones are most of it. */
-    float all = max(float(model_word(model_index, WD_WORD_WOOD_COUNT)), 1.0);
-    float missing = 1.0 - pow(float(triangles) / all, model_float(model_index, WD_WORD_WOOD_SPREAD));
+    float missing = wood_missing(model_index, triangles);
     float thin = triangles > 0u ? min(missing / max(model_float(model_index, WD_WORD_THIN_SHARE), 1e-3), 1.0) : 0.0;
     thin = mix(1.0, model_float(model_index, WD_WORD_THIN_WOOD), thin);
     splats.wood_radius *= sqrt(max(missing, 0.0) * thin);

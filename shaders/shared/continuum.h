@@ -84,8 +84,7 @@ struct wd_splat_model {
     float strata_top_m[WD_SPLAT_STRATA];  /* height below which a stratum's splats lie */
     WD_VEC3(lower_over_upper);            /* albedo of leaves' lower sides over that of upper ones */
     float lower[WD_GAIN_SIDES];           /* share of the leaves seen that show the lower side */
-    float wood_spread;                    /* the first n of N triangles have (n / N)^this of the bark
-                                             that is seen */
+    float wood_falls;                     /* power of n with which what the first n triangles leave of the bark falls */
     float grain;                          /* root of a mean triangle's area over the crown's width,
                                              times `finer` */
     float finer;                          /* 1 .. 4: plants of few triangles are drawn as if they
@@ -93,7 +92,7 @@ struct wd_splat_model {
     uint32_t wood_first;                  /* place of the first triangle among all corners */
     uint32_t wood_count, wood_corners;    /* triangles, those that show most first */
     float leaf_past_bark;                 /* factor on leaves' gains where these are all the wood */
-    float thin_share;                     /* of the bark that is seen: what the first triangles do not show */
+    float thin_share;                     /* of the bark that is seen: what the first wd_first_wood triangles do not show */
     float thin_wood;                      /* factor on the gains of discs of wood that stand for as much */
 };
 WD_STATIC_ASSERT_SIZE(wd_splat_model, 700);
@@ -110,7 +109,7 @@ WD_STATIC_ASSERT_SIZE(wd_splat_model, 700);
 #define WD_WORD_STRATA_TOP_M 152u
 #define WD_WORD_LOWER_OVER_UPPER 160u
 #define WD_WORD_LOWER 163u
-#define WD_WORD_WOOD_SPREAD 166u
+#define WD_WORD_WOOD_FALLS 166u
 #define WD_WORD_GRAIN 167u
 #define WD_WORD_FINER 168u
 #define WD_WORD_WOOD_FIRST 169u
@@ -144,6 +143,12 @@ WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
 /* Crowns nearer than a distance are drawn leaf by leaf, up to this many times it also: from there
  * leaves come in by noise while all splats stand, then the splats thin out. */
 #define WD_NEAR_REACH 1.25f
+
+/* So many of a model's triangles of wood are the first: the largest few, whose share of the bark is known. */
+WD_FUNC uint32_t wd_first_wood(uint32_t count)
+{
+    return count / 2u < 38u ? count / 2u : 38u;
+}
 
 /* From the eye to a crown, taken for an upright cylinder. `foot` of the tree, as seen from the eye;
  * `base`: height of its lowest living branch over its own. */

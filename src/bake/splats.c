@@ -170,12 +170,6 @@ struct sized {
     uint32_t triangle;
 };
 
-/* As many of N as are drawn where the first are (shaders/methods/continuum_select.comp). */
-static uint32_t first_triangles(uint32_t count)
-{
-    return count / 2 < 38 ? count / 2 : 38;
-}
-
 static int larger_first(const void *a, const void *b)
 {
     const struct sized *one = a, *other = b;
@@ -263,23 +257,28 @@ static void fill_wood_triangles(struct wd_splats *splats, const struct wd_tree_m
     free(number);
 }
 
+/* What so many times the first triangles leave says how fast that falls. */
+enum { TELLS_FALL = 6 };
+
 static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
                       const struct sized *order)
 {
     const uint32_t most = (1u << WD_WOOD_BITS) / 3 - 1; /* that can be named; what shows least goes */
-    uint32_t count = mesh->wood_index_count / 3, first = first_triangles(count);
+    uint32_t count = mesh->wood_index_count / 3, first = wd_first_wood(count);
     splats->model.wood_count = count < most ? count : most;
     splats->wood = wd_alloc_array(splats->model.wood_count, sizeof *splats->wood);
     splats->corners = wd_alloc_array(3 * (size_t)splats->model.wood_count, sizeof *splats->corners);
     fill_wood_triangles(splats, mesh, order);
-    float all = 0, large = 0;
+    float all = 0, large = 0, more = 0;
     for (uint32_t i = 0; i < count; i++) {
         all += order[i].area;
         large += i < first ? order[i].area : 0;
+        more += i < TELLS_FALL * first ? order[i].area : 0;
     }
-    float spread = large > 0 ? logf(large / all) / logf((float)first / (float)count) : 1;
-    splats->model.wood_spread = fminf(fmaxf(spread, 0.05f), 1.0f);
-    splats->model.thin_share = all > 0 ? 1 - large / all : 1;
+    float thin = all > 0 ? 1 - large / all : 1, thinner = all > 0 ? 1 - more / all : 1;
+    bool falls = thin > 0 && thin < 1 && thinner > 0 && thinner < thin;
+    splats->model.wood_falls = falls ? fminf(logf(logf(thinner) / logf(thin)) / logf(TELLS_FALL), 1.5f) : 1;
+    splats->model.thin_share = thin;
 }
 
 /* Mean colour of a look's texels that show. */
@@ -386,7 +385,7 @@ static void fill_wood_halves(struct wd_splats *splats, const struct wd_tree_poin
                              const struct sized *order, struct wd_tree_points *wood, struct wd_tree_points *thin)
 {
     bool *keep = wd_alloc_array(points->count, sizeof *keep);
-    uint32_t first = first_triangles(model->reduced.wood_index_count / 3);
+    uint32_t first = wd_first_wood(model->reduced.wood_index_count / 3);
     keep_seen(keep, points, sides);
     fill_wood(splats, 0, points, keep, wood);
     keep_thin(keep, points, &model->reduced, order, first);

@@ -25,7 +25,7 @@ WORD_IS(leaf_area_m2, WD_WORD_LEAF_AREA_M2);
 WORD_IS(wood_area_m2, WD_WORD_WOOD_AREA_M2);
 WORD_IS(strata_top_m, WD_WORD_STRATA_TOP_M);
 WORD_IS(lower_over_upper, WD_WORD_LOWER_OVER_UPPER);
-WORD_IS(wood_spread, WD_WORD_WOOD_SPREAD);
+WORD_IS(wood_falls, WD_WORD_WOOD_FALLS);
 WORD_IS(grain, WD_WORD_GRAIN);
 WORD_IS(finer, WD_WORD_FINER);
 WORD_IS(wood_first, WD_WORD_WOOD_FIRST);
