@@ -50,7 +50,7 @@ void main()
         parts |= pixel_parts(at);
         at = at.x < last.x ? ivec2(at.x + 1, at.y) : ivec2(corner.x, at.y + 1);
     } while (at.y <= last.y);
-    uint list = push.few_tiles != 0u ? max(wd_tile_list_of(parts), WD_TILE_LIST_DRY) : wd_tile_list_of(parts);
+    uint list = max(wd_tile_list_of(parts), push.few_tiles != 0u ? WD_TILE_LIST_DRY : 0u);
     uint slot = atomicAdd(lists.count[list], 1u);
     tiles[list * push.tile_columns * push.tile_rows + slot] = place.y << 16 | place.x;
 }

@@ -47,7 +47,7 @@ static bool is_petal(const struct wd_tree_mesh *mesh, size_t triangle)
 static double petals_seen(const struct wd_tree_mesh *mesh)
 {
     enum { ROUND = 5, VIEWS = ROUND + 1 };
-    struct wd_silhouette *views = wd_alloc_array(VIEWS, sizeof *views);
+    struct wd_silhouette *picture = wd_alloc(sizeof *picture);
     struct wd_tree_mesh petals = {.vertices = mesh->vertices, .vertex_count = mesh->vertex_count,
                                   .indices = wd_alloc_array(mesh->index_count + 1, sizeof *mesh->indices)};
     double shown = 0, all = 0;
@@ -57,19 +57,19 @@ static double petals_seen(const struct wd_tree_mesh *mesh)
     for (int view = 0; view < VIEWS && petals.index_count; view++) {
         double turn = 2 * WD_PI * view / ROUND, up = view < ROUND ? 0.3 : 1.4;
         float level = (float)wd_dcos(up);
-        wd_silhouette_init(&views[view], mesh, WD_V3(level * (float)wd_dcos(turn), level * (float)wd_dsin(turn),
-                                                     (float)wd_dsin(up)));
-        wd_silhouette_cover(&views[view], 1, &petals, 0, petals.index_count);
-        double px_per_m = (double)views[view].scale;
-        shown += (double)wd_silhouette_count(&views[view]) / (px_per_m * px_per_m);
+        wd_silhouette_init(picture, mesh, WD_V3(level * (float)wd_dcos(turn), level * (float)wd_dsin(turn),
+                                                (float)wd_dsin(up)));
+        wd_silhouette_cover(picture, 1, &petals, 0, petals.index_count);
+        double px_per_m = (double)picture->scale;
+        shown += (double)wd_silhouette_count(picture) / (px_per_m * px_per_m);
         for (size_t i = 0; i < petals.index_count / 3; i++) {
             struct wd_vec3 a = corner(&petals, 3 * i), b = wd_v3_sub(corner(&petals, 3 * i + 1), a);
             struct wd_vec3 across = wd_v3_cross(b, wd_v3_sub(corner(&petals, 3 * i + 2), a));
-            all += 0.5 * (double)fabsf(wd_v3_dot(across, views[view].toward));
+            all += 0.5 * (double)fabsf(wd_v3_dot(across, picture->toward));
         }
     }
     free(petals.indices);
-    free(views);
+    free(picture);
     return all > 0 ? fmin(shown / all, 1) : 1;
 }
 
