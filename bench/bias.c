@@ -171,21 +171,22 @@ static bool trace(struct bias_shown *shown, struct wd_reference *tracer,
     return true;
 }
 
-bool bias_trace_radiance(double *radiance, struct wd_reference *tracer,
-                         const struct bias_stand *stand, int height, int view)
+bool bias_trace(struct bias_shown *sum, struct wd_reference *tracer, const struct bias_stand *stand,
+                int height, int view)
 {
-    double sum = 0, covered = 0;
+    int zoom = zoom_of(stand, traced_zoom, height);
+    *sum = (struct bias_shown){0};
     for (int i = 0; i < stretches[height]; i++) {
         struct bias_shown part;
-        struct wd_render_params params =
-            view_of(stand, height, view, zoom_of(stand, traced_zoom, height), i, 0, 0);
+        struct wd_render_params params = view_of(stand, height, view, zoom, i, 0, 0);
         if (!trace(&part, tracer, &params))
             return false;
-        sum += part.radiance * part.covered;
-        covered += part.covered;
+        sum->radiance += part.radiance * part.covered;
+        sum->covered += part.covered;
         free(part.luminance);
     }
-    *radiance = sum / fmax(covered, 1);
+    sum->radiance /= fmax(sum->covered, 1);
+    sum->covered /= zoom * zoom * stretches[height];
     return true;
 }
 
@@ -278,7 +279,7 @@ bool bias_measure(struct bias *bias, struct wd_renderer *renderer, const struct 
                     (double)(i / side) / side);
         if (!show(&shown, renderer, &params))
             return false;
-        if (i == 0)
+        if (i == 0 && reference->luminance)
             error = picture_error(&shown, reference);
         covered += shown.covered;
         radiance += shown.covered * shown.radiance;

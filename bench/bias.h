@@ -47,11 +47,12 @@ struct wd_forest *bias_forest(const struct bias_stand *stand, const struct bias_
 bool bias_show_reference(struct bias_shown *sum, struct wd_renderer *renderer,
                          const struct bias_stand *stand, int height, int view);
 
-/* Mean radiance of the same trees by the path tracer, of a forest of full meshes. */
-bool bias_trace_radiance(double *radiance, struct wd_reference *tracer,
-                         const struct bias_stand *stand, int height, int view);
+/* The same trees by the path tracer, of a forest of full meshes: what they cover and their radiance, no luminance. */
+bool bias_trace(struct bias_shown *sum, struct wd_reference *tracer, const struct bias_stand *stand,
+                int height, int view);
 
-/* `renderer` holds the stand in the form that is measured against the reference. */
+/* `renderer` holds the stand in the form that is measured against the reference; without luminance in that the
+ * picture's error is 0. */
 bool bias_measure(struct bias *bias, struct wd_renderer *renderer, const struct bias_stand *stand,
                   int height, int view, const struct bias_shown *reference);
 

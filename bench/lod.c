@@ -65,9 +65,12 @@ static bool measure_reference(struct lod_bench *bench, struct wd_forest *forest,
     for (int i = 0; i < BIAS_HEIGHTS * BIAS_VIEWS && ok; i++) {
         int height = i / BIAS_VIEWS, view = i % BIAS_VIEWS;
         struct bias_shown *reference = &bench->reference[height][view];
-        if (is_measured(bench, 0, height))
-            ok = bias_show_reference(reference, bench->renderer, stand, height, view) &&
-                 bias_trace_radiance(&reference->radiance, tracer, stand, height, view);
+        struct bias_shown traced;
+        if (!is_measured(bench, 0, height))
+            continue;
+        ok = bias_show_reference(reference, bench->renderer, stand, height, view) &&
+             bias_trace(&traced, tracer, stand, height, view);
+        reference->radiance = traced.radiance;
     }
     wd_reference_destroy(&tracer);
     return ok;

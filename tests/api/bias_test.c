@@ -57,34 +57,41 @@ static void leave(struct wd_renderer *renderer, struct wd_forest **forest)
     wd_forest_destroy(forest);
 }
 
+static void measure_bound(struct wd_renderer *renderer, const struct bias_stand *stand, const struct row *row,
+                          const struct bound *bound, const struct bias_shown *reference)
+{
+    struct wd_forest *forest;
+    struct bias bias;
+    take(renderer, stand, bound->form, &forest);
+    assert_true(bias_measure(&bias, renderer, stand, row->height, FROM_ABOVE, reference));
+    leave(renderer, &forest);
+    print_message("%s, %s: coverage %+.1f%%, radiance %+.1f%%\n", row->species, bound->form,
+                  bias.coverage_pct, bias.radiance_pct);
+    assert_true(fabs(bias.coverage_pct) < bound->coverage_pct);
+    assert_true(fabs(bias.radiance_pct) < bound->radiance_pct);
+}
+
 static void measure_row(struct wd_renderer *renderer, const struct row *row)
 {
     struct wd_reference *tracer = NULL;
     struct wd_forest *forest;
     struct bias_stand stand;
-    struct bias_shown reference;
-    double drawn, traced;
+    struct bias_shown traced, drawn = {0};
+    bool any_drawn = false;
+    for (int i = 0; i < MOST_FORMS; i++)
+        any_drawn |= row->bounds[i].form && !row->bounds[i].traced;
     assert_true(bias_stand_init(&stand, row->species));
     stand.quick = true;
     take(renderer, &stand, "reference", &forest);
-    assert_true(bias_show_reference(&reference, renderer, &stand, row->height, FROM_ABOVE));
     assert_int_equal(wd_reference_create(&tracer, forest, &(struct wd_reference_params){0}), WD_OK);
-    assert_true(bias_trace_radiance(&traced, tracer, &stand, row->height, FROM_ABOVE));
+    assert_true(bias_trace(&traced, tracer, &stand, row->height, FROM_ABOVE));
     wd_reference_destroy(&tracer);
-    drawn = reference.radiance;
+    if (any_drawn)
+        assert_true(bias_show_reference(&drawn, renderer, &stand, row->height, FROM_ABOVE));
     leave(renderer, &forest);
-    for (const struct bound *bound = row->bounds; bound < row->bounds + MOST_FORMS && bound->form; bound++) {
-        struct bias bias;
-        reference.radiance = bound->traced ? traced : drawn;
-        take(renderer, &stand, bound->form, &forest);
-        assert_true(bias_measure(&bias, renderer, &stand, row->height, FROM_ABOVE, &reference));
-        leave(renderer, &forest);
-        print_message("%s, %s: coverage %+.1f%%, radiance %+.1f%%\n", row->species, bound->form,
-                      bias.coverage_pct, bias.radiance_pct);
-        assert_true(fabs(bias.coverage_pct) < bound->coverage_pct);
-        assert_true(fabs(bias.radiance_pct) < bound->radiance_pct);
-    }
-    free(reference.luminance);
+    for (const struct bound *bound = row->bounds; bound < row->bounds + MOST_FORMS && bound->form; bound++)
+        measure_bound(renderer, &stand, row, bound, bound->traced ? &traced : &drawn);
+    free(drawn.luminance);
     bias_stand_finish(&stand);
 }
 
