@@ -107,11 +107,6 @@ void wd_baker_finish(struct wd_baker *baker)
     if (!baker->gpu)
         return;
     wd_frames_finish(&baker->frames);
-    for (int i = 0; i < WD_BAKE_RASTERS; i++)
-        wd_pipeline_finish(&baker->raster[i], baker->gpu);
-    wd_pipeline_finish(&baker->flat, baker->gpu);
-    for (int i = 0; i < 2; i++)
-        wd_pipeline_finish(&baker->resolve[i], baker->gpu);
     vkDestroySampler(baker->gpu->device, baker->sampler, NULL);
     wd_buffer_finish(&baker->samples, baker->gpu);
     wd_buffer_finish(&baker->rays, baker->gpu);

@@ -140,7 +140,6 @@ void wd_octant_pictures_finish(struct wd_octant_pictures *p)
         return;
     struct wd_image *images[] = {&p->albedo, &p->normal, &p->depth, &p->card_depth};
     wd_frames_finish(&p->frames);
-    wd_pipeline_finish(&p->pipeline, p->gpu);
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
         wd_image_finish(images[i], p->gpu);
     free(p->albedo_bytes);

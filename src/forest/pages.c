@@ -127,7 +127,6 @@ void wd_pages_finish(struct wd_pages *pages, struct wd_gpu *gpu)
                                    &pages->tables};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         wd_buffer_finish(buffers[i], gpu);
-    wd_pipeline_finish(&pages->populate, gpu);
     wd_page_slots_finish(pages);
     *pages = (struct wd_pages){0};
 }

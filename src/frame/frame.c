@@ -22,7 +22,6 @@ void wd_frame_finish(struct wd_frame *frame)
     if (!frame->gpu)
         return;
     wd_frames_finish(&frame->ring);
-    wd_tree_pipelines_finish(&frame->trees, frame->gpu);
     wd_terrain_pass_finish(&frame->terrain, frame->gpu);
     wd_light_pass_finish(&frame->light, frame->gpu);
     wd_post_pass_finish(&frame->post, frame->gpu);

@@ -78,6 +78,7 @@ struct wd_gpu {
     const struct wd_log *log;
     VkDebugUtilsMessengerEXT messenger;
     VkPipelineCache pipeline_cache;
+    struct wd_pipeline_store *pipelines; /* all that were made: of the device until it is finished */
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label; /* NULL without VK_EXT_debug_utils */
     PFN_vkCmdEndDebugUtilsLabelEXT end_label;
     PFN_vkSetDebugUtilsObjectNameEXT set_name;

@@ -110,23 +110,36 @@ static bool create_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
     return wd_gpu_check(gpu, result, params->shader.name);
 }
 
+static void add_compute(struct wd_pipeline_key *key, const struct wd_compute_params *params)
+{
+    wd_pipeline_key_add(key, &params->shader.words, sizeof params->shader.words);
+    wd_pipeline_key_add(key, &params->bindings, sizeof params->bindings);
+    wd_pipeline_key_add(key, &params->push_size, sizeof params->push_size);
+    wd_pipeline_key_add_constants(key, &params->constants);
+}
+
 bool wd_pipeline_init_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
                               const struct wd_compute_params *params)
 {
+    struct wd_pipeline_key key = {0};
+    add_compute(&key, params);
+    if (!gpu->lost && wd_pipeline_find(pipeline, gpu, &key))
+        return true;
     *pipeline = (struct wd_pipeline){.bind_point = VK_PIPELINE_BIND_POINT_COMPUTE};
     if (gpu->lost ||
         !wd_pipeline_init_layout(pipeline, gpu, &params->bindings, params->push_size,
                                  VK_SHADER_STAGE_COMPUTE_BIT, params->shader.name) ||
         !create_compute(pipeline, gpu, params)) {
-        wd_pipeline_finish(pipeline, gpu);
+        wd_pipeline_destroy(pipeline, gpu);
         return false;
     }
     wd_set_object_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)pipeline->pipeline,
                        params->shader.name);
+    wd_pipeline_keep(pipeline, gpu, &key);
     return true;
 }
 
-void wd_pipeline_finish(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+void wd_pipeline_destroy(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     if (pipeline->pipeline)
         vkDestroyPipeline(gpu->device, pipeline->pipeline, NULL);

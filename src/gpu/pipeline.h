@@ -1,4 +1,5 @@
-/* pipeline.h: compute and graphics pipelines from SPIR-V that is embedded in the program. */
+/* pipeline.h: compute and graphics pipelines from SPIR-V that is embedded in the program. The device keeps them
+ * until it is finished: what is asked for with equal parameters is the same pipeline. */
 #ifndef WD_GPU_PIPELINE_H
 #define WD_GPU_PIPELINE_H
 
@@ -74,7 +75,6 @@ struct wd_graphics_params {
 /* Viewport and scissor are dynamic; wd_cmd_begin_rendering sets them. */
 bool wd_pipeline_init_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
                                const struct wd_graphics_params *params);
-void wd_pipeline_finish(struct wd_pipeline *pipeline, struct wd_gpu *gpu);
 
 enum wd_sampler_kind {
     WD_SAMPLER_NEAREST_CLAMP,

@@ -171,21 +171,42 @@ static bool create_with_shaders(struct wd_pipeline *pipeline, struct wd_gpu *gpu
     return ok;
 }
 
+static void add_graphics(struct wd_pipeline_key *key, const struct wd_graphics_params *params)
+{
+    const uint32_t state[] = {params->push_size, params->color_count, params->color_writes, params->blend,
+                              params->depth_format, params->depth_compare, params->depth_read_only, params->cull,
+                              params->topology, params->depth_clamp};
+    const float bias[] = {params->depth_bias_constant, params->depth_bias_slope};
+    wd_pipeline_key_add(key, &params->vertex.words, sizeof params->vertex.words);
+    wd_pipeline_key_add(key, &params->fragment.words, sizeof params->fragment.words);
+    wd_pipeline_key_add(key, &params->vertices, sizeof params->vertices);
+    wd_pipeline_key_add(key, &params->bindings, sizeof params->bindings);
+    wd_pipeline_key_add(key, params->color_formats, sizeof params->color_formats);
+    wd_pipeline_key_add(key, state, sizeof state);
+    wd_pipeline_key_add(key, bias, sizeof bias);
+    wd_pipeline_key_add_constants(key, &params->constants);
+}
+
 bool wd_pipeline_init_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
                                const struct wd_graphics_params *params)
 {
     assert(params->color_count <= WD_MAX_COLOR_TARGETS &&
            params->vertices.count <= WD_MAX_VERTEX_ATTRIBUTES);
+    struct wd_pipeline_key key = {0};
+    add_graphics(&key, params);
+    if (!gpu->lost && wd_pipeline_find(pipeline, gpu, &key))
+        return true;
     *pipeline = (struct wd_pipeline){.bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS};
     VkShaderStageFlags stages = wd_pipeline_stages(pipeline);
     if (gpu->lost ||
         !wd_pipeline_init_layout(pipeline, gpu, &params->bindings, params->push_size, stages,
                                  params->vertex.name) ||
         !create_with_shaders(pipeline, gpu, params)) {
-        wd_pipeline_finish(pipeline, gpu);
+        wd_pipeline_destroy(pipeline, gpu);
         return false;
     }
     wd_set_object_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)pipeline->pipeline,
                        params->vertex.name);
+    wd_pipeline_keep(pipeline, gpu, &key);
     return true;
 }

@@ -18,8 +18,24 @@ void wd_specialization_init(struct wd_specialization *specialization,
 bool wd_pipeline_init_layout(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
                              const struct wd_bindings *bindings, uint32_t push_size,
                              VkShaderStageFlags stages, const char *name);
+void wd_pipeline_destroy(struct wd_pipeline *pipeline, struct wd_gpu *gpu);
 bool wd_shader_module_init(VkShaderModule *module, struct wd_gpu *gpu,
                            const struct wd_spirv *spirv);
 VkShaderStageFlags wd_pipeline_stages(const struct wd_pipeline *pipeline);
+
+/* All that a pipeline is made from; shaders by where their words lie. */
+struct wd_pipeline_key {
+    size_t size;
+    unsigned char bytes[1024];
+};
+void wd_pipeline_key_add(struct wd_pipeline_key *key, const void *bytes, size_t size);
+void wd_pipeline_key_add_constants(struct wd_pipeline_key *key, const struct wd_spec_constants *constants);
+
+/* What the device keeps. Threads may make pipelines at the same time. */
+void wd_pipelines_init(struct wd_gpu *gpu);
+void wd_pipelines_finish(struct wd_gpu *gpu); /* destroys them */
+bool wd_pipeline_find(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct wd_pipeline_key *key);
+/* Keeps `pipeline`; where another thread has kept one of the same key, this one is destroyed and that is given. */
+void wd_pipeline_keep(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct wd_pipeline_key *key);
 
 #endif

@@ -47,8 +47,6 @@ bool wd_canopy_map_init(struct wd_canopy_map *map, struct wd_gpu *gpu)
 
 void wd_canopy_map_finish(struct wd_canopy_map *map, struct wd_gpu *gpu)
 {
-    wd_pipeline_finish(&map->map, gpu);
-    wd_pipeline_finish(&map->draw, gpu);
     vkDestroySampler(gpu->device, map->sampler, NULL);
     wd_buffer_finish(&map->pixels, gpu);
 }

@@ -120,13 +120,6 @@ bool wd_card_soup_init(struct wd_card_soup *soup, struct wd_gpu *gpu)
 
 void wd_card_soup_finish(struct wd_card_soup *soup, struct wd_gpu *gpu)
 {
-    for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
-        wd_pipeline_finish(&soup->count[pass], gpu);
-        wd_pipeline_finish(&soup->expand[pass], gpu);
-        wd_pipeline_finish(&soup->draw[pass], gpu);
-    }
-    wd_pipeline_finish(&soup->scan, gpu);
-    wd_pipeline_finish(&soup->resolve, gpu);
     wd_image_finish(&soup->visible, gpu);
     wd_buffer_finish(&soup->firsts, gpu);
     wd_buffer_finish(&soup->command, gpu);

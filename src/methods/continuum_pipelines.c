@@ -249,21 +249,6 @@ bool wd_continuum_pipelines_init(struct wd_continuum_pipelines *p, struct wd_gpu
 
 void wd_continuum_pipelines_finish(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
-    struct wd_pipeline *pipelines[] = {&p->cull,       &p->args[0],    &p->args[1],
-                                       &p->choose[0],  &p->choose[1],  &p->choose_again,
-                                       &p->sort,
-                                       &p->depth[0],   &p->depth[1],   &p->resolve[0],
-                                       &p->resolve[1], &p->resolve_all, &p->cascade,
-                                       &p->cascade_store,
-                                       &p->pyramid_of_trees};
-    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
-        wd_pipeline_finish(pipelines[i], gpu);
-    for (uint32_t i = 0; i < WD_SHAPES * 2 * 2; i++)
-        wd_pipeline_finish(&p->draw[i / 4][i / 2 % 2][i % 2], gpu);
-    wd_pipeline_finish(&p->large[WD_PASS_CAMERA], gpu);
-    wd_pipeline_finish(&p->large[WD_PASS_SHADOW], gpu);
-    for (uint32_t i = 0; i < WD_PYRAMID_LEVELS - 1; i++)
-        wd_pipeline_finish(&p->pyramid[i], gpu);
     if (p->nearest)
         vkDestroySampler(gpu->device, p->nearest, NULL);
 }

@@ -108,9 +108,6 @@ static bool dissolve_init(void *state, struct wd_gpu *gpu)
 static void dissolve_finish(void *state, struct wd_gpu *gpu)
 {
     struct dissolve *dissolve = state;
-    wd_pipeline_finish(&dissolve->leaves[0], gpu);
-    wd_pipeline_finish(&dissolve->leaves[1], gpu);
-    wd_pipeline_finish(&dissolve->cards, gpu);
     wd_method_give_back(&wd_method_octree, &dissolve->shadows, gpu);
 }
 

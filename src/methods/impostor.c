@@ -77,7 +77,6 @@ static bool impostor_init(void *state, struct wd_gpu *gpu)
 static void impostor_finish(void *state, struct wd_gpu *gpu)
 {
     struct impostors *impostors = state;
-    wd_pipeline_finish(&impostors->pipeline, gpu);
     wd_method_give_back(&wd_method_octree, &impostors->shadows, gpu);
 }
 

@@ -96,8 +96,6 @@ static bool patch_init(void *state, struct wd_gpu *gpu)
 static void patch_finish(void *state, struct wd_gpu *gpu)
 {
     struct patch_state *patch = state;
-    wd_pipeline_finish(&patch->blend, gpu);
-    wd_pipeline_finish(&patch->layers, gpu);
     wd_method_give_back(&wd_method_octree, &patch->shadows, gpu);
 }
 

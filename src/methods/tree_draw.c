@@ -116,8 +116,6 @@ bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *
     for (int pass = WD_PASS_CAMERA; ok && pass <= WD_PASS_SHADOW; pass++)
         ok = init_mesh(&pipelines->mesh[pass], gpu, pass, wood, 0, 0) &&
              wd_spray_pipeline_init(&pipelines->spray[pass], gpu, pass);
-    if (!ok)
-        wd_tree_pipelines_finish(pipelines, gpu);
     return ok;
 }
 
@@ -132,21 +130,6 @@ bool wd_tree_pipelines_prepare(struct wd_tree_pipelines *pipelines, struct wd_gp
             ok = init_card(&pipelines->card_range[pass], gpu, pass, 0) &&
                  init_card(&pipelines->card_listed[pass], gpu, pass, 1);
     return ok;
-}
-
-void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
-{
-    wd_pipeline_finish(&pipelines->mesh_detail, gpu);
-    for (int i = 0; i < 2; i++) {
-        wd_pipeline_finish(&pipelines->mesh[i], gpu);
-        wd_pipeline_finish(&pipelines->spray[i], gpu);
-        for (int falls = 0; falls < 2; falls++) {
-            wd_pipeline_finish(&pipelines->leaf[i][falls], gpu);
-            wd_pipeline_finish(&pipelines->leaf_listed[i][falls], gpu);
-        }
-        wd_pipeline_finish(&pipelines->card_range[i], gpu);
-        wd_pipeline_finish(&pipelines->card_listed[i], gpu);
-    }
 }
 
 /* --- drawing ----------------------------------------------------------------------------- */

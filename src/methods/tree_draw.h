@@ -27,7 +27,6 @@ bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *
 /* Adds those that such a forest needs, and methods that draw cards. No frame is being recorded. */
 bool wd_tree_pipelines_prepare(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu,
                                const struct wd_forest_device *forest, bool cards);
-void wd_tree_pipelines_finish(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu);
 
 /* One view to be drawn. */
 struct wd_tree_draw {

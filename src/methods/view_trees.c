@@ -46,7 +46,6 @@ bool wd_view_trees_init(struct wd_view_trees *trees, struct wd_gpu *gpu, enum wd
 
 void wd_view_trees_finish(struct wd_view_trees *trees, struct wd_gpu *gpu)
 {
-    wd_pipeline_finish(&trees->pipeline, gpu);
     vkDestroySampler(gpu->device, trees->sampler, NULL);
     wd_method_give_back(&wd_method_octree, &trees->shadows, gpu);
 }

@@ -169,7 +169,6 @@ static void ping_pong_chain_is_right(void **state)
         assert_int_equal(values[i], expected);
     wd_buffer_finish(&buffers[0], &test->gpu);
     wd_buffer_finish(&buffers[1], &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void atomic_dispatches_are_ordered(void **state)
@@ -191,7 +190,6 @@ static void atomic_dispatches_are_ordered(void **state)
     assert_true(wd_buffer_read(&test->gpu, &total, 0, &count, 4));
     assert_int_equal(count, 1000);
     wd_buffer_finish(&total, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 /* A frame that fails after its barriers were planned must leave the tracked layouts true. */

@@ -42,7 +42,6 @@ static void dispatch_writes_a_buffer(void **state)
         assert_int_equal(values[i], 1000 + 5 * i);
     free(values);
     wd_buffer_finish(&buffer, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void more_groups_than_one_dimension_holds(void **state)
@@ -62,7 +61,6 @@ static void more_groups_than_one_dimension_holds(void **state)
     assert_in_range(total[0], groups, groups + 4); /* the last row may be a little too long */
     assert_int_equal(total[1], total[0] - 1);
     wd_buffer_finish(&buffer, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void absurd_dispatch_fails_the_frame(void **state)
@@ -90,7 +88,6 @@ static void too_long_a_binding_fails_the_frame(void **state)
     wd_cmd_dispatch(&cmd, 1, 1, 1);
     assert_false(wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE));
     wd_buffer_finish(&buffer, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void indirect_dispatch(void **state)
@@ -111,7 +108,6 @@ static void indirect_dispatch(void **state)
     assert_int_equal(count, 27);
     wd_buffer_finish(&total, &test->gpu);
     wd_buffer_finish(&arguments, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void storage_image_is_painted(void **state)
@@ -139,7 +135,6 @@ static void storage_image_is_painted(void **state)
     }
     wd_image_finish(&image, &test->gpu);
     wd_buffer_finish(&dummy, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void fill_layers(struct gpu_test *test, struct wd_image *image)
@@ -190,7 +185,6 @@ static void layers_and_mips_are_sampled(void **state)
     vkDestroySampler(test->gpu.device, sampler, NULL);
     wd_buffer_finish(&result, &test->gpu);
     wd_image_finish(&image, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void what_is_not_spirv_is_refused(void **state)
@@ -202,6 +196,24 @@ static void what_is_not_spirv_is_refused(void **state)
         .shader = SPIRV(junk)}));
     assert_logged(test, "shader \"junk\" is not SPIR-V");
     assert_null(pipeline.layout);
+}
+
+static void equal_parameters_give_the_same_pipeline(void **state)
+{
+    struct gpu_test *test = *state;
+    uint32_t constants[] = {5};
+    struct wd_compute_params params = {
+        .shader = SPIRV(fill_comp), .bindings = BINDINGS(STORAGE), .push_size = 8, .constants = {1, constants}};
+    struct wd_pipeline first, same, other;
+    assert_true(wd_pipeline_init_compute(&first, &test->gpu, &params));
+    assert_true(wd_pipeline_init_compute(&same, &test->gpu, &params));
+    assert_true(same.pipeline == first.pipeline && same.layout == first.layout);
+    constants[0] = 6;
+    assert_true(wd_pipeline_init_compute(&other, &test->gpu, &params));
+    assert_true(other.pipeline != first.pipeline);
+    constants[0] = 5;
+    assert_true(wd_pipeline_init_compute(&same, &test->gpu, &params));
+    assert_true(same.pipeline == first.pipeline);
 }
 
 int main(void)
@@ -216,6 +228,7 @@ int main(void)
         GPU_TEST(storage_image_is_painted),
         GPU_TEST(layers_and_mips_are_sampled),
         GPU_TEST(what_is_not_spirv_is_refused),
+        GPU_TEST(equal_parameters_give_the_same_pipeline),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,7 +37,6 @@ static void many_frames_with_deferred_buffers(void **state)
     for (uint32_t i = 0; i < COUNT; i++)
         assert_int_equal(values[i], FRAMES - 1 + i);
     wd_buffer_finish(&kept, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void deferred_images_die(void **state)
@@ -88,7 +87,6 @@ static void upload_arena_grows(void **state)
             assert_int_equal(values[i], 3 * (r * 1000 + i) + 1);
         wd_buffer_finish(&into[r], &test->gpu);
     }
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void descriptor_pools_grow_and_are_reused(void **state)
@@ -111,7 +109,6 @@ static void descriptor_pools_grow_and_are_reused(void **state)
     assert_true(pools > 1);
     assert_true(wd_frames_wait(&test->frames));
     wd_buffer_finish(&buffer, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 static void upload_beyond_memory_fails_only_its_frame(void **state)
@@ -139,7 +136,6 @@ static void upload_beyond_memory_fails_only_its_frame(void **state)
     assert_logged(test, "\"upload arena\" wants");
     assert_int_equal(test->errors, 2);
     wd_buffer_finish(&buffer, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 /* What a swapchain would do: one frame signals, the next waits. */

@@ -79,7 +79,6 @@ static void finish_scene(struct scene *scene, struct gpu_test *test)
     wd_image_finish(&scene->depth, &test->gpu);
     wd_buffer_finish(&scene->vertices, &test->gpu);
     wd_buffer_finish(&scene->arguments, &test->gpu);
-    wd_pipeline_finish(&scene->pipeline, &test->gpu);
 }
 
 static void draw_into(struct scene *scene, struct wd_cmd *cmd, enum wd_load load)
@@ -258,7 +257,6 @@ static void depth_only_into_a_layer(void **state)
     vkDestroyImageView(test->gpu.device, view, NULL);
     wd_image_finish(&image, &test->gpu);
     wd_buffer_finish(&buffer, &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 int main(void)

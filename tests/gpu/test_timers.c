@@ -15,12 +15,6 @@ static struct spinner make_spinner(struct gpu_test *test)
                             make_buffer(test, 64 * 64 * 4)};
 }
 
-static void finish_spinner(struct spinner *spinner, struct gpu_test *test)
-{
-    wd_pipeline_finish(&spinner->pipeline, &test->gpu);
-    wd_buffer_finish(&spinner->buffer, &test->gpu);
-}
-
 static void spin(struct wd_cmd *cmd, struct spinner *spinner, uint32_t rounds)
 {
     wd_cmd_use_buffer(cmd, &spinner->buffer, WD_USE_COMPUTE_WRITE);
@@ -70,7 +64,7 @@ static void scopes_are_timed_alone_and_summed(void **state)
     assert_true(scopes[0].gpu_us > scopes[1].gpu_us + scopes[2].gpu_us + 500);
     assert_true(scopes[0].cpu_us < scopes[0].gpu_us); /* waiting does not count as recording */
     assert_true(scopes[3].gpu_us == 0);
-    finish_spinner(&spinner, test);
+    wd_buffer_finish(&spinner.buffer, &test->gpu);
 }
 
 static void without_timing_there_are_no_scopes(void **state)
@@ -81,7 +75,7 @@ static void without_timing_there_are_no_scopes(void **state)
     record_scopes(&cmd, &spinner);
     finish_frame(test, &cmd);
     assert_int_equal(test->frames.last_scope_count, 0);
-    finish_spinner(&spinner, test);
+    wd_buffer_finish(&spinner.buffer, &test->gpu);
 }
 
 static void more_scopes_than_fit_are_left_out(void **state)
@@ -119,7 +113,7 @@ static void scopes_within_scopes_of_work_end(void **state)
     assert_int_equal(test->frames.last_scope_count, WD_MAX_SCOPES);
     for (int i = 0; i < WD_MAX_SCOPES; i++)
         assert_int_equal(test->frames.last_scopes[i].depth, i % 4);
-    finish_spinner(&spinner, test);
+    wd_buffer_finish(&spinner.buffer, &test->gpu);
 }
 
 /* Lavapipe's timestamps are not true, but they are there: the other path runs too. */
@@ -141,7 +135,7 @@ static void timestamps_are_read(void **state)
     assert_int_equal(test->frames.last_scope_count, 4);
     assert_true(scopes[0].gpu_us >= scopes[2].gpu_us);
     assert_true(scopes[2].gpu_us > scopes[1].gpu_us);
-    finish_spinner(&spinner, test);
+    wd_buffer_finish(&spinner.buffer, &test->gpu);
 }
 
 static void failed_frame_keeps_the_last_times(void **state)
@@ -160,7 +154,7 @@ static void failed_frame_keeps_the_last_times(void **state)
     assert_false(wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE));
     assert_true(wd_frames_wait(&test->frames));
     assert_string_equal(test->frames.last_scopes[0].name, "outer");
-    finish_spinner(&spinner, test);
+    wd_buffer_finish(&spinner.buffer, &test->gpu);
 }
 
 int main(void)

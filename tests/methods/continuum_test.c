@@ -67,7 +67,7 @@ static void two_passes_give_the_picture_of_one(void **state)
     frame_test_init(&once, root, &(struct frame_test_params){0});
     frame_test_init(&twice, root,
                     &(struct frame_test_params){.disabled = WD_GPU_FEATURE_INT64_ATOMICS});
-    assert_true(once.gpu.features & WD_GPU_FEATURE_INT64_ATOMICS);
+    assert_true(once.gpu->features & WD_GPU_FEATURE_INT64_ATOMICS);
     for (uint32_t camera = OVER; camera < CAMERAS; camera++) {
         struct frame_picture a, b;
         frame_test_draw(&once, "continuum", camera, &a);
@@ -110,7 +110,7 @@ static size_t other_light(struct frame_test *a, struct frame_test *b)
     uint8_t *bytes[2];
     for (int i = 0; i < 2; i++) {
         bytes[i] = wd_alloc(4 * pixels);
-        assert_true(wd_image_read(i ? &b->gpu : &a->gpu, images[i], 0, 0, bytes[i], 4 * pixels));
+        assert_true(wd_image_read(i ? b->gpu : a->gpu, images[i], 0, 0, bytes[i], 4 * pixels));
     }
     for (size_t i = 0; i < pixels; i++) {
         int most = 0;
@@ -134,8 +134,8 @@ static void other_ways_show_the_same(void **state)
     const uint32_t asked = WD_GPU_FEATURE_STORED_TARGETS | WD_GPU_FEATURE_MANY_LANES;
     frame_test_init(&drawn, root, &(struct frame_test_params){0});
     frame_test_init(&stored, root, &(struct frame_test_params){.asked = asked});
-    assert_int_equal(drawn.gpu.features & asked, 0);
-    assert_int_equal(stored.gpu.features & asked, asked);
+    assert_int_equal(drawn.gpu->features & asked, 0);
+    assert_int_equal(stored.gpu->features & asked, asked);
     for (uint32_t camera = OVER; camera < CAMERAS; camera++) {
         struct frame_picture a, b;
         frame_test_draw(&drawn, "continuum", camera, &a);
@@ -361,7 +361,7 @@ static uint64_t discs_of(struct frame_test *test, uint32_t camera, float max_err
         frame_test_draw(test, "continuum", camera, &picture);
         frame_picture_finish(&picture);
     }
-    return wd_method_continuum.discs(test->frame.method_state, &test->gpu);
+    return wd_method_continuum.discs(test->frame.method_state, test->gpu);
 }
 
 /* The coarser a picture may be, the fewer discs it has; as the option "density" has it without a
@@ -393,7 +393,7 @@ static void *read_cascade(struct frame_test *test, uint32_t layer)
     struct wd_image *shadow = &test->frame.targets.shadow;
     size_t size = (size_t)4 * shadow->width * shadow->height;
     void *data = wd_alloc(size);
-    assert_true(wd_image_read(&test->gpu, shadow, layer, 0, data, size));
+    assert_true(wd_image_read(test->gpu, shadow, layer, 0, data, size));
     return data;
 }
 
@@ -449,5 +449,5 @@ int main(int argc, char **argv)
     };
     if (argc > 2)
         cmocka_set_test_filter(argv[2]);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, frame_tests_finish);
 }

@@ -12,24 +12,53 @@
 #include "base/file.h"
 #include "base/memory.h"
 
+/* One device for all tests that ask for the same, with the pipelines that it keeps. */
+enum { MOST_DEVICES = 4 };
+static struct device {
+    struct wd_gpu gpu; /* closed: 0 */
+    uint32_t disabled, asked;
+} devices[MOST_DEVICES];
+
+static struct wd_gpu *open_device(const struct frame_test_params *params)
+{
+    static const struct wd_log silent;
+    const struct wd_gpu_params gpu = {.name = "software",
+                                      .validation = WD_GPU_VALIDATION_ON,
+                                      .disabled_features = params->disabled,
+                                      .asked_features = params->asked};
+    struct device *device = devices;
+    while (device->gpu.device && (device->disabled != params->disabled || device->asked != params->asked))
+        assert_true(++device < devices + MOST_DEVICES);
+    if (!device->gpu.device) {
+        assert_true(wd_gpu_init(&device->gpu, &gpu, &silent));
+        device->disabled = params->disabled;
+        device->asked = params->asked;
+    }
+    return &device->gpu;
+}
+
+int frame_tests_finish(void **state)
+{
+    (void)state;
+    for (int i = 0; i < MOST_DEVICES; i++)
+        wd_gpu_finish(&devices[i].gpu);
+    return 0;
+}
+
 void frame_test_init(struct frame_test *test, const char *root,
                      const struct frame_test_params *params)
 {
     const struct wd_scene_params scene = {.settings = params->settings};
     char *path = wd_format("%s/tests/api/small.json", root), *cache = wd_cache_directory();
-    const struct wd_gpu_params gpu = {.name = "software",
-                                      .validation = WD_GPU_VALIDATION_ON,
-                                      .disabled_features = params->disabled,
-                                      .asked_features = params->asked};
     *test = (struct frame_test){0};
     assert_true(wd_scene_load_with(&test->scene, path, &scene, &test->log));
     assert_true(wd_world_init(&test->world, &test->scene,
                               &(struct wd_world_params){.log = &test->log}));
-    assert_true(wd_gpu_init(&test->gpu, &gpu, &test->log));
+    test->gpu = open_device(params);
     const struct wd_forest_device_params forest = {
         .scene = &test->scene, .world = &test->world, .cache_dir = cache, .log = &test->log};
-    assert_true(wd_forest_device_init(&test->forest, &test->gpu, &forest));
-    assert_true(wd_frame_init(&test->frame, &test->gpu));
+    assert_true(wd_forest_device_init(&test->forest, test->gpu, &forest));
+    assert_true(wd_frame_init(&test->frame, test->gpu));
     free(cache);
     free(path);
 }
@@ -38,8 +67,7 @@ void frame_test_finish(struct frame_test *test)
 {
     wd_frame_drop_forest(&test->frame);
     wd_frame_finish(&test->frame);
-    wd_forest_device_finish(&test->forest, &test->gpu);
-    wd_gpu_finish(&test->gpu);
+    wd_forest_device_finish(&test->forest, test->gpu);
     wd_world_finish(&test->world);
     wd_scene_finish(&test->scene);
 }
@@ -48,7 +76,7 @@ static void *read_image(struct frame_test *test, struct wd_image *image)
 {
     size_t size = (size_t)4 * image->width * image->height;
     void *data = wd_alloc(size);
-    assert_true(wd_image_read(&test->gpu, image, 0, 0, data, size));
+    assert_true(wd_image_read(test->gpu, image, 0, 0, data, size));
     return data;
 }
 

@@ -6,7 +6,7 @@
 
 struct frame_test {
     struct wd_log log;
-    struct wd_gpu gpu;
+    struct wd_gpu *gpu; /* shared with tests before and after this one */
     struct wd_scene scene;
     struct wd_world world;
     struct wd_forest_device forest;
@@ -26,6 +26,8 @@ struct frame_test_params {
 void frame_test_init(struct frame_test *test, const char *root,
                      const struct frame_test_params *params);
 void frame_test_finish(struct frame_test *test);
+/* Teardown of a group: closes the devices. */
+int frame_tests_finish(void **state);
 
 /* What one frame left in the G-buffer. */
 struct frame_picture {

@@ -38,7 +38,7 @@ static int close_test(void **state)
 {
     frame_test_finish(*state);
     free(*state);
-    return 0;
+    return frame_tests_finish(state);
 }
 
 struct comparison {

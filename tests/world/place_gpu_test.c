@@ -109,7 +109,6 @@ static void plant_there(struct gpu_test *test, const struct stage *stage, uint32
                                (VkDeviceSize)count * slots * sizeof *trees));
     for (int i = 0; i < 6; i++)
         wd_buffer_finish(&buffers[i], &test->gpu);
-    wd_pipeline_finish(&pipeline, &test->gpu);
 }
 
 /* The same cells here; returns how many trees were accepted. */

@@ -31,8 +31,6 @@ bool wd_accumulate_pass_init(struct wd_accumulate_pass *pass, struct wd_gpu *gpu
 
 void wd_accumulate_pass_finish(struct wd_accumulate_pass *pass, struct wd_gpu *gpu)
 {
-    wd_pipeline_finish(&pass->gather, gpu);
-    wd_pipeline_finish(&pass->store, gpu);
     if (pass->nearest)
         vkDestroySampler(gpu->device, pass->nearest, NULL);
     wd_buffer_finish(&pass->history[0], gpu);

@@ -39,9 +39,6 @@ bool wd_bloom_pass_init(struct wd_bloom_pass *pass, struct wd_gpu *gpu)
 
 void wd_bloom_pass_finish(struct wd_bloom_pass *pass, struct wd_gpu *gpu)
 {
-    wd_pipeline_finish(&pass->first, gpu);
-    wd_pipeline_finish(&pass->down, gpu);
-    wd_pipeline_finish(&pass->up, gpu);
     wd_buffer_finish(&pass->pyramid, gpu);
     *pass = (struct wd_bloom_pass){0};
 }

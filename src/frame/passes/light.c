@@ -205,14 +205,6 @@ bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu)
 
 void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
-    struct wd_pipeline *others[] = {&pass->tiles, &pass->args, &pass->view, &pass->velocity,
-                                    &pass->water, &pass->shafts};
-    for (uint32_t list = 0; list < WD_TILE_LISTS; list++) {
-        wd_pipeline_finish(&pass->light[list], gpu);
-        wd_pipeline_finish(&pass->single[list], gpu);
-    }
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        wd_pipeline_finish(others[i], gpu);
     if (pass->nearest)
         vkDestroySampler(gpu->device, pass->nearest, NULL);
     if (pass->shadow)

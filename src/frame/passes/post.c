@@ -67,10 +67,6 @@ bool wd_post_pass_init(struct wd_post_pass *pass, struct wd_gpu *gpu)
 
 void wd_post_pass_finish(struct wd_post_pass *pass, struct wd_gpu *gpu)
 {
-    wd_pipeline_finish(&pass->meter, gpu);
-    wd_pipeline_finish(&pass->exposure, gpu);
-    for (int tone = 0; tone < WD_TONE_KINDS; tone++)
-        wd_pipeline_finish(&pass->tonemap[tone], gpu);
     wd_bloom_pass_finish(&pass->bloom, gpu);
     wd_buffer_finish(&pass->histogram, gpu);
     *pass = (struct wd_post_pass){0};

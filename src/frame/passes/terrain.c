@@ -116,9 +116,6 @@ bool wd_terrain_pass_prepare(struct wd_terrain_pass *pass, struct wd_gpu *gpu,
 
 void wd_terrain_pass_finish(struct wd_terrain_pass *pass, struct wd_gpu *gpu)
 {
-    for (uint32_t i = 0; i < 4; i++)
-        wd_pipeline_finish(&pass->pipelines[i >> 1][i & 1], gpu);
-    wd_pipeline_finish(&pass->shade, gpu);
     if (pass->nearest)
         vkDestroySampler(gpu->device, pass->nearest, NULL);
     wd_buffer_finish(&pass->indices, gpu);
