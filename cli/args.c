@@ -118,7 +118,7 @@ static const struct cli_option option_table[] = {
     {"times", 0, NULL, CLI_KIND_FLAG, AT(times), 0, 0, CLI_RENDER, "print how long each pass took"},
     {"json", 0, NULL, CLI_KIND_FLAG, AT(json), 0, 0, CLI_INFO, "print JSON"},
     {"quiet", 'q', NULL, CLI_KIND_FLAG, AT(quiet), 0, 0,
-     SCENE_COMMANDS | CLI_CHECK | CLI_GROW | CLI_BENCH,
+     SCENE_COMMANDS | CLI_CHECK | CLI_GROW | CLI_BENCH | CLI_BATCH,
      "print nothing but warnings, errors and what was asked for"},
     {"help", 'h', NULL, CLI_KIND_FLAG, AT(help), 0, 0, CLI_EVERY, "print this and exit"},
     {0},

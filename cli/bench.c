@@ -264,16 +264,8 @@ static bool everything_known(const struct bench *bench, const struct wd_forest *
 static enum wd_result open_renderer(struct bench_stage *stage)
 {
     struct bench *bench = stage->bench;
-    const struct cli_options *options = bench->session->options;
-    const struct wd_renderer_params params = {
-        .gpu = options->gpu,
-        .validation = options->gpu_validate ? WD_VALIDATION_ON : WD_VALIDATION_OFF,
-        .threads = options->threads,
-        .progress = bench->session->progress,
-        .log = bench->session->log,
-    };
     double begin_s = cli_seconds();
-    enum wd_result result = wd_renderer_create(&stage->renderer, &params);
+    enum wd_result result = cli_renderer_open(bench->session, &stage->renderer);
     if (result == WD_OK)
         result = wd_renderer_set_forest(stage->renderer, stage->forest);
     stage->start_s += cli_seconds() - begin_s;
@@ -336,7 +328,7 @@ static enum wd_result run_scene(struct bench *bench, const char *path, const cha
             result = measure_cameras(&stage);
     }
     wd_reference_destroy(&stage.reference);
-    wd_renderer_destroy(&stage.renderer);
+    cli_renderer_close(bench->session, &stage.renderer);
     wd_forest_destroy(&stage.forest);
     return result;
 }

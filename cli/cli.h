@@ -29,7 +29,8 @@ enum cli_command_bit {
     CLI_GROW = 1 << 8,
     CLI_EXPORT = 1 << 9,
     CLI_BENCH = 1 << 10,
-    CLI_EVERY = (1 << 11) - 1,
+    CLI_BATCH = 1 << 11,
+    CLI_EVERY = (1 << 12) - 1,
 };
 
 enum { CLI_MAX_SIZE_PX = 16384, CLI_MAX_WORDS = 32 };
@@ -77,8 +78,17 @@ struct cli_interrupt {
     sigset_t signals;
 };
 
+/* The renderer that one line of `batch` leaves to the next, and what it was opened with. */
+struct cli_kept {
+    struct wd_renderer *renderer;
+    const char *gpu;
+    bool gpu_validate;
+    uint32_t threads;
+};
+
 struct cli_session {
     const struct cli_options *options;
+    struct cli_kept *kept; /* of batch; NULL: renderers are closed after use */
     struct cli_meter meter;
     struct cli_interrupt interrupt;
     struct wd_log log;
@@ -98,8 +108,11 @@ struct cli_command {
 
 /* All commands, ended by one without a name. */
 const struct cli_command *cli_commands(void);
+const struct cli_command *cli_command_find(const char *name); /* NULL: there is none */
 
 bool cli_session_start(struct cli_session *session, const struct cli_options *options);
+/* Goes on with other options, as if started anew. */
+void cli_session_take(struct cli_session *session, const struct cli_options *options);
 /* Only after a successful start. */
 void cli_session_finish(struct cli_session *session);
 bool cli_session_interrupted(const struct cli_session *session);
@@ -120,6 +133,9 @@ __attribute__((format(printf, 2, 3))) bool cli_fail(struct cli_session *session,
 
 /* Opens the forest that the scene operand and the options ask for. */
 enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **forest);
+/* A renderer on the device that the options ask for, or the kept one; close it after use. */
+enum wd_result cli_renderer_open(struct cli_session *session, struct wd_renderer **renderer);
+void cli_renderer_close(struct cli_session *session, struct wd_renderer **renderer);
 /* Whether there is a method of that name; complains if not. */
 bool cli_method_known(struct cli_session *session, const char *name);
 /* Tells a wrong --method from a right one before any long work. */
@@ -137,6 +153,7 @@ enum cli_status cli_export(struct cli_session *session);
 enum cli_status cli_view(struct cli_session *session);
 enum cli_status cli_info(struct cli_session *session);
 enum cli_status cli_check(struct cli_session *session);
+enum cli_status cli_batch(struct cli_session *session);
 enum cli_status cli_schema(struct cli_session *session);
 enum cli_status cli_devices(struct cli_session *session);
 enum cli_status cli_bench(struct cli_session *session);

@@ -156,19 +156,6 @@ enum wd_result cli_specimens_picture(struct cli_session *session, struct wd_rend
     return result;
 }
 
-enum wd_result cli_renderer_open(struct cli_session *session, struct wd_renderer **renderer)
-{
-    const struct cli_options *options = session->options;
-    struct wd_renderer_params params = {
-        .gpu = options->gpu,
-        .validation = options->gpu_validate ? WD_VALIDATION_ON : WD_VALIDATION_OFF,
-        .threads = options->threads,
-        .progress = session->progress,
-        .log = session->log,
-    };
-    return wd_renderer_create(renderer, &params);
-}
-
 static bool choose_form(struct cli_session *session, enum wd_specimen_form *form)
 {
     static const char *const names[] = {"seen", "full", "reduced", "cards"};
@@ -208,7 +195,7 @@ static enum wd_result draw(struct cli_session *session, const struct grown *grow
     if (result == WD_OK)
         result = wd_picture_write(&picture, options->output, &session->log);
     wd_picture_finish(&picture);
-    wd_renderer_destroy(&renderer);
+    cli_renderer_close(session, &renderer);
     return result;
 }
 

@@ -19,7 +19,6 @@ enum wd_result cli_specimens_picture(struct cli_session *session, struct wd_rend
                                      const struct wd_specimen *const *specimens, uint32_t count,
                                      const struct cli_specimen_view *view,
                                      struct wd_picture *picture);
-enum wd_result cli_renderer_open(struct cli_session *session, struct wd_renderer **renderer);
 
 /* The month that --month or --season name; 0: none. */
 bool cli_season_month(struct cli_session *session, double *month);

@@ -5,16 +5,7 @@
 
 static enum wd_result open_renderer(struct cli_painter *painter, const struct wd_forest *forest)
 {
-    struct cli_session *session = painter->session;
-    const struct cli_options *options = session->options;
-    const struct wd_renderer_params params = {
-        .gpu = options->gpu,
-        .validation = options->gpu_validate ? WD_VALIDATION_ON : WD_VALIDATION_OFF,
-        .threads = options->threads,
-        .progress = session->progress,
-        .log = session->log,
-    };
-    enum wd_result result = wd_renderer_create(&painter->renderer, &params);
+    enum wd_result result = cli_renderer_open(painter->session, &painter->renderer);
     return result == WD_OK ? wd_renderer_set_forest(painter->renderer, forest) : result;
 }
 
@@ -105,7 +96,8 @@ void cli_painter_print_times(struct cli_painter *painter)
 
 void cli_painter_close(struct cli_painter *painter)
 {
-    wd_renderer_destroy(&painter->renderer);
+    if (painter->renderer)
+        cli_renderer_close(painter->session, &painter->renderer);
     wd_reference_destroy(&painter->reference);
     free(painter->checkpoint);
     *painter = (struct cli_painter){0};

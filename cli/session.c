@@ -141,6 +141,13 @@ bool cli_session_start(struct cli_session *session, const struct cli_options *op
            cli_fail(session, "no thread could be started to wait for Ctrl-C");
 }
 
+void cli_session_take(struct cli_session *session, const struct cli_options *options)
+{
+    session->options = options;
+    session->meter = (struct cli_meter){
+        .begin_s = cli_seconds(), .terminal = session->meter.terminal, .quiet = options->quiet};
+}
+
 void cli_session_finish(struct cli_session *session)
 {
     cli_meter_clear(&session->meter);
@@ -233,6 +240,45 @@ enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **f
     for (uint32_t i = 0; i < settings.made_count; i++)
         free(settings.made[i]);
     return result;
+}
+
+static bool is_kept(const struct cli_kept *kept, const struct cli_options *options)
+{
+    bool same_gpu = kept->gpu && options->gpu ? !strcmp(kept->gpu, options->gpu) : kept->gpu == options->gpu;
+    return kept->renderer && same_gpu && kept->gpu_validate == options->gpu_validate &&
+           kept->threads == options->threads;
+}
+
+enum wd_result cli_renderer_open(struct cli_session *session, struct wd_renderer **renderer)
+{
+    const struct cli_options *options = session->options;
+    struct cli_kept *kept = session->kept;
+    const struct wd_renderer_params params = {
+        .gpu = options->gpu,
+        .validation = options->gpu_validate ? WD_VALIDATION_ON : WD_VALIDATION_OFF,
+        .threads = options->threads,
+        .progress = session->progress,
+        .log = session->log,
+    };
+    if (!kept)
+        return wd_renderer_create(renderer, &params);
+    enum wd_result result = WD_OK;
+    if (!is_kept(kept, options)) {
+        wd_renderer_destroy(&kept->renderer);
+        *kept = (struct cli_kept){.gpu = options->gpu, .gpu_validate = options->gpu_validate, .threads = options->threads};
+        result = wd_renderer_create(&kept->renderer, &params);
+    }
+    *renderer = kept->renderer;
+    return result;
+}
+
+void cli_renderer_close(struct cli_session *session, struct wd_renderer **renderer)
+{
+    if (!session->kept)
+        wd_renderer_destroy(renderer);
+    else if (*renderer)
+        wd_renderer_set_forest(*renderer, NULL);
+    *renderer = NULL;
 }
 
 /* One of `names`, or a complaint that lists them. `what` is what they name. */

@@ -306,7 +306,7 @@ enum wd_result cli_sheet(struct cli_session *session)
         result = draw_row(&sheet, row);
     if (result == WD_OK)
         result = wd_picture_write(&sheet.picture, session->options->output, &session->log);
-    wd_renderer_destroy(&sheet.renderer);
+    cli_renderer_close(session, &sheet.renderer);
     wd_picture_finish(&sheet.picture);
     free(sheet.names);
     return result;

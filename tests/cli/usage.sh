@@ -8,7 +8,7 @@ status=0
 check 'no arguments: usage, exit 2' test "$status" -eq 2
 expect 0 '^weald [0-9]+\.[0-9]+' --version
 expect 0 'weald render scenes/valley.json' --help
-for command in render grow export view info check schema devices bench methods manual; do
+for command in render grow export view info check batch schema devices bench methods manual; do
     expect 0 '^Examples:' "$command" --help
     expect 0 '^  weald ' "$command" -h
 done
@@ -71,7 +71,7 @@ for kind in scene species; do
 done
 expect 0 'llvmpipe|lavapipe' devices
 check 'a full standard output is a failure' sh -c "! '$weald' schema scene >/dev/full"
-check 'manual page names every command' sh -c "'$weald' manual | grep -c '^.SS weald' | grep -qx 11"
+check 'manual page names every command' sh -c "'$weald' manual | grep -c '^.SS weald' | grep -qx 12"
 if command -v groff >/dev/null 2>&1; then
     check 'manual page is clean roff' sh -c \
         "'$weald' manual | groff -man -ww -z -Tutf8 2>&1 | ( ! grep . )"

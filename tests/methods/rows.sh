@@ -15,20 +15,28 @@ scene=$root/tests/methods/rows.json
 # Row O4 draws a file from elsewhere: any model file will do.
 "$weald" grow "$root/species/birch.json" -o "$scratch/artist.obj" --detail 0.2 -q || exit 1
 
-# run ARGUMENTS: result in $scratch/KEY.out, made once for the same arguments
-run() {
-    key=$(printf '%s' "$*" | cksum | tr ' ' -)
-    out=$scratch/$key.out
+# result ARGUMENTS: $out is the file of what they draw or tell
+result() {
+    out=$scratch/$(printf '%s' "$*" | cksum | tr ' ' -).out
+}
+
+# words COLUMN: the options in a column of a row
+words() {
+    echo "$1" | sed "s/[^\`]*\`\([^\`]*\)\`.*/\1/; s|MODEL|$scratch/artist.obj|"
+}
+
+# make ARGUMENTS: tells it now, or has it drawn with all others
+make() {
+    result "$@"
     [ ! -e "$out" ] || return 0
     case $1 in
     info)
         shift
-        "$weald" info "$scene" "$@" -q >"$out" 2>"$scratch/errors"
+        "$weald" info "$scene" "$@" -q >"$out" || rm -f "$out"
         ;;
     *)
-        # shellcheck disable=SC2086 # words of an option
-        "$weald" render "$scene" -o "$scratch/picture.png" $size "$@" -q 2>"$scratch/errors" &&
-            mv "$scratch/picture.png" "$out"
+        : >"$out"
+        echo "render $scene -o $out.png $size $* -q" >>"$scratch/pictures"
         ;;
     esac
 }
@@ -36,14 +44,28 @@ run() {
 covered=0
 rows=0
 sed -n '/^## Every row/,$ {/^| [GRWOI][0-9]/p}' "$root/docs/methods.md" >"$scratch/table"
+# words of a row are options without blanks in them
+# shellcheck disable=SC2046,SC2086,SC2116
+while IFS='|' read -r _ _ _ with against _; do
+    make $(words "$with")
+    make $(words "$against")
+done <"$scratch/table"
+"$weald" batch "$scratch/pictures" -q
+
+# shellcheck disable=SC2046,SC2086,SC2116
 while IFS='|' read -r _ row _ with against must _; do
     row=$(echo $row)
+    with=$(words "$with")
+    against=$(words "$against")
     rows=$((rows + 1))
-    with=$(echo "$with" | sed 's/[^`]*`\([^`]*\)`.*/\1/' | sed "s|MODEL|$scratch/artist.obj|")
-    against=$(echo "$against" | sed 's/[^`]*`\([^`]*\)`.*/\1/')
-    # words of a row are options without blanks in them
-    # shellcheck disable=SC2086
-    if run $with && first=$out && run $against && second=$out; then
+    result $with
+    first=$out
+    result $against
+    second=$out
+    for out in "$first" "$second"; do
+        [ ! -e "$out.png" ] || mv "$out.png" "$out"
+    done
+    if [ -s "$first" ] && [ -s "$second" ]; then
         [ -z "$folder" ] || [ "${with%% *}" = info ] ||
             ffmpeg -v error -y -f png_pipe -i "$first" -f png_pipe -i "$second" \
                 -filter_complex hstack "$folder/$row.png" </dev/null
@@ -55,8 +77,7 @@ while IFS='|' read -r _ row _ with against must _; do
             echo "FAIL $row: $with and $against $found"
         fi
     else
-        echo "FAIL $row: $with"
-        sed 's/^/     | /' "$scratch/errors"
+        echo "FAIL $row: $with or $against"
     fi
 done <"$scratch/table"
 echo "rows-covered $covered rows"

@@ -1,0 +1,150 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "args.h"
+
+/* What a line may ask for: commands that end by themselves. */
+enum { OF_LINES = CLI_RENDER | CLI_GROW | CLI_EXPORT | CLI_INFO | CLI_CHECK };
+
+struct line {
+    uint32_t number;
+    char *text;   /* words end in it */
+    char **words; /* of the command, then operands */
+    const struct cli_command *command;
+    struct cli_options options;
+};
+
+struct batch {
+    struct cli_session *session;
+    const char *path;
+    struct line *lines;
+    uint32_t count;
+};
+
+static bool complain(const struct batch *batch, uint32_t number, const char *what, const char *more)
+{
+    return cli_fail(batch->session, "%s:%u: %s%s", batch->path, number, what, more);
+}
+
+/* Ends the next word of a shell's line in place: blanks part words but within quotes, # begins a comment. NULL: none
+ * is left. `*sound` becomes false where a quote is not closed. */
+static char *next_word(char **at, bool *sound)
+{
+    char *from = *at + strspn(*at, " \t\r\n"), *to = from, *word = from;
+    char quote = 0;
+    if (!*from || *from == '#')
+        return NULL;
+    for (; *from && (quote || !strchr(" \t\r\n", *from)); from++) {
+        if (*from == quote)
+            quote = 0;
+        else if (!quote && (*from == '"' || *from == '\''))
+            quote = *from;
+        else
+            *to++ = *from;
+    }
+    *sound = !quote;
+    *at = *from ? from + 1 : from;
+    *to = 0;
+    return word;
+}
+
+static bool read_line(struct batch *batch, struct line *line)
+{
+    size_t room = strlen(line->text) / 2 + 2, count = 0;
+    char *at = line->text;
+    bool sound = true;
+    line->words = calloc(2 * room, sizeof *line->words);
+    if (!line->words)
+        return complain(batch, line->number, "out of memory", "");
+    for (char *word; (word = next_word(&at, &sound)); count++)
+        line->words[count] = word;
+    if (!sound)
+        return complain(batch, line->number, "a quote is not closed", "");
+    if (!count)
+        return true;
+    line->command = cli_command_find(line->words[0]);
+    if (!line->command || !(line->command->bit & OF_LINES))
+        return complain(batch, line->number,
+                        "a line begins with render, grow, export, info or check, not with ", line->words[0]);
+    if (!cli_options_parse(line->command, (int)count - 1, line->words + 1, line->words + room, &line->options))
+        return complain(batch, line->number, "this line cannot be run; nothing was begun", "");
+    return !line->options.help || complain(batch, line->number, "--help has no place in a line", "");
+}
+
+static bool add_line(struct batch *batch, const char *text, uint32_t number)
+{
+    struct line *lines = realloc(batch->lines, (batch->count + 1) * sizeof *lines);
+    if (!lines)
+        return complain(batch, number, "out of memory", "");
+    batch->lines = lines;
+    lines[batch->count] = (struct line){.number = number, .text = strdup(text)};
+    batch->count++;
+    return (lines[batch->count - 1].text && read_line(batch, &lines[batch->count - 1])) ||
+           (!lines[batch->count - 1].text && complain(batch, number, "out of memory", ""));
+}
+
+static bool read_lines(struct batch *batch)
+{
+    FILE *file = strcmp(batch->path, "-") ? fopen(batch->path, "r") : stdin;
+    char *text = NULL;
+    size_t size = 0;
+    bool ok = true;
+    if (!file)
+        return cli_fail(batch->session, "%s: no such file can be read", batch->path);
+    for (uint32_t number = 1; ok && getline(&text, &size, file) >= 0; number++)
+        ok = add_line(batch, text, number);
+    if (ok && ferror(file))
+        ok = cli_fail(batch->session, "%s: reading it failed", batch->path);
+    free(text);
+    if (file != stdin)
+        fclose(file);
+    return ok;
+}
+
+static enum cli_status run_line(struct batch *batch, struct line *line)
+{
+    struct cli_session *session = batch->session;
+    const struct cli_options *own = session->options;
+    line->options.quiet |= own->quiet;
+    cli_session_take(session, &line->options);
+    enum cli_status status = line->command->run(session);
+    cli_session_take(session, own);
+    if (status != CLI_OK) {
+        wd_renderer_destroy(&session->kept->renderer); /* it may be what failed */
+        if (!cli_session_interrupted(session))
+            complain(batch, line->number, "failed: ", line->command->name);
+    }
+    return status;
+}
+
+static enum cli_status run_lines(struct batch *batch)
+{
+    double begin_s = cli_seconds();
+    uint32_t run = 0, failed = 0;
+    for (uint32_t i = 0; i < batch->count; i++) {
+        enum cli_status status = batch->lines[i].command ? run_line(batch, &batch->lines[i]) : CLI_OK;
+        if (cli_session_interrupted(batch->session))
+            return status;
+        run += batch->lines[i].command != NULL;
+        failed += status != CLI_OK;
+    }
+    cli_say(batch->session, "%s: %u lines, %u failed, %.1f s\n", batch->path, run, failed, cli_seconds() - begin_s);
+    return failed ? CLI_FAILED : CLI_OK;
+}
+
+enum cli_status cli_batch(struct cli_session *session)
+{
+    struct batch batch = {.session = session, .path = session->options->operands[0]};
+    struct cli_kept kept = {0};
+    session->kept = &kept;
+    enum cli_status status = read_lines(&batch) ? run_lines(&batch) : CLI_USAGE;
+    session->kept = NULL;
+    wd_renderer_destroy(&kept.renderer);
+    for (uint32_t i = 0; i < batch.count; i++) {
+        free(batch.lines[i].text);
+        free(batch.lines[i].words);
+    }
+    free(batch.lines);
+    return status;
+}

@@ -1,0 +1,47 @@
+#!/bin/sh
+# Many commands in one start: each does what it would do alone.
+#   batch.sh PROGRAM ROOT
+set -u
+. "$(dirname "$0")/lib.sh"
+out=$scratch/'out of one start'
+alone=$scratch/alone
+mkdir "$out" "$alone"
+
+cat >"$scratch/lines" <<EOF
+# three pictures, one of them of another method, and a tree
+
+render $tiny -o "$out/south.png" --gpu software
+render $tiny -o '$out/own.png' --gpu software --method continuum --camera west # nearer
+render $tiny -o "$out/again.png" --gpu software --camera south --seed 7
+grow oak --height 5 -o "$out/oak.png" --size 96x96 --samples 1 --gpu software
+info $tiny --json
+EOF
+expect 0 'lines: 5 lines, 0 failed' batch "$scratch/lines"
+for name in south own oak; do
+    sed -n "s|\"||g; s|'||g; s|$out|$alone|; s| *#.*||; /$name.png/p" "$scratch/lines" | xargs "$weald" >"$scratch/output" 2>&1
+    check "$name.png is as made alone" cmp "$out/$name.png" "$alone/$name.png"
+done
+check 'the same line, the same picture' cmp "$out/south.png" "$out/again.png"
+check 'other lines, other pictures' sh -c "! cmp -s '$out/south.png' '$out/own.png'"
+check 'lines of standard input' sh -c "echo info '$tiny' --json | '$weald' batch - | grep -q tree_count"
+
+# A line that fails is named and stops no other; one that cannot be run stops all.
+cat >"$scratch/failing" <<EOF
+render $tiny -o "$out/none.png" --gpu software --camera wset
+render $tiny -o "$out/after.png" --gpu software
+EOF
+expect 1 'failing:1: failed: render' batch "$scratch/failing"
+check 'what failed left nothing' test ! -e "$out/none.png"
+check 'the next line was run' cmp "$out/south.png" "$out/after.png"
+wrong() { # wrong PATTERN LINE: told before the first line is run
+    printf 'render %s -o "%s"\n%s\n' "$tiny" "$out/never.png" "$2" >"$scratch/wrong"
+    expect 2 "$1" batch "$scratch/wrong"
+}
+wrong 'wrong:2: this line cannot be run' "render $tiny -o a.png --smaples 3"
+wrong 'did you mean --samples' "render $tiny -o a.png --smaples 3"
+wrong 'wrong:2: a quote is not closed' "render \"$tiny -o a.png"
+wrong 'wrong:2: a line begins with render, grow, export, info or check, not with view' "view $tiny"
+wrong 'wrong:2: --help has no place' 'render --help'
+check 'nothing was begun' test ! -e "$out/never.png"
+expect 2 'no such file' batch "$scratch/missing"
+finish
