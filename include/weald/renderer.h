@@ -66,7 +66,8 @@ enum wd_view_mode {
     WD_VIEW_SHADOW,
 };
 
-/* Layers of a picture; OR them. */
+/* Layers of a picture; OR them. All but display, colour and cryptomatte are those of the last sample: where none of
+ * these three is wanted, that one alone is drawn, and without the first two no shadows and no light. */
 enum wd_layer_bits {
     WD_LAYER_DISPLAY = 1 << 0,  /* exposed, tone-mapped, sRGB */
     WD_LAYER_COLOR = 1 << 1,    /* linear radiance, scene units */

@@ -154,7 +154,8 @@ static bool check(const struct wd_renderer *renderer, const struct wd_render_par
 }
 
 enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
-                                   const struct wd_render_params *params, uint32_t max_samples)
+                                   const struct wd_render_params *params, uint32_t max_samples,
+                                   enum wd_frame_light light)
 {
     if (renderer->gpu.lost) {
         wd_error(&renderer->log, "the device was lost: make a new renderer");
@@ -187,6 +188,7 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
                    : params->layers & ~(uint32_t)(WD_LAYER_DISPLAY | WD_LAYER_COLOR)
                        ? WD_GBUFFER_READ
                        : WD_GBUFFER_OWN,
+        .light = light,
         .gathering = params->accumulation == WD_ACCUMULATE ? WD_GATHER_ON : WD_GATHER_OFF,
         .velocity = params->layers & WD_LAYER_VELOCITY ? WD_VELOCITY_ON : WD_VELOCITY_OFF,
     };
@@ -233,10 +235,12 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
 {
     struct wd_frame *frame = &renderer->frame;
     uint32_t samples = frame->params.samples;
+    bool only_last = frame->params.light == WD_FRAME_UNLIT && frame->params.gbuffer != WD_GBUFFER_READ_EACH;
+    uint32_t first = only_last ? samples - 1 : 0; /* layers are those of the last */
     double start = wd_clock_s();
-    for (uint32_t i = 0; i < samples; i++) {
+    for (uint32_t i = first; i < samples; i++) {
         struct wd_cmd cmd;
-        if (samples > 1 && !wd_progress_report(&renderer->progress, "samples", i, samples))
+        if (samples - first > 1 && !wd_progress_report(&renderer->progress, "samples", i, samples))
             return WD_ERROR_INTERRUPTED;
         if (!wd_frame_begin(&frame->ring, &cmd))
             return WD_ERROR_DEVICE;
@@ -245,16 +249,16 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
             wd_frame_abandoned(frame);
             return WD_ERROR_DEVICE;
         }
-        if (i == 0 && !wd_frames_wait(&frame->ring))
+        if (i == first && !wd_frames_wait(&frame->ring))
             return WD_ERROR_DEVICE;
-        if (i == 0)
+        if (i == first)
             wd_renderer_keep_times(renderer);
         if (renderer->coverage.first && !wd_picture_count_trees(renderer))
             return WD_ERROR_DEVICE;
     }
     if (!wd_frames_wait(&frame->ring))
         return WD_ERROR_DEVICE;
-    renderer->frame_ms = (wd_clock_s() - start) * 1e3 / samples;
+    renderer->frame_ms = (wd_clock_s() - start) * 1e3 / (samples - first);
     if (frame->params.method->check)
         frame->params.method->check(frame->method_state, &renderer->gpu);
     renderer->discs = 0;
@@ -267,10 +271,11 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
                                   const struct wd_render_params *params, struct wd_picture *picture)
 {
     *picture = (struct wd_picture){0};
-    enum wd_result result = wd_renderer_prepare(renderer, params, UINT32_MAX);
+    uint32_t layers = params->layers ? params->layers : WD_LAYER_DISPLAY;
+    bool lit = layers & (WD_LAYER_DISPLAY | WD_LAYER_COLOR);
+    enum wd_result result = wd_renderer_prepare(renderer, params, UINT32_MAX, lit ? WD_FRAME_LIT : WD_FRAME_UNLIT);
     if (result != WD_OK)
         return result;
-    uint32_t layers = params->layers ? params->layers : WD_LAYER_DISPLAY;
     if (layers & WD_LAYER_CRYPTOMATTE)
         wd_coverage_init(&renderer->coverage, (size_t)params->width * params->height);
     result = render_samples(renderer);

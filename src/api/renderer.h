@@ -29,7 +29,8 @@ struct wd_renderer {
 
 /* Checks the parameters of a picture and hands them to the frame. */
 enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
-                                   const struct wd_render_params *params, uint32_t max_samples);
+                                   const struct wd_render_params *params, uint32_t max_samples,
+                                   enum wd_frame_light light);
 /* Fetches the layers of the frame just finished. */
 bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers);
 /* Adds what the sample just finished shows to renderer->coverage. */

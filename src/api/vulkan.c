@@ -53,7 +53,7 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
     enum { LIVE_SAMPLES = 1, LIVE_PAGES = 256 };
     if (!check_target(renderer, params, target))
         return WD_ERROR_INPUT;
-    enum wd_result result = wd_renderer_prepare(renderer, params, LIVE_SAMPLES);
+    enum wd_result result = wd_renderer_prepare(renderer, params, LIVE_SAMPLES, WD_FRAME_LIT);
     if (result != WD_OK)
         return result;
     renderer->frame.params.page_budget = LIVE_PAGES;

@@ -78,7 +78,7 @@ static bool prepare_pipelines(struct wd_frame *frame)
     return wd_tree_pipelines_prepare(&frame->trees, frame->gpu, params->forest,
                                      params->method->cards) &&
            wd_terrain_pass_prepare(&frame->terrain, frame->gpu, &params->forest->ground) &&
-           wd_light_pass_prepare(&frame->light, frame->gpu, &needs);
+           (params->light == WD_FRAME_UNLIT || wd_light_pass_prepare(&frame->light, frame->gpu, &needs));
 }
 
 /* Pictures of WD_FINE_SAMPLES and more draw their shadow maps once for all, and show finer shadows than one
@@ -324,6 +324,11 @@ static bool blends(const struct recording *r)
            params->view_mode == WD_MODE_LIT;
 }
 
+static bool is_lit(const struct recording *r)
+{
+    return r->frame->params.light == WD_FRAME_LIT;
+}
+
 static bool is_last(const struct recording *r)
 {
     return r->index + 1 == r->frame->params.samples;
@@ -366,11 +371,13 @@ static void record_light(const struct recording *r)
         r->uniforms,     blends(r) ? WD_OVERLAY_OVER : WD_OVERLAY_NONE,
         leaves_of(frame->params.method),
         !frame->params.method->eye_pictures};
-    if (blends(r))
+    if (is_lit(r) && blends(r))
         record_blend(r, &light);
-    wd_cmd_scope_begin(r->cmd, "light");
-    wd_light_pass_record(&frame->light, r->cmd, &light);
-    wd_cmd_scope_end(r->cmd);
+    if (is_lit(r)) {
+        wd_cmd_scope_begin(r->cmd, "light");
+        wd_light_pass_record(&frame->light, r->cmd, &light);
+        wd_cmd_scope_end(r->cmd);
+    }
     enum wd_gbuffer_use use = frame->params.gbuffer;
     if (blends(r) && (use == WD_GBUFFER_READ_EACH || (use == WD_GBUFFER_READ && is_last(r))))
         record_layers(r);
@@ -467,12 +474,12 @@ void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index)
     if (cmd->failed)
         return;
     wd_forest_device_use(frame->params.forest, cmd);
-    if (index == 0)
+    if (index == 0 && is_lit(&r))
         record_shadows(&r);
     record_gbuffer(&r);
     record_light(&r);
     if (frame->params.gathering == WD_GATHER_ON)
         record_gathering(&r);
-    if (index + 1 == frame->params.samples)
+    if (is_last(&r) && is_lit(&r))
         record_display(&r);
 }

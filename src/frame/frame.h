@@ -24,6 +24,10 @@ struct wd_frame_params {
         WD_GBUFFER_READ, /* its layers are read afterwards: trees stand in all of them */
         WD_GBUFFER_READ_EACH, /* after every sample */
     } gbuffer;
+    enum wd_frame_light {
+        WD_FRAME_LIT,
+        WD_FRAME_UNLIT, /* neither colour nor display is asked for: no shadows, no light */
+    } light;
     uint32_t page_budget; /* pages of trees on demand to plant for a view, at most; 0: all it needs */
     float max_error_px;   /* see struct wd_render_params; 0: the method's own */
     enum wd_velocity { WD_VELOCITY_OFF, WD_VELOCITY_ON } velocity;

@@ -9,14 +9,6 @@
 
 enum { PIXELS = PICTURE_WIDTH * PICTURE_HEIGHT, FRAMES = 16 };
 
-static struct wd_picture draw(struct suite *suite, const struct wd_render_params *params)
-{
-    struct wd_picture picture;
-    if (wd_renderer_render(suite->renderer, params, &picture) != WD_OK)
-        fail_msg("%s", suite->messages);
-    return picture;
-}
-
 static struct wd_render_params params_of(struct suite *suite, const char *camera)
 {
     struct wd_render_params params = suite_params(suite->forest, camera);
@@ -73,14 +65,14 @@ static void run_motion(struct suite *suite, const struct motion *motion, struct 
         params.accumulation = WD_ACCUMULATE;
         if (frame > 0)
             wd_picture_finish(&outcome->gathered);
-        outcome->gathered = draw(suite, &params);
+        outcome->gathered = suite_render(suite, &params);
     }
     params = frame_of(suite, motion, FRAMES - 1);
-    outcome->single = draw(suite, &params);
+    outcome->single = suite_render(suite, &params);
     params.samples = 64;
-    outcome->truth = draw(suite, &params);
+    outcome->truth = suite_render(suite, &params);
     params = frame_of(suite, motion, FRAMES - 2);
-    outcome->before = draw(suite, &params);
+    outcome->before = suite_render(suite, &params);
 }
 
 static void finish_outcome(struct outcome *outcome)
@@ -101,7 +93,7 @@ static void a_still_view_comes_to_many_samples(void **state)
     double single = error_of(&found.single, &found.truth, NULL);
     struct wd_render_params params = frame_of(suite, &none, 0);
     params.samples = FRAMES;
-    struct wd_picture many = draw(suite, &params);
+    struct wd_picture many = suite_render(suite, &params);
     double known = error_of(&many, &found.truth, NULL);
     print_message("still: one sample %.3f, %d gathered %.3f, %d in one picture %.3f\n", single, FRAMES,
                   gathered, FRAMES, known);
@@ -154,12 +146,12 @@ static void nothing_is_kept_of_something_else(void **state)
     struct suite *suite = *state;
     struct wd_render_params params = params_of(suite, "over");
     params.accumulation = WD_ACCUMULATE;
-    struct wd_picture first = draw(suite, &params);
+    struct wd_picture first = suite_render(suite, &params);
     params.method = "octree";
-    struct wd_picture other = draw(suite, &params);
+    struct wd_picture other = suite_render(suite, &params);
     wd_picture_finish(&other);
     params.method = "continuum";
-    struct wd_picture again = draw(suite, &params);
+    struct wd_picture again = suite_render(suite, &params);
     double off = error_of(&again, &first, NULL);
     print_message("begun anew: %.4f\n", off);
     assert_true(off < 0.02);

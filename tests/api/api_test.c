@@ -14,20 +14,11 @@
 
 enum { PIXELS = PICTURE_WIDTH * PICTURE_HEIGHT, MIDDLE = PIXELS / 2 + PICTURE_WIDTH / 2 };
 
-static struct wd_picture render(struct suite *suite, const struct wd_render_params *params)
-{
-    struct wd_picture picture;
-    enum wd_result result = wd_renderer_render(suite->renderer, params, &picture);
-    if (result != WD_OK)
-        fail_msg("%s: %s", wd_result_name(result), suite->messages);
-    return picture;
-}
-
 static struct wd_picture render_layers(struct suite *suite, const char *camera, uint32_t layers)
 {
     struct wd_render_params params = suite_params(suite->forest, camera);
     params.layers = layers;
-    return render(suite, &params);
+    return suite_render(suite, &params);
 }
 
 /* --- the forest -------------------------------------------------------------------------- */
@@ -86,8 +77,7 @@ static void cameras_and_paths_go_by_name(void **state)
     assert_int_equal(wd_forest_get_camera(suite->forest, "over", &camera), WD_OK);
     assert_memory_equal(&camera, &first, sizeof camera);
     assert_true(fabs(camera.yaw_rad) < 1e-9 && camera.pitch_rad < -0.1);
-    assert_int_equal(wd_forest_get_path_camera(suite->forest, "fly", 99, &camera, &duration_s),
-                     WD_OK);
+    assert_int_equal(wd_forest_get_path_camera(suite->forest, "fly", 99, &camera, &duration_s), WD_OK);
     assert_true(duration_s == 4.0 && fabs(camera.position_m[1]) < 1e-9);
     assert_true(fabs(camera.yaw_rad - 20.0 / 57.29577951308232) < 1e-9);
 }
@@ -124,8 +114,7 @@ static void unknown_cameras_are_named(void **state)
     assert_int_equal(wd_forest_get_camera(suite->forest, "wlak", &camera), WD_ERROR_INPUT);
     assert_true(suite_logged(suite, "wlak") && suite_logged(suite, "walk"));
     suite_clear(suite);
-    assert_int_equal(wd_forest_get_path_camera(suite->forest, "swim", 0, &camera, NULL),
-                     WD_ERROR_INPUT);
+    assert_int_equal(wd_forest_get_path_camera(suite->forest, "swim", 0, &camera, NULL), WD_ERROR_INPUT);
     assert_true(suite_logged(suite, "swim") && suite_logged(suite, "fly"));
 }
 
@@ -212,8 +201,7 @@ static void files_have_points_in_numbers(void **state)
 
 /* --- what is refused --------------------------------------------------------------------- */
 
-static void assert_refused(struct suite *suite, const struct wd_render_params *params,
-                           const char *part)
+static void assert_refused(struct suite *suite, const struct wd_render_params *params, const char *part)
 {
     struct wd_picture picture;
     suite_clear(suite);
@@ -304,12 +292,22 @@ static void a_wish_to_stop_stops(void **state)
     suite->stop_stage = NULL;
     assert_int_equal(result, WD_ERROR_INTERRUPTED);
     assert_null(picture.display);
-    picture = render(suite, &params); /* and the renderer goes on */
+    picture = suite_render(suite, &params); /* and the renderer goes on */
     assert_non_null(picture.display);
     wd_picture_finish(&picture);
 }
 
 /* --- layers ------------------------------------------------------------------------------ */
+
+static uint32_t passes_named(const struct wd_renderer *renderer, const char *name)
+{
+    struct wd_frame_stats stats;
+    uint32_t count = 0;
+    wd_renderer_get_stats(renderer, &stats);
+    for (uint32_t i = 0; i < stats.pass_count; i++)
+        count += !strcmp(stats.passes[i].name, name);
+    return count;
+}
 
 static double length3(const float *v)
 {
@@ -354,13 +352,39 @@ static void every_layer_holds_what_it_says(void **state)
     assert_null(p.display);
 }
 
+/* Where no colour is asked for nothing is lit, and of samples the last alone is drawn; layers are the same. */
+static void layers_need_no_light(void **state)
+{
+    struct suite *suite = *state;
+    const char *const methods[] = {"octree", "patch", "impostor", "continuum"};
+    struct wd_render_params params = suite_params(suite->forest, "over");
+    params.samples = 2;
+    params.timing = WD_TIME_PASSES;
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+        struct wd_picture p[2];
+        params.method = methods[m];
+        for (uint32_t lit = 0; lit < 2; lit++) {
+            params.layers = WD_LAYER_ALL & ~(lit ? 0u : WD_LAYER_COLOR | WD_LAYER_DISPLAY);
+            p[lit] = suite_render(suite, &params);
+            assert_int_equal(p[lit].color != NULL, lit);
+            assert_int_equal(passes_named(suite->renderer, "light"), lit);
+        }
+        assert_memory_equal(p[0].depth_m, p[1].depth_m, PIXELS * sizeof(float));
+        assert_memory_equal(p[0].normal, p[1].normal, 3 * PIXELS * sizeof(float));
+        assert_memory_equal(p[0].tree_id, p[1].tree_id, PIXELS * sizeof(uint32_t));
+        assert_memory_equal(p[0].velocity_px, p[1].velocity_px, 2 * PIXELS * sizeof(float));
+        wd_picture_finish(&p[0]);
+        wd_picture_finish(&p[1]);
+    }
+}
+
 /* The crown that a pixel shows is where the pixel looks. */
 static void depths_lead_to_the_trees(void **state)
 {
     struct suite *suite = *state;
     struct wd_render_params params = suite_params(suite->forest, "over");
     params.layers = WD_LAYER_DEPTH | WD_LAYER_TREE_ID;
-    struct wd_picture p = render(suite, &params);
+    struct wd_picture p = suite_render(suite, &params);
     const struct wd_camera *c = &params.camera;
     double per_px = 2.0 * tan(0.5 * c->fov_rad) / PICTURE_HEIGHT;
     size_t near = 0, trees = 0;
@@ -380,8 +404,7 @@ static void depths_lead_to_the_trees(void **state)
         double side = hypot(x - tree.position_m[0], y - tree.position_m[1]);
         height -= tree.position_m[2];
         trees++;
-        near += side < 0.6 * tree.crown_diameter_m + 1.0 && height > -1.0 &&
-                height < 1.1 * tree.height_m + 1.0;
+        near += side < 0.6 * tree.crown_diameter_m + 1.0 && height > -1.0 && height < 1.1 * tree.height_m + 1.0;
     }
     assert_true(near >= 0.98 * (double)trees);
     wd_picture_finish(&p);
@@ -418,7 +441,7 @@ static void the_widest_view_is_lit_all_over(void **state)
     for (int i = 0; i < 2; i++) {
         struct wd_picture before = render_layers(suite, i ? "walk" : "over", WD_LAYER_COLOR);
         wd_picture_finish(&before);
-        shown[i] = render(suite, &params);
+        shown[i] = suite_render(suite, &params);
     }
     for (size_t i = 0; i < 3 * (size_t)PIXELS; i++) {
         assert_true(shown[0].color[i] > 0 && isfinite(shown[0].color[i]));
@@ -438,10 +461,10 @@ static void methods_agree(void **state)
         struct wd_render_params params = suite_params(suite->forest, cameras[c]);
         params.layers = WD_LAYER_TREE_ID;
         params.method = "octree";
-        struct wd_picture octree = render(suite, &params);
+        struct wd_picture octree = suite_render(suite, &params);
         for (const char *const *name = wd_method_names(); *name; name++) {
             params.method = *name;
-            struct wd_picture own = render(suite, &params);
+            struct wd_picture own = suite_render(suite, &params);
             size_t same = 0, trees = 0, own_trees = 0;
             for (size_t i = 0; i < PIXELS; i++) {
                 same += octree.tree_id[i] == own.tree_id[i];
@@ -451,8 +474,7 @@ static void methods_agree(void **state)
             print_message("%s, %s: %zu of %d pixels show the same tree, %zu a tree, octree %zu\n",
                           *name, cameras[c], same, PIXELS, own_trees, trees);
             /* others choose among the meshes and cards, or draw other shapes */
-            bool exact = !strcmp(*name, "octree") || !strcmp(*name, "separate") ||
-                         !strcmp(*name, "grid");
+            bool exact = !strcmp(*name, "octree") || !strcmp(*name, "separate") || !strcmp(*name, "grid");
             assert_true(same >= PIXELS * (exact ? 99u : 72u) / 100);
             size_t off = trees * (exact ? 5 : 8) / 100; /* continuum from within: 6 */
             assert_in_range(own_trees, trees - off, trees + off);
@@ -465,7 +487,7 @@ static void methods_agree(void **state)
 /* How many spruces show that stand farther off than that. */
 static size_t spruces_beyond(struct suite *suite, struct wd_render_params *params, double least_m)
 {
-    struct wd_picture p = render(suite, params);
+    struct wd_picture p = suite_render(suite, params);
     size_t count = 0;
     for (size_t i = 0; i < PIXELS; i++) {
         struct wd_tree_info tree;
@@ -546,13 +568,13 @@ static void surfaces_move_against_the_camera(void **state)
     params.previous_camera = &previous;
     params.layers = WD_LAYER_VELOCITY;
     previous.yaw_rad -= turn;
-    struct wd_picture p = render(suite, &params);
+    struct wd_picture p = suite_render(suite, &params);
     assert_true(fabs(p.velocity_px[2 * MIDDLE] + turn * focal_px) < 0.1);
     assert_true(fabs(p.velocity_px[2 * MIDDLE + 1]) < 0.1);
     wd_picture_finish(&p);
     previous = params.camera;
     previous.pitch_rad -= turn; /* looked up since: all goes down */
-    p = render(suite, &params);
+    p = suite_render(suite, &params);
     assert_true(fabs(p.velocity_px[2 * MIDDLE + 1] - turn * focal_px) < 0.1);
     wd_picture_finish(&p);
 }
@@ -564,7 +586,7 @@ static void wind_moves_trees_and_nothing_else(void **state)
     params.layers = WD_LAYER_VELOCITY | WD_LAYER_TREE_ID;
     params.time_s = 1.5;
     params.previous_time_s = 1.0;
-    struct wd_picture p = render(suite, &params);
+    struct wd_picture p = suite_render(suite, &params);
     size_t moved = 0;
     for (size_t i = 0; i < PIXELS; i++) {
         float speed = hypotf(p.velocity_px[2 * i], p.velocity_px[2 * i + 1]);
@@ -606,7 +628,7 @@ static void ranks_are_the_samples_trees(void **state)
     struct wd_render_params params = suite_params(suite->forest, "over");
     params.samples = 8;
     params.layers = WD_LAYER_CRYPTOMATTE | WD_LAYER_TREE_ID;
-    struct wd_picture p = render(suite, &params);
+    struct wd_picture p = suite_render(suite, &params);
     size_t parted = 0, whole = 0;
     for (size_t i = 0; i < PIXELS; i++) {
         const uint32_t *tree = &p.rank_tree[i * WD_RANKS];
@@ -637,7 +659,7 @@ static void cryptomatte_files_say_what_they_hold(void **state)
     struct wd_render_params params = suite_params(suite->forest, "over");
     params.samples = 4;
     params.layers = WD_LAYER_CRYPTOMATTE;
-    struct wd_picture p = render(suite, &params);
+    struct wd_picture p = suite_render(suite, &params);
     const char *path = suite_path(suite, "matte.exr");
     struct wd_exr_image image;
     assert_int_equal(wd_picture_write(&p, path, &suite->log), WD_OK);
@@ -673,8 +695,7 @@ static void pictures_need_a_known_ending(void **state)
 /* --- precision --------------------------------------------------------------------------- */
 
 /* One tree at x, y, seen from 14 m. */
-static struct wd_picture render_lone_tree(struct suite *suite, const char *frame, double x,
-                                           double y)
+static struct wd_picture render_lone_tree(struct suite *suite, const char *frame, double x, double y)
 {
     char text[2048];
     snprintf(text, sizeof text, "x,y,species,height\n%.2f,%.2f,beech,12\n", x, y);
@@ -700,7 +721,7 @@ static struct wd_picture render_lone_tree(struct suite *suite, const char *frame
         .camera = {{tree.position_m[0] - 4.0, tree.position_m[1] - 13.0, 3.0}, 0.3, 0.15, 1.0},
         .width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .layers = WD_LAYER_ALL};
     assert_int_equal(wd_renderer_set_forest(suite->renderer, forest), WD_OK);
-    struct wd_picture picture = render(suite, &params);
+    struct wd_picture picture = suite_render(suite, &params);
     assert_int_equal(wd_renderer_set_forest(suite->renderer, suite->forest), WD_OK);
     wd_forest_destroy(&forest);
     return picture;
@@ -750,6 +771,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(impossible_pictures_are_refused, &suite),
         cmocka_unit_test_prestate(a_wish_to_stop_stops, &suite),
         cmocka_unit_test_prestate(every_layer_holds_what_it_says, &suite),
+        cmocka_unit_test_prestate(layers_need_no_light, &suite),
         cmocka_unit_test_prestate(depths_lead_to_the_trees, &suite),
         cmocka_unit_test_prestate(the_same_picture_twice, &suite),
         cmocka_unit_test_prestate(the_widest_view_is_lit_all_over, &suite),

@@ -150,6 +150,15 @@ struct wd_render_params suite_params(const struct wd_forest *forest, const char 
     return params;
 }
 
+struct wd_picture suite_render(struct suite *suite, const struct wd_render_params *params)
+{
+    struct wd_picture picture;
+    enum wd_result result = wd_renderer_render(suite->renderer, params, &picture);
+    if (result != WD_OK)
+        fail_msg("%s: %s", wd_result_name(result), suite->messages);
+    return picture;
+}
+
 void suite_trace(const struct suite *suite, const struct wd_forest *forest,
                  const struct wd_render_params *render, uint32_t paths, struct wd_picture *picture)
 {

@@ -45,6 +45,9 @@ bool suite_write_variant(struct suite *suite, const char *name, const char *from
 /* What a test asks for: the camera of the name, 160 x 120, one sample, everything else 0. */
 struct wd_render_params suite_params(const struct wd_forest *forest, const char *camera);
 
+/* Draws it, or fails with the messages; free the picture with wd_picture_finish. */
+struct wd_picture suite_render(struct suite *suite, const struct wd_render_params *params);
+
 /* Path-traces what `render` says of camera, size and layers; free the picture with wd_picture_finish. */
 void suite_trace(const struct suite *suite, const struct wd_forest *forest,
                  const struct wd_render_params *render, uint32_t paths, struct wd_picture *picture);
