@@ -238,13 +238,20 @@ static float *mean_radiance(const struct wd_trace_sums *sums)
     return color;
 }
 
+/* Whether any path has to be traced. */
+static bool is_lit(const struct work *work)
+{
+    return work->layers & (WD_LAYER_COLOR | WD_LAYER_DISPLAY);
+}
+
 static void fill_picture(struct work *work, struct wd_picture *picture)
 {
     uint32_t width = work->sums.width, height = work->sums.height;
     size_t pixels = (size_t)width * height;
     picture->width = width;
     picture->height = height;
-    picture->color = mean_radiance(&work->sums);
+    if (is_lit(work))
+        picture->color = mean_radiance(&work->sums);
     if (work->layers & WD_LAYER_DEPTH)
         picture->depth_m = wd_alloc_array(pixels, sizeof(float));
     if (work->layers & WD_LAYER_NORMAL)
@@ -282,12 +289,13 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
         .samples = params->samples ? params->samples : DEFAULT_SAMPLES,
         .layers = params->layers ? params->layers : WD_LAYER_DISPLAY,
     };
-    enum wd_result result = !prepare(&work)   ? WD_ERROR_MEMORY
+    enum wd_result result = !prepare(&work)  ? WD_ERROR_MEMORY
+                            : !is_lit(&work) ? WD_OK
                             : !resume(&work) ? WD_ERROR_INPUT
                                              : trace(&work);
     if (result == WD_OK) {
         fill_picture(&work, picture);
-        if (params->checkpoint && wd_file_exists(params->checkpoint))
+        if (is_lit(&work) && params->checkpoint && wd_file_exists(params->checkpoint))
             unlink(params->checkpoint);
     }
     reference->stats.rays = work.job.counts.rays;

@@ -52,6 +52,33 @@ static struct wd_reference_picture_params picture_params(struct suite *suite)
     return params;
 }
 
+/* Without colour and display no path is traced; a checkpoint that lies there stays. */
+static void layers_need_no_paths(void **state)
+{
+    struct suite *suite = suite_of(state);
+    struct wd_reference *reference = open_reference(suite, NULL);
+    struct wd_reference_picture_params params = picture_params(suite);
+    const size_t pixels = (size_t)params.width * params.height;
+    struct wd_picture lit, layers;
+    struct wd_reference_stats lit_stats, stats;
+    params.layers = WD_LAYER_COLOR | WD_LAYER_DEPTH | WD_LAYER_TREE_ID;
+    assert_int_equal(wd_reference_render(reference, &params, &lit), WD_OK);
+    wd_reference_get_stats(reference, &lit_stats);
+    params.layers &= ~(uint32_t)WD_LAYER_COLOR;
+    assert_true(suite_write(suite, "other.partial", "of another picture"));
+    params.checkpoint = suite_path(suite, "other.partial");
+    assert_int_equal(wd_reference_render(reference, &params, &layers), WD_OK);
+    wd_reference_get_stats(reference, &stats);
+    assert_null(layers.color);
+    assert_memory_equal(layers.depth_m, lit.depth_m, pixels * sizeof *lit.depth_m);
+    assert_memory_equal(layers.tree_id, lit.tree_id, pixels * sizeof *lit.tree_id);
+    assert_true(stats.rays < lit_stats.rays / 8); /* of 8 samples */
+    assert_int_equal(access(params.checkpoint, F_OK), 0);
+    wd_picture_finish(&lit);
+    wd_picture_finish(&layers);
+    wd_reference_destroy(&reference);
+}
+
 /* Stopped and gone on with is the same as never stopped. */
 static void test_resume(void **state)
 {
@@ -138,6 +165,7 @@ int main(int argc, char **argv)
         return 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(test_agreement, &suite),
+        cmocka_unit_test_prestate(layers_need_no_paths, &suite),
         cmocka_unit_test_prestate(test_resume, &suite),
         cmocka_unit_test_prestate(test_other_leaves, &suite),
         cmocka_unit_test_prestate(test_bad_input, &suite),

@@ -60,9 +60,8 @@ static struct wd_camera camera_at(int place)
 
 /* One sample and two paths a pixel, all through its middle: what a pixel is called is what it
  * shows. */
-static void look(const struct wd_camera *camera, struct wd_picture *drawn, struct wd_picture *traced)
+static void look(const struct wd_camera *camera, uint32_t layers, struct wd_picture *drawn, struct wd_picture *traced)
 {
-    const uint32_t layers = WD_LAYER_COLOR | WD_LAYER_DEPTH | WD_LAYER_TREE_ID;
     const struct wd_render_params render = {.camera = *camera,
                                             .width = 128,
                                             .height = 96,
@@ -86,7 +85,7 @@ struct sum {
 
 static void add(struct sum *sum, const struct wd_picture *picture, size_t pixel)
 {
-    for (size_t k = 0; k < 3; k++)
+    for (size_t k = 0; k < 3 && picture->color; k++)
         sum->light[k] += (double)picture->color[3 * pixel + k];
     sum->pixels++;
 }
@@ -110,8 +109,8 @@ static void check_light(const char *part, const struct sum *drawn, const struct 
 /* --- tests ---------------------------------------------------------------------------------------
  */
 
-static const struct stand dark = {"scenes/bench75k.json", {300, 300}, 400, {"variants=2"}};
-static const struct stand hazy = {"scenes/bench75k.json", {300, 300}, 400, {"variants=2", "fog.visibility_m=3000"}};
+enum { SHAPES = WD_LAYER_DEPTH | WD_LAYER_TREE_ID, LIGHT = SHAPES | WD_LAYER_COLOR };
+static const struct stand dark = {"scenes/bench75k.json", {300, 300}, 400, {"variants=2", "fog.visibility_m=3000"}};
 static const struct stand shore = {"scenes/gallery/lake.json", {0, 0}, 0, {"variants=1", "fog.visibility_m=2000"}};
 static const struct stand light = {"bench/light.json", {460, 250}, 180, {"variants=2"}};
 
@@ -126,7 +125,7 @@ static void a_dark_floor_is_as_bright_as_traced(void **state)
         struct wd_camera camera = camera_at(place);
         struct wd_picture picture = {0}, truth = {0};
         camera.pitch_rad = -1.309;
-        look(&camera, &picture, &truth);
+        look(&camera, LIGHT, &picture, &truth);
         for (size_t i = 0; i < (size_t)picture.width * picture.height; i++) {
             if (picture.tree_id[i] == 0)
                 add(&drawn, &picture, i);
@@ -147,7 +146,7 @@ static void add_crowns(struct sum *sum, const struct wd_picture *picture)
             add(sum, picture, i);
 }
 
-static void look_at_crowns(const struct stand *stand, struct sum *drawn, struct sum *traced)
+static void look_at_crowns(const struct stand *stand, uint32_t layers, struct sum *drawn, struct sum *traced)
 {
     paint(stand);
     for (int place = 0; place < 8; place++) {
@@ -155,7 +154,7 @@ static void look_at_crowns(const struct stand *stand, struct sum *drawn, struct 
         struct wd_picture picture = {0}, truth = {0};
         camera.pitch_rad = 0.35;
         camera.yaw_rad = 6.283185307179586 * fmod(0.6180339887 * place, 1);
-        look(&camera, &picture, &truth);
+        look(&camera, layers, &picture, &truth);
         add_crowns(drawn, &picture);
         add_crowns(traced, &truth);
         wd_picture_finish(&picture);
@@ -163,22 +162,22 @@ static void look_at_crowns(const struct stand *stand, struct sum *drawn, struct 
     }
 }
 
-/* 0.93 of the traced, 0.99 in blue, most of which wax mirrors; 1.20 in red if leaves let through a share of the
+/* 0.96 of the traced, 1.06 in blue, most of which wax mirrors (0.93 and 0.99 without haze); 1.20 in red without haze if leaves let through a share of the
  * side that is seen and what lies lower in crowns is lit as what lies higher. */
 static void crowns_from_within_are_as_bright_as_traced(void **state)
 {
     (void)state;
     struct sum drawn = {0}, traced = {0};
-    look_at_crowns(&dark, &drawn, &traced);
+    look_at_crowns(&dark, LIGHT, &drawn, &traced);
     check_light("crowns of a dark stand", &drawn, &traced, 1.13, 1.24);
 }
 
-/* 0.993; 0.978 if discs are as large from below as from above. */
+/* 0.990; 0.978 if discs are as large from below as from above. */
 static void crowns_from_within_hide_as_much_of_the_sky_as_traced(void **state)
 {
     (void)state;
     struct sum drawn = {0}, traced = {0};
-    look_at_crowns(&light, &drawn, &traced);
+    look_at_crowns(&light, SHAPES, &drawn, &traced);
     double ratio = drawn.pixels / traced.pixels;
     print_message("crowns from within cover %.3f of what is traced\n", ratio);
     assert_true(ratio > 0.96 && ratio < 1.04);
@@ -197,12 +196,12 @@ static void haze_within_a_stand_is_as_dark_as_traced(void **state)
 {
     (void)state;
     struct sum drawn = {0}, traced = {0};
-    paint(&hazy);
+    paint(&dark);
     for (int place = 0; place < 8; place++) {
         struct wd_camera camera = camera_at(place);
         struct wd_picture picture = {0}, truth = {0};
         camera.yaw_rad = 6.283185307179586 * fmod(0.6180339887 * place, 1);
-        look(&camera, &picture, &truth);
+        look(&camera, LIGHT, &picture, &truth);
         add_far(&drawn, &picture, 60, 300);
         add_far(&traced, &truth, 60, 300);
         wd_picture_finish(&picture);
@@ -221,7 +220,7 @@ static void haze_between_stands_is_as_bright_as_traced(void **state)
     struct wd_picture picture = {0}, truth = {0};
     paint(&shore);
     assert_int_equal(wd_forest_get_camera(painters.forest, "shore", &camera), WD_OK);
-    look(&camera, &picture, &truth);
+    look(&camera, LIGHT, &picture, &truth);
     add_far(&drawn, &picture, 300, 1500);
     add_far(&traced, &truth, 300, 1500);
     check_light("haze over a lake", &drawn, &traced, 1.25, 1.25);
