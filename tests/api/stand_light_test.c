@@ -162,8 +162,8 @@ static void look_at_crowns(const struct stand *stand, uint32_t layers, struct su
     }
 }
 
-/* 0.96 of the traced, 1.06 in blue, most of which wax mirrors (0.93 and 0.99 without haze); 1.20 in red without haze if leaves let through a share of the
- * side that is seen and what lies lower in crowns is lit as what lies higher. */
+/* 0.96 of the traced, 1.06 in blue, most of which wax mirrors (without haze 0.93 and 0.99); 1.20 in red, without haze,
+ * if leaves let through a share of the side that is seen and what lies lower in crowns is lit as what lies higher. */
 static void crowns_from_within_are_as_bright_as_traced(void **state)
 {
     (void)state;
