@@ -42,7 +42,8 @@ float leaf_growth(uint model, float share, float sine)
     return mix(more, fewer, at - float(k));
 }
 
-/* Factor on a leaf's size, 0 where it is not drawn: it may be drawn as a twig, or thinned out. */
+/* Factor on a leaf's size, 0 where it is not drawn: it may be drawn as a twig, or thinned out. What share of the sides
+ * that leaves are seen by the first of them have is known of leaves as they hang, not as they fall. */
 float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
 {
     tree_pose pose = tree_pose_of(tree, models[model]);
@@ -54,7 +55,7 @@ float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
     float share = wd_leaf_stand(push.leaf_m * pose.across * push.pixels_per_radian / far_m,
                                 push.leaf_most, pose.across);
     bool thin = float(index) >= share * float(push.leaf_count);
-    float grown = inversesqrt(share) * leaf_growth(model, share, sine);
+    float grown = inversesqrt(share) * (FALLS != 0u ? 1.0 : leaf_growth(model, share, sine));
     grown = thin ? 0.0 : grown;
     grown = twig ? 0.0 : grown;
     return push.leaf_count != 0u ? grown : 1.0;

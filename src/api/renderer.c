@@ -272,7 +272,7 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
 {
     *picture = (struct wd_picture){0};
     uint32_t layers = params->layers ? params->layers : WD_LAYER_DISPLAY;
-    bool lit = layers & (WD_LAYER_DISPLAY | WD_LAYER_COLOR);
+    bool lit = layers & (WD_LAYER_DISPLAY | WD_LAYER_COLOR) || params->accumulation == WD_ACCUMULATE;
     enum wd_result result = wd_renderer_prepare(renderer, params, UINT32_MAX, lit ? WD_FRAME_LIT : WD_FRAME_UNLIT);
     if (result != WD_OK)
         return result;
