@@ -70,7 +70,8 @@ static bool measure_reference(struct lod_bench *bench, struct wd_forest *forest,
             continue;
         ok = bias_show_reference(reference, bench->renderer, stand, height, view) &&
              bias_trace(&traced, tracer, stand, height, view);
-        reference->radiance = traced.radiance;
+        if (ok)
+            reference->radiance = traced.radiance;
     }
     wd_reference_destroy(&tracer);
     return ok;

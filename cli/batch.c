@@ -110,11 +110,8 @@ static enum cli_status run_line(struct batch *batch, struct line *line)
     cli_session_take(session, &line->options);
     enum cli_status status = line->command->run(session);
     cli_session_take(session, own);
-    if (status != CLI_OK) {
-        wd_renderer_destroy(&session->kept->renderer); /* it may be what failed */
-        if (!cli_session_interrupted(session))
-            complain(batch, line->number, "failed: ", line->command->name);
-    }
+    if (status != CLI_OK && !cli_session_interrupted(session))
+        complain(batch, line->number, "failed: ", line->command->name);
     return status;
 }
 
@@ -123,14 +120,17 @@ static enum cli_status run_lines(struct batch *batch)
     double begin_s = cli_seconds();
     uint32_t run = 0, failed = 0;
     for (uint32_t i = 0; i < batch->count; i++) {
-        enum cli_status status = batch->lines[i].command ? run_line(batch, &batch->lines[i]) : CLI_OK;
+        if (!batch->lines[i].command)
+            continue;
         if (cli_session_interrupted(batch->session))
-            return status;
-        run += batch->lines[i].command != NULL;
-        failed += status != CLI_OK;
+            return cli_session_status(batch->session, WD_ERROR_INTERRUPTED);
+        failed += run_line(batch, &batch->lines[i]) != CLI_OK;
+        run++;
     }
-    cli_say(batch->session, "%s: %u lines, %u failed, %.1f s\n", batch->path, run, failed, cli_seconds() - begin_s);
-    return failed ? CLI_FAILED : CLI_OK;
+    if (!batch->session->options->quiet) /* what lines tell has standard output to itself */
+        fprintf(stderr, "weald: %s: %u lines, %u failed, %.1f s\n", batch->path, run, failed, cli_seconds() - begin_s);
+    return cli_session_interrupted(batch->session) ? cli_session_status(batch->session, WD_ERROR_INTERRUPTED)
+           : failed ? CLI_FAILED : CLI_OK;
 }
 
 enum cli_status cli_batch(struct cli_session *session)

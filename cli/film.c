@@ -60,14 +60,13 @@ static enum wd_result frame_camera(const struct cli_film *film, uint64_t frame,
 }
 
 /* The next frame's error bound follows from this one's time. */
-static void note_time(struct cli_film *film, const struct cli_painter *painter,
-                      const struct wd_render_params *params)
+static void note_time(struct cli_film *film, const struct cli_painter *painter)
 {
     struct wd_frame_stats stats;
     if (film->session->options->budget_ms <= 0)
         return;
     wd_renderer_get_stats(painter->renderer, &stats);
-    double frame_ms = stats.frame_ms * (params->samples ? params->samples : 1);
+    double frame_ms = stats.frame_ms * stats.samples;
     film->over_budget += frame_ms > film->budget.target_ms;
     wd_budget_next(&film->budget, frame_ms);
 }
@@ -89,7 +88,7 @@ static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *pai
     if (result == WD_OK)
         result = cli_painter_paint(painter, &params, &picture);
     if (result == WD_OK)
-        note_time(film, painter, &params);
+        note_time(film, painter);
     if (result == WD_OK)
         result = wd_film_add(film->output, &picture);
     wd_picture_finish(&picture);

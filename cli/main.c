@@ -67,8 +67,9 @@ static const struct cli_command commands[] = {
     {"batch", CLI_BATCH, "FILE", 1, 1, "run many commands with one start",
      "Runs a file's lines, each a command as after `weald` (render, grow, export, info, check; - reads\n"
      "standard input). Device and shaders are opened once, which saves most of what small pictures take.\n"
-     "Quotes keep blanks in a word, # begins a comment. All lines are read before the first is run; one\n"
-     "that fails is named, the others are run, and the exit status is 1.",
+     "Quotes keep blanks in a word, # begins a comment; nothing else of a shell's is known. All lines are\n"
+     "read before the first is run: one that cannot be ends it with 2. One that fails is named, the others\n"
+     "are run, and the exit status is 1. Another --gpu, --gpu-validate or --threads opens the device anew.",
      "  weald batch pictures.txt\n"
      "  for s in 1 2 3; do echo render scenes/valley.json --seed $s -o $s.png; done | weald batch -\n",
      cli_batch},

@@ -143,6 +143,7 @@ bool cli_session_start(struct cli_session *session, const struct cli_options *op
 
 void cli_session_take(struct cli_session *session, const struct cli_options *options)
 {
+    cli_meter_clear(&session->meter);
     session->options = options;
     session->meter = (struct cli_meter){
         .begin_s = cli_seconds(), .terminal = session->meter.terminal, .quiet = options->quiet};
@@ -276,8 +277,8 @@ void cli_renderer_close(struct cli_session *session, struct wd_renderer **render
 {
     if (!session->kept)
         wd_renderer_destroy(renderer);
-    else if (*renderer)
-        wd_renderer_set_forest(*renderer, NULL);
+    else if (*renderer && wd_renderer_set_forest(*renderer, NULL) != WD_OK)
+        wd_renderer_destroy(&session->kept->renderer); /* its device was lost */
     *renderer = NULL;
 }
 

@@ -67,7 +67,8 @@ enum wd_view_mode {
 };
 
 /* Layers of a picture; OR them. All but display, colour and cryptomatte are those of the last sample: where none of
- * these three is wanted, that one alone is drawn, and without the first two no shadows and no light. */
+ * these three is wanted, that one alone is drawn, and without the first two no shadows and no light, but with
+ * WD_ACCUMULATE. */
 enum wd_layer_bits {
     WD_LAYER_DISPLAY = 1 << 0,  /* exposed, tone-mapped, sRGB */
     WD_LAYER_COLOR = 1 << 1,    /* linear radiance, scene units */
@@ -149,6 +150,7 @@ struct wd_pass_time {
 };
 struct wd_frame_stats {
     double frame_ms; /* wall clock of one sample from begin to finished */
+    uint32_t samples; /* drawn for the newest picture */
     double gpu_ms;   /* device time of the newest frame finished by wd_renderer_draw; 0 where the device
                         has no true clock */
     uint32_t pass_count;
@@ -157,7 +159,7 @@ struct wd_frame_stats {
     uint64_t discs;                    /* of the camera's view, by wd_renderer_render; 0 without
                                           WD_TIME_PASSES and for methods other than continuum */
     uint64_t trees_mesh, trees_reduced, trees_billboard; /* drawn into the picture by level */
-    uint64_t device_bytes, device_bytes_peak;
+    uint64_t device_bytes, device_bytes_peak; /* the peak is the forest's, its coming included */
 };
 void wd_renderer_get_stats(const struct wd_renderer *renderer, struct wd_frame_stats *stats);
 

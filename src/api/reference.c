@@ -222,6 +222,19 @@ static enum wd_result trace(struct work *work)
     return work->job.stopped ? WD_ERROR_INTERRUPTED : WD_OK;
 }
 
+/* Whether any path has to be traced. */
+static bool is_lit(const struct work *work)
+{
+    return work->layers & (WD_LAYER_COLOR | WD_LAYER_DISPLAY);
+}
+
+static enum wd_result trace_paths(struct work *work)
+{
+    if (!is_lit(work))
+        return WD_OK;
+    return resume(work) ? trace(work) : WD_ERROR_INPUT;
+}
+
 /* Tiles of a checkpoint may hold more samples than were asked for. */
 static float *mean_radiance(const struct wd_trace_sums *sums)
 {
@@ -236,12 +249,6 @@ static float *mean_radiance(const struct wd_trace_sums *sums)
         }
     }
     return color;
-}
-
-/* Whether any path has to be traced. */
-static bool is_lit(const struct work *work)
-{
-    return work->layers & (WD_LAYER_COLOR | WD_LAYER_DISPLAY);
 }
 
 static void fill_picture(struct work *work, struct wd_picture *picture)
@@ -289,10 +296,7 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
         .samples = params->samples ? params->samples : DEFAULT_SAMPLES,
         .layers = params->layers ? params->layers : WD_LAYER_DISPLAY,
     };
-    enum wd_result result = !prepare(&work)  ? WD_ERROR_MEMORY
-                            : !is_lit(&work) ? WD_OK
-                            : !resume(&work) ? WD_ERROR_INPUT
-                                             : trace(&work);
+    enum wd_result result = prepare(&work) ? trace_paths(&work) : WD_ERROR_MEMORY;
     if (result == WD_OK) {
         fill_picture(&work, picture);
         if (is_lit(&work) && params->checkpoint && wd_file_exists(params->checkpoint))

@@ -102,6 +102,7 @@ enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct
     if (renderer->forest) {
         wd_frame_drop_forest(&renderer->frame);
         wd_forest_device_finish(&renderer->device, &renderer->gpu);
+        renderer->gpu.bytes_peak = renderer->gpu.bytes_allocated;
     }
     renderer->forest = NULL;
     if (!forest)
@@ -210,8 +211,10 @@ static struct wd_pass_time *pass_of(struct wd_renderer *renderer,
     }
     if (renderer->pass_count == WD_MAX_PASSES)
         return NULL;
+    char *name = renderer->pass_names[renderer->pass_count];
     struct wd_pass_time *pass = &renderer->passes[renderer->pass_count++];
-    *pass = (struct wd_pass_time){.name = scope->name, .depth = scope->depth};
+    memcpy(name, scope->name, sizeof scope->name);
+    *pass = (struct wd_pass_time){.name = name, .depth = scope->depth};
     return pass;
 }
 
@@ -258,7 +261,8 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
     }
     if (!wd_frames_wait(&frame->ring))
         return WD_ERROR_DEVICE;
-    renderer->frame_ms = (wd_clock_s() - start) * 1e3 / (samples - first);
+    renderer->samples = samples - first;
+    renderer->frame_ms = (wd_clock_s() - start) * 1e3 / renderer->samples;
     if (frame->params.method->check)
         frame->params.method->check(frame->method_state, &renderer->gpu);
     renderer->discs = 0;
@@ -294,6 +298,7 @@ void wd_renderer_get_stats(const struct wd_renderer *renderer, struct wd_frame_s
     const struct wd_frame *frame = &renderer->frame;
     *stats = (struct wd_frame_stats){
         .frame_ms = renderer->frame_ms,
+        .samples = renderer->samples,
         .gpu_ms = renderer->gpu_ms,
         .discs = renderer->discs,
         .pass_count = renderer->pass_count,

@@ -20,8 +20,10 @@ struct wd_renderer {
     bool stopped; /* progress asked to stop */
     struct wd_log log;
     struct wd_pass_time passes[WD_MAX_PASSES];
+    char pass_names[WD_MAX_PASSES][sizeof((struct wd_scope_time){0}.name)]; /* the ring's are its newest frame's */
     uint32_t pass_count;
     double frame_ms;
+    uint32_t samples; /* of the newest picture, as drawn */
     double gpu_ms;  /* of the newest frame drawn live; 0: not known */
     struct wd_coverage coverage; /* of the picture being made, where it is asked for */
     uint64_t discs; /* of the newest picture; 0: not counted */

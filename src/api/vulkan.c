@@ -71,6 +71,7 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
         wd_frame_abandoned(&renderer->frame);
         return WD_ERROR_DEVICE;
     }
+    renderer->samples = 1;
     renderer->frame_ms = (wd_clock_s() - start) * 1e3;
     wd_renderer_keep_times(renderer);
     renderer->gpu_ms = true_clock ? scopes_ms(&renderer->frame.ring) : 0.0;

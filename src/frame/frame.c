@@ -349,9 +349,13 @@ static void record_blend(const struct recording *r, const struct wd_light_params
     add_stats(&frame->camera_stats, &stats);
 }
 
+/* Blended trees, where the G-buffer is read afterwards. */
 static void record_layers(const struct recording *r)
 {
     struct wd_frame *frame = r->frame;
+    enum wd_gbuffer_use use = frame->params.gbuffer;
+    if (!blends(r) || !(use == WD_GBUFFER_READ_EACH || (use == WD_GBUFFER_READ && is_last(r))))
+        return;
     struct wd_draw_stats stats = {0};
     const struct wd_tree_draw draw = tree_draw_of(r, &r->view, WD_PASS_CAMERA, &stats);
     const struct wd_rendering targets = wd_targets_gbuffer(&frame->targets, WD_LOAD_KEEP);
@@ -362,32 +366,34 @@ static void record_layers(const struct recording *r)
     wd_cmd_scope_end(r->cmd);
 }
 
-static void record_light(const struct recording *r)
+static struct wd_light_params light_of(const struct recording *r)
 {
     struct wd_frame *frame = r->frame;
-    const struct wd_light_params light = {
+    return (struct wd_light_params){
         &frame->targets, frame->params.forest,
         &r->view,        &r->values,
         r->uniforms,     blends(r) ? WD_OVERLAY_OVER : WD_OVERLAY_NONE,
         leaves_of(frame->params.method),
         !frame->params.method->eye_pictures};
-    if (is_lit(r) && blends(r))
+}
+
+static void record_light(const struct recording *r)
+{
+    const struct wd_light_params light = light_of(r);
+    if (blends(r))
         record_blend(r, &light);
-    if (is_lit(r)) {
-        wd_cmd_scope_begin(r->cmd, "light");
-        wd_light_pass_record(&frame->light, r->cmd, &light);
-        wd_cmd_scope_end(r->cmd);
-    }
-    enum wd_gbuffer_use use = frame->params.gbuffer;
-    if (blends(r) && (use == WD_GBUFFER_READ_EACH || (use == WD_GBUFFER_READ && is_last(r))))
-        record_layers(r);
-    if (!is_last(r))
-        return;
-    if (frame->params.velocity == WD_VELOCITY_ON) {
-        wd_cmd_scope_begin(r->cmd, "velocity");
-        wd_light_pass_record_velocity(&frame->light, r->cmd, &light, &frame->velocity_px);
-        wd_cmd_scope_end(r->cmd);
-    }
+    wd_cmd_scope_begin(r->cmd, "light");
+    wd_light_pass_record(&r->frame->light, r->cmd, &light);
+    wd_cmd_scope_end(r->cmd);
+}
+
+static void record_velocity(const struct recording *r)
+{
+    struct wd_frame *frame = r->frame;
+    const struct wd_light_params light = light_of(r);
+    wd_cmd_scope_begin(r->cmd, "velocity");
+    wd_light_pass_record_velocity(&frame->light, r->cmd, &light, &frame->velocity_px);
+    wd_cmd_scope_end(r->cmd);
 }
 
 /* Lays the one sample over those of the frames before. */
@@ -477,7 +483,11 @@ void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index)
     if (index == 0 && is_lit(&r))
         record_shadows(&r);
     record_gbuffer(&r);
-    record_light(&r);
+    if (is_lit(&r))
+        record_light(&r);
+    record_layers(&r);
+    if (is_last(&r) && frame->params.velocity == WD_VELOCITY_ON)
+        record_velocity(&r);
     if (frame->params.gathering == WD_GATHER_ON)
         record_gathering(&r);
     if (is_last(&r) && is_lit(&r))

@@ -72,7 +72,8 @@ void wd_frame_finish(struct wd_frame *frame);
 bool wd_frame_prepare(struct wd_frame *frame, const struct wd_frame_params *params);
 
 /* Records sample `index` of params.samples up to the radiance target. Sample 0 draws the shadows,
- * which the others share. The last one is followed by the display. */
+ * which the others share. The last one is followed by the display. Of unlit frames up to the G-buffer and the velocity,
+ * beginning with any sample. */
 void wd_frame_record(struct wd_frame *frame, struct wd_cmd *cmd, uint32_t index);
 
 /* A foreign image that takes the display. */

@@ -150,7 +150,7 @@ static bool init_rest(struct wd_gpu *gpu)
     const VkPipelineCacheCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
     };
-    wd_pipelines_init(gpu);
+    wd_pipeline_store_init(gpu);
     VkResult result = vkCreatePipelineCache(gpu->device, &info, NULL, &gpu->pipeline_cache);
     return wd_gpu_check(gpu, result, "vkCreatePipelineCache");
 }
@@ -174,7 +174,7 @@ static void finish_device(struct wd_gpu *gpu)
     else
         vkQueueWaitIdle(gpu->queue);
     wd_transfer_finish(gpu);
-    wd_pipelines_finish(gpu);
+    wd_pipeline_store_finish(gpu);
     vkDestroyPipelineCache(gpu->device, gpu->pipeline_cache, NULL);
     if (gpu->allocation_count) {
         wd_warn(gpu->log, "%u GPU objects with %llu bytes were never destroyed",

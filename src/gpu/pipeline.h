@@ -5,7 +5,8 @@
 
 #include "gpu/device.h"
 
-/* SPIR-V words as the build embeds them: `static const struct wd_spirv NAME` in NAME.spv.h. */
+/* SPIR-V words as the build embeds them (NAME.inc): kept as long as the program, as pipelines are told apart by where
+ * they lie. */
 struct wd_spirv {
     const uint32_t *words;
     size_t size; /* bytes */

@@ -32,8 +32,8 @@ void wd_pipeline_key_add(struct wd_pipeline_key *key, const void *bytes, size_t 
 void wd_pipeline_key_add_constants(struct wd_pipeline_key *key, const struct wd_spec_constants *constants);
 
 /* What the device keeps. Threads may make pipelines at the same time. */
-void wd_pipelines_init(struct wd_gpu *gpu);
-void wd_pipelines_finish(struct wd_gpu *gpu); /* destroys them */
+void wd_pipeline_store_init(struct wd_gpu *gpu);
+void wd_pipeline_store_finish(struct wd_gpu *gpu); /* destroys them */
 bool wd_pipeline_find(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct wd_pipeline_key *key);
 /* Keeps `pipeline`; where another thread has kept one of the same key, this one is destroyed and that is given. */
 void wd_pipeline_keep(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct wd_pipeline_key *key);

@@ -73,13 +73,13 @@ void wd_pipeline_keep(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const st
     }
 }
 
-void wd_pipelines_init(struct wd_gpu *gpu)
+void wd_pipeline_store_init(struct wd_gpu *gpu)
 {
     gpu->pipelines = wd_alloc(sizeof *gpu->pipelines);
     pthread_mutex_init(&gpu->pipelines->lock, NULL);
 }
 
-void wd_pipelines_finish(struct wd_gpu *gpu)
+void wd_pipeline_store_finish(struct wd_gpu *gpu)
 {
     struct wd_pipeline_store *store = gpu->pipelines;
     if (!store)

@@ -8,7 +8,7 @@
 enum wd_filled { WD_FILLED_NOT, WD_FILLED, WD_FILLED_LAST };
 
 /* One way of drawing trees. Functions but `draw` may be NULL. For every view (the cascades of the
- * sun, then the camera) a frame calls `select`, then `draw`. */
+ * sun, where the frame is lit, then the camera) a frame calls `select`, then `draw`. */
 struct wd_method {
     const char *name;
     bool on_demand;    /* draws worlds whose trees are planted on demand */
@@ -52,7 +52,7 @@ struct wd_method {
      * camera's G-buffer complete: draws lit trees into targets->overlay, all of it. */
     void (*blend)(void *state, const struct wd_tree_draw *draw,
                   const struct wd_light_inputs *light);
-    /* Goes with `blend`: inside the open rendering of the G-buffer, after the light: the blended
+    /* Goes with `blend`: inside the open rendering of the G-buffer, after the light if there is any: the blended
      * trees for its layers. */
     void (*draw_layers)(void *state, const struct wd_tree_draw *draw);
 };

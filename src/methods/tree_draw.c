@@ -116,6 +116,8 @@ bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *
     for (int pass = WD_PASS_CAMERA; ok && pass <= WD_PASS_SHADOW; pass++)
         ok = init_mesh(&pipelines->mesh[pass], gpu, pass, wood, 0, 0) &&
              wd_spray_pipeline_init(&pipelines->spray[pass], gpu, pass);
+    if (!ok)
+        *pipelines = (struct wd_tree_pipelines){0};
     return ok;
 }
 

@@ -299,16 +299,6 @@ static void a_wish_to_stop_stops(void **state)
 
 /* --- layers ------------------------------------------------------------------------------ */
 
-static uint32_t passes_named(const struct wd_renderer *renderer, const char *name)
-{
-    struct wd_frame_stats stats;
-    uint32_t count = 0;
-    wd_renderer_get_stats(renderer, &stats);
-    for (uint32_t i = 0; i < stats.pass_count; i++)
-        count += !strcmp(stats.passes[i].name, name);
-    return count;
-}
-
 static double length3(const float *v)
 {
     return sqrt((double)v[0] * v[0] + (double)v[1] * v[1] + (double)v[2] * v[2]);
@@ -350,32 +340,6 @@ static void every_layer_holds_what_it_says(void **state)
     assert_true(sky + trees < PIXELS);
     wd_picture_finish(&p);
     assert_null(p.display);
-}
-
-/* Where no colour is asked for nothing is lit, and of samples the last alone is drawn; layers are the same. */
-static void layers_need_no_light(void **state)
-{
-    struct suite *suite = *state;
-    const char *const methods[] = {"octree", "patch", "impostor", "continuum"};
-    struct wd_render_params params = suite_params(suite->forest, "over");
-    params.samples = 2;
-    params.timing = WD_TIME_PASSES;
-    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
-        struct wd_picture p[2];
-        params.method = methods[m];
-        for (uint32_t lit = 0; lit < 2; lit++) {
-            params.layers = WD_LAYER_ALL & ~(lit ? 0u : WD_LAYER_COLOR | WD_LAYER_DISPLAY);
-            p[lit] = suite_render(suite, &params);
-            assert_int_equal(p[lit].color != NULL, lit);
-            assert_int_equal(passes_named(suite->renderer, "light"), lit);
-        }
-        assert_memory_equal(p[0].depth_m, p[1].depth_m, PIXELS * sizeof(float));
-        assert_memory_equal(p[0].normal, p[1].normal, 3 * PIXELS * sizeof(float));
-        assert_memory_equal(p[0].tree_id, p[1].tree_id, PIXELS * sizeof(uint32_t));
-        assert_memory_equal(p[0].velocity_px, p[1].velocity_px, 2 * PIXELS * sizeof(float));
-        wd_picture_finish(&p[0]);
-        wd_picture_finish(&p[1]);
-    }
 }
 
 /* The crown that a pixel shows is where the pixel looks. */
@@ -771,7 +735,6 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(impossible_pictures_are_refused, &suite),
         cmocka_unit_test_prestate(a_wish_to_stop_stops, &suite),
         cmocka_unit_test_prestate(every_layer_holds_what_it_says, &suite),
-        cmocka_unit_test_prestate(layers_need_no_light, &suite),
         cmocka_unit_test_prestate(depths_lead_to_the_trees, &suite),
         cmocka_unit_test_prestate(the_same_picture_twice, &suite),
         cmocka_unit_test_prestate(the_widest_view_is_lit_all_over, &suite),

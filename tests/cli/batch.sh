@@ -17,12 +17,18 @@ grow oak --height 5 -o "$out/oak.png" --size 96x96 --samples 1 --gpu software
 info $tiny --json
 EOF
 expect 0 'lines: 5 lines, 0 failed' batch "$scratch/lines"
+cp "$scratch/output" "$scratch/all"
 for name in south own oak; do
     sed -n "s|\"||g; s|'||g; s|$out|$alone|; s| *#.*||; /$name.png/p" "$scratch/lines" | xargs "$weald" >"$scratch/output" 2>&1
     check "$name.png is as made alone" cmp "$out/$name.png" "$alone/$name.png"
 done
 check 'the same line, the same picture' cmp "$out/south.png" "$out/again.png"
 check 'other lines, other pictures' sh -c "! cmp -s '$out/south.png' '$out/own.png'"
+check 'one device for all lines' [ "$(grep -c 'Vulkan device:' "$scratch/all")" -eq 1 ]
+sed 's/--seed 7/--threads 1/' "$scratch/lines" >"$scratch/threads"
+expect 0 . batch "$scratch/threads"
+cp "$scratch/output" "$scratch/all"
+check 'another for another number of threads' [ "$(grep -c 'Vulkan device:' "$scratch/all")" -eq 3 ]
 check 'lines of standard input' sh -c "echo info '$tiny' --json | '$weald' batch - | grep -q tree_count"
 
 # A line that fails is named and stops no other; one that cannot be run stops all.
@@ -43,5 +49,14 @@ wrong 'wrong:2: a quote is not closed' "render \"$tiny -o a.png"
 wrong 'wrong:2: a line begins with render, grow, export, info or check, not with view' "view $tiny"
 wrong 'wrong:2: --help has no place' 'render --help'
 check 'nothing was begun' test ! -e "$out/never.png"
+printf 'render %s --reference --samples 60000 -o %s\nrender %s -o "%s"\n' "$tiny" "$scratch/long.png" "$tiny" \
+    "$out/never.png" >"$scratch/long"
+"$weald" batch "$scratch/long" >"$scratch/output" 2>&1 &
+sleep 2
+kill -INT $!
+status=0
+wait $! || status=$?
+check 'Ctrl-C ends the batch' [ "$status" -eq 130 ]
+check 'and no later line is begun' test ! -e "$out/never.png"
 expect 2 'no such file' batch "$scratch/missing"
 finish

@@ -259,6 +259,43 @@ static void depth_only_into_a_layer(void **state)
     wd_buffer_finish(&buffer, &test->gpu);
 }
 
+/* Each changes one thing. */
+static void other_cull(struct wd_graphics_params *params) { params->cull = WD_CULL_BACK; }
+static void other_blend(struct wd_graphics_params *params) { params->blend = WD_BLEND_PREMULTIPLIED; }
+static void other_writes(struct wd_graphics_params *params) { params->color_writes = WD_COLORS_KEPT; }
+static void other_compare(struct wd_graphics_params *params) { params->depth_compare = VK_COMPARE_OP_ALWAYS; }
+static void other_depth(struct wd_graphics_params *params) { params->depth_read_only = true; }
+static void other_bias(struct wd_graphics_params *params) { params->depth_bias_slope = 1; }
+static void other_clamp(struct wd_graphics_params *params) { params->depth_clamp = true; }
+static void other_push(struct wd_graphics_params *params) { params->push_size = 16; }
+static void other_format(struct wd_graphics_params *params) { params->color_formats[0] = VK_FORMAT_R16G16B16A16_SFLOAT; }
+static void other_topology(struct wd_graphics_params *params)
+{
+    params->topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+}
+
+static void other_parameters_give_other_pipelines(void **state)
+{
+    struct gpu_test *test = *state;
+    void (*const changes[])(struct wd_graphics_params *) = {
+        other_cull, other_blend, other_writes, other_compare, other_depth,
+        other_bias, other_clamp, other_push,   other_format,  other_topology};
+    enum { CHANGES = sizeof changes / sizeof *changes };
+    struct wd_pipeline pipelines[CHANGES + 1], again;
+    struct wd_graphics_params params = usual_params();
+    assert_true(wd_pipeline_init_graphics(&pipelines[CHANGES], &test->gpu, &params));
+    for (int i = 0; i < CHANGES; i++) {
+        params = usual_params();
+        changes[i](&params);
+        assert_true(wd_pipeline_init_graphics(&pipelines[i], &test->gpu, &params));
+        assert_true(wd_pipeline_init_graphics(&again, &test->gpu, &params));
+        assert_true(again.pipeline == pipelines[i].pipeline);
+    }
+    for (int i = 0; i <= CHANGES; i++)
+        for (int k = 0; k < i; k++)
+            assert_true(pipelines[i].pipeline != pipelines[k].pipeline);
+}
+
 int main(void)
 {
 #define GPU_TEST(f) cmocka_unit_test_setup_teardown(f, gpu_setup, gpu_teardown)
@@ -269,7 +306,7 @@ int main(void)
         GPU_TEST(blending_is_premultiplied),
         GPU_TEST(depth_can_be_tested_without_writing),
         GPU_TEST(indirect_draws_with_and_without_the_feature),
-        GPU_TEST(depth_only_into_a_layer),
+        GPU_TEST(depth_only_into_a_layer),        GPU_TEST(other_parameters_give_other_pipelines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

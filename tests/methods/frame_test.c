@@ -19,9 +19,19 @@ static struct device {
     uint32_t disabled, asked;
 } devices[MOST_DEVICES];
 
+/* Of devices: warnings at their end tell what was never destroyed. */
+static void count_warning(void *user, enum wd_log_level level, const char *message)
+{
+    if (level <= WD_LOG_WARNING)
+        ++*(int *)user;
+    print_message("%s\n", message);
+}
+
+static int warnings;
+static const struct wd_log device_log = {count_warning, &warnings};
+
 static struct wd_gpu *open_device(const struct frame_test_params *params)
 {
-    static const struct wd_log silent;
     const struct wd_gpu_params gpu = {.name = "software",
                                       .validation = WD_GPU_VALIDATION_ON,
                                       .disabled_features = params->disabled,
@@ -30,7 +40,7 @@ static struct wd_gpu *open_device(const struct frame_test_params *params)
     while (device->gpu.device && (device->disabled != params->disabled || device->asked != params->asked))
         assert_true(++device < devices + MOST_DEVICES);
     if (!device->gpu.device) {
-        assert_true(wd_gpu_init(&device->gpu, &gpu, &silent));
+        assert_true(wd_gpu_init(&device->gpu, &gpu, &device_log));
         device->disabled = params->disabled;
         device->asked = params->asked;
     }
@@ -40,9 +50,10 @@ static struct wd_gpu *open_device(const struct frame_test_params *params)
 int frame_tests_finish(void **state)
 {
     (void)state;
+    warnings = 0;
     for (int i = 0; i < MOST_DEVICES; i++)
         wd_gpu_finish(&devices[i].gpu);
-    return 0;
+    return warnings;
 }
 
 void frame_test_init(struct frame_test *test, const char *root,

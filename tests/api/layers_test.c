@@ -1,0 +1,108 @@
+/* Layers without colour: as those of lit pictures, by less work. */
+#include <stdio.h>
+#include <string.h>
+
+#include "suite.h"
+
+enum { PIXELS = PICTURE_WIDTH * PICTURE_HEIGHT };
+static struct suite suite;
+
+static struct wd_render_params params_of(const char *method, uint32_t layers)
+{
+    struct wd_render_params params = suite_params(suite.forest, "over");
+    params.method = method;
+    params.samples = 2;
+    params.timing = WD_TIME_PASSES;
+    params.layers = layers;
+    return params;
+}
+
+static bool has_pass(const struct wd_frame_stats *stats, const char *name)
+{
+    for (uint32_t i = 0; i < stats->pass_count; i++)
+        if (!strcmp(stats->passes[i].name, name))
+            return true;
+    return false;
+}
+
+/* `samples` were drawn, lit or not; passes are of the first of these, "post" goes with the last. */
+static struct wd_picture draw(const struct wd_render_params *params, uint32_t samples, bool lit)
+{
+    struct wd_frame_stats stats;
+    struct wd_picture picture = suite_render(&suite, params);
+    wd_renderer_get_stats(suite.renderer, &stats);
+    assert_int_equal(stats.samples, samples);
+    assert_true(has_pass(&stats, "terrain"));
+    assert_int_equal(has_pass(&stats, "shadow trees"), lit);
+    assert_int_equal(has_pass(&stats, "light"), lit);
+    assert_false(has_pass(&stats, "post"));
+    assert_int_equal(picture.color != NULL, lit);
+    return picture;
+}
+
+/* The first that a renderer draws: nothing is there yet that only light prepares. */
+static void nothing_lit_has_to_be_before(void **state)
+{
+    (void)state;
+    struct wd_picture first, later;
+    struct wd_render_params params = params_of("patch", WD_LAYER_VELOCITY | WD_LAYER_TREE_ID);
+    const struct wd_renderer_params validated = {
+        .gpu = "software", .validation = WD_VALIDATION_ON, .log = suite.log};
+    struct wd_renderer *renderer = NULL;
+    assert_int_equal(wd_renderer_create(&renderer, &validated), WD_OK);
+    assert_int_equal(wd_renderer_set_forest(renderer, suite.forest), WD_OK);
+    assert_int_equal(wd_renderer_render(renderer, &params, &first), WD_OK);
+    params.layers |= WD_LAYER_COLOR;
+    assert_int_equal(wd_renderer_render(renderer, &params, &later), WD_OK);
+    assert_memory_equal(first.tree_id, later.tree_id, PIXELS * sizeof *first.tree_id);
+    wd_renderer_destroy(&renderer);
+    wd_picture_finish(&first);
+    wd_picture_finish(&later);
+}
+
+/* And light that comes after is what it would have been. */
+static void layers_need_no_light(void **state)
+{
+    (void)state;
+    const char *const methods[] = {"octree", "patch", "impostor", "continuum"};
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+        const uint32_t dark = WD_LAYER_ALL & ~(uint32_t)(WD_LAYER_COLOR | WD_LAYER_DISPLAY);
+        const struct wd_render_params params[] = {params_of(methods[m], WD_LAYER_ALL), params_of(methods[m], dark)};
+        struct wd_picture lit = draw(&params[0], 2, true), p = draw(&params[1], 1, false);
+        struct wd_picture again = draw(&params[0], 2, true);
+        assert_memory_equal(p.depth_m, lit.depth_m, PIXELS * sizeof *p.depth_m);
+        assert_memory_equal(p.normal, lit.normal, 3 * PIXELS * sizeof *p.normal);
+        assert_memory_equal(p.albedo, lit.albedo, 3 * PIXELS * sizeof *p.albedo);
+        assert_memory_equal(p.species, lit.species, PIXELS * sizeof *p.species);
+        assert_memory_equal(p.tree_id, lit.tree_id, PIXELS * sizeof *p.tree_id);
+        assert_memory_equal(p.velocity_px, lit.velocity_px, 2 * PIXELS * sizeof *p.velocity_px);
+        assert_memory_equal(again.color, lit.color, 3 * PIXELS * sizeof *lit.color);
+        wd_picture_finish(&lit);
+        wd_picture_finish(&p);
+        wd_picture_finish(&again);
+    }
+}
+
+/* Each sample is counted. */
+static void mattes_are_of_all_samples(void **state)
+{
+    (void)state;
+    struct wd_render_params params = params_of("octree", WD_LAYER_CRYPTOMATTE);
+    struct wd_picture matte = draw(&params, 2, false);
+    assert_non_null(matte.rank_tree);
+    wd_picture_finish(&matte);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_lit_has_to_be_before),
+        cmocka_unit_test(layers_need_no_light),
+        cmocka_unit_test(mattes_are_of_all_samples),
+    };
+    if (argc < 2 || !suite_init(&suite, argv[1]) || wd_renderer_set_forest(suite.renderer, suite.forest) != WD_OK)
+        return 1;
+    int failed = cmocka_run_group_tests_name("layers", tests, NULL, NULL);
+    suite_finish(&suite);
+    return failed;
+}
