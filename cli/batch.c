@@ -78,10 +78,9 @@ static bool add_line(struct batch *batch, const char *text, uint32_t number)
     if (!lines)
         return complain(batch, number, "out of memory", "");
     batch->lines = lines;
-    lines[batch->count] = (struct line){.number = number, .text = strdup(text)};
-    batch->count++;
-    return (lines[batch->count - 1].text && read_line(batch, &lines[batch->count - 1])) ||
-           (!lines[batch->count - 1].text && complain(batch, number, "out of memory", ""));
+    struct line *line = &lines[batch->count++];
+    *line = (struct line){.number = number, .text = strdup(text)};
+    return line->text ? read_line(batch, line) : complain(batch, number, "out of memory", "");
 }
 
 static bool read_lines(struct batch *batch)

@@ -42,8 +42,8 @@ float leaf_growth(uint model, float share, float sine)
     return mix(more, fewer, at - float(k));
 }
 
-/* Factor on a leaf's size, 0 where it is not drawn: it may be drawn as a twig, or thinned out. What share of the sides
- * that leaves are seen by the first of them have is known of leaves as they hang, not as they fall. */
+/* Factor on a leaf's size, 0 where it is not drawn: it may be drawn as a twig, or thinned out. The growth that makes up
+ * for those left out is of leaves as they hang: falling ones lie in any way. */
 float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
 {
     tree_pose pose = tree_pose_of(tree, models[model]);

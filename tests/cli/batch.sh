@@ -52,7 +52,10 @@ check 'nothing was begun' test ! -e "$out/never.png"
 printf 'render %s --reference --samples 60000 -o %s\nrender %s -o "%s"\n' "$tiny" "$scratch/long.png" "$tiny" \
     "$out/never.png" >"$scratch/long"
 "$weald" batch "$scratch/long" >"$scratch/output" 2>&1 &
-sleep 2
+for _ in $(seq 300); do # until it tells what it does, and so listens
+    [ ! -s "$scratch/output" ] || break
+    sleep 0.1
+done
 kill -INT $!
 status=0
 wait $! || status=$?

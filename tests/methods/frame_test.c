@@ -22,8 +22,9 @@ static struct device {
 /* Of devices: warnings at their end tell what was never destroyed. */
 static void count_warning(void *user, enum wd_log_level level, const char *message)
 {
-    if (level <= WD_LOG_WARNING)
-        ++*(int *)user;
+    if (level > WD_LOG_WARNING)
+        return;
+    ++*(int *)user;
     print_message("%s\n", message);
 }
 
