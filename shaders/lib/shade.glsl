@@ -146,6 +146,7 @@ struct wd_place {
     vec3 normal;        /* for skylight and for the shadow maps */
     float cloud;        /* 1: that is the crown's, and the pixel shows many leaves */
     vec3 sheet;         /* normal of a leaf's side that is to the sun, where maps hold leaves; or none */
+    float bulges;       /* 1: wood, which is round, in maps, too */
     float own;          /* share of the sun left after the tree's own leaves */
     float ahead_m;      /* how far toward the sun to go before asking the maps */
     vec2 sides;         /* share of the sun reflected and transmitted toward the eye */
@@ -169,6 +170,7 @@ wd_place ground_place(wd_pixel pixel)
     place.normal = pixel.normal;
     place.cloud = 0.0;
     place.sheet = vec3(0.0);
+    place.bulges = 0.0;
     place.own = 1.0;
     place.ahead_m = 0.0;
     place.sides = vec2(facing_lit(pixel.facing), 0.0);
@@ -583,6 +585,7 @@ wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2
     shade_by_crown(place, crown, curve, pixel.openness, free, mix(sunlit.x, 1.0, many), cascade);
     place.sides.x = mix(place.sides.x, sunlit.y, many * free);
     place.own = pixel.lit < 0.0 ? place.own : pixel.lit;
+    place.bulges = 1.0;
     shade_by_map(place, pixel.lit < 0.0 ? 1.0 : 0.0, fine, 1.0);
     return place;
 }
@@ -626,6 +629,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free) * (pictured ? 1.0 - free : 1.0);
     float mapped = fine * mix(0.75, 1.0, is_tree(crown)), shade_near = near_shade(model, eye, cascade);
     wd_place place;
+    place.bulges = 0.0;
     place.rel = card ? crown_card_place(crown, pixel.direction) : pixel.rel;
     shade_by_crown(place, crown, unpackHalf2x16(model.sun_curve), pixel.openness, free,
                    pixel.lit >= 1.0 ? sunlit.x : 1.0, cascade);
@@ -741,7 +745,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     place.gloss *= 1.0 - pixel.snow;
     ground_share = ground_shadow(place.rel);
     vec3 ahead = place.rel + frame.sun_direction * place.ahead_m;
-    float past_trees = tree_shadow(ahead, place.normal, place.sheet, cascade, noise);
+    float past_trees = tree_shadow(ahead, place.normal, place.sheet, place.bulges, cascade, noise);
     /* No maps so far out: the canopy's cover stands for its shadow. Cards' own shade holds it. */
     if (pixel.surface == 0u || pixel.lit >= 0.0) {
         float far_m = frame.cascades[WD_CASCADES - 1][WD_CASCADE_FAR_M];

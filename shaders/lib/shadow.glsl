@@ -54,6 +54,14 @@ vec2 sheet_slope(vec3 sheet, mat4 m)
            * (length(toward) / facing);
 }
 
+/* The same of an offset in a map. What bulges as stems do bends away from the sun on either side of a place: it is
+ * never farther from it than the place, or it would shade itself as wide as its penumbra. */
+float sheet_nearer(vec2 slope, vec2 off, float bulges)
+{
+    float nearer = dot(slope, off);
+    return mix(nearer, max(nearer, 0.0), bulges);
+}
+
 #ifdef SHADOW_DEPTH
 /* Casters are looked for as wide about a place as the penumbra of one so far off may be; maps whose
  * texels are coarser than this make softer edges than the sun. */
@@ -66,7 +74,7 @@ const float CASTER_NEAR_M = 0.05;
  * shadows), from four texels at each of `places`; 0: nothing does. The harmonic mean keeps the edge
  * of a trunk's shadow close by where crowns farther off hide the sun, too. `range_m`: depth of the
  * map; `widest`: of the search, in texture coordinates. */
-float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, float widest,
+float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, float bulges, vec2 spin, float widest,
                uint places)
 {
     float per_m = 0.0, count = 0.0;
@@ -76,7 +84,7 @@ float caster_m(vec3 at, uint cascade, float range_m, vec2 slope, vec2 spin, floa
     do {
         vec2 off = spin * (widest * sqrt((float(i) + 0.5) / float(CASTER_PLACES)));
         vec4 depth = textureGather(SHADOW_DEPTH, vec3(at.xy + off, float(cascade)));
-        vec4 way_m = (depth - at.z - dot(slope, off)) * range_m;
+        vec4 way_m = (depth - at.z - sheet_nearer(slope, off, bulges)) * range_m;
         vec4 casts = step(vec4(0.0), way_m);
         per_m += dot(casts, 1.0 / max(way_m, vec4(CASTER_NEAR_M)));
         count += dot(casts, vec4(1.0));
@@ -102,8 +110,8 @@ float map_lit(vec2 at, uint cascade, float depth)
 
 /* Share of the sun that trees let through to `rel`. The disc of taps (Vogel 1979) is as wide as
  * the penumbra of what casts the shadow, at least a texel and a half. `sheet`: normal of the flat thing
- * that the place is on, toward the sun, or none. */
-float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
+ * that the place is on, toward the sun, or none. `bulges`: 1 of what has its normal for one, but bends away. */
+float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, float bulges, uint cascade, float noise)
 {
     if (cascade >= WD_CASCADES || frame.shadow_taps == 0u)
         return 1.0;
@@ -121,12 +129,12 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
     float texel = 1.0 / float(textureSize(shadow_map, 0).x);
     float turn = noise * 6.2831853;
     vec2 spin = vec2(cos(turn), sin(turn));
-    vec2 slope = sheet_slope(sheet, m);
+    vec2 slope = sheet_slope(mix(sheet, normal, bulges), m);
     float penumbra_m = 0.05; /* of a caster some 10 m off */
 #ifdef SHADOW_DEPTH
     float sun_tan = sqrt(max(1.0 / (frame.sun_cos_radius * frame.sun_cos_radius) - 1.0, 0.0));
     bool fine = texel_m < CASTER_TEXEL_M; /* by no branch: software devices leave loops alone early */
-    float way_m = caster_m(at, cascade, numbers[WD_CASCADE_DEPTH_M], slope, spin,
+    float way_m = caster_m(at, cascade, numbers[WD_CASCADE_DEPTH_M], slope, bulges, spin,
                            sun_tan * CASTER_FAR_M / texel_m * texel, fine ? CASTER_PLACES : 0u);
     penumbra_m = fine ? sun_tan * way_m : penumbra_m;
 #endif
@@ -135,7 +143,7 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, uint cascade, float noise)
     uint i = 0u;
     do {
         float r = sqrt((float(i) + 0.5) / float(frame.shadow_taps)) * radius;
-        lit += map_lit(at.xy + spin * r, cascade, at.z + dot(slope, spin) * r);
+        lit += map_lit(at.xy + spin * r, cascade, at.z + sheet_nearer(slope, spin * r, bulges));
         spin = vec2(-0.7373688 * spin.x - 0.6754903 * spin.y,
                     0.6754903 * spin.x - 0.7373688 * spin.y); /* the golden angle on */
     } while (++i < frame.shadow_taps);

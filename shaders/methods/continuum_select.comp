@@ -314,7 +314,11 @@ vec2 slope_under(vec3 foot, float wide_m)
 /* Gains keep what a whole tree covers. From below an eye stands among crowns and looks into their insides, where
  * leaves lie close and discs, larger and fewer, leave more holes: areas grow by so much. By path-traced crowns of
  * three stands. */
-const float FROM_BELOW = 0.15;
+const float FROM_BELOW = 0.20;
+
+/* So do the many small discs of the sun's maps, whose rays pass through one crown after the other: areas in a cascade, of
+ * the model's full number. By path-traced floors of the same stands under the sun alone. */
+const float SUN_THROUGH_CROWNS = 0.08;
 
 /* From below, leaves that lie flat hide the upper sides of those next to them, which a disc for each of them shows: share
  * of their area, the less the fewer lower sides the model shows from above. By path-traced trees of seven species. */
@@ -392,7 +396,9 @@ void select_tree(uint index, float share, uint place)
     thin = mix(1.0, model_float(model_index, WD_WORD_THIN_WOOD), thin);
     splats.wood_radius *= sqrt(max(missing, 0.0) * thin);
     splats.radius *= sqrt(mix(model_float(model_index, WD_WORD_LEAF_PAST_BARK), 1.0, missing));
-    splats.radius *= sqrt(1.0 + (ORTHOGRAPHIC != 0u ? 0.0 : FROM_BELOW * smoothstep(0.0, 0.5, -toward.z)));
+    float many = smoothstep(0.125, 1.0, each * (1.0 / float(WD_STRATUM_SPLATS)));
+    float fuller = ORTHOGRAPHIC != 0u ? SUN_THROUGH_CROWNS * many : FROM_BELOW * smoothstep(0.0, 0.5, -toward.z);
+    splats.radius *= sqrt(1.0 + fuller);
     uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
     splats.facing = model_facing(pose, toward);
     splats.sun = wd_sun_mix(tree_toward(pose, frame.sun_direction));
