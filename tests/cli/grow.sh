@@ -8,31 +8,33 @@ cd "$root" || exit 1
 small="--size 96x96 --samples 1 --gpu software"
 sound() { python3 "$root/tests/cli/glb_check.py" "$@"; }
 
-# shellcheck disable=SC2086  # $small is many words
-{
-    expect 0 'oak .* m high, .*20 years; triangles' grow oak --age 20 --open 1 --seed 3 -o "$out/oak.glb"
-    expect 0 'oak.obj: ' grow oak --height 5 --detail 0.2 -o "$out/oak.obj"
-    expect 0 'oak.png: ' grow oak --height 5 -o "$out/oak.png" $small --gpu-validate
-    expect 0 . grow oak --height 5 --season autumn -o "$out/autumn.png" $small
-    expect 0 . grow oak --height 5 --form cards -o "$out/cards.png" $small
-    expect 0 . grow oak --height 5 --camera-distance 3 -o "$out/near.png" $small
-    expect 0 . grow "$out/oak.obj" --height 9 -o "$out/model.png" $small
-    expect 0 'oak .*9.0 m high' grow "$out/oak.glb" --height 9 -o "$out/again.glb"
-    expect 0 . grow birch --height 4 --detail 0.2 --variants 3 -o "$out/three.glb"
-    expect 0 . grow oak --height 5 -o "$out/layers.exr" $small
-    expect 0 'tiny.glb: ' export "$tiny" -o "$out/tiny.glb"
-    expect 0 . check "$out/oak.glb" "$out/oak.obj"
-    check 'a model is read without standard input' sh -c "'$weald' check '$out/oak.obj' <&-"
-    check 'and without a place for messages' sh -c "'$weald' check '$out/oak.obj' <&- 2>&-"
-}
 cat >"$out/planted.json" <<EOF
 {"terrain": {"kind": "flat", "size_m": [40, 40]}, "variants": 2,
  "species": {"mine": "oak.obj"},
  "layers": [{"species": {"mine": 1}, "spacing_m": 8, "height_m": [4, 7]}]}
 EOF
 # shellcheck disable=SC2086  # $small is many words
+{
+    expect 0 'oak .* m high, .*20 years; triangles' grow oak --age 20 --open 1 --seed 3 -o "$out/oak.glb"
+    expect 0 'oak.obj: ' grow oak --height 5 --detail 0.2 -o "$out/oak.obj"
+    expect 0 'oak.png: ' grow oak --height 5 -o "$out/oak.png" $small --gpu-validate
+    draw 'autumn.png: ' grow oak --height 5 --season autumn -o "$out/autumn.png" $small
+    draw 'cards.png: ' grow oak --height 5 --form cards -o "$out/cards.png" $small
+    draw 'near.png: ' grow oak --height 5 --camera-distance 3 -o "$out/near.png" $small
+    draw 'model.png: ' grow "$out/oak.obj" --height 9 -o "$out/model.png" $small
+    draw 'oak .*9.0 m high' grow "$out/oak.glb" --height 9 -o "$out/again.glb"
+    draw 'three.glb: ' grow birch --height 4 --detail 0.2 --variants 3 -o "$out/three.glb"
+    draw 'layers.exr: ' grow oak --height 5 -o "$out/layers.exr" $small
+    draw 'tiny.glb: ' export "$tiny" -o "$out/tiny.glb"
+    draw 'oak.glb: ' check "$out/oak.glb" "$out/oak.obj"
+    draw 'trees.csv: ' export "$tiny" -o "$out/trees.csv"
+    draw '"name": "mine"' info "$out/planted.json" --json
+    drawn
+    check 'a model is read without standard input' sh -c "'$weald' check '$out/oak.obj' <&-"
+    check 'and without a place for messages' sh -c "'$weald' check '$out/oak.obj' <&- 2>&-"
+}
+# shellcheck disable=SC2086  # $small is many words
 expect 0 'planted.png: ' render "$out/planted.json" -o "$out/planted.png" $small --gpu-validate
-expect 0 '"name": "mine"' info "$out/planted.json" --json
 check 'oak.glb is sound' sound "$out/oak.glb" roots=1 levels=1
 check 'a model written again is sound' sound "$out/again.glb" roots=1 levels=1
 check 'three variants are sound' sound "$out/three.glb" roots=3 levels=3
@@ -40,7 +42,6 @@ trees=$("$weald" info "$tiny" --json | jq .tree_count)
 check 'a scene is sound' sound "$out/tiny.glb" "instances=$trees"
 
 # A forest's list of trees, planted again from that list, is the same list.
-expect 0 'trees.csv: ' export "$tiny" -o "$out/trees.csv"
 check 'a row for each tree' test "$(wc -l <"$out/trees.csv")" -eq $((trees + 1))
 cat >"$out/listed.json" <<EOF
 {"terrain": {"kind": "flat", "size_m": [80, 40]},

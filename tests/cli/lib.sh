@@ -45,6 +45,21 @@ expect() {
     fi
 }
 
+# draw PATTERN ARGUMENT...: as expect 0, but with all others of its kind in one start, at drawn; PATTERN names the file
+draw() {
+    printf '%s\n' "$1" >>"$scratch/patterns"
+    shift
+    printf '%s\n' "$*" >>"$scratch/lines"
+}
+
+drawn() {
+    expect 0 'lines, 0 failed' batch "$scratch/lines"
+    cp "$scratch/output" "$scratch/told"
+    while read -r pattern; do
+        check "told: $pattern" grep -qE -- "$pattern" "$scratch/told"
+    done <"$scratch/patterns"
+}
+
 finish() {
     echo "$cases checks, $failures failed"
     [ "$failures" -eq 0 ] && [ "$cases" -gt 0 ]
