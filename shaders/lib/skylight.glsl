@@ -272,13 +272,14 @@ const float ALONG = 0.67, ALONG_WITHIN = 1.5;
 /* Leaves stand in crowns and light the insides of these first: of what they scatter of the sun far less comes down
  * a dark stand than through an even layer, but where they absorb little of it. Share that does where less than an
  * eighth of the sky is left, by path-traced floors and stems of three stands, one of them in autumn; and, of leaves that
- * absorb little, everywhere, by that one's floor in red. */
-const float AUTUMN_IN_CROWNS = 0.3;
+ * absorb little, everywhere, by that one's floor in red, which is as bright as in blue now. */
+const float AUTUMN_IN_CROWNS = 4.5;
 
 vec3 out_of_crowns(vec3 scatter, float mean)
 {
     vec3 dark = exp2(max(9.0 * scatter - 7.5, vec3(0.0)) * min(log2(mean) + 3.0, 0.0));
-    return dark * (1.0 - AUTUMN_IN_CROWNS * (1.0 - scatter));
+    vec3 again = 1.0 - scatter;
+    return dark / (1.0 + AUTUMN_IN_CROWNS * again * again);
 }
 
 /* Leaves lie next to others of their crown, which send them more of what they scatter than an even layer would and
