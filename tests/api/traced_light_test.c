@@ -87,6 +87,20 @@ static void twigs_throw_their_own_shadows(void **state)
     assert_true(found.trees_pct > -35 && found.trees_pct < 35);
 }
 
+/* A birch's stem that has its sun through the crown of another one 40 m off: +13 % (+7 without that one, all where it turns
+ * away from the sun), and -18 where what lies a penumbra's width beside a place on the stem shades that. */
+static void stems_do_not_shade_themselves(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "birch", .trees = "30,30,tree,24\n70,30,tree,24\n", .size_m = "[90, 60]", .samples = 16,
+        .keys = "\"sun\": {\"azimuth_deg\": 90, \"elevation_deg\": 27}, \"sky\": {\"strength\": 0.0001}, "
+                "\"ground\": {\"litter\": [0, 0, 0], \"grass\": [0, 0, 0]}, \"quality\": {\"leaf_px\": 0.02}, "
+                "\"methods\": {\"continuum\": {\"near_px\": 0.3}}",
+        .camera = "\"position_m\": [31, 27.5, 1.7], \"look_at_m\": [30, 30, 1.9], \"fov_deg\": 20"});
+    assert_true(found.trees_pct > -10 && found.trees_pct < 20);
+}
+
 /* An oak 1,500 m off throws a shadow with edges: +4 %, and +18 of a smudge by maps that begin near the eye. */
 static void long_lenses_show_shadows(void **state)
 {
@@ -251,6 +265,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(twigs_throw_their_own_shadows),
+        cmocka_unit_test(stems_do_not_shade_themselves),
         cmocka_unit_test(long_lenses_show_shadows),
         cmocka_unit_test(snow_lights_trees_from_below),
         cmocka_unit_test(pale_leaves_light_each_other),
