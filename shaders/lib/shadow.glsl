@@ -54,8 +54,8 @@ vec2 sheet_slope(vec3 sheet, mat4 m)
            * (length(toward) / facing);
 }
 
-/* The same of an offset in a map. What bulges as stems do bends away from the sun on either side of a place: it is
- * never farther from it than the place, or it would shade itself as wide as its penumbra. */
+/* The same of an offset in a map. What bulges as stems do lies below the plane that touches it: toward the sun that plane
+ * is asked, or it would shade itself as wide as its penumbra, away from it the place's own depth. */
 float sheet_nearer(vec2 slope, vec2 off, float bulges)
 {
     float nearer = dot(slope, off);

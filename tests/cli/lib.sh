@@ -58,6 +58,7 @@ drawn() {
     while read -r pattern; do
         check "told: $pattern" grep -qE -- "$pattern" "$scratch/told"
     done <"$scratch/patterns"
+    rm "$scratch/patterns" "$scratch/lines"
 }
 
 finish() {

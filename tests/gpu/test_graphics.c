@@ -306,7 +306,8 @@ int main(void)
         GPU_TEST(blending_is_premultiplied),
         GPU_TEST(depth_can_be_tested_without_writing),
         GPU_TEST(indirect_draws_with_and_without_the_feature),
-        GPU_TEST(depth_only_into_a_layer),        GPU_TEST(other_parameters_give_other_pipelines),
+        GPU_TEST(depth_only_into_a_layer),
+        GPU_TEST(other_parameters_give_other_pipelines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
