@@ -7,7 +7,13 @@
 #include "base/memory.h"
 
 static const uint32_t MAX_SIDE = 2048;
-static const float FAR_BELOW_M = 50.0f; /* under the ground, where nothing stands toward the sun */
+/* Under the ground, where nothing stands toward the sun; more where its shadows are softer. */
+static const float FAR_BELOW_M = 50.0f;
+
+float wd_sun_field_soft_m(float cell_m, float rise)
+{
+    return 0.45f * cell_m * fmaxf(rise, 0.02f);
+}
 
 /* A place is hidden up to what its neighbour toward the sun is hidden to, or that neighbour's own
  * height, less what the sun's ray falls on the way. Going from the sun's side over the axis that
@@ -22,6 +28,7 @@ void wd_sun_field_sweep(float *out, const float *height_m, uint32_t width, uint3
     ptrdiff_t toward = major > 0 ? line_step : -line_step;
     float aside = fabsf(major) > 0 ? minor / fabsf(major) : 0; /* samples, -1..1 */
     float fall = cell_m * sqrtf(1 + aside * aside) * rise;
+    float below = fmaxf(FAR_BELOW_M, wd_sun_field_soft_m(cell_m, rise));
     int32_t whole = (int32_t)floorf(aside);
     float share = aside - (float)whole;
     for (uint32_t n = 0; n < lines; n++) {
@@ -32,7 +39,7 @@ void wd_sun_field_sweep(float *out, const float *height_m, uint32_t width, uint3
             int32_t a = (int32_t)i + whole, b = a + 1;
             float *at = row + (ptrdiff_t)i * step;
             if (n == 0 || a < 0 || b >= (int32_t)length) {
-                *at = ground[(ptrdiff_t)i * step] - FAR_BELOW_M;
+                *at = ground[(ptrdiff_t)i * step] - below;
                 continue;
             }
             const float *ga = ground + a * step + toward, *gb = ground + b * step + toward;
@@ -111,7 +118,7 @@ static void rebuild(struct wd_sun_field *field, struct wd_cmd *cmd,
     float rise = direction[2] / across;
     field->terrain = terrain;
     field->cell_m = (float)(step * terrain->cell_m);
-    field->soft_m = 0.45f * field->cell_m * fmaxf(rise, 0.02f);
+    field->soft_m = wd_sun_field_soft_m(field->cell_m, rise);
     memcpy(field->direction, direction, sizeof field->direction);
     float *heights = thinned(terrain, step, width, height);
     float *out = wd_alloc_array((size_t)width * height, sizeof *out);

@@ -10,7 +10,7 @@ struct wd_sun_field {
     struct wd_buffer heights;         /* float[width * height] */
     uint32_t width, height;           /* samples, at least 2 each; at most 2048 a side */
     float cell_m;
-    float soft_m;                     /* half the height over which its shadows fade */
+    float soft_m;                     /* of wd_sun_field_soft_m */
     const struct wd_terrain *terrain; /* it was made for these two */
     float direction[3];
 };
@@ -27,5 +27,8 @@ void wd_sun_field_finish(struct wd_sun_field *field, struct wd_gpu *gpu);
  * sun's unit direction across and `rise` its height over run. Rows from the south. */
 void wd_sun_field_sweep(float *out, const float *height_m, uint32_t width, uint32_t height,
                         float cell_m, float toward_x, float toward_y, float rise);
+
+/* Half the height over which the field's shadows fade: what is nearer to it than this has part of the sun. */
+float wd_sun_field_soft_m(float cell_m, float rise);
 
 #endif

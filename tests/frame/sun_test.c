@@ -173,6 +173,23 @@ static void test_sun_field(void **state)
     assert_true(worst < 2.5f);
 }
 
+/* Level ground has all of the sun, however few and large its cells are. */
+static void test_sun_field_of_level_ground(void **state)
+{
+    (void)state;
+    enum { MOST = 4 };
+    static const float sizes_m[] = {1, 100, 1000, 9000}, rises[] = {0.02f, 0.3f, 1, 6};
+    const float level[MOST * MOST] = {0};
+    float field[MOST * MOST];
+    for (uint32_t side = 2; side <= MOST; side++)
+        for (size_t i = 0; i < 16; i++) {
+            float cell_m = sizes_m[i / 4] / (float)(side - 1), rise = rises[i % 4];
+            wd_sun_field_sweep(field, level, side, side, cell_m, 0.5f, -0.866f, rise);
+            for (uint32_t k = 0; k < side * side; k++)
+                assert_true(-field[k] >= wd_sun_field_soft_m(cell_m, rise));
+        }
+}
+
 /* --- wind ------------------------------------------------------------------------------------- */
 
 static void test_wind(void **state)
@@ -274,7 +291,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_direction), cmocka_unit_test(test_sun_and_sky),
         cmocka_unit_test(test_nightfall), cmocka_unit_test(test_horizon),
-        cmocka_unit_test(test_sun_field), cmocka_unit_test(test_wind), cmocka_unit_test(test_walls),
+        cmocka_unit_test(test_sun_field), cmocka_unit_test(test_sun_field_of_level_ground),
+        cmocka_unit_test(test_wind), cmocka_unit_test(test_walls),
         cmocka_unit_test(test_cascades_of_moved_eyes),
         cmocka_unit_test(test_cascades_that_end_in_steps),
     };
