@@ -271,7 +271,8 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     float base_m = max(crown.center_rel.z - crown.radii_m.z - crown.foot_z, 0.1);
     float below = mix(1.0, 1.0 - smoothstep(0.5 * base_m, base_m, height_m), is_tree(crown));
     alone.beneath = below * (1.0 - alone.leaf);
-    alone.edge = past_edge(alone.low, alone.beside) * alone.beneath;
+    vec4 edge = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
+    alone.edge = past_edge(edge * edge, shelter.through) * alone.beneath;
     return alone;
 }
 

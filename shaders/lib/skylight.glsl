@@ -208,13 +208,19 @@ vec4 past_edge(vec4 low, vec4 level)
     return max(low - level * level, 0.0) * (1.0 - level);
 }
 
-/* Of an even sky's light on an upright face so much comes from below 30 degrees. */
-const float LOW_OF_UPRIGHT = 0.61;
-
-/* Share of that which a face has. `light`: of the quarters that it looks to. */
-float from_edge(vec4 edge, vec4 light, float n_z)
+/* Mean of the edge's shares. `light`: of the quarters that a face looks to. */
+float from_edge(vec4 edge, vec4 light)
 {
-    return sqrt(max(1.0 - n_z * n_z, 0.0)) * dot(edge, light) / max(dot(light, vec4(1.0)), 1e-12);
+    return dot(edge, light) / max(dot(light, vec4(1.0)), 1e-12);
+}
+
+/* Of what level ground has of an even sky so much comes from below 30 degrees; of any sky what both this and an upright
+ * face's mean irradiance tell (low_share). */
+const float LOW_OF_LEVEL = 0.25;
+
+vec3 low_of_level(vec3 upright, vec3 level)
+{
+    return clamp(1.043 * upright - 0.272 * level, vec3(0.0), level);
 }
 
 /* Share of the sky about the sun that lies low, by the sun's sine: by the floor of a path-traced plot, 8 m in. */
@@ -325,9 +331,14 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
                         * sky_of_side(alone.side, bright, faced);
     vec3 beside_back = alone.again * sky_faced(alone, bright - bright * faced, flat_on, sky_of_back)
                        * sky_of_side(alone.side, bright, 1.0 - faced);
-    float edge = from_edge(alone.edge, bright * faced, n.z);
-    vec3 sky_front = mix(sky + LOW_OF_UPRIGHT * edge, beside_front * alone.lets.x, alone.known);
+    vec3 sky_front = mix(sky, beside_front * alone.lets.x, alone.known);
     vec3 sky_back = mix(sky, beside_back * alone.lets.y, alone.known);
+    /* The low sky past the stand's edge is an open sky's, however steeply light comes down within. */
+    float edge = from_edge(alone.edge, bright * faced) * sqrt(max(1.0 - n.z * n.z, 0.0));
+    vec3 open_front = max(SKY_EVEN(frame.sky_form, n) + SKY_ODD(frame.sky_form, n), vec3(0.0));
+    vec3 low_level = low_of_level(frame.sky_form[0], open_sky) - LOW_OF_LEVEL * open_sky * mix(vec3(1.0), frame.sky_under_tint, deep);
+    vec3 low_in = edge * low_share(open_front, 0.5 * open_sky) * open_front
+                  + from_edge(alone.edge, bright) * max(n.z, 0.0) * max(low_level, vec3(0.0));
     float rise = max(frame.sun_direction.z, 0.0);
     float longer = 0.67 / max(rise, 0.05);
     float beam = exp2(longer * log2(dot(frame.sunward, shelter.through)));
@@ -351,7 +362,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     float up = 0.5 + 0.5 * n.z;
     wd_around around;
     vec3 again = alone.scattered * mix(mean, 1.0, alone.share); /* in a stand, `scattered` has deeper ones' */
-    around.front = sky_of_front * sky_front + scattered * (up * (1.0 - alone.share)) + again;
+    around.front = sky_of_front * sky_front + low_in * (1.0 - alone.known) + scattered * (up * (1.0 - alone.share)) + again;
     around.back = sky_of_back * sky_back
                   + scattered * ((1.0 - up) * (1.0 - alone.share)) + again;
     around.front += upward_front * (1.0 - up);

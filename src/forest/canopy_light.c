@@ -33,9 +33,10 @@ static const struct {
 
 /* Crowns of a cell as a layer of leaves over the ground. */
 struct stand {
-    float ground_m, base_m, top_m; /* above the world's zero */
-    float per_m[RINGS];            /* extinction of rays of each ring, a metre of height */
-    float stems_per_m;             /* of level ways below crowns, a metre */
+    float ground_m, base_m, middle_m, top_m; /* above the world's zero */
+    float per_half_m;                        /* one over half its depth */
+    float depth[RINGS];                      /* optical, of rays of each ring */
+    float stems_per_m;                       /* extinction of level ways below crowns */
 };
 
 static const double LEAST_CELL_M = 8;
@@ -169,8 +170,8 @@ static void settle_layer(struct wd_canopy_field *field, size_t cell, const struc
  * ground together. Mapped ones, which may stand in groups, hide less, by the floors of two plots. */
 static float crowns_apart(float outline, float on_map)
 {
-    float planted = fminf(1.14f + 0.3f * fmaxf(outline - 1.1f, 0), 1.39f);
-    return planted * powf(on_map / wd_planted_apart(outline), 0.35f);
+    float planted = fminf(1.155f + 0.3f * fmaxf(outline - 1.1f, 0), 1.41f);
+    return planted * powf(on_map / wd_planted_apart(outline), 0.5f);
 }
 
 static void settle_stand(struct work *work, size_t cell, struct sums sums, float on_map)
@@ -194,11 +195,13 @@ static void settle_stand(struct work *work, size_t cell, struct sums sums, float
     float deep_m = fmaxf(layer_m[1] - layer_m[0], 1);
     stand->base_m += layer_m[0];
     stand->top_m = stand->base_m + deep_m;
+    stand->middle_m = stand->base_m + 0.5f * deep_m;
+    stand->per_half_m = 2 / deep_m;
     float apart = crowns_apart(sums.outline, on_map);
     stand->stems_per_m = sums.stems_m;
     for (int ring = 0; ring < RINGS; ring++) {
         float rise = rings[ring].rise, seen = wd_seen_m2(sums.seen[0], sums.seen[1], sums.seen[2], rise);
-        stand->per_m[ring] = apart * seen / (rise * deep_m);
+        stand->depth[ring] = apart * seen / rise;
     }
     work->highest_m = fmaxf(work->highest_m, stand->top_m);
 }
@@ -264,6 +267,14 @@ struct ray {
     int ring;
 };
 
+/* Share of a layer's leaves below a height, as in an ellipsoid that is as deep. `over`: of its middle, in halves of its
+ * depth. */
+static float leaves_below(float over)
+{
+    over = wd_minf(wd_maxf(over, -1), 1);
+    return 0.25f * over * (3 - over * over) + 0.5f;
+}
+
 /* Share of the light along a ray to a place half a metre over the ground; through crowns by Beer's
  * law, stopped by hills. */
 static float ray_through(const struct work *work, size_t cell, const struct ray *ray)
@@ -287,10 +298,10 @@ static float ray_through(const struct work *work, size_t cell, const struct ray 
             &work->stands[(size_t)(int32_t)at_y * field->width + (size_t)(int32_t)at_x];
         if (0.5f * (low + high) < stand->ground_m - 2)
             return 0;
-        float within = wd_minf(high, stand->top_m) - wd_maxf(low, stand->base_m);
+        float within = leaves_below((high - stand->middle_m) * stand->per_half_m) -
+                       leaves_below((low - stand->middle_m) * stand->per_half_m);
         float below = wd_minf(high, stand->base_m) - wd_maxf(low, stand->ground_m);
-        depth += wd_maxf(within, 0) * stand->per_m[ray->ring] +
-                 wd_maxf(below, 0) * stand->stems_per_m * across / ray->rise;
+        depth += within * stand->depth[ray->ring] + wd_maxf(below, 0) * stand->stems_per_m * across / ray->rise;
         x += 2 * half * ray->east;
         y += 2 * half * ray->north;
         z = high;
