@@ -336,7 +336,8 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     /* The low sky past the stand's edge is an open sky's, however steeply light comes down within. */
     float edge = from_edge(alone.edge, bright * faced) * sqrt(max(1.0 - n.z * n.z, 0.0));
     vec3 open_front = max(SKY_EVEN(frame.sky_form, n) + SKY_ODD(frame.sky_form, n), vec3(0.0));
-    vec3 low_level = low_of_level(frame.sky_form[0], open_sky) - LOW_OF_LEVEL * open_sky * mix(vec3(1.0), frame.sky_under_tint, deep);
+    vec3 low_within = LOW_OF_LEVEL * open_sky * mix(vec3(1.0), frame.sky_under_tint, deep); /* which `reach` has */
+    vec3 low_level = low_of_level(frame.sky_form[0], open_sky) - low_within;
     vec3 low_in = edge * low_share(open_front, 0.5 * open_sky) * open_front
                   + from_edge(alone.edge, bright) * max(n.z, 0.0) * max(low_level, vec3(0.0));
     float rise = max(frame.sun_direction.z, 0.0);
@@ -362,7 +363,8 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     float up = 0.5 + 0.5 * n.z;
     wd_around around;
     vec3 again = alone.scattered * mix(mean, 1.0, alone.share); /* in a stand, `scattered` has deeper ones' */
-    around.front = sky_of_front * sky_front + low_in * (1.0 - alone.known) + scattered * (up * (1.0 - alone.share)) + again;
+    around.front = sky_of_front * sky_front + low_in * (1.0 - alone.known)
+                   + scattered * (up * (1.0 - alone.share)) + again;
     around.back = sky_of_back * sky_back
                   + scattered * ((1.0 - up) * (1.0 - alone.share)) + again;
     around.front += upward_front * (1.0 - up);
