@@ -255,8 +255,8 @@ static void floors_get_what_crowns_do_not_cover(void **state)
     const float *middle = at(&field, 0.5 * SIDE_M, 0.5 * SIDE_M);
     const float *seen = model.seen_m2;
     float wanted = 0, crown_m = WD_TREE_CROWN_M(trees[0]) / SPACING_M;
-    float outline = 3.14159f / 4 * crown_m * crown_m, apart = 1.14f + 0.3f * fmaxf(outline - 1.1f, 0);
-    apart *= powf(2 / wd_planted_apart(outline), 0.35f);
+    float outline = 3.14159f / 4 * crown_m * crown_m, apart = 1.155f + 0.3f * fmaxf(outline - 1.1f, 0);
+    apart *= powf(2 / wd_planted_apart(outline), 0.5f);
     for (int ring = 0; ring < 4; ring++) {
         float rise = sqrtf(1 - ((float)ring + 0.5f) / 4);
         float covered =
