@@ -271,8 +271,7 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     float base_m = max(crown.center_rel.z - crown.radii_m.z - crown.foot_z, 0.1);
     float below = mix(1.0, 1.0 - smoothstep(0.5 * base_m, base_m, height_m), is_tree(crown));
     alone.beneath = below * (1.0 - alone.leaf);
-    vec4 edge = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
-    alone.edge = past_edge(edge * edge, shelter.through) * alone.beneath;
+    alone.edge = edge_of(pixel, shelter) * alone.beneath;
     return alone;
 }
 
@@ -736,8 +735,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction), alone.share * place.cloud);
     } else {
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, 0.0);
-        vec4 low = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
-        alone.edge = past_edge(low * low, shelter.through);
+        alone.edge = edge_of(pixel, shelter);
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);
     }

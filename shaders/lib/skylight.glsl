@@ -208,6 +208,13 @@ vec4 past_edge(vec4 low, vec4 level)
     return max(low - level * level, 0.0) * (1.0 - level);
 }
 
+/* Of a place on the ground or beneath crowns. `shelter`: the ground's. */
+vec4 edge_of(wd_pixel pixel, wd_shelter shelter)
+{
+    vec4 low = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
+    return past_edge(low * low, shelter.through);
+}
+
 /* Mean of the edge's shares. `light`: of the quarters that a face looks to. */
 float from_edge(vec4 edge, vec4 light)
 {

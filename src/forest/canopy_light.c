@@ -167,7 +167,7 @@ static void settle_layer(struct wd_canopy_field *field, size_t cell, const struc
 /* Crowns that stand at random let e^-a of a ray's light through where they cover a of the area
  * across it. Those that are planted keep apart and hide so much more, most where many lie over one another: by the
  * floors of path-traced stands under an even sky, whose crowns have outlines of 0.56, 0.85, 1.5 and 1.8 times the
- * ground together. Mapped ones, which may stand in groups, hide less, by the floors of two plots. */
+ * ground together. Mapped ones, which may stand in groups, hide less, by the floors of three plots. */
 static float crowns_apart(float outline, float on_map)
 {
     float planted = fminf(1.155f + 0.3f * fmaxf(outline - 1.1f, 0), 1.41f);

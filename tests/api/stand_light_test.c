@@ -115,7 +115,6 @@ enum { SHAPES = WD_LAYER_DEPTH | WD_LAYER_TREE_ID, LIGHT = SHAPES | WD_LAYER_COL
 static const struct stand dark = {"scenes/bench75k.json", {300, 300}, 400, {"variants=2", "fog.visibility_m=3000"}};
 static const struct stand shore = {"scenes/gallery/lake.json", {0, 0}, 0, {"variants=1", "fog.visibility_m=2000"}};
 static const struct stand light = {"bench/light.json", {460, 250}, 180, {"variants=2"}};
-
 static const struct stand plot = {"scenes/boreas.json", {2976, 2974}, 46, {"variants=1"}};
 
 static void add_floor(struct sum *sum, const struct wd_picture *picture)
@@ -150,7 +149,7 @@ static void a_dark_floor_is_as_bright_as_traced(void **state)
     check_light("floor of a dark stand", &drawn, &traced, 1.15, 1.15);
 }
 
-/* A bright horizon lights it past the plot's edges: 0.83 to 0.94 of the traced; 0.76 in red if leaves of layers are spread
+/* A bright horizon lights it past the plot's edges: 0.83 to 0.94 of the traced; 0.83 in red if leaves of layers are spread
  * evenly from base to top and the low sky that comes in is as dim as a closed stand's. */
 static void the_floor_of_a_plot_is_as_bright_as_traced(void **state)
 {
@@ -163,7 +162,7 @@ static void the_floor_of_a_plot_is_as_bright_as_traced(void **state)
         skip();
     }
     look_at_floor(&plot, &drawn, &traced);
-    check_light("floor of a plot", &drawn, &traced, 1.2, 1.3);
+    check_light("floor of a plot", &drawn, &traced, 1.15, 1.25);
 }
 
 /* Trees' pixels of the upper half that are as near as this are crowns. */
