@@ -33,6 +33,7 @@ layout(set = 0, binding = 13) uniform sampler2DArray canopy_light;
 layout(set = 0, binding = 14) uniform sampler2D sky_map;
 layout(scalar, set = 0, binding = 15) readonly buffer Waters { float river_m[]; };
 layout(scalar, set = 0, binding = 16) readonly buffer Shafts { float shafts[]; };
+layout(set = 0, binding = 17) uniform usamplerBuffer crown_sky;
 layout(scalar, push_constant) uniform Push { wd_light_push push_block; };
 
 /* llvmpipe reads a block once for all lanes only where all of them run, which is before any branch; within
@@ -48,6 +49,7 @@ wd_light_push push = push_block;
 #define CANOPY_LIGHT_AT(at, layer) textureLod(canopy_light, vec3(at, layer), 0.0)
 #define CANOPY_LIGHT canopy_light
 #define SKY_MAP sky_map
+#define CROWN_SKY crown_sky
 
 #define WATER_AT(index) river_m[index]
 #define SHAFT_AT(tile, slice) shafts[(tile) * WD_SHAFT_SLICES + (slice)]

@@ -8,6 +8,7 @@ const float PER_PI = 0.318309886;
 #include "lib/wax.glsl"
 #include "shared/wax.h"
 #include "lib/skylight.glsl"
+#include "lib/crown_sky.glsl"
 #include "lib/haze.glsl"
 
 /* --- leaves --------------------------------------------------------------------------------- */
@@ -323,10 +324,6 @@ bool is_disc(wd_pixel pixel)
     return pixel.lit > 0.0 && pixel.lit < 1.0;
 }
 
-/* Of its neighbours' leaves over a place, this power of their share hides the sky there. By path-traced stands of
- * five species, 5 and 8 m apart, under an even sky. */
-const float NEIGHBOURS_OVER = 0.75;
-
 /* Leaves of dense crowns hide more of the sky overhead than of that at the horizon, which a clear one is bright at, those
  * of open ones less (low_sky of each model): by how much brighter an upright face's is than an even sky's. So much more of
  * clouds of leaves, whose mean normal alone is known; by path-traced oaks, spruces and birches. */
@@ -367,6 +364,13 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, alone.share * is_tree(crown));
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown, model).y, alone.share) : 1.0;
     alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
+    wd_past_neighbours past = past_neighbours(pixel.surface - 1u, crown, place.rel, -pixel.direction);
+    float herbs = through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z));
+    alone.by_crown = past.share * has_table(crown);
+    alone.high = mix(alone.high, past.high * herbs, alone.by_crown);
+    alone.low = mix(alone.low, past.low * herbs, alone.by_crown);
+    alone.sides = mix(alone.sides, 0.75 * alone.high + 0.25 * alone.low, alone.by_crown);
+    alone.known = max(alone.known, alone.by_crown);
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
     alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown) * (1.0 - alone.beneath));
 }
@@ -778,6 +782,9 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);
     wide_way += (1.0 - wide_way) * low_about_sun(frame.sun_direction.z) * dot(frame.sunward, alone.edge);
+    vec4 toward_sun = mix(alone.low, alone.high, smoothstep(0.3, 0.6, frame.sun_direction.z));
+    float by_crown = min(dot(frame.sunward, toward_sun) * wd_skylit_above(pixel.openness), 1.0);
+    wide_way = mix(wide_way, by_crown, alone.by_crown);
     float close = pixel.surface == 0u ? 0.0 : mix(NEAR_SUN, NEAR_SUN_BLADES, place.sward);
     float about_sun = mix(wide_way, leaf_way, close) * over_hills;
     vec3 from_sun = frame.sun_irradiance * sun_share + frame.circumsolar * about_sun;

@@ -56,12 +56,7 @@ wd_shelter ground_shelter(wd_pixel pixel)
     return shelter;
 }
 
-/* Share of the canopy's leaves that lie over a height: what lies above a plane through an ellipsoid. */
-float canopy_above(vec2 layer_m, float height_m)
-{
-    float above = 1.0 - smoothstep(layer_m.x, max(layer_m.y, layer_m.x + 0.5), height_m);
-    return above * above;
-}
+#include "lib/canopy_above.glsl"
 
 /* Layers of herbs over a height: their leaves are spread evenly over theirs. */
 float herbs_above(wd_shelter shelter, float height_m)
@@ -244,6 +239,7 @@ struct wd_alone {
     vec4 beside;  /* shares of the sky's quarters that the ground beside its crown has, */
     vec4 sides;   /* and the place past what stands there, */
     vec4 high, low; /* and an upright face there that looks that way, of its light from the high sky and the low */
+    float by_crown; /* how far these two are of the tree's own table (lib/crown_sky.glsl) */
     vec4 side;    /* shares of what its own crown leaves that come from each quarter, over an even crown's */
     vec4 lets;    /* of light from above to the side that is seen and to the other, then from below */
     vec3 again;   /* times as much as without what its leaves scatter of that */
@@ -253,7 +249,7 @@ struct wd_alone {
     vec4 edge;  /* shares of the quarters' low light that come in below crowns, from where the stand ends */
 };
 
-const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(1.0), vec4(0.0),
+const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0.0, vec4(1.0), vec4(0.0),
                                    vec3(1.0), vec3(0.0), 0.0, 1.0, vec4(0.0));
 
 /* Of an even sky's light on an upright face so much comes from below 30 degrees, and of what level ground has a quarter:
@@ -273,6 +269,15 @@ vec3 sky_faced(wd_alone alone, vec4 faced, float flat_on, vec3 sky)
     vec4 part = faced / max(quarters_bright(), vec4(1e-12));
     vec3 upright = mix(vec3(high), vec3(low), low_share(sky, sky_level(part)));
     return mix(upright, vec3(dot(alone.sides, faced) * per_light), flat_on);
+}
+
+/* Share of the sky in a direction that a tree's neighbours leave. */
+float sky_toward(wd_alone alone, vec3 direction)
+{
+    float up = max(direction.z, 0.0);
+    vec4 quarters = mix(max(vec4(direction.xy, -direction.xy), vec4(0.0)), vec4(1.0), 0.05 + 0.95 * up * up);
+    vec4 left = mix(alone.low, alone.high, smoothstep(0.2, 0.7, up));
+    return dot(quarters, left) / dot(quarters, vec4(1.0));
 }
 
 /* Of the ways past a stand to what a leaf of it mirrors, the leaves that they meet over those on the mean way of the
@@ -299,6 +304,10 @@ vec3 out_of_crowns(vec3 scatter, float mean)
  * than stems get: of leaves that an eye below looks up to, so many times as much. By path-traced crowns of three
  * stands, one of them in autumn. */
 const float NEXT_LEAVES = 1.8;
+
+/* Light that comes back up from below a place in a crown goes with what that has of the sky: so much of it, by path-traced
+ * leaves of scenes/bench75k.json at 512 px. */
+const float OF_UPWARD = 0.5;
 
 /* An eye over a stand that looks at it level sees its edge, whose upright faces have so much of what those of a gap have
  * over those within. By the path-traced overview of bench/light.json under clouds. */
@@ -361,7 +370,8 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
                             exp2(2.0 * s * shelter.floor_herbs));
     floor_albedo = mix(floor_albedo, WD_SNOW_ALBEDO, shelter.snow);
     vec3 below = mix(deep_albedo, floor_albedo, exp2(2.0 * s * min(log2(shelter.floor_mean / mean), 0.0)));
-    vec3 upward = below * (open_sky * sky + with_scattered);
+    vec3 at_place = mix(sky, 0.5 * OF_UPWARD * (sky_front + sky_back), alone.by_crown);
+    vec3 upward = below * (open_sky * at_place + with_scattered);
     float beside_lit = exp2(longer * log2(max(dot(frame.sunward, alone.beside), 1e-3)));
     vec3 beside = alone.again * floor_albedo * (sky_level(alone.beside) + sun * beside_lit);
     vec3 beyond = 0.5 * floor_albedo * (open_sky + sun); /* ground before the stand, less what stems hide of it */
@@ -384,6 +394,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     float rise_along = max(high, 0.1);
     float ways = 0.6931 * mix(ALONG, ALONG_WITHIN, shelter.within * max(up_to, 1.0 - alone.leaf));
     vec3 along = 1.0 / (1.0 - s * (shelter.beside * ways / rise_along));
+    along = mix(along, vec3(sky_toward(alone, mirror)), alone.by_crown);
     float open = 0.5 * dot(alone.beside, faced_quarters(mirror.xy));
     around.mirrored = mix(upward_front, max(ahead, vec3(0.0)) * mix(along, vec3(open), alone.share)
                                             + scattered * (1.0 - alone.share), up_mirror);

@@ -21,6 +21,7 @@ struct wd_light_push {
     float shafts_m; /* way along the view axis within maps of shadows, on which these tell what haze has of the sun */
     float shafts;   /* how far they do, by how thick it is: 0..1 */
     uint32_t level_cards; /* cards show pictures taken level, whatever way the eye looks */
+    float pixels_a_radian;
     uint32_t few_tiles;   /* all tiles without water are of WD_TILE_LIST_DRY */
 };
 

@@ -14,7 +14,7 @@ struct wd_spirv {
 };
 
 /* One descriptor set (set 0); binding i has type types[i]. All stages see all bindings. */
-enum { WD_MAX_BINDINGS = 17 };
+enum { WD_MAX_BINDINGS = 18 };
 struct wd_bindings {
     uint32_t count;
     VkDescriptorType types[WD_MAX_BINDINGS];

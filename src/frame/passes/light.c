@@ -59,9 +59,9 @@ static struct wd_compute_params shading_params(void)
 {
     return (struct wd_compute_params){
         .shader = SPIRV(light_comp),
-        .bindings = {17,
+        .bindings = {18,
                      {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, TEXELS, TEXELS, TEXELS,
-                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER}},
+                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, TEXELS}},
         .push_size = sizeof(struct wd_light_push),
     };
 }
@@ -196,6 +196,7 @@ bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     *pass = (struct wd_light_pass){0};
     bool ok = init_sorting(pass, gpu) && init_shafts(&pass->shafts, gpu) && init_velocity(&pass->velocity, gpu) &&
+              wd_crown_sky_init(&pass->crown_sky, gpu) &&
               wd_sampler_init(&pass->nearest, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
               wd_sampler_init(&pass->shadow, gpu, WD_SAMPLER_SHADOW);
     if (!ok)
@@ -212,17 +213,20 @@ void wd_light_pass_finish(struct wd_light_pass *pass, struct wd_gpu *gpu)
     wd_buffer_finish(&pass->lists, gpu);
     wd_buffer_finish(&pass->shaft_shares, gpu);
     wd_sun_field_finish(&pass->sun_field, gpu);
+    wd_crown_sky_finish(&pass->crown_sky, gpu);
     *pass = (struct wd_light_pass){0};
 }
 
 void wd_light_pass_forget(struct wd_light_pass *pass)
 {
     wd_sun_field_forget(&pass->sun_field);
+    wd_crown_sky_forget(&pass->crown_sky);
 }
 
 void wd_light_pass_drop_forest(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     wd_sun_field_finish(&pass->sun_field, gpu);
+    wd_crown_sky_drop_forest(&pass->crown_sky, gpu);
 }
 
 /* --- recording ----------------------------------------------------------------------------- */
@@ -277,6 +281,7 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass, const stru
         .has_rivers = params->forest->ground.terrain->water_m != NULL,
         .has_overlay = params->overlay == WD_OVERLAY_OVER,
         .level_cards = params->level_cards,
+        .pixels_a_radian = params->view->pixels_per_radian,
         .few_tiles = has_few_tiles(gpu, params->targets->width, params->targets->height),
         .shafts_m = shafts_m(params->frame),
         .shafts = shafts_of(params->frame),
@@ -390,6 +395,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     struct wd_targets *targets = params->targets;
     wd_sun_field_update(&pass->sun_field, cmd, params->forest->ground.terrain,
                         params->frame->sun_direction);
+    wd_crown_sky_update(&pass->crown_sky, cmd, params->forest, params->view);
     const struct wd_light_push push = push_of(pass, cmd->gpu, params);
     uint64_t tiles = (uint64_t)push.tile_columns * push.tile_rows;
     if (!fit_lists(pass, cmd, tiles) || !fit_shafts(pass, cmd, tiles))
@@ -420,6 +426,7 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
         WD_BIND_IMAGE(&params->forest->sky, params->forest->look_sampler),
         WD_BIND_BUFFER(&params->forest->ground.waters),
         WD_BIND_BUFFER(&pass->shaft_shares),
+        WD_BIND_BUFFER(&pass->crown_sky.table),
     };
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);

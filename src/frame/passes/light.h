@@ -3,6 +3,7 @@
 #define WD_FRAME_PASSES_LIGHT_H
 
 #include "forest/forest.h"
+#include "frame/crown_sky.h"
 #include "frame/sun_field.h"
 #include "frame/targets.h"
 #include "frame/view.h"
@@ -18,7 +19,8 @@ struct wd_light_pass {
     struct wd_buffer shaft_shares;             /* float[tiles * WD_SHAFT_SLICES] */
     struct wd_buffer lists;                    /* struct wd_tile_lists and the lists */
     VkSampler nearest, shadow;
-    struct wd_sun_field sun_field; /* of the newest forest */
+    struct wd_sun_field sun_field; /* of the newest forest, */
+    struct wd_crown_sky crown_sky; /* and this */
 };
 
 bool wd_light_pass_init(struct wd_light_pass *pass, struct wd_gpu *gpu);

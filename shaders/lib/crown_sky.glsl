@@ -1,0 +1,72 @@
+/* What a tree's neighbours leave of the sky to a place in its crown (shared/crown_sky.h).
+ * Expects `frame`, `push` (wd_light_push) and the libraries of crown and skylight; CROWN_SKY: the table's texels. */
+#include "shared/crown_sky.h"
+
+struct wd_past_neighbours {
+    float share;    /* how far that is known */
+    vec4 high, low; /* as in wd_alone */
+};
+
+#ifdef CROWN_SKY
+/* Between eight places of the table; the roots are mixed. */
+wd_past_neighbours past_neighbours_at(int first, vec3 at)
+{
+    ivec3 cell = ivec3(at);
+    vec3 next = at - vec3(cell), here = 1.0 - next;
+    int corner = first + cell.x + int(WD_CROWN_SKY_ACROSS) * (cell.y + int(WD_CROWN_SKY_ACROSS) * cell.z);
+    vec4 high = vec4(0.0), low = vec4(0.0);
+    for (int i = 0; i < 4; i++) {
+        ivec2 on = ivec2(i & 1, i >> 1);
+        vec2 shares = mix(here.xy, next.xy, vec2(on));
+        uvec4 texel = texelFetch(CROWN_SKY, corner + on.x + int(WD_CROWN_SKY_ACROSS) * on.y);
+        float share = shares.x * shares.y;
+        high += share * mix(unpackUnorm4x8(texel.x), unpackUnorm4x8(texel.z), next.z);
+        low += share * mix(unpackUnorm4x8(texel.y), unpackUnorm4x8(texel.w), next.z);
+    }
+    return wd_past_neighbours(1.0, high * high, low * low);
+}
+
+/* Of the crown's own leaves: what lies along the ways to the quarters of the sky, high and low. */
+vec4 own_ways(wd_crown crown, vec3 from_m, float level, float up)
+{
+    vec3 q = wd_crown_units(from_m, crown.radii_m);
+    q *= q.z < -1.0 ? 1.0 : 1.0 / max(length(q), 1.0);
+    float across = level / crown.radii_m.x, rise = up / crown.radii_m.z;
+    float ss = across * across + rise * rise, out_by = dot(q, q) - 1.0;
+    vec4 along = q.z * rise + across * vec4(q.xy, -q.xy);
+    vec4 root = sqrt(max(along * along - ss * out_by, vec4(0.0)));
+    return (max(root - along, vec4(0.0)) - max(-root - along, vec4(0.0))) / ss;
+}
+#endif
+
+/* How much more of the leaves that lie along a way hide than wd_crown_per_m says of them on the mean way: by path-traced
+ * leaves of scenes/bench75k.json at 512 px, 16 places, under an even sky. */
+const float OWN_WAYS = 2.0;
+
+/* The crown's own leaves leave some ways more open than others, and the eye sees leaves that look its way: what the
+ * neighbours leave of these counts more. `tree`: record. */
+wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec3 eye)
+{
+    wd_past_neighbours past = wd_past_neighbours(0.0, vec4(0.0), vec4(0.0));
+#ifdef CROWN_SKY
+    int set = int(wd_crown_sky_set(tree));
+    bvec4 is = equal(texelFetch(CROWN_SKY, set), uvec4(tree + 1u));
+    if (!any(is))
+        return past;
+    int slot = 4 * set + (is.y ? 1 : is.z ? 2 : is.w ? 3 : 0);
+    float top = crown.center_rel.z + crown.radii_m.z, bottom = crown.foot_z + WD_CROWN_SKY_LOW_M;
+    vec3 at = vec3(0.5 * (rel.xy - crown.center_rel.xy) / crown.radii_m.x + 0.5, (rel.z - bottom) / (top - bottom));
+    const vec3 last = vec3(vec2(float(WD_CROWN_SKY_ACROSS - 1u)), float(WD_CROWN_SKY_UP - 1u));
+    past = past_neighbours_at(int(WD_CROWN_SKY_SETS + uint(slot) * WD_CROWN_SKY_TEXELS),
+                              clamp(at, vec3(0.0), vec3(0.9999)) * last);
+    past.share = wd_crown_sky_share(top - crown.foot_z, length(rel), push.pixels_a_radian);
+    float per_m = -OWN_WAYS * wd_crown_per_m(crown.radii_m);
+    vec4 side = eye_side(eye);
+    vec4 high = side * exp(per_m * own_ways(crown, rel - crown.center_rel, 0.62, 0.784));
+    vec4 low = side * exp(per_m * own_ways(crown, rel - crown.center_rel, 0.966, 0.26));
+    float mean = 0.25 * dot(0.75 * high + 0.25 * low, vec4(1.0));
+    past.high *= high / mean;
+    past.low *= low / mean;
+#endif
+    return past;
+}

@@ -1,0 +1,139 @@
+#version 460
+/* What of the sky reaches places about a tree's crown past its neighbours: crowns are ellipsoids of leaves, in which
+ * light falls off with the way that it has come (Guerrero 2006, section 5). A thread a place. Beyond
+ * the job's reach the canopy's field says what of the low sky is left. The same whatever else is in the grid. */
+#include "shared/crown_sky.h"
+#include "shared/light.h"
+
+layout(local_size_x = 64) in;
+
+layout(scalar, set = 0, binding = 0) readonly buffer Crowns { wd_sky_crown crowns[]; }; /* by cells of the grid */
+layout(scalar, set = 0, binding = 1) readonly buffer Cells { uint first_of[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer Jobs { wd_crown_sky_job jobs[]; };
+layout(set = 0, binding = 3) uniform sampler2DArray canopy_light;
+layout(scalar, set = 0, binding = 4) writeonly buffer Table { uvec2 table[]; }; /* half texels */
+layout(scalar, push_constant) uniform Push { wd_crown_sky_push push; };
+
+#include "lib/canopy_above.glsl"
+
+/* Rings of the sky, as of forest/canopy_light.c: sine of the elevation, share of an upright face's light from above 30
+ * degrees and from below, and by how much the ring's eight bearings are turned, in radians. */
+const uint RINGS = 6u;
+const vec4 RING[RINGS] = vec4[](vec4(0.93541435, 0.148, 0.0, -0.12), vec4(0.79056942, 0.317, 0.0, 0.0),
+                                vec4(0.61237244, 0.535, 0.0, 0.12), vec4(0.42261826, 0.0, 0.30, -0.12),
+                                vec4(0.25881905, 0.0, 0.34, 0.0), vec4(0.08715574, 0.0, 0.36, 0.12));
+
+/* Four bearings of a ring, and the four across from these. */
+struct ring_ways {
+    vec4 east, north;
+    float up;
+};
+
+ring_ways ways_of(vec4 ring)
+{
+    vec4 turns = vec4(0.39269908, 1.17809725, 1.96349541, 2.74889357) + ring.w;
+    float level = sqrt(1.0 - ring.x * ring.x);
+    return ring_ways(level * cos(turns), level * sin(turns), ring.x);
+}
+
+/* Optical depth of a crown along each way. `from_m`: from its middle to the place. */
+void add_crown(inout vec4 depth, inout vec4 across, wd_sky_crown crown, vec3 from_m, ring_ways ways)
+{
+    float per_r = 1.0 / crown.radius_m, per_h = 1.0 / crown.half_m;
+    vec3 q = from_m * vec3(per_r, per_r, per_h);
+    float level = 1.0 - ways.up * ways.up, qq = dot(q, q) - 1.0;
+    float ss = level * per_r * per_r + ways.up * ways.up * per_h * per_h;
+    vec4 along = (q.x * ways.east + q.y * ways.north) * per_r;
+    float rise = q.z * ways.up * per_h;
+    vec4 one = rise + along, other = rise - along;
+    vec4 root = sqrt(max(one * one - ss * qq, vec4(0.0))), root_other = sqrt(max(other * other - ss * qq, vec4(0.0)));
+    float per_way = crown.per_m / ss;
+    depth += per_way * (max(root - one, vec4(0.0)) - max(-root - one, vec4(0.0)));
+    across += per_way * (max(root_other - other, vec4(0.0)) - max(-root_other - other, vec4(0.0)));
+}
+
+void add_cells(inout vec4 depth, inout vec4 across, wd_crown_sky_job job, vec3 place_m, ring_ways ways, ivec2 low,
+               ivec2 high)
+{
+    wd_sky_crown self = crowns[job.crown];
+    ivec3 foot_mm = ivec3(self.foot_mm[0], self.foot_mm[1], self.foot_mm[2]);
+    for (int row = low.y; row <= high.y; row++) {
+        uint first = first_of[uint(row) * push.columns + uint(low.x)];
+        uint end = first_of[uint(row) * push.columns + uint(high.x) + 1u];
+        for (uint i = first; i < end; i++) {
+            wd_sky_crown crown = crowns[i];
+            vec3 apart_m = vec3(ivec3(crown.foot_mm[0], crown.foot_mm[1], crown.foot_mm[2]) - foot_mm) * 0.001;
+            bool near = dot(apart_m.xy, apart_m.xy) < job.reach_m * job.reach_m;
+            apart_m.z += crown.middle_m;
+            if (i == job.crown || !near || place_m.z > apart_m.z + crown.half_m)
+                continue;
+            add_crown(depth, across, crown, place_m - apart_m, ways);
+        }
+    }
+}
+
+/* Shares of a low ring's light at the place that come past the canopy beyond the neighbours. */
+float past_canopy(vec2 place_m, uint quarter, float height_m)
+{
+    vec2 at = (place_m - push.canopy_from_m) * push.canopy_scale;
+    vec4 layer = textureLod(canopy_light, vec3(at, 1.0), 0.0), low = textureLod(canopy_light, vec3(at, 3.0), 0.0);
+    vec2 layer_m = WD_CANOPY_MOST_M * layer.xy * layer.xy;
+    float over = pow(canopy_above(layer_m, height_m), NEIGHBOURS_OVER);
+    return exp2(over * log2(max(low[quarter] * low[quarter], 1e-3)));
+}
+
+vec4 past_canopy_along(vec2 place_m, ring_ways ways, float sign, float height_m, float reach_m)
+{
+    float level = sqrt(1.0 - ways.up * ways.up), far_m = reach_m / level;
+    vec4 through;
+    for (uint i = 0u; i < 4u; i++) {
+        uint quarter = (i + 1u) / 2u + (sign < 0.0 ? 2u : 0u);
+        vec2 beyond_m = place_m + sign * far_m * vec2(ways.east[i], ways.north[i]);
+        through[i] = past_canopy(beyond_m, quarter & 3u, height_m + far_m * ways.up);
+    }
+    return through;
+}
+
+/* From eight bearings to quarters: those about east are the first of four and the last of the four across. */
+vec4 quarters_of(vec4 one, vec4 other)
+{
+    return 0.5 * vec4(one.x + other.w, one.y + one.z, one.w + other.x, other.y + other.z);
+}
+
+void main()
+{
+    uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (index >= push.job_count * WD_CROWN_SKY_PLACES)
+        return;
+    wd_crown_sky_job job = jobs[index / WD_CROWN_SKY_PLACES];
+    uint place = index % WD_CROWN_SKY_PLACES;
+    wd_sky_crown own = crowns[job.crown];
+    uvec3 at = uvec3(place, place / WD_CROWN_SKY_ACROSS, place / (WD_CROWN_SKY_ACROSS * WD_CROWN_SKY_ACROSS));
+    at.xy %= WD_CROWN_SKY_ACROSS;
+    float top_m = own.middle_m + own.half_m;
+    vec2 aside_m = own.radius_m * (vec2(at.xy) * (2.0 / float(WD_CROWN_SKY_ACROSS - 1u)) - 1.0);
+    vec3 place_m = vec3(aside_m, mix(WD_CROWN_SKY_LOW_M, top_m, float(at.z) * (1.0 / float(WD_CROWN_SKY_UP - 1u))));
+    vec2 foot_m = vec2(own.foot_mm[0], own.foot_mm[1]) * 0.001;
+    ivec2 first = ivec2(push.first_column, push.first_row), most = ivec2(push.columns, push.rows) - 1;
+    ivec2 low = ivec2(floor((foot_m - job.reach_m) / WD_CROWN_SKY_CELL_M)) - first;
+    ivec2 high = ivec2(floor((foot_m + job.reach_m) / WD_CROWN_SKY_CELL_M)) - first;
+    vec4 high_sky = vec4(0.0), low_sky = vec4(0.0);
+    for (uint ring = 0u; ring < RINGS; ring++) {
+        ring_ways ways = ways_of(RING[ring]);
+        vec4 depth = vec4(0.0), across = vec4(0.0);
+        add_cells(depth, across, job, place_m, ways, clamp(low, ivec2(0), most), clamp(high, ivec2(0), most));
+        vec4 one = exp(-depth), other = exp(-across);
+        if (RING[ring].z > 0.0) {
+            one *= past_canopy_along(foot_m + place_m.xy, ways, 1.0, place_m.z, job.reach_m);
+            other *= past_canopy_along(foot_m + place_m.xy, ways, -1.0, place_m.z, job.reach_m);
+        }
+        high_sky += RING[ring].y * quarters_of(one, other);
+        low_sky += RING[ring].z * quarters_of(one, other);
+    }
+    uvec2 told = uvec2(packUnorm4x8(sqrt(high_sky)), packUnorm4x8(sqrt(low_sky)));
+    uint texel = WD_CROWN_SKY_SETS + job.slot * WD_CROWN_SKY_TEXELS + place, layer = WD_CROWN_SKY_ACROSS * WD_CROWN_SKY_ACROSS;
+    if (at.z < WD_CROWN_SKY_UP - 1u)
+        table[2u * texel] = told;
+    if (at.z > 0u)
+        table[2u * (texel - layer) + 1u] = told;
+}

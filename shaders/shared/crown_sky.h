@@ -1,0 +1,65 @@
+/* crown_sky.h: what a tree's neighbours leave it of the sky, at a grid of places about its crown, for trees
+ * near enough to be seen leaf by leaf. Kept in a table of sets: a tree's record number says which set its
+ * slot is in, the set's head which slot. */
+#ifndef WD_SHARED_CROWN_SKY_H
+#define WD_SHARED_CROWN_SKY_H
+
+#include "shared/vec.h"
+
+#define WD_CROWN_SKY_SETS_LOG2 11u
+#define WD_CROWN_SKY_SETS 2048u
+#define WD_CROWN_SKY_SLOTS 4u /* of a set; its head is a texel of their records + 1, 0: free. Slots come after all heads */
+#define WD_CROWN_SKY_ACROSS 4u  /* places east and north over the crown, from one side to the other, */
+#define WD_CROWN_SKY_UP 6u      /* and from the ground to the top */
+#define WD_CROWN_SKY_PLACES 96u
+#define WD_CROWN_SKY_TEXELS 80u /* of a slot, each of a place and the one above it: of either two words, square roots of
+                                   shares of upright faces' light from east, north, west and south, 8 bits each, from
+                                   above 30 degrees and from below */
+#define WD_CROWN_SKY_LOW_M 0.5f /* of the lowest places over the ground */
+
+/* Trees of fewer pixels have none; of more than the second all that a pixel shows is known so. */
+#define WD_CROWN_SKY_LEAST_PX 80.0f
+#define WD_CROWN_SKY_WHOLE_PX 120.0f
+/* The same of the distance. */
+#define WD_CROWN_SKY_WHOLE_M 120.0f
+#define WD_CROWN_SKY_FAR_M 160.0f
+
+#define WD_CROWN_SKY_REACH_M 20.0f /* neighbours' stems stand no farther off; beyond, the canopy's field tells */
+#define WD_CROWN_SKY_CELL_M 4.0f   /* of the grid in which they are found */
+
+WD_FUNC uint32_t wd_crown_sky_set(uint32_t record)
+{
+    return (record * 2654435761u) >> (32u - WD_CROWN_SKY_SETS_LOG2);
+}
+
+/* How far a tree's table tells what it has, `away_m` from the eye. `px`: pixels a radian. */
+WD_FUNC float wd_crown_sky_share(float height_m, float away_m, float px)
+{
+    float tall_px = height_m * px / WD_MAX(away_m, 0.1f);
+    float large = (tall_px - WD_CROWN_SKY_LEAST_PX) / (WD_CROWN_SKY_WHOLE_PX - WD_CROWN_SKY_LEAST_PX);
+    float near = (WD_CROWN_SKY_FAR_M - away_m) / (WD_CROWN_SKY_FAR_M - WD_CROWN_SKY_WHOLE_M);
+    return WD_CLAMP(WD_MIN(large, near), 0.0f, 1.0f);
+}
+
+/* A crown that hides the sky, or whose sky is asked for. */
+struct wd_sky_crown {
+    int32_t foot_mm[3];
+    float radius_m, half_m; /* half its width and half its height */
+    float middle_m;         /* height of its middle over the foot */
+    float per_m;            /* extinction */
+};
+
+struct wd_crown_sky_job {
+    uint32_t crown, slot;
+    float reach_m; /* of its neighbours; less where many stand closer */
+};
+
+struct wd_crown_sky_push {
+    uint32_t job_count;
+    int32_t first_column, first_row; /* of the grid: cells count from the world's corner */
+    uint32_t columns, rows;
+    WD_VEC2(canopy_from_m); /* as in struct wd_light_push */
+    WD_VEC2(canopy_scale);
+};
+
+#endif
