@@ -364,13 +364,8 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, alone.share * is_tree(crown));
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown, model).y, alone.share) : 1.0;
     alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
-    wd_past_neighbours past = past_neighbours(pixel.surface - 1u, crown, place.rel, -pixel.direction);
-    float herbs = through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z));
-    alone.by_crown = past.share * has_table(crown);
-    alone.high = mix(alone.high, past.high * herbs, alone.by_crown);
-    alone.low = mix(alone.low, past.low * herbs, alone.by_crown);
-    alone.sides = mix(alone.sides, 0.75 * alone.high + 0.25 * alone.low, alone.by_crown);
-    alone.known = max(alone.known, alone.by_crown);
+    know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, -pixel.direction), has_table(crown),
+                    through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z)));
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
     alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown) * (1.0 - alone.beneath));
 }
@@ -781,10 +776,9 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     float over_hills = mix(OVER_HILLS, 1.0, ground_share), leaf_way = place.own * past_trees;
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float wide_way = pow(dot(frame.sunward, shelter.through), way);
+    float own_way = pow(min(wd_skylit_above(pixel.openness), 1.0), way);
+    wide_way = mix(wide_way, sky_about_sun(alone) * own_way, alone.by_crown);
     wide_way += (1.0 - wide_way) * low_about_sun(frame.sun_direction.z) * dot(frame.sunward, alone.edge);
-    vec4 toward_sun = mix(alone.low, alone.high, smoothstep(0.3, 0.6, frame.sun_direction.z));
-    float by_crown = min(dot(frame.sunward, toward_sun) * wd_skylit_above(pixel.openness), 1.0);
-    wide_way = mix(wide_way, by_crown, alone.by_crown);
     float close = pixel.surface == 0u ? 0.0 : mix(NEAR_SUN, NEAR_SUN_BLADES, place.sward);
     float about_sun = mix(wide_way, leaf_way, close) * over_hills;
     vec3 from_sun = frame.sun_irradiance * sun_share + frame.circumsolar * about_sun;

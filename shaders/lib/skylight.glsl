@@ -210,10 +210,10 @@ vec4 edge_of(wd_pixel pixel, wd_shelter shelter)
     return past_edge(low * low, shelter.through);
 }
 
-/* Mean of the edge's shares. `light`: of the quarters that a face looks to. */
-float from_edge(vec4 edge, vec4 light)
+/* Mean of the quarters' shares by how much light each has. */
+float by_light(vec4 shares, vec4 light)
 {
-    return dot(edge, light) / max(dot(light, vec4(1.0)), 1e-12);
+    return dot(shares, light) / max(dot(light, vec4(1.0)), 1e-12);
 }
 
 /* Of what level ground has of an even sky so much comes from below 30 degrees; of any sky what both this and an upright
@@ -239,7 +239,8 @@ struct wd_alone {
     vec4 beside;  /* shares of the sky's quarters that the ground beside its crown has, */
     vec4 sides;   /* and the place past what stands there, */
     vec4 high, low; /* and an upright face there that looks that way, of its light from the high sky and the low */
-    float by_crown; /* how far these two are of the tree's own table (lib/crown_sky.glsl) */
+    float by_crown; /* how far these two are of the tree's own table (lib/crown_sky.glsl); */
+    vec4 own_high, own_low; /* and how open its own leaves leave these ways, over some constant */
     vec4 side;    /* shares of what its own crown leaves that come from each quarter, over an even crown's */
     vec4 lets;    /* of light from above to the side that is seen and to the other, then from below */
     vec3 again;   /* times as much as without what its leaves scatter of that */
@@ -249,7 +250,7 @@ struct wd_alone {
     vec4 edge;  /* shares of the quarters' low light that come in below crowns, from where the stand ends */
 };
 
-const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0.0, vec4(1.0), vec4(0.0),
+const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0.0, vec4(1.0), vec4(1.0), vec4(1.0), vec4(0.0),
                                    vec3(1.0), vec3(0.0), 0.0, 1.0, vec4(0.0));
 
 /* Of an even sky's light on an upright face so much comes from below 30 degrees, and of what level ground has a quarter:
@@ -264,20 +265,29 @@ vec3 low_share(vec3 upright, vec3 level)
  * much of it the face has; `flat_on`: how level it is; `sky`: its irradiance in the open. */
 vec3 sky_faced(wd_alone alone, vec4 faced, float flat_on, vec3 sky)
 {
-    float per_light = 1.0 / max(dot(faced, vec4(1.0)), 1e-12);
-    float high = dot(alone.high, faced) * per_light, low = dot(alone.low, faced) * per_light;
     vec4 part = faced / max(quarters_bright(), vec4(1e-12));
-    vec3 upright = mix(vec3(high), vec3(low), low_share(sky, sky_level(part)));
-    return mix(upright, vec3(dot(alone.sides, faced) * per_light), flat_on);
+    vec3 low_part = low_share(sky, sky_level(part));
+    vec4 ways_high = faced * alone.own_high, ways_low = faced * alone.own_low;
+    vec3 upright = mix(vec3(dot(alone.high, ways_high)), vec3(dot(alone.low, ways_low)), low_part)
+                   / max(mix(vec3(dot(ways_high, vec4(1.0))), vec3(dot(ways_low, vec4(1.0))), low_part), 1e-12);
+    vec4 ways = 0.75 * ways_high + 0.25 * ways_low;
+    return mix(upright, vec3(by_light(alone.sides, ways)), flat_on);
 }
 
-/* Share of the sky in a direction that a tree's neighbours leave. */
+/* Share of the sky about the sun that a tree's neighbours leave. */
+float sky_about_sun(wd_alone alone)
+{
+    float up = smoothstep(0.3, 0.6, frame.sun_direction.z);
+    return by_light(mix(alone.low, alone.high, up), frame.sunward * mix(alone.own_low, alone.own_high, up));
+}
+
+/* The same of the sky in a direction, past its own leaves. */
 float sky_toward(wd_alone alone, vec3 direction)
 {
     float up = max(direction.z, 0.0);
     vec4 quarters = mix(max(vec4(direction.xy, -direction.xy), vec4(0.0)), vec4(1.0), 0.05 + 0.95 * up * up);
     vec4 left = mix(alone.low, alone.high, smoothstep(0.2, 0.7, up));
-    return dot(quarters, left) / dot(quarters, vec4(1.0));
+    return by_light(left, quarters);
 }
 
 /* Of the ways past a stand to what a leaf of it mirrors, the leaves that they meet over those on the mean way of the
@@ -350,12 +360,12 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 sky_front = mix(sky, beside_front * alone.lets.x, alone.known);
     vec3 sky_back = mix(sky, beside_back * alone.lets.y, alone.known);
     /* The low sky past the stand's edge is an open sky's, however steeply light comes down within. */
-    float edge = from_edge(alone.edge, bright * faced) * sqrt(max(1.0 - n.z * n.z, 0.0));
+    float edge = by_light(alone.edge, bright * faced) * sqrt(max(1.0 - n.z * n.z, 0.0));
     vec3 open_front = max(SKY_EVEN(frame.sky_form, n) + SKY_ODD(frame.sky_form, n), vec3(0.0));
     vec3 low_within = LOW_OF_LEVEL * open_sky * mix(vec3(1.0), frame.sky_under_tint, deep); /* which `reach` has */
     vec3 low_level = low_of_level(frame.sky_form[0], open_sky) - low_within;
     vec3 low_in = edge * low_share(open_front, 0.5 * open_sky) * open_front
-                  + from_edge(alone.edge, bright) * max(n.z, 0.0) * max(low_level, vec3(0.0));
+                  + by_light(alone.edge, bright) * max(n.z, 0.0) * max(low_level, vec3(0.0));
     float rise = max(frame.sun_direction.z, 0.0);
     float longer = 0.67 / max(rise, 0.05);
     float beam = exp2(longer * log2(dot(frame.sunward, shelter.through)));

@@ -31,7 +31,7 @@ struct ring_ways {
 
 ring_ways ways_of(vec4 ring)
 {
-    vec4 turns = vec4(0.39269908, 1.17809725, 1.96349541, 2.74889357) + ring.w;
+    vec4 turns = WD_CROWN_SKY_BEARING(vec4(0.0, 1.0, 2.0, 3.0)) + ring.w;
     float level = sqrt(1.0 - ring.x * ring.x);
     return ring_ways(level * cos(turns), level * sin(turns), ring.x);
 }
@@ -100,6 +100,13 @@ vec4 quarters_of(vec4 one, vec4 other)
     return 0.5 * vec4(one.x + other.w, one.y + one.z, one.w + other.x, other.y + other.z);
 }
 
+/* Whether the ground rises over a ring, softly. */
+vec4 past_ground(vec4 slopes, ring_ways ways)
+{
+    float slope = ways.up * inversesqrt(1.0 - ways.up * ways.up);
+    return 1.0 - smoothstep(slope - 0.08, slope + 0.08, slopes);
+}
+
 void main()
 {
     uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
@@ -122,7 +129,8 @@ void main()
         ring_ways ways = ways_of(RING[ring]);
         vec4 depth = vec4(0.0), across = vec4(0.0);
         add_cells(depth, across, job, place_m, ways, clamp(low, ivec2(0), most), clamp(high, ivec2(0), most));
-        vec4 one = exp(-depth), other = exp(-across);
+        vec4 one = exp(-depth) * past_ground(job.ground, ways);
+        vec4 other = exp(-across) * past_ground(job.ground_across, ways);
         if (RING[ring].z > 0.0) {
             one *= past_canopy_along(foot_m + place_m.xy, ways, 1.0, place_m.z, job.reach_m);
             other *= past_canopy_along(foot_m + place_m.xy, ways, -1.0, place_m.z, job.reach_m);

@@ -52,7 +52,13 @@ struct wd_sky_crown {
 struct wd_crown_sky_job {
     uint32_t crown, slot;
     float reach_m; /* of its neighbours; less where many stand closer */
+    /* Slopes up to the highest ground along the eight bearings of WD_CROWN_SKY_BEARING. */
+    WD_VEC4(ground);
+    WD_VEC4(ground_across);
 };
+
+/* In radians from east to north; four, then the four across from these. */
+#define WD_CROWN_SKY_BEARING(i) (0.39269908f + 0.78539816f * (i))
 
 struct wd_crown_sky_push {
     uint32_t job_count;

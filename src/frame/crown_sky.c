@@ -265,6 +265,27 @@ static void lay_out(struct grid *grid, const struct work *work)
     push->rows = (uint32_t)((int32_t)floor(work->high_m[1] / cell_m) - push->first_row + 1);
 }
 
+/* Slope up to the highest ground along a bearing. */
+static float slope_of(const struct wd_terrain *terrain, const struct wd_sky_crown *own, float bearing)
+{
+    static const double FIRST_M = 15, FARTHEST_M = 4000, NEXT = 1.25;
+    double east = cos((double)bearing), north = sin((double)bearing), most = -1;
+    double middle_m = own->foot_mm[2] * 0.001 + (double)own->middle_m;
+    for (double way_m = FIRST_M; way_m < FARTHEST_M; way_m *= NEXT) {
+        double x_m = own->foot_mm[0] * 0.001 + way_m * east, y_m = own->foot_mm[1] * 0.001 + way_m * north;
+        if (!wd_terrain_contains(terrain, x_m, y_m))
+            break;
+        most = fmax(most, ((double)wd_terrain_height(terrain, x_m, y_m) - middle_m) / way_m);
+    }
+    return (float)most;
+}
+
+static void look_round(struct wd_crown_sky_job *job, const struct wd_terrain *terrain, const struct wd_sky_crown *own)
+{
+    for (int i = 0; i < 8; i++)
+        (i < 4 ? job->ground : job->ground_across)[i & 3] = slope_of(terrain, own, WD_CROWN_SKY_BEARING((float)i));
+}
+
 /* Neighbours that a job goes through, about: in dense stands little light comes from beyond these. */
 enum { MOST_NEIGHBOURS = 64 };
 
@@ -317,7 +338,7 @@ static void fill(const struct grid *grid, const struct work *work, struct wd_sky
                 continue;
             crowns[at] = crown_of(work, tree->record);
             if (job < work->missing_count && work->missing[job].record == tree->record) {
-                jobs[job] = (struct wd_crown_sky_job){at, work->missing[job].slot, 0};
+                jobs[job] = (struct wd_crown_sky_job){.crown = at, .slot = work->missing[job].slot};
                 job++;
             }
         }
@@ -327,8 +348,11 @@ static void fill(const struct grid *grid, const struct work *work, struct wd_sky
             memcpy(first_of, next, (cells + 1) * sizeof *first_of);
         }
     }
-    for (job = 0; job < work->missing_count; job++)
-        jobs[job].reach_m = reach_of(grid, crowns, first_of, &crowns[jobs[job].crown]);
+    for (job = 0; job < work->missing_count; job++) {
+        const struct wd_sky_crown *own = &crowns[jobs[job].crown];
+        jobs[job].reach_m = reach_of(grid, crowns, first_of, own);
+        look_round(&jobs[job], &work->forest->world->terrain, own);
+    }
     free(next);
 }
 
