@@ -71,7 +71,7 @@ wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec3 eye
 
 void know_neighbours(inout wd_alone alone, wd_past_neighbours past, float has_table, float herbs)
 {
-    alone.by_crown = past.share * has_table;
+    alone.by_crown = past.share * has_table * (1.0 - alone.share);
     alone.high = mix(alone.high, past.high * herbs, alone.by_crown);
     alone.low = mix(alone.low, past.low * herbs, alone.by_crown);
     alone.own_high = mix(vec4(1.0), past.own_high, alone.by_crown);

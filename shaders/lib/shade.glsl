@@ -324,6 +324,10 @@ bool is_disc(wd_pixel pixel)
     return pixel.lit > 0.0 && pixel.lit < 1.0;
 }
 
+/* Of its neighbours' leaves over a place, this power of their share hides the sky there. By path-traced stands of
+ * five species, 5 and 8 m apart, under an even sky. */
+const float NEIGHBOURS_OVER = 0.75;
+
 /* Leaves of dense crowns hide more of the sky overhead than of that at the horizon, which a clear one is bright at, those
  * of open ones less (low_sky of each model): by how much brighter an upright face's is than an even sky's. So much more of
  * clouds of leaves, whose mean normal alone is known; by path-traced oaks, spruces and birches. */

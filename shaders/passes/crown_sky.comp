@@ -1,7 +1,7 @@
 #version 460
 /* What of the sky reaches places about a tree's crown past its neighbours: crowns are ellipsoids of leaves, in which
  * light falls off with the way that it has come (Guerrero 2006, section 5). A thread a place. Beyond
- * the job's reach the canopy's field says what of the low sky is left. The same whatever else is in the grid. */
+ * the job's reach the canopy's field says what is left. The same whatever else is in the grid. */
 #include "shared/crown_sky.h"
 #include "shared/light.h"
 
@@ -72,25 +72,32 @@ void add_cells(inout vec4 depth, inout vec4 across, wd_crown_sky_job job, vec3 p
     }
 }
 
-/* Shares of a low ring's light at the place that come past the canopy beyond the neighbours. */
-float past_canopy(vec2 place_m, uint quarter, float height_m)
+/* Share of light that comes to the place along a level direction, rising, past the canopy beyond the neighbours: by what
+ * of the sky its floors have, whose light came, on average, through the whole layer with a sine of MEAN_RISE. */
+const float MEAN_RISE = 0.67;
+
+float past_canopy(wd_crown_sky_job job, uint bearing, vec3 from_m, vec2 toward, float rise)
 {
-    vec2 at = (place_m - push.canopy_from_m) * push.canopy_scale;
-    vec4 layer = textureLod(canopy_light, vec3(at, 1.0), 0.0), low = textureLod(canopy_light, vec3(at, 3.0), 0.0);
-    vec2 layer_m = WD_CANOPY_MOST_M * layer.xy * layer.xy;
-    float over = pow(canopy_above(layer_m, height_m), NEIGHBOURS_OVER);
-    return exp2(over * log2(max(low[quarter] * low[quarter], 1e-3)));
+    float slope = rise * inversesqrt(1.0 - rise * rise), depth = 0.0, way_m = job.reach_m;
+    for (uint i = 0u; i < WD_CROWN_SKY_STEPS; i++) {
+        float next_m = WD_CROWN_SKY_NEXT * way_m, over_m = from_m.z - job.rise_m[bearing * WD_CROWN_SKY_STEPS + i];
+        vec2 at = (from_m.xy + 0.5 * (way_m + next_m) * toward - push.canopy_from_m) * push.canopy_scale;
+        vec4 sky = textureLod(canopy_light, vec3(at, 0.0), 0.0), layer = textureLod(canopy_light, vec3(at, 1.0), 0.0);
+        vec2 layer_m = WD_CANOPY_MOST_M * layer.xy * layer.xy;
+        float met = canopy_above(layer_m, over_m + way_m * slope) - canopy_above(layer_m, over_m + next_m * slope);
+        depth -= met * log(max(dot(sky, 0.25 * sky), 1e-3));
+        way_m = next_m;
+    }
+    return exp(-depth * (MEAN_RISE / rise));
 }
 
-vec4 past_canopy_along(vec2 place_m, ring_ways ways, float sign, float height_m, float reach_m)
+/* `first`: bearing. */
+vec4 past_canopy_along(wd_crown_sky_job job, uint first, vec3 from_m, ring_ways ways)
 {
-    float level = sqrt(1.0 - ways.up * ways.up), far_m = reach_m / level;
+    float per_level = (first == 0u ? 1.0 : -1.0) * inversesqrt(1.0 - ways.up * ways.up);
     vec4 through;
-    for (uint i = 0u; i < 4u; i++) {
-        uint quarter = (i + 1u) / 2u + (sign < 0.0 ? 2u : 0u);
-        vec2 beyond_m = place_m + sign * far_m * vec2(ways.east[i], ways.north[i]);
-        through[i] = past_canopy(beyond_m, quarter & 3u, height_m + far_m * ways.up);
-    }
+    for (uint i = 0u; i < 4u; i++)
+        through[i] = past_canopy(job, first + i, from_m, per_level * vec2(ways.east[i], ways.north[i]), ways.up);
     return through;
 }
 
@@ -131,10 +138,9 @@ void main()
         add_cells(depth, across, job, place_m, ways, clamp(low, ivec2(0), most), clamp(high, ivec2(0), most));
         vec4 one = exp(-depth) * past_ground(job.ground, ways);
         vec4 other = exp(-across) * past_ground(job.ground_across, ways);
-        if (RING[ring].z > 0.0) {
-            one *= past_canopy_along(foot_m + place_m.xy, ways, 1.0, place_m.z, job.reach_m);
-            other *= past_canopy_along(foot_m + place_m.xy, ways, -1.0, place_m.z, job.reach_m);
-        }
+        vec3 from_m = vec3(foot_m, 0.0) + place_m;
+        one *= past_canopy_along(job, 0u, from_m, ways);
+        other *= past_canopy_along(job, 4u, from_m, ways);
         high_sky += RING[ring].y * quarters_of(one, other);
         low_sky += RING[ring].z * quarters_of(one, other);
     }

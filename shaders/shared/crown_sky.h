@@ -55,7 +55,12 @@ struct wd_crown_sky_job {
     /* Slopes up to the highest ground along the eight bearings of WD_CROWN_SKY_BEARING. */
     WD_VEC4(ground);
     WD_VEC4(ground_across);
+    float rise_m[40]; /* of the ground over the foot, WD_CROWN_SKY_STEPS of each bearing, in the middle of each */
 };
+
+/* The way on from there goes in steps of half as long again as the one before. */
+#define WD_CROWN_SKY_STEPS 5u
+#define WD_CROWN_SKY_NEXT 1.5f
 
 /* In radians from east to north; four, then the four across from these. */
 #define WD_CROWN_SKY_BEARING(i) (0.39269908f + 0.78539816f * (i))

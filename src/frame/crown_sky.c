@@ -265,25 +265,33 @@ static void lay_out(struct grid *grid, const struct work *work)
     push->rows = (uint32_t)((int32_t)floor(work->high_m[1] / cell_m) - push->first_row + 1);
 }
 
-/* Slope up to the highest ground along a bearing. */
+/* Height of the ground over the foot so far off along a bearing; where there is none as low as that. */
+static double rise_m(const struct wd_terrain *terrain, const struct wd_sky_crown *own, float bearing, double way_m)
+{
+    double x_m = own->foot_mm[0] * 0.001 + way_m * cos((double)bearing);
+    double y_m = own->foot_mm[1] * 0.001 + way_m * sin((double)bearing);
+    bool out = !wd_terrain_contains(terrain, x_m, y_m);
+    return out ? 0 : (double)wd_terrain_height(terrain, x_m, y_m) - own->foot_mm[2] * 0.001;
+}
+
 static float slope_of(const struct wd_terrain *terrain, const struct wd_sky_crown *own, float bearing)
 {
     static const double FIRST_M = 15, FARTHEST_M = 4000, NEXT = 1.25;
-    double east = cos((double)bearing), north = sin((double)bearing), most = -1;
-    double middle_m = own->foot_mm[2] * 0.001 + (double)own->middle_m;
-    for (double way_m = FIRST_M; way_m < FARTHEST_M; way_m *= NEXT) {
-        double x_m = own->foot_mm[0] * 0.001 + way_m * east, y_m = own->foot_mm[1] * 0.001 + way_m * north;
-        if (!wd_terrain_contains(terrain, x_m, y_m))
-            break;
-        most = fmax(most, ((double)wd_terrain_height(terrain, x_m, y_m) - middle_m) / way_m);
-    }
+    double most = -1;
+    for (double way_m = FIRST_M; way_m < FARTHEST_M; way_m *= NEXT)
+        most = fmax(most, (rise_m(terrain, own, bearing, way_m) - (double)own->middle_m) / way_m);
     return (float)most;
 }
 
 static void look_round(struct wd_crown_sky_job *job, const struct wd_terrain *terrain, const struct wd_sky_crown *own)
 {
-    for (int i = 0; i < 8; i++)
-        (i < 4 ? job->ground : job->ground_across)[i & 3] = slope_of(terrain, own, WD_CROWN_SKY_BEARING((float)i));
+    for (int i = 0; i < 8; i++) {
+        float bearing = WD_CROWN_SKY_BEARING((float)i);
+        double way_m = 0.5 * (double)(job->reach_m * (1 + WD_CROWN_SKY_NEXT));
+        (i < 4 ? job->ground : job->ground_across)[i & 3] = slope_of(terrain, own, bearing);
+        for (size_t k = 0; k < WD_CROWN_SKY_STEPS; k++, way_m *= (double)WD_CROWN_SKY_NEXT)
+            job->rise_m[(size_t)i * WD_CROWN_SKY_STEPS + k] = (float)rise_m(terrain, own, bearing, way_m);
+    }
 }
 
 /* Neighbours that a job goes through, about: in dense stands little light comes from beyond these. */
