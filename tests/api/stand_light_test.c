@@ -113,6 +113,7 @@ static void check_light(const char *part, const struct sum *drawn, const struct 
 
 enum { SHAPES = WD_LAYER_DEPTH | WD_LAYER_TREE_ID, LIGHT = SHAPES | WD_LAYER_COLOR };
 static const struct stand dark = {"scenes/bench75k.json", {300, 300}, 400, {"variants=2", "fog.visibility_m=3000"}};
+static const struct stand cloudy = {"scenes/bench75k.json", {300, 300}, 400, {"variants=2", "sky.cover=1"}};
 static const struct stand shore = {"scenes/gallery/lake.json", {0, 0}, 0, {"variants=1", "fog.visibility_m=2000"}};
 static const struct stand light = {"bench/light.json", {460, 250}, 180, {"variants=2"}};
 static const struct stand plot = {"scenes/boreas.json", {2976, 2974}, 46, {"variants=1"}};
@@ -199,6 +200,83 @@ static void crowns_from_within_are_as_bright_as_traced(void **state)
     check_light("crowns of a dark stand", &drawn, &traced, 1.13, 1.24);
 }
 
+/* Light of one tree in a view. */
+struct of_tree {
+    uint32_t id;
+    struct sum drawn, traced;
+};
+enum { MOST_TREES = 64 };
+
+static size_t add_trees(struct of_tree trees[MOST_TREES], const struct wd_picture *drawn, const struct wd_picture *traced)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < (size_t)drawn->width * drawn->height; i++) {
+        size_t at = 0;
+        while (at < count && trees[at].id != drawn->tree_id[i])
+            at++;
+        if (drawn->tree_id[i] == 0 || drawn->tree_id[i] != traced->tree_id[i] || at == MOST_TREES)
+            continue;
+        if (at == count)
+            trees[count++] = (struct of_tree){.id = drawn->tree_id[i]};
+        add(&trees[at].drawn, drawn, i);
+        add(&trees[at].traced, traced, i);
+    }
+    return count;
+}
+
+/* Covariances of the logarithms of trees' light. */
+struct alike {
+    double drawn, traced, both, drawn_squared, traced_squared, count;
+};
+
+/* From 18 m off and 30 degrees above: branches of some trees, of those that show much of them. */
+static void look_down_at(int place, struct alike *alike)
+{
+    static const double AWAY_M = 15.8, ABOVE_M = 16.6, LEAST_PIXELS = 300;
+    struct of_tree trees[MOST_TREES];
+    struct wd_camera camera = camera_at(place);
+    struct wd_picture picture = {0}, truth = {0};
+    camera.position_m[1] -= AWAY_M;
+    camera.position_m[2] += ABOVE_M - 1.7;
+    camera.pitch_rad = -0.5236;
+    camera.fov_rad = 0.1535;
+    look(&camera, LIGHT, &picture, &truth);
+    size_t count = add_trees(trees, &picture, &truth);
+    for (size_t i = 0; i < count; i++) {
+        if (trees[i].drawn.pixels < LEAST_PIXELS)
+            continue;
+        double drawn = log(trees[i].drawn.light[1] / trees[i].drawn.pixels);
+        double traced = log(trees[i].traced.light[1] / trees[i].traced.pixels);
+        alike->drawn += drawn;
+        alike->traced += traced;
+        alike->both += drawn * traced;
+        alike->drawn_squared += drawn * drawn;
+        alike->traced_squared += traced * traced;
+        alike->count++;
+    }
+    wd_picture_finish(&picture);
+    wd_picture_finish(&truth);
+}
+
+/* 0.94 and 0.23; 0.84 and 0.38 where the canopy's field alone tells what neighbours leave of the sky. */
+static void a_tree_is_as_dark_as_its_neighbours_make_it(void **state)
+{
+    enum { PLACES = 16 };
+    struct alike a = {0};
+    (void)state;
+    paint(&cloudy);
+    for (int place = 0; place < PLACES; place++)
+        look_down_at(place, &a);
+    double both = a.both / a.count - a.drawn / a.count * (a.traced / a.count);
+    double drawn = a.drawn_squared / a.count - pow(a.drawn / a.count, 2);
+    double traced = a.traced_squared / a.count - pow(a.traced / a.count, 2);
+    double alike = both / sqrt(drawn * traced);
+    double apart = sqrt(fmax(drawn + traced - 2 * both, 0));
+    print_message("light of %.0f trees under clouds: correlated by %.2f with the traced, %.2f apart\n", a.count, alike,
+                  apart);
+    assert_true(alike > 0.89 && apart < 0.31);
+}
+
 /* 0.999; 0.978 if discs are as large from below as from above. */
 static void crowns_from_within_hide_as_much_of_the_sky_as_traced(void **state)
 {
@@ -261,6 +339,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_floor_of_a_plot_is_as_bright_as_traced),
         cmocka_unit_test(a_dark_floor_is_as_bright_as_traced),
         cmocka_unit_test(crowns_from_within_are_as_bright_as_traced),
+        cmocka_unit_test(a_tree_is_as_dark_as_its_neighbours_make_it),
         cmocka_unit_test(crowns_from_within_hide_as_much_of_the_sky_as_traced),
         cmocka_unit_test(haze_within_a_stand_is_as_dark_as_traced),
         cmocka_unit_test(haze_between_stands_is_as_bright_as_traced),
