@@ -5,7 +5,6 @@
 struct wd_past_neighbours {
     float share;    /* how far that is known */
     vec4 high, low; /* as in wd_alone */
-    vec4 own_high, own_low;
 };
 
 #ifdef CROWN_SKY
@@ -24,7 +23,7 @@ wd_past_neighbours past_neighbours_at(int first, vec3 at)
         high += share * mix(unpackUnorm4x8(texel.x), unpackUnorm4x8(texel.z), next.z);
         low += share * mix(unpackUnorm4x8(texel.y), unpackUnorm4x8(texel.w), next.z);
     }
-    return wd_past_neighbours(1.0, high * high, low * low, vec4(1.0), vec4(1.0));
+    return wd_past_neighbours(1.0, high * high, low * low);
 }
 
 /* Of the crown's own leaves: what lies along the ways to the quarters of the sky, high and low. */
@@ -45,10 +44,10 @@ vec4 own_ways(wd_crown crown, vec3 from_m, float level, float up)
 const float OWN_WAYS = 2.0;
 
 /* The crown's own leaves leave some ways more open than others, and the eye sees leaves that look its way: what the
- * neighbours leave of these counts more. `tree`: record. */
+ * neighbours leave of these counts more, and for faces that look out there more yet. `tree`: record. */
 wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec3 eye)
 {
-    wd_past_neighbours past = wd_past_neighbours(0.0, vec4(0.0), vec4(0.0), vec4(1.0), vec4(1.0));
+    wd_past_neighbours past = wd_past_neighbours(0.0, vec4(0.0), vec4(0.0));
 #ifdef CROWN_SKY
     int set = int(wd_crown_sky_set(tree));
     bvec4 is = equal(texelFetch(CROWN_SKY, set), uvec4(tree + 1u));
@@ -63,21 +62,21 @@ wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec3 eye
     past.share = wd_crown_sky_share(top - crown.foot_z, length(rel), push.pixels_a_radian);
     float per_m = -OWN_WAYS * wd_crown_per_m(crown.radii_m);
     vec4 side = eye_side(eye);
-    past.own_high = side * exp(per_m * own_ways(crown, rel - crown.center_rel, 0.62, 0.784));
-    past.own_low = side * exp(per_m * own_ways(crown, rel - crown.center_rel, 0.966, 0.26));
+    vec4 high = side * exp(per_m * own_ways(crown, rel - crown.center_rel, 0.62, 0.784));
+    vec4 low = side * exp(per_m * own_ways(crown, rel - crown.center_rel, 0.966, 0.26));
+    float mean = 0.25 * dot(0.75 * high + 0.25 * low, vec4(1.0));
+    past.high *= high / mean;
+    past.low *= low / mean;
 #endif
     return past;
 }
 
+/* A tree that stands free is lit as its model's table and the canopy's field say. */
 void know_neighbours(inout wd_alone alone, wd_past_neighbours past, float has_table, float herbs)
 {
     alone.by_crown = past.share * has_table * (1.0 - alone.share);
     alone.high = mix(alone.high, past.high * herbs, alone.by_crown);
     alone.low = mix(alone.low, past.low * herbs, alone.by_crown);
-    alone.own_high = mix(vec4(1.0), past.own_high, alone.by_crown);
-    alone.own_low = mix(vec4(1.0), past.own_low, alone.by_crown);
-    vec4 high = 0.75 * alone.own_high, low = 0.25 * alone.own_low;
-    vec4 sides = (high * alone.high + low * alone.low) / max(high + low, vec4(1e-12));
-    alone.sides = mix(alone.sides, sides, alone.by_crown);
+    alone.sides = mix(alone.sides, 0.75 * alone.high + 0.25 * alone.low, alone.by_crown);
     alone.known = max(alone.known, alone.by_crown);
 }

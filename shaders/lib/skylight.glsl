@@ -239,8 +239,7 @@ struct wd_alone {
     vec4 beside;  /* shares of the sky's quarters that the ground beside its crown has, */
     vec4 sides;   /* and the place past what stands there, */
     vec4 high, low; /* and an upright face there that looks that way, of its light from the high sky and the low */
-    float by_crown; /* how far these two are of the tree's own table (lib/crown_sky.glsl); */
-    vec4 own_high, own_low; /* and how open its own leaves leave these ways, over some constant */
+    float by_crown; /* how far these two are of the tree's own table (lib/crown_sky.glsl) */
     vec4 side;    /* shares of what its own crown leaves that come from each quarter, over an even crown's */
     vec4 lets;    /* of light from above to the side that is seen and to the other, then from below */
     vec3 again;   /* times as much as without what its leaves scatter of that */
@@ -250,7 +249,7 @@ struct wd_alone {
     vec4 edge;  /* shares of the quarters' low light that come in below crowns, from where the stand ends */
 };
 
-const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0.0, vec4(1.0), vec4(1.0), vec4(1.0), vec4(0.0),
+const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0.0, vec4(1.0), vec4(0.0),
                                    vec3(1.0), vec3(0.0), 0.0, 1.0, vec4(0.0));
 
 /* Of an even sky's light on an upright face so much comes from below 30 degrees, and of what level ground has a quarter:
@@ -265,23 +264,21 @@ vec3 low_share(vec3 upright, vec3 level)
  * much of it the face has; `flat_on`: how level it is; `sky`: its irradiance in the open. */
 vec3 sky_faced(wd_alone alone, vec4 faced, float flat_on, vec3 sky)
 {
+    float per_light = 1.0 / max(dot(faced, vec4(1.0)), 1e-12);
+    float high = dot(alone.high, faced) * per_light, low = dot(alone.low, faced) * per_light;
     vec4 part = faced / max(quarters_bright(), vec4(1e-12));
-    vec3 low_part = low_share(sky, sky_level(part));
-    vec4 ways_high = faced * alone.own_high, ways_low = faced * alone.own_low;
-    vec3 upright = mix(vec3(dot(alone.high, ways_high)), vec3(dot(alone.low, ways_low)), low_part)
-                   / max(mix(vec3(dot(ways_high, vec4(1.0))), vec3(dot(ways_low, vec4(1.0))), low_part), 1e-12);
-    vec4 ways = 0.75 * ways_high + 0.25 * ways_low;
-    return mix(upright, vec3(by_light(alone.sides, ways)), flat_on);
+    vec3 upright = mix(vec3(high), vec3(low), low_share(sky, sky_level(part)));
+    return mix(upright, vec3(dot(alone.sides, faced) * per_light), flat_on);
 }
 
 /* Share of the sky about the sun that a tree's neighbours leave. */
 float sky_about_sun(wd_alone alone)
 {
     float up = smoothstep(0.3, 0.6, frame.sun_direction.z);
-    return by_light(mix(alone.low, alone.high, up), frame.sunward * mix(alone.own_low, alone.own_high, up));
+    return by_light(mix(alone.low, alone.high, up), frame.sunward);
 }
 
-/* The same of the sky in a direction, past its own leaves. */
+/* The same of the sky in a direction. */
 float sky_toward(wd_alone alone, vec3 direction)
 {
     float up = max(direction.z, 0.0);
