@@ -368,7 +368,8 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, alone.share * is_tree(crown));
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown, model).y, alone.share) : 1.0;
     alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
-    know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, -pixel.direction), has_table(crown),
+    vec3 eye = -pixel.direction;
+    know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, eye, pixel.openness), has_table(crown),
                     through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z)));
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
     alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown) * (1.0 - alone.beneath));
