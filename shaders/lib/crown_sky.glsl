@@ -44,8 +44,8 @@ vec4 own_ways(wd_crown crown, vec3 from_m, float level, float up)
 const float OWN_WAYS = 2.0;
 
 /* An eye that is among the leaves sees any of them, not those that lie open to it, as the tables of models have it: up to so
- * near the canopy's field tells more, by four places of scenes/bench75k.json at 1,024 px (24 % too bright by the table). */
-const vec2 CLOSE_BY_M = vec2(6.0, 10.0);
+ * near the canopy's field tells more, by four places of scenes/bench75k.json at 1,024 px (24 % too bright by the table, 1 so). */
+const vec2 CLOSE_BY_M = vec2(4.0, 7.0);
 
 /* The crown's own leaves leave some ways more open than others, and the eye sees leaves that look its way: what the
  * neighbours leave of these counts more, and for faces that look out there more yet. `tree`: record. */
