@@ -258,7 +258,7 @@ static void look_down_at(int place, struct alike *alike)
     wd_picture_finish(&truth);
 }
 
-/* 0.94 and 0.23; 0.84 and 0.38 where the canopy's field alone tells what neighbours leave of the sky. */
+/* 0.92 and 0.26; 0.84 and 0.38 where the canopy's field alone tells what neighbours leave of the sky. */
 static void a_tree_is_as_dark_as_its_neighbours_make_it(void **state)
 {
     enum { PLACES = 16 };
