@@ -26,16 +26,14 @@ wd_past_neighbours past_neighbours_at(int first, vec3 at)
     return wd_past_neighbours(1.0, high * high, low * low);
 }
 
-/* Of the crown's own leaves: what lies along the ways to the quarters of the sky, high and low. */
-vec4 own_ways(wd_crown crown, vec3 from_m, float level, float up)
+/* Metres of the crown's own leaves along the ways to the quarters of the sky, so far up. */
+vec4 own_ways_m(wd_crown crown, vec3 from_m, float up)
 {
-    vec3 q = wd_crown_units(from_m, crown.radii_m);
-    q *= q.z < -1.0 ? 1.0 : 1.0 / max(length(q), 1.0);
-    float across = level / crown.radii_m.x, rise = up / crown.radii_m.z;
-    float ss = across * across + rise * rise, out_by = dot(q, q) - 1.0;
-    vec4 along = q.z * rise + across * vec4(q.xy, -q.xy);
-    vec4 root = sqrt(max(along * along - ss * out_by, vec4(0.0)));
-    return (max(root - along, vec4(0.0)) - max(-root - along, vec4(0.0))) / ss;
+    float level = sqrt(1.0 - up * up);
+    return vec4(wd_crown_path_m(from_m, crown.radii_m, vec3(level, 0.0, up)),
+                wd_crown_path_m(from_m, crown.radii_m, vec3(0.0, level, up)),
+                wd_crown_path_m(from_m, crown.radii_m, vec3(-level, 0.0, up)),
+                wd_crown_path_m(from_m, crown.radii_m, vec3(0.0, -level, up)));
 }
 #endif
 
@@ -57,7 +55,7 @@ wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec3 eye
     bvec4 is = equal(texelFetch(CROWN_SKY, set), uvec4(tree + 1u));
     if (!any(is))
         return past;
-    int slot = 4 * set + (is.y ? 1 : is.z ? 2 : is.w ? 3 : 0);
+    int slot = int(WD_CROWN_SKY_SLOTS) * set + (is.y ? 1 : is.z ? 2 : is.w ? 3 : 0);
     float top = crown.center_rel.z + crown.radii_m.z, bottom = crown.foot_z + WD_CROWN_SKY_LOW_M;
     vec3 at = vec3(0.5 * (rel.xy - crown.center_rel.xy) / crown.radii_m.x + 0.5, (rel.z - bottom) / (top - bottom));
     const vec3 last = vec3(vec2(float(WD_CROWN_SKY_ACROSS - 1u)), float(WD_CROWN_SKY_UP - 1u));
@@ -68,8 +66,8 @@ wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec3 eye
                  * smoothstep(CLOSE_BY_M.x, CLOSE_BY_M.y, away_m);
     float per_m = -OWN_WAYS * wd_crown_per_m(crown.radii_m);
     vec4 side = eye_side(eye);
-    vec4 high = side * exp(per_m * own_ways(crown, rel - crown.center_rel, 0.62, 0.784));
-    vec4 low = side * exp(per_m * own_ways(crown, rel - crown.center_rel, 0.966, 0.26));
+    vec4 high = side * exp(per_m * own_ways_m(crown, rel - crown.center_rel, 0.784));
+    vec4 low = side * exp(per_m * own_ways_m(crown, rel - crown.center_rel, 0.26));
     float mean = 0.25 * dot(0.75 * high + 0.25 * low, vec4(1.0));
     float most = mean / wd_skylit_above(openness); /* no way is more open than open */
     past.high *= min(high, most) / mean;

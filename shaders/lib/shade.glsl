@@ -780,9 +780,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 skylit = past.y * (around.front * within_sky + sheen * place.waxed + around.back * transmitted);
     float over_hills = mix(OVER_HILLS, 1.0, ground_share), leaf_way = place.own * past_trees;
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
-    float wide_way = pow(dot(frame.sunward, shelter.through), way);
-    float own_way = pow(min(wd_skylit_above(pixel.openness), 1.0), way);
-    wide_way = mix(wide_way, sky_about_sun(alone) * own_way, alone.by_crown);
+    float by_crown = min(sky_about_sun(alone) * wd_skylit_above(pixel.openness), 1.0);
+    float wide_way = pow(mix(dot(frame.sunward, shelter.through), by_crown, alone.by_crown), way);
     wide_way += (1.0 - wide_way) * low_about_sun(frame.sun_direction.z) * dot(frame.sunward, alone.edge);
     float close = pixel.surface == 0u ? 0.0 : mix(NEAR_SUN, NEAR_SUN_BLADES, place.sward);
     float about_sun = mix(wide_way, leaf_way, close) * over_hills;

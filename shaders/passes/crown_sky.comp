@@ -4,6 +4,7 @@
  * the job's reach the canopy's field says what is left. The same whatever else is in the grid. */
 #include "shared/crown_sky.h"
 #include "shared/light.h"
+#include "shared/sky_rings.h"
 
 layout(local_size_x = 64) in;
 
@@ -16,12 +17,10 @@ layout(scalar, push_constant) uniform Push { wd_crown_sky_push push; };
 
 #include "lib/canopy_above.glsl"
 
-/* Rings of the sky, as of forest/canopy_light.c: sine of the elevation, share of an upright face's light from above 30
- * degrees and from below, and by how much the ring's eight bearings are turned, in radians. */
-const uint RINGS = 6u;
-const vec4 RING[RINGS] = vec4[](vec4(0.93541435, 0.148, 0.0, -0.12), vec4(0.79056942, 0.317, 0.0, 0.0),
-                                vec4(0.61237244, 0.535, 0.0, 0.12), vec4(0.42261826, 0.0, 0.30, -0.12),
-                                vec4(0.25881905, 0.0, 0.34, 0.0), vec4(0.08715574, 0.0, 0.36, 0.12));
+const uint RINGS = uint(WD_SKY_RINGS);
+const float SINES[RINGS] = float[](WD_SKY_RING_SINES);
+const float HIGH[RINGS] = float[](WD_SKY_RINGS_HIGH), LOW[RINGS] = float[](WD_SKY_RINGS_LOW);
+const float TURNS[3] = float[](-0.12, 0.0, 0.12); /* of rings one after the other, in radians: rays at several bearings */
 
 /* Four bearings of a ring, and the four across from these. */
 struct ring_ways {
@@ -29,11 +28,11 @@ struct ring_ways {
     float up;
 };
 
-ring_ways ways_of(vec4 ring)
+ring_ways ways_of(uint ring)
 {
-    vec4 turns = WD_CROWN_SKY_BEARING(vec4(0.0, 1.0, 2.0, 3.0)) + ring.w;
-    float level = sqrt(1.0 - ring.x * ring.x);
-    return ring_ways(level * cos(turns), level * sin(turns), ring.x);
+    vec4 turns = WD_CROWN_SKY_BEARING(vec4(0.0, 1.0, 2.0, 3.0)) + TURNS[ring % 3u];
+    float up = SINES[ring], level = sqrt(1.0 - up * up);
+    return ring_ways(level * cos(turns), level * sin(turns), up);
 }
 
 /* Optical depth of a crown along each way. `from_m`: from its middle to the place. */
@@ -52,10 +51,11 @@ void add_crown(inout vec4 depth, inout vec4 across, wd_sky_crown crown, vec3 fro
     across += per_way * (max(root_other - other, vec4(0.0)) - max(-root_other - other, vec4(0.0)));
 }
 
-void add_cells(inout vec4 depth, inout vec4 across, wd_crown_sky_job job, vec3 place_m, ring_ways ways, ivec2 low,
-               ivec2 high)
+void add_cells(inout vec4 depth, inout vec4 across, uint job, vec3 place_m, ring_ways ways, ivec2 low, ivec2 high)
 {
-    wd_sky_crown self = crowns[job.crown];
+    uint own = jobs[job].crown;
+    float reach_m = jobs[job].reach_m;
+    wd_sky_crown self = crowns[own];
     ivec3 foot_mm = ivec3(self.foot_mm[0], self.foot_mm[1], self.foot_mm[2]);
     for (int row = low.y; row <= high.y; row++) {
         uint first = first_of[uint(row) * push.columns + uint(low.x)];
@@ -63,9 +63,9 @@ void add_cells(inout vec4 depth, inout vec4 across, wd_crown_sky_job job, vec3 p
         for (uint i = first; i < end; i++) {
             wd_sky_crown crown = crowns[i];
             vec3 apart_m = vec3(ivec3(crown.foot_mm[0], crown.foot_mm[1], crown.foot_mm[2]) - foot_mm) * 0.001;
-            bool near = dot(apart_m.xy, apart_m.xy) < job.reach_m * job.reach_m;
+            bool near = dot(apart_m.xy, apart_m.xy) < reach_m * reach_m;
             apart_m.z += crown.middle_m;
-            if (i == job.crown || !near || place_m.z > apart_m.z + crown.half_m)
+            if (i == own || !near || place_m.z > apart_m.z + crown.half_m)
                 continue;
             add_crown(depth, across, crown, place_m - apart_m, ways);
         }
@@ -76,11 +76,12 @@ void add_cells(inout vec4 depth, inout vec4 across, wd_crown_sky_job job, vec3 p
  * of the sky its floors have, whose light came, on average, through the whole layer with a sine of MEAN_RISE. */
 const float MEAN_RISE = 0.67;
 
-float past_canopy(wd_crown_sky_job job, uint bearing, vec3 from_m, vec2 toward, float rise)
+float past_canopy(uint job, uint bearing, vec3 from_m, vec2 toward, float rise)
 {
-    float slope = rise * inversesqrt(1.0 - rise * rise), depth = 0.0, way_m = job.reach_m;
+    float slope = rise * inversesqrt(1.0 - rise * rise), depth = 0.0, way_m = jobs[job].reach_m;
     for (uint i = 0u; i < WD_CROWN_SKY_STEPS; i++) {
-        float next_m = WD_CROWN_SKY_NEXT * way_m, over_m = from_m.z - job.rise_m[bearing * WD_CROWN_SKY_STEPS + i];
+        float next_m = WD_CROWN_SKY_NEXT * way_m;
+        float over_m = from_m.z - jobs[job].rise_m[bearing * WD_CROWN_SKY_STEPS + i];
         vec2 at = (from_m.xy + 0.5 * (way_m + next_m) * toward - push.canopy_from_m) * push.canopy_scale;
         vec4 sky = textureLod(canopy_light, vec3(at, 0.0), 0.0), layer = textureLod(canopy_light, vec3(at, 1.0), 0.0);
         vec2 layer_m = WD_CANOPY_MOST_M * layer.xy * layer.xy;
@@ -92,7 +93,7 @@ float past_canopy(wd_crown_sky_job job, uint bearing, vec3 from_m, vec2 toward, 
 }
 
 /* `first`: bearing. */
-vec4 past_canopy_along(wd_crown_sky_job job, uint first, vec3 from_m, ring_ways ways)
+vec4 past_canopy_along(uint job, uint first, vec3 from_m, ring_ways ways)
 {
     float per_level = (first == 0u ? 1.0 : -1.0) * inversesqrt(1.0 - ways.up * ways.up);
     vec4 through;
@@ -119,9 +120,9 @@ void main()
     uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (index >= push.job_count * WD_CROWN_SKY_PLACES)
         return;
-    wd_crown_sky_job job = jobs[index / WD_CROWN_SKY_PLACES];
-    uint place = index % WD_CROWN_SKY_PLACES;
-    wd_sky_crown own = crowns[job.crown];
+    uint job = index / WD_CROWN_SKY_PLACES, place = index % WD_CROWN_SKY_PLACES;
+    wd_sky_crown own = crowns[jobs[job].crown];
+    float reach_m = jobs[job].reach_m;
     uvec3 at = uvec3(place, place / WD_CROWN_SKY_ACROSS, place / (WD_CROWN_SKY_ACROSS * WD_CROWN_SKY_ACROSS));
     at.xy %= WD_CROWN_SKY_ACROSS;
     float top_m = own.middle_m + own.half_m;
@@ -129,23 +130,24 @@ void main()
     vec3 place_m = vec3(aside_m, mix(WD_CROWN_SKY_LOW_M, top_m, float(at.z) * (1.0 / float(WD_CROWN_SKY_UP - 1u))));
     vec2 foot_m = vec2(own.foot_mm[0], own.foot_mm[1]) * 0.001;
     ivec2 first = ivec2(push.first_column, push.first_row), most = ivec2(push.columns, push.rows) - 1;
-    ivec2 low = ivec2(floor((foot_m - job.reach_m) / WD_CROWN_SKY_CELL_M)) - first;
-    ivec2 high = ivec2(floor((foot_m + job.reach_m) / WD_CROWN_SKY_CELL_M)) - first;
+    ivec2 low = ivec2(floor((foot_m - reach_m) / WD_CROWN_SKY_CELL_M)) - first;
+    ivec2 high = ivec2(floor((foot_m + reach_m) / WD_CROWN_SKY_CELL_M)) - first;
     vec4 high_sky = vec4(0.0), low_sky = vec4(0.0);
     for (uint ring = 0u; ring < RINGS; ring++) {
-        ring_ways ways = ways_of(RING[ring]);
+        ring_ways ways = ways_of(ring);
         vec4 depth = vec4(0.0), across = vec4(0.0);
         add_cells(depth, across, job, place_m, ways, clamp(low, ivec2(0), most), clamp(high, ivec2(0), most));
-        vec4 one = exp(-depth) * past_ground(job.ground, ways);
-        vec4 other = exp(-across) * past_ground(job.ground_across, ways);
+        vec4 one = exp(-depth) * past_ground(jobs[job].ground, ways);
+        vec4 other = exp(-across) * past_ground(jobs[job].ground_across, ways);
         vec3 from_m = vec3(foot_m, 0.0) + place_m;
         one *= past_canopy_along(job, 0u, from_m, ways);
         other *= past_canopy_along(job, 4u, from_m, ways);
-        high_sky += RING[ring].y * quarters_of(one, other);
-        low_sky += RING[ring].z * quarters_of(one, other);
+        high_sky += HIGH[ring] * quarters_of(one, other);
+        low_sky += LOW[ring] * quarters_of(one, other);
     }
     uvec2 told = uvec2(packUnorm4x8(sqrt(high_sky)), packUnorm4x8(sqrt(low_sky)));
-    uint texel = WD_CROWN_SKY_SETS + job.slot * WD_CROWN_SKY_TEXELS + place, layer = WD_CROWN_SKY_ACROSS * WD_CROWN_SKY_ACROSS;
+    const uint layer = WD_CROWN_SKY_ACROSS * WD_CROWN_SKY_ACROSS;
+    uint texel = WD_CROWN_SKY_SETS + jobs[job].slot * WD_CROWN_SKY_TEXELS + place;
     if (at.z < WD_CROWN_SKY_UP - 1u)
         table[2u * texel] = told;
     if (at.z > 0u)

@@ -49,21 +49,20 @@ struct wd_sky_crown {
     float per_m;            /* extinction */
 };
 
-struct wd_crown_sky_job {
-    uint32_t crown, slot;
-    float reach_m; /* of its neighbours; less where many stand closer */
-    /* Slopes up to the highest ground along the eight bearings of WD_CROWN_SKY_BEARING. */
-    WD_VEC4(ground);
-    WD_VEC4(ground_across);
-    float rise_m[40]; /* of the ground over the foot, WD_CROWN_SKY_STEPS of each bearing, in the middle of each */
-};
-
-/* The way on from there goes in steps of half as long again as the one before. */
+/* Bearings of rays in radians from east to north: four, then the four across from these. The way on from a crown's
+ * reach goes in steps, each half as long again as the one before. */
+#define WD_CROWN_SKY_BEARINGS 8u
+#define WD_CROWN_SKY_BEARING(i) (0.39269908f + 0.78539816f * (i))
 #define WD_CROWN_SKY_STEPS 5u
 #define WD_CROWN_SKY_NEXT 1.5f
 
-/* In radians from east to north; four, then the four across from these. */
-#define WD_CROWN_SKY_BEARING(i) (0.39269908f + 0.78539816f * (i))
+struct wd_crown_sky_job {
+    uint32_t crown, slot;
+    float reach_m; /* of its neighbours; less where many stand closer */
+    WD_VEC4(ground); /* slopes up to the highest ground along the bearings */
+    WD_VEC4(ground_across);
+    float rise_m[WD_CROWN_SKY_BEARINGS * WD_CROWN_SKY_STEPS]; /* of the ground over the foot, in the middle of each step */
+};
 
 struct wd_crown_sky_push {
     uint32_t job_count;

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "forest/crowns_apart.h"
 #include "shared/light.h"
+#include "shared/sky_rings.h"
 #include "shared/tree_pose.h"
 #include "tree/vec.h"
 
@@ -16,20 +17,11 @@ static const float PI = 3.14159265f;
 
 enum { CELLS_A_SIDE = 384 /* of a square */, MOST_CELLS = 4096 /* a side */, QUARTERS = 4, SIDES = 3 };
 
-/* Rings of the sky, each told by rays of one elevation: three above 30 degrees, even in the squared cosine, and below
- * three as wide as each other, for below crowns low light comes in at the edges of stands. */
-enum { RINGS = 6 };
-static const struct {
-    float rise;     /* sine of the elevation */
-    float level;    /* share of what an even sky sends to level ground, */
-    float high;     /* to upright faces from above 30 degrees, */
-    float low;      /* and from below */
-    float turn_deg; /* off the middle of its quarter, so that this is seen at several bearings */
-} rings[RINGS] = {
-    {0.93541435f, 0.25f, 0.148f, 0, -34}, {0.79056942f, 0.25f, 0.317f, 0, 11},
-    {0.61237244f, 0.25f, 0.535f, 0, -11}, {0.42261826f, 0.133f, 0, 0.30f, 34},
-    {0.25881905f, 0.087f, 0, 0.34f, -22}, {0.08715574f, 0.030f, 0, 0.36f, 5},
-};
+enum { RINGS = WD_SKY_RINGS };
+static const float rises[RINGS] = {WD_SKY_RING_SINES};
+static const float highs[RINGS] = {WD_SKY_RINGS_HIGH}, lows[RINGS] = {WD_SKY_RINGS_LOW};
+static const float levels[RINGS] = {0.25f, 0.25f, 0.25f, 0.133f, 0.087f, 0.030f}; /* of what level ground has */
+static const float turns_deg[RINGS] = {-34, 11, -11, 34, -22, 5}; /* off the middles of quarters: at several bearings */
 
 /* Crowns of a cell as a layer of leaves over the ground. */
 struct stand {
@@ -200,7 +192,7 @@ static void settle_stand(struct work *work, size_t cell, struct sums sums, float
     float apart = crowns_apart(sums.outline, on_map);
     stand->stems_per_m = sums.stems_m;
     for (int ring = 0; ring < RINGS; ring++) {
-        float rise = rings[ring].rise, seen = wd_seen_m2(sums.seen[0], sums.seen[1], sums.seen[2], rise);
+        float rise = rises[ring], seen = wd_seen_m2(sums.seen[0], sums.seen[1], sums.seen[2], rise);
         stand->depth[ring] = apart * seen / rise;
     }
     work->highest_m = fmaxf(work->highest_m, stand->top_m);
@@ -316,13 +308,13 @@ static void fill_cell(const struct work *work, size_t cell)
     for (int quarter = 0; quarter < QUARTERS; quarter++) {
         float level = 0, high = 0, low = 0;
         for (int i = 0; i < RINGS; i++) {
-            float rise = rings[i].rise, across = sqrtf(1 - rise * rise);
-            float bearing = (90.0f * (float)quarter + rings[i].turn_deg) * (PI / 180);
+            float rise = rises[i], across = sqrtf(1 - rise * rise);
+            float bearing = (90.0f * (float)quarter + turns_deg[i]) * (PI / 180);
             const struct ray ray = {across * cosf(bearing), across * sinf(bearing), rise, i};
             float through = ray_through(work, cell, &ray);
-            level += rings[i].level * through;
-            high += rings[i].high * through;
-            low += rings[i].low * through;
+            level += levels[i] * through;
+            high += highs[i] * through;
+            low += lows[i] * through;
         }
         field->quarters[cell][quarter] = level;
         field->high[cell][quarter] = high;

@@ -34,6 +34,7 @@ void wd_crown_sky_drop_forest(struct wd_crown_sky *sky, struct wd_gpu *gpu)
     free(sky->per_m);
     sky->slots = NULL;
     sky->per_m = NULL;
+    sky->told = false;
 }
 
 void wd_crown_sky_finish(struct wd_crown_sky *sky, struct wd_gpu *gpu)
@@ -44,6 +45,7 @@ void wd_crown_sky_finish(struct wd_crown_sky *sky, struct wd_gpu *gpu)
 
 void wd_crown_sky_forget(struct wd_crown_sky *sky)
 {
+    sky->told = false;
     if (sky->slots)
         memset(sky->slots, 0, SLOTS * sizeof *sky->slots);
 }
@@ -99,7 +101,6 @@ static bool prepare(struct wd_crown_sky *sky, struct wd_cmd *cmd, const struct w
         return true;
     if (!wd_buffer_init(&sky->table, cmd->gpu, &params))
         return false;
-    wd_cmd_fill_buffer(cmd, &sky->table, 0);
     sky->slots = wd_alloc_array(SLOTS, sizeof *sky->slots);
     sky->per_m = wd_alloc_array(forest->model_count + 1, sizeof *sky->per_m);
     for (uint32_t i = 0; i < forest->model_count; i++)
@@ -185,18 +186,33 @@ static void ask_if_large(struct work *work, uint32_t record)
         ask_for(work, record);
 }
 
-static void ask_for_octant(struct work *work, uint32_t index)
+/* Trees of octants that are entered, by record. */
+static void walk(struct work *work, uint32_t index, bool (*enters)(const struct work *, const struct wd_octant *),
+                 void (*take)(struct work *, uint32_t))
 {
     const struct wd_octant *octants = work->forest->world->octree.octants, *octant = &octants[index];
-    if (seen_m(work, octant->min_m, octant->max_m) == INFINITY)
+    if (!enters(work, octant))
         return;
     for (uint32_t i = octant->begin; i < octant->own_end; i++)
-        ask_if_large(work, i);
+        take(work, i);
     uint32_t child = octant->first_child;
     for (uint32_t i = 0; i < octant->child_count; i++) {
-        ask_for_octant(work, child);
+        walk(work, child, enters, take);
         child = octants[child].next_sibling;
     }
+}
+
+static bool is_near(const struct work *work, const struct wd_octant *octant)
+{
+    return seen_m(work, octant->min_m, octant->max_m) < INFINITY;
+}
+
+static bool is_beside(const struct work *work, const struct wd_octant *octant)
+{
+    for (int k = 0; k < 2; k++)
+        if ((double)octant->max_m[k] < work->low_m[k] || (double)octant->min_m[k] > work->high_m[k])
+            return false;
+    return true;
 }
 
 static void add_beside(struct work *work, uint32_t record)
@@ -212,21 +228,6 @@ static void add_beside(struct work *work, uint32_t record)
     *wd_push(work->beside, work->beside_count, work->beside_capacity) =
         (struct beside){record, (int32_t)floor(place_m[0] / (double)WD_CROWN_SKY_CELL_M),
                         (int32_t)floor(place_m[1] / (double)WD_CROWN_SKY_CELL_M)};
-}
-
-static void add_octant_beside(struct work *work, uint32_t index)
-{
-    const struct wd_octant *octants = work->forest->world->octree.octants, *octant = &octants[index];
-    for (int k = 0; k < 2; k++)
-        if ((double)octant->max_m[k] < work->low_m[k] || (double)octant->min_m[k] > work->high_m[k])
-            return;
-    for (uint32_t i = octant->begin; i < octant->own_end; i++)
-        add_beside(work, i);
-    uint32_t child = octant->first_child;
-    for (uint32_t i = 0; i < octant->child_count; i++) {
-        add_octant_beside(work, child);
-        child = octants[child].next_sibling;
-    }
 }
 
 static struct wd_sky_crown crown_of(const struct work *work, uint32_t record)
@@ -265,32 +266,31 @@ static void lay_out(struct grid *grid, const struct work *work)
     push->rows = (uint32_t)((int32_t)floor(work->high_m[1] / cell_m) - push->first_row + 1);
 }
 
-/* Height of the ground over the foot so far off along a bearing; where there is none as low as that. */
-static double rise_m(const struct wd_terrain *terrain, const struct wd_sky_crown *own, float bearing, double way_m)
+/* Height of the ground over the foot so far off to a side, a unit vector; where there is none as low as that. */
+static double rise_m(const struct wd_terrain *terrain, const struct wd_sky_crown *own, const double toward[2], double way_m)
 {
-    double x_m = own->foot_mm[0] * 0.001 + way_m * cos((double)bearing);
-    double y_m = own->foot_mm[1] * 0.001 + way_m * sin((double)bearing);
+    double x_m = own->foot_mm[0] * 0.001 + way_m * toward[0], y_m = own->foot_mm[1] * 0.001 + way_m * toward[1];
     bool out = !wd_terrain_contains(terrain, x_m, y_m);
     return out ? 0 : (double)wd_terrain_height(terrain, x_m, y_m) - own->foot_mm[2] * 0.001;
 }
 
-static float slope_of(const struct wd_terrain *terrain, const struct wd_sky_crown *own, float bearing)
+static float slope_of(const struct wd_terrain *terrain, const struct wd_sky_crown *own, const double toward[2])
 {
     static const double FIRST_M = 15, FARTHEST_M = 4000, NEXT = 1.25;
     double most = -1;
     for (double way_m = FIRST_M; way_m < FARTHEST_M; way_m *= NEXT)
-        most = fmax(most, (rise_m(terrain, own, bearing, way_m) - (double)own->middle_m) / way_m);
+        most = fmax(most, (rise_m(terrain, own, toward, way_m) - (double)own->middle_m) / way_m);
     return (float)most;
 }
 
 static void look_round(struct wd_crown_sky_job *job, const struct wd_terrain *terrain, const struct wd_sky_crown *own)
 {
-    for (int i = 0; i < 8; i++) {
-        float bearing = WD_CROWN_SKY_BEARING((float)i);
+    for (size_t i = 0; i < WD_CROWN_SKY_BEARINGS; i++) {
+        double bearing = (double)WD_CROWN_SKY_BEARING((float)i), toward[2] = {cos(bearing), sin(bearing)};
         double way_m = 0.5 * (double)(job->reach_m * (1 + WD_CROWN_SKY_NEXT));
-        (i < 4 ? job->ground : job->ground_across)[i & 3] = slope_of(terrain, own, bearing);
+        (i < 4 ? job->ground : job->ground_across)[i & 3] = slope_of(terrain, own, toward);
         for (size_t k = 0; k < WD_CROWN_SKY_STEPS; k++, way_m *= (double)WD_CROWN_SKY_NEXT)
-            job->rise_m[(size_t)i * WD_CROWN_SKY_STEPS + k] = (float)rise_m(terrain, own, bearing, way_m);
+            job->rise_m[i * WD_CROWN_SKY_STEPS + k] = (float)rise_m(terrain, own, toward, way_m);
     }
 }
 
@@ -330,30 +330,29 @@ static float reach_of(const struct grid *grid, const struct wd_sky_crown *crowns
     return most_m;
 }
 
+static size_t cell_of(const struct grid *grid, const struct beside *tree)
+{
+    return (size_t)(tree->row - grid->push.first_row) * grid->push.columns +
+           (size_t)(tree->column - grid->push.first_column);
+}
+
 /* Sorts the crowns by cells, those of a cell by record, and tells jobs where theirs have come. */
 static void fill(const struct grid *grid, const struct work *work, struct wd_sky_crown *crowns, uint32_t *first_of,
                  struct wd_crown_sky_job *jobs)
 {
     size_t cells = (size_t)grid->push.columns * grid->push.rows, job = 0;
     uint32_t *next = wd_alloc_array(cells + 1, sizeof *next);
-    for (int pass = 0; pass < 2; pass++) {
-        for (size_t i = 0; i < work->beside_count; i++) {
-            const struct beside *tree = &work->beside[i];
-            size_t cell = (size_t)(tree->row - grid->push.first_row) * grid->push.columns +
-                          (size_t)(tree->column - grid->push.first_column);
-            uint32_t at = next[cell + (pass == 0)]++;
-            if (pass == 0)
-                continue;
-            crowns[at] = crown_of(work, tree->record);
-            if (job < work->missing_count && work->missing[job].record == tree->record) {
-                jobs[job] = (struct wd_crown_sky_job){.crown = at, .slot = work->missing[job].slot};
-                job++;
-            }
-        }
-        if (pass == 0) {
-            for (size_t cell = 0; cell < cells; cell++)
-                next[cell + 1] += next[cell];
-            memcpy(first_of, next, (cells + 1) * sizeof *first_of);
+    for (size_t i = 0; i < work->beside_count; i++)
+        next[cell_of(grid, &work->beside[i]) + 1]++;
+    for (size_t cell = 0; cell < cells; cell++)
+        next[cell + 1] += next[cell];
+    memcpy(first_of, next, (cells + 1) * sizeof *first_of);
+    for (size_t i = 0; i < work->beside_count; i++) {
+        uint32_t record = work->beside[i].record, at = next[cell_of(grid, &work->beside[i])]++;
+        crowns[at] = crown_of(work, record);
+        if (job < work->missing_count && work->missing[job].record == record) {
+            jobs[job] = (struct wd_crown_sky_job){.crown = at, .slot = work->missing[job].slot};
+            job++;
         }
     }
     for (job = 0; job < work->missing_count; job++) {
@@ -364,30 +363,30 @@ static void fill(const struct grid *grid, const struct work *work, struct wd_sky
     free(next);
 }
 
-static bool copy_heads(struct wd_crown_sky *sky, struct wd_cmd *cmd)
+static void tell_heads(struct wd_crown_sky *sky, struct wd_cmd *cmd)
 {
     struct wd_binding from;
     uint32_t *heads = wd_cmd_upload(cmd, SLOTS * sizeof *heads, &from);
     if (!heads)
-        return false;
+        return;
     for (uint32_t i = 0; i < SLOTS; i++)
         heads[i] = sky->slots[i].record;
     wd_cmd_use_buffer(cmd, &sky->table, WD_USE_TRANSFER_WRITE);
     const VkBufferCopy region = {.srcOffset = from.offset, .size = SLOTS * sizeof *heads};
     vkCmdCopyBuffer(cmd->vk, from.buffer->buffer, sky->table.buffer, 1, &region);
-    return true;
+    sky->told = true;
 }
 
 static void find_missing(struct work *work, struct wd_cmd *cmd)
 {
     struct grid grid;
-    add_octant_beside(work, 0);
+    walk(work, 0, is_beside, add_beside);
     lay_out(&grid, work);
     size_t cells = (size_t)grid.push.columns * grid.push.rows;
     struct wd_sky_crown *crowns = wd_cmd_upload(cmd, work->beside_count * sizeof *crowns, &grid.crowns);
     uint32_t *first_of = wd_cmd_upload(cmd, (cells + 1) * sizeof *first_of, &grid.cells);
     struct wd_crown_sky_job *jobs = wd_cmd_upload(cmd, work->missing_count * sizeof *jobs, &grid.jobs);
-    if (!crowns || !first_of || !jobs || !copy_heads(work->sky, cmd))
+    if (!crowns || !first_of || !jobs)
         return;
     fill(&grid, work, crowns, first_of, jobs);
     wd_cmd_scope_begin(cmd, "sky of crowns");
@@ -413,7 +412,9 @@ void wd_crown_sky_update(struct wd_crown_sky *sky, struct wd_cmd *cmd, const str
     }
     sky->updates++;
     if (forest->world->octree.count)
-        ask_for_octant(&work, 0);
+        walk(&work, 0, is_near, ask_if_large);
+    if (work.missing_count || !sky->told)
+        tell_heads(sky, cmd);
     if (work.missing_count)
         find_missing(&work, cmd);
     free(work.missing);

@@ -17,6 +17,7 @@ struct wd_crown_sky {
     } *slots;
     float *per_m; /* extinction of each model's crown */
     uint64_t updates;
+    bool told; /* the table's heads say what slots hold */
 };
 
 bool wd_crown_sky_init(struct wd_crown_sky *sky, struct wd_gpu *gpu);

@@ -395,7 +395,8 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     struct wd_targets *targets = params->targets;
     wd_sun_field_update(&pass->sun_field, cmd, params->forest->ground.terrain,
                         params->frame->sun_direction);
-    wd_crown_sky_update(&pass->crown_sky, cmd, params->forest, params->view);
+    if (params->frame->view_mode == WD_MODE_LIT)
+        wd_crown_sky_update(&pass->crown_sky, cmd, params->forest, params->view);
     const struct wd_light_push push = push_of(pass, cmd->gpu, params);
     uint64_t tiles = (uint64_t)push.tile_columns * push.tile_rows;
     if (!fit_lists(pass, cmd, tiles) || !fit_shafts(pass, cmd, tiles))
