@@ -38,6 +38,14 @@ float sward_depth_m(wd_crown crown, vec3 rel)
     return clamp(crown.center_rel.z + crown.radii_m.z - rel.z, 0.0, 2.0 * crown.radii_m.z);
 }
 
+/* Of a crown an eye outside sees leaves that lie open to it, so to the sky behind it, too. One among the leaves sees any
+ * that are near: how far what it sees lies open, by what the crown leaves of the way on past the eye. */
+float eye_outside(wd_crown crown, vec3 eye)
+{
+    float past_eye_m = wd_crown_path_m(-crown.center_rel, crown.radii_m, eye);
+    return exp(-wd_crown_per_m(crown.radii_m) * past_eye_m);
+}
+
 /* Where a crown is between a place and the sun. */
 wd_crown_way crown_way(wd_crown crown, vec3 rel)
 {

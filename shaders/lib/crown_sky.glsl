@@ -41,13 +41,10 @@ vec4 own_ways_m(wd_crown crown, vec3 from_m, float up)
  * leaves of scenes/bench75k.json at 512 px, 16 places, under an even sky. */
 const float OWN_WAYS = 2.0;
 
-/* An eye that is among the leaves sees any of them, not those that lie open to it, as the tables of models have it: up to so
- * near the canopy's field tells more, by four places of scenes/bench75k.json at 1,024 px (24 % too bright by the table, 1 so). */
-const vec2 CLOSE_BY_M = vec2(4.0, 7.0);
-
 /* The crown's own leaves leave some ways more open than others, and the eye sees leaves that look its way: what the
- * neighbours leave of these counts more, and for faces that look out there more yet. `tree`: record. */
-wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec3 eye, float openness)
+ * neighbours leave of these counts more, and for faces that look out there more yet. `tree`: record; `side`: see
+ * eye_side. */
+wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec4 side, float openness)
 {
     wd_past_neighbours past = wd_past_neighbours(0.0, vec4(0.0), vec4(0.0));
 #ifdef CROWN_SKY
@@ -61,11 +58,8 @@ wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec3 eye
     const vec3 last = vec3(vec2(float(WD_CROWN_SKY_ACROSS - 1u)), float(WD_CROWN_SKY_UP - 1u));
     past = past_neighbours_at(int(WD_CROWN_SKY_SETS + uint(slot) * WD_CROWN_SKY_TEXELS),
                               clamp(at, vec3(0.0), vec3(0.9999)) * last);
-    float away_m = length(rel);
-    past.share = wd_crown_sky_share(top - crown.foot_z, away_m, push.pixels_a_radian)
-                 * smoothstep(CLOSE_BY_M.x, CLOSE_BY_M.y, away_m);
+    past.share = wd_crown_sky_share(top - crown.foot_z, length(rel), push.pixels_a_radian);
     float per_m = -OWN_WAYS * wd_crown_per_m(crown.radii_m);
-    vec4 side = eye_side(eye);
     vec4 high = side * exp(per_m * own_ways_m(crown, rel - crown.center_rel, 0.784));
     vec4 low = side * exp(per_m * own_ways_m(crown, rel - crown.center_rel, 0.26));
     float mean = 0.25 * dot(0.75 * high + 0.25 * low, vec4(1.0));

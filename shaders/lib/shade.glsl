@@ -266,7 +266,8 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     alone.high = high * high * herbs;
     alone.low = low * low * herbs;
     alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open)) * has_table(crown);
-    alone.lets.xy = skylit.xy * wd_skylit_above(pixel.openness);
+    alone.outside = mix(1.0, eye_outside(crown, -pixel.direction), has_table(crown));
+    alone.lets.xy = mix(vec2(pixel.openness), skylit.xy * wd_skylit_above(pixel.openness), alone.outside);
     alone.lets.zw = skylit.zw * wd_skylit_below(pixel.openness);
     alone.leaf = pixel.material >= WD_MATERIAL_LEAF ? is_tree(crown) : 0.0;
     float base_m = max(crown.center_rel.z - crown.radii_m.z - crown.foot_z, 0.1);
@@ -362,14 +363,14 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.high = exp2(hidden * log2(max(alone.high, 1e-3)));
     alone.low = exp2(hidden * log2(max(alone.low, 1e-3)));
     alone.known = mix(alone.share, 1.0, from_above);
-    alone.side = mix(vec4(1.0), eye_side(-pixel.direction), one_leaf ? alone.share : 0.0);
+    vec4 side = eye_side(-pixel.direction, alone.outside);
+    alone.side = mix(vec4(1.0), side, one_leaf ? alone.share : 0.0);
     float low_sky = unpackHalf2x16(model.again_low).y + (one_leaf ? 0.0 : LOW_SKY_CLOUD);
     alone.lets.xy *= 1.0 + alone.share * low_sky * brighter_low_sky();
     alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, alone.share * is_tree(crown));
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown, model).y, alone.share) : 1.0;
     alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
-    vec3 eye = -pixel.direction;
-    know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, eye, pixel.openness), has_table(crown),
+    know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, side, pixel.openness), has_table(crown),
                     through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z)));
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
     alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown) * (1.0 - alone.beneath));

@@ -178,13 +178,13 @@ vec4 faced_quarters(vec2 n)
     return 0.5 + 0.5 * vec4(n, -n);
 }
 
-/* A crown stands before the quarters behind it, and what an eye sees of it looks out toward the eye: by how much
- * that lets it have of the quarters. Fitted to path-traced oaks and spruces under skies of one bright side. */
+/* A crown stands before the quarters behind it, and what an eye `outside` it sees of it looks out toward the eye: by how
+ * much that lets it have of the quarters. Fitted to path-traced oaks and spruces under skies of one bright side. */
 const float OWN_SIDE = 0.7;
 
-vec4 eye_side(vec3 eye)
+vec4 eye_side(vec3 eye, float outside)
 {
-    vec2 level = OWN_SIDE * eye.xy * inversesqrt(max(dot(eye.xy, eye.xy), 0.25));
+    vec2 level = OWN_SIDE * outside * eye.xy * inversesqrt(max(dot(eye.xy, eye.xy), 0.25));
     return 1.0 + vec4(level, -level);
 }
 
@@ -239,6 +239,7 @@ struct wd_alone {
     vec4 beside;  /* shares of the sky's quarters that the ground beside its crown has, */
     vec4 sides;   /* and the place past what stands there, */
     vec4 high, low; /* and an upright face there that looks that way, of its light from the high sky and the low */
+    float outside;  /* see eye_outside */
     float by_crown; /* how far these two are of the tree's own table (lib/crown_sky.glsl) */
     vec4 side;    /* shares of what its own crown leaves that come from each quarter, over an even crown's */
     vec4 lets;    /* of light from above to the side that is seen and to the other, then from below */
@@ -249,8 +250,8 @@ struct wd_alone {
     vec4 edge;  /* shares of the quarters' low light that come in below crowns, from where the stand ends */
 };
 
-const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0.0, vec4(1.0), vec4(0.0),
-                                   vec3(1.0), vec3(0.0), 0.0, 1.0, vec4(0.0));
+const wd_alone NOT_ALONE = wd_alone(0.0, 0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 1.0, 0.0, vec4(1.0),
+                                    vec4(0.0), vec3(1.0), vec3(0.0), 0.0, 1.0, vec4(0.0));
 
 /* Of an even sky's light on an upright face so much comes from below 30 degrees, and of what level ground has a quarter:
  * what both have tells how much of any sky's does, of each colour. `upright`: irradiance of the face; `level`: of
