@@ -335,7 +335,7 @@ const float NEIGHBOURS_OVER = 0.75;
 const float LOW_SKY_CLOUD = 0.11;
 
 /* What of the sky's light a free tree sends to an eye, over what is known of its own leaves: by path-traced rows of five
- * species, which had 0.89 to 1.06 of it. */
+ * species, which had 0.89 to 1.06 of it. So of trees in stands whose neighbours are known. */
 const float SKY_OVER_TABLE = 1.07;
 
 /* Between slender crowns of a stand an eye looks down to their lower parts, which one place for all of a card does not
@@ -367,11 +367,11 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.side = mix(vec4(1.0), side, one_leaf ? alone.share : 0.0);
     float low_sky = unpackHalf2x16(model.again_low).y + (one_leaf ? 0.0 : LOW_SKY_CLOUD);
     alone.lets.xy *= 1.0 + alone.share * low_sky * brighter_low_sky();
-    alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, alone.share * is_tree(crown));
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown, model).y, alone.share) : 1.0;
     alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
     know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, side, pixel.openness), has_table(crown),
                     through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z)));
+    alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, max(alone.share, alone.by_crown) * is_tree(crown));
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
     alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown) * (1.0 - alone.beneath));
 }
