@@ -41,6 +41,11 @@ vec4 own_ways_m(wd_crown crown, vec3 from_m, float up)
  * leaves of scenes/bench75k.json at 512 px, 16 places, under an even sky. */
 const float OWN_WAYS = 2.0;
 
+/* About the eye one place errs for all that is seen, by the table up to twice as bright, by the canopy's field as dark: up to
+ * so near half of each. By twelve places of scenes/bench75k.json at 1,024 px. */
+const vec2 CLOSE_BY_M = vec2(4.0, 7.0);
+const float CLOSE_BY_SHARE = 0.5;
+
 /* The crown's own leaves leave some ways more open than others, and the eye sees leaves that look its way: what the
  * neighbours leave of these counts more, and for faces that look out there more yet. `tree`: record; `side`: see
  * eye_side. */
@@ -58,7 +63,9 @@ wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec4 sid
     const vec3 last = vec3(vec2(float(WD_CROWN_SKY_ACROSS - 1u)), float(WD_CROWN_SKY_UP - 1u));
     past = past_neighbours_at(int(WD_CROWN_SKY_SETS + uint(slot) * WD_CROWN_SKY_TEXELS),
                               clamp(at, vec3(0.0), vec3(0.9999)) * last);
-    past.share = wd_crown_sky_share(top - crown.foot_z, length(rel), push.pixels_a_radian);
+    float away_m = length(rel);
+    past.share = wd_crown_sky_share(top - crown.foot_z, away_m, push.pixels_a_radian)
+                 * mix(CLOSE_BY_SHARE, 1.0, smoothstep(CLOSE_BY_M.x, CLOSE_BY_M.y, away_m));
     float per_m = -OWN_WAYS * wd_crown_per_m(crown.radii_m);
     vec4 high = side * exp(per_m * own_ways_m(crown, rel - crown.center_rel, 0.784));
     vec4 low = side * exp(per_m * own_ways_m(crown, rel - crown.center_rel, 0.26));

@@ -296,7 +296,7 @@ static struct likeness trees_alike(const char *what, struct wd_camera camera_of(
     return found;
 }
 
-/* 0.94 and 0.22; 0.84 and 0.38 where the canopy's field alone tells what neighbours leave of the sky. */
+/* 0.93 and 0.24; 0.84 and 0.38 where the canopy's field alone tells what neighbours leave of the sky. */
 static void a_tree_is_as_dark_as_its_neighbours_make_it(void **state)
 {
     (void)state;
@@ -305,13 +305,13 @@ static void a_tree_is_as_dark_as_its_neighbours_make_it(void **state)
     assert_true(found.correlation > 0.89 && found.apart < 0.31);
 }
 
-/* 0.82 and 0.35; 0.72 and 0.44 where any leaf that an eye among them sees is lit as one that it would see from outside. */
+/* 0.79 and 0.38; 0.72 and 0.44 where the canopy's field tells of what is within 4 m of the eye. */
 static void crowns_about_an_eye_are_as_dark_as_traced(void **state)
 {
     (void)state;
     paint(&cloudy);
     const struct likeness found = trees_alike("about the eye", among_crowns, 16);
-    assert_true(found.correlation > 0.77 && found.apart < 0.4);
+    assert_true(found.correlation > 0.75 && found.apart < 0.41);
 }
 
 /* 0.999; 0.978 if discs are as large from below as from above. */
