@@ -9,36 +9,20 @@
 static const float NEAR_M = 0.1f;
 
 /* What sample i of a picture stands for: a place in the pixel, on the lens and in the time that the
- * shutter is open, each about -0.5..0.5. */
+ * shutter is open, each -0.5..0.5. */
 struct exposure {
     double pixel[2], lens[2], time;
 };
 
-static double in_sequence(double step, uint32_t index)
-{
-    return fmod(0.5 + step * index, 1.0) - 0.5;
-}
-
-/* Mean of all but the middle. */
-static double mean_of_sequence(double step, uint32_t count)
-{
-    double sum = 0;
-    for (uint32_t i = 1; i < count; i++)
-        sum += in_sequence(step, i);
-    return count > 1 ? sum / (count - 1) : 0;
-}
-
-/* R sequences (Roberts 2018), which fill the square and the cube evenly for any count, moved so that what is seen does
- * not lie aside (by 0.09 pixels with 16). The middle of all comes last, so that the G-buffer is left with it; a single
- * sample takes the middle. */
+/* R sequences (Roberts 2018), which fill the square and the cube evenly for any count. The middle
+ * of all comes last, so that the G-buffer is left with it; a single sample takes the middle. */
 static struct exposure exposure_of(uint32_t index, uint32_t count)
 {
     static const double steps[5] = {0.7548776662466927, 0.5698402909980532, 0.8191725133961645,
                                     0.6710436067037893, 0.5497004779019703};
-    const bool is_middle = index + 1 == count;
     double at[5];
     for (int k = 0; k < 5; k++)
-        at[k] = is_middle ? 0 : in_sequence(steps[k], count - 1 - index) - mean_of_sequence(steps[k], count);
+        at[k] = fmod(0.5 + steps[k] * (count - 1 - index), 1.0) - 0.5;
     return (struct exposure){{at[0], at[1]}, {at[2], at[3]}, at[4]};
 }
 
