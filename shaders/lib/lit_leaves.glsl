@@ -89,3 +89,26 @@ vec4 skylit_of(int model, wd_sunlit_mix at, uint first)
     return mix(vec4(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y)),
                vec4(unpackHalf2x16(texel.z), unpackHalf2x16(texel.w)), at.eye);
 }
+
+/* Of the sun that reaches leaves of a crown, what they scatter comes to other ones, and to its boughs, again and again.
+ * Irradiance of each side of leaves of such albedo and transmittance, over the sun's share; those that the eye sees lie
+ * outside and get little of it, by path-traced rows of six species. */
+const float SCATTERED_AGAIN = 0.21;
+
+vec3 scattered_again(vec3 leaf, wd_lit_leaves model)
+{
+    vec3 again = unpackHalf2x16(model.again_low).x * min(leaf, vec3(0.95));
+    return SCATTERED_AGAIN * again / (1.0 - again);
+}
+
+/* Of light from the sky and the ground, what leaves of a tree that stands free scatter comes to its other leaves
+ * (and its boughs, not to the stem beneath them), again and again: a photon that a leaf has scattered meets another
+ * one by this chance (Smolander and Stenberg 2005). Those that the eye sees lie outside and meet the fewer: by
+ * path-traced maples in October. */
+const float SEEN_RECOLLISION = 0.9;
+
+vec3 scattered_on(vec3 leaf, wd_lit_leaves model)
+{
+    float again = SEEN_RECOLLISION * unpackHalf2x16(model.again_low).x;
+    return 1.0 / (1.0 - again * min(leaf, vec3(0.95)));
+}

@@ -46,17 +46,22 @@ float herbs_sunlit(vec3 eye)
 
 /* Of trees in closed stands an eye sees the tops, and neighbours' shade where the sun does not come from behind it: so
  * much of what a model's table says of the whole tree. The sides of slender crowns that face away from the sun lie in one
- * another's shade (Li and Strahler 1992). By path-traced stands of five species under suns of 20 and 50 degrees, seen
+ * another's shade (Li and Strahler 1992). Of leaves that lie flatter (mean |z| of their faces) than oaks' those that are
+ * seen from above are the better lit. By path-traced stands of five species under suns of 20 and 50 degrees, seen
  * from eleven angles (docs/lighting.md). */
-float stand_sunlit(vec3 eye, wd_crown crown)
+const float STAND_FLAT_FROM = 0.66, STAND_FLAT = 1.05;
+
+float stand_sunlit(vec3 eye, wd_crown crown, wd_lit_leaves model)
 {
+    float flatter = max(unpackHalf2x16(model.rough_flat).y - STAND_FLAT_FROM, 0.0);
     float apart = angle_of(dot(eye, frame.sun_direction));
     vec2 sunward = normalize(frame.sun_direction.xy + 1e-6);
     float above = smoothstep(0.8, 0.98, eye.z), low_sun = 1.0 - smoothstep(0.3, 0.8, frame.sun_direction.z);
     float dark = (1.0 - smoothstep(-0.35, 0.35, dot(eye.xy, sunward))) * smoothstep(0.6, 0.95, eye.z);
     float hot = mix(mix(0.75, 0.83, smoothstep(0.5, 0.8, eye.z)), 0.7, low_sun);
     float seen = mix(hot, mix(0.63, 0.67, low_sun), smoothstep(0.2, 1.4, apart));
-    seen *= mix(1.0, mix(1.18, 1.5, low_sun), above) * mix(1.25, 1.0, smoothstep(0.1, 0.45, eye.z));
+    seen *= mix(1.0, mix(1.27, 1.6, low_sun), above) * mix(1.25, 1.0, smoothstep(0.1, 0.45, eye.z));
+    seen *= 1.0 + STAND_FLAT * flatter * smoothstep(0.62, 0.8, eye.z);
     return seen * (1.0 - 0.6 * slenderness(crown) * dark);
 }
 
@@ -149,6 +154,7 @@ struct wd_place {
     vec3 sheet;         /* normal of a leaf's side that is to the sun, where maps hold leaves; or none */
     float bulges;       /* 1: wood, which is round, in maps, too */
     float own;          /* share of the sun left after the tree's own leaves */
+    float about;        /* the same of the leaves about, by depth */
     float ahead_m;      /* how far toward the sun to go before asking the maps */
     vec2 sides;         /* share of the sun reflected and transmitted toward the eye */
     vec3 reflects;      /* albedo of the leaves that reflect the sun over the albedo of all that are seen, */
@@ -172,7 +178,7 @@ wd_place ground_place(wd_pixel pixel)
     place.cloud = 0.0;
     place.sheet = vec3(0.0);
     place.bulges = 0.0;
-    place.own = 1.0;
+    place.own = place.about = 1.0;
     place.ahead_m = 0.0;
     place.sides = vec2(facing_lit(pixel.facing), 0.0);
     place.reflects = place.reflects_sky = vec3(1.0);
@@ -277,26 +283,6 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     return alone;
 }
 
-/* Of the sun that reaches leaves of a crown, what they scatter comes to other ones, again and again. Irradiance
- * of each side of leaves of such albedo and transmittance, over the sun's share; those that the eye sees lie
- * outside and get little of it, by path-traced oaks. */
-vec3 scattered_again(vec3 leaf)
-{
-    vec3 again = WD_RECOLLISION * min(leaf, vec3(0.95));
-    return 0.08 * again / (1.0 - again);
-}
-
-/* Of light from the sky and the ground, what leaves of a tree that stands free scatter comes to its other leaves
- * (and its boughs, not to the stem beneath them), again and again: a photon that a leaf has scattered meets another one by this chance (Smolander and Stenberg
- * 2005). Those that the eye sees lie outside and meet the fewer: by path-traced maples in October. */
-const float SEEN_RECOLLISION = 0.9;
-
-vec3 scattered_on(vec3 leaf, wd_lit_leaves model)
-{
-    float again = SEEN_RECOLLISION * unpackHalf2x16(model.again_low).x;
-    return 1.0 / (1.0 - again * min(leaf, vec3(0.95)));
-}
-
 /* Mean albedo of the forest's leaves, both sides of them. */
 vec3 leaves_albedo()
 {
@@ -373,7 +359,9 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
                     through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z)));
     alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, max(alone.share, alone.by_crown) * is_tree(crown));
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
-    alone.again = mix(vec3(1.0), scattered_on(leaf, model), is_tree(crown) * (1.0 - alone.beneath));
+    float within = is_tree(crown) * (1.0 - alone.beneath);
+    alone.again = mix(vec3(1.0), scattered_on(leaf, model), within);
+    alone.scattered = within * scattered_again(leaf, model);
 }
 
 /* Mean normal of the sides of leaves that the eye sees (wd_leaves_seen_up), and how far their z spread, squared. */
@@ -392,7 +380,8 @@ void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float open
     wd_crown_way way = crown_way(crown, place.rel);
     float path_m = way.ends_m - way.begins_m;
     float through = wd_crown_through(crown.radii_m, path_m, openness);
-    place.own = mix(through, wd_crown_lit(through, curve.x, curve.y) * factor, has_table(crown));
+    place.about = mix(through, wd_crown_lit(through, curve.x, curve.y), has_table(crown));
+    place.own = place.about * mix(1.0, factor, has_table(crown));
     float left_m = max(way.ends_m, crown_card_m(crown, place.rel)); /* all of the tree itself */
     place.ahead_m = mix(path_m, left_m, free) + cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
 }
@@ -645,7 +634,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     bool reduced = !card && pixel.lit < 0.0 && !pictured;
     plain = max(plain, reduced ? MESH_SINGLE * fine * is_tree(crown) : 0.0);
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), max(near, plain));
-    vec2 whole = mix(blades * herbs_sunlit(eye), sunlit * mix(stand_sunlit(eye, crown), 1.0, free), has_table(crown));
+    vec2 whole = mix(blades * herbs_sunlit(eye), sunlit * mix(stand_sunlit(eye, crown, model), 1.0, free), has_table(crown));
     place.sides = mix(whole, blades, mapped);
     place.transmittance = leaf_transmittance(model);
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
@@ -721,8 +710,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         wd_sunlit_mix mixed = sunlit_mix(-pixel.direction);
         hot = mixed.hot.y;
         bool leaf = pixel.material >= WD_MATERIAL_LEAF;
-        uint cards = push.level_cards != 0u ? WD_SUNLIT_CARDS : WD_SUNLIT_VIEWS;
-        uint leaves = pixel.material == WD_MATERIAL_CARD ? cards : WD_SUNLIT_DEEP;
+        uint leaves = pixel.material == WD_MATERIAL_CARD ? WD_SUNLIT_CARDS : WD_SUNLIT_DEEP;
         leaves = ALL_SINGLE || pixel.lit >= 0.0 ? WD_SUNLIT_LEAVES : leaves;
         mixed.place += (leaf ? leaves : WD_SUNLIT_WOOD) * WD_SUNLIT_PLACES;
         vec2 sunlit = sunlit_of(model_at, mixed);
@@ -767,8 +755,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 within_sun = within_wax(pixel.albedo * place.reflects, place.waxed_lit.x) * place.body;
     vec3 within_sky = within_wax(pixel.albedo * place.reflects_sky, place.waxed_lit.y) * place.body;
     vec3 sunlit = within_sun * place.sides.x + transmitted * place.sides.y;
-    alone.scattered = sunlight() * (pixel.surface == 0u ? 0.0 : sun_share)
-                      * scattered_again(pixel.albedo * (1.0 + place.transmittance));
+    alone.scattered *= sunlight() * (place.about * ground_share * mix(sky_about_sun(alone), 1.0, alone.share));
     vec3 mirror = wax_mirror(pixel.direction, pixel.normal);
     wd_around around = light_around(facing, mirror, shelter, ground_share, past_trees, alone, -pixel.direction.z);
     /* Upright ground is where the world is cut off: before it lies bright haze, as the path tracer has it. */

@@ -321,6 +321,9 @@ const float OF_UPWARD = 0.5;
  * over those within. By the path-traced overview of bench/light.json under clouds. */
 const float OF_EDGE = 0.35;
 
+/* Of the sun that a tree's own leaves scatter to one another, what a stand's layer of them does not tell already. */
+const float OWN_IN_STANDS = 0.38;
+
 /* `facing`: a normal, or the mean of many, shorter than 1, and how far their z spread, squared. `mirror`:
  * unit, where a ray of the eye goes on to from one leaf.
  * `past_trees`: the sun's share at the place. */
@@ -387,7 +390,7 @@ wd_around light_around(vec4 facing, vec3 mirror, wd_shelter shelter, float groun
     vec3 upward_back = mix(upward, beside * alone.lets.w, alone.share);
     float up = 0.5 + 0.5 * n.z;
     wd_around around;
-    vec3 again = alone.scattered * mix(mean, 1.0, alone.share); /* in a stand, `scattered` has deeper ones' */
+    vec3 again = alone.scattered * mix(OWN_IN_STANDS * mean, 1.0, alone.share);
     around.front = sky_of_front * sky_front + low_in * (1.0 - alone.known)
                    + scattered * (up * (1.0 - alone.share)) + again;
     around.back = sky_of_back * sky_back

@@ -54,12 +54,11 @@ WD_FUNC float wd_lower_sides(float sine)
 #define WD_SUNLIT_PLACES 140u /* WD_SUN_RINGS * WD_EYE_RINGS * WD_SUNLIT_TURNS */
 /* Two numbers each. Of leaves as a cloud, reflected and transmitted over a lit wall to which depth leaves as much of the
  * sun as to what shows them: */
-#define WD_SUNLIT_CARDS 0u  /* a card with a picture that was taken level, */
-#define WD_SUNLIT_VIEWS 1u  /* a card with what the eye sees, */
-#define WD_SUNLIT_DEEP 2u   /* or places of their own. */
-#define WD_SUNLIT_WOOD 3u   /* Of wood, a factor on what is left to it; as a cloud, reflected over a lit wall. */
-#define WD_SUNLIT_LEAVES 4u /* Of single leaves, the former. */
-#define WD_SUNLIT_KINDS 9u
+#define WD_SUNLIT_CARDS 0u  /* a card, */
+#define WD_SUNLIT_DEEP 1u   /* or places of their own. */
+#define WD_SUNLIT_WOOD 2u   /* Of wood, a factor on what is left to it; as a cloud, reflected over a lit wall. */
+#define WD_SUNLIT_LEAVES 3u /* Of single leaves, the former. */
+#define WD_SUNLIT_KINDS 7u
 
 /* The sun's rings, and 15 degrees below the horizon one from which eyes look up. */
 #define WD_EYE_RINGS 5u
@@ -106,12 +105,12 @@ struct wd_lit_model {
     WD_LIT_LEAVES_STRUCT leaves;
     /* A texel for each wd_sunlit_place and of each WD_SUNLIT_CARDS .. WD_SUNLIT_LEAVES: two half floats of that place,
      * of a turn on, of a ring of the eye on, and of both on. */
-    uint32_t sunlit[5 * WD_SUNLIT_PLACES * 4];
+    uint32_t sunlit[4 * WD_SUNLIT_PLACES * 4];
     uint32_t skylit[WD_SKYLIT_PLACES * 4]; /* two half floats each: of a place, and of a ring on */
 };
-WD_STATIC_ASSERT_SIZE(wd_lit_model, 11472);
+WD_STATIC_ASSERT_SIZE(wd_lit_model, 9232);
 #define WD_LIT_LEAVES_TEXELS 2u
-#define WD_LIT_SKYLIT_TEXEL 702u
-#define WD_LIT_MODEL_TEXELS 717u
+#define WD_LIT_SKYLIT_TEXEL 562u
+#define WD_LIT_MODEL_TEXELS 577u
 
 #endif

@@ -12,7 +12,7 @@ enum { POINTS = 4096, EYES = 21, STEPS = 16, LOW_WAYS = 8, NEAR_EACH = 4 /* way 
 
 /* Eyes stand between the sun's ways: of what an eye sees that looks along one of these, all would be lit. */
 static const uint32_t eyes_on_ring[WD_EYE_RINGS] = {5, 6, 5, 4, 1};
-enum { LEVEL_RING = 1, LEVEL_EYE = 5 }; /* and the first eye there */
+enum { LEVEL_EYE = 5 }; /* the first one 10 degrees up */
 static const float EYE_OFF = 0.04f, EYE_HIGHEST_SINE = 0.9976f;
 
 struct eye {
@@ -62,15 +62,19 @@ struct skylit {
 };
 
 /* What all points send from one way of the sun to one eye. */
+enum {
+    SEEN,                   /* area of leaves toward the eye */
+    REFLECTED, TRANSMITTED,
+    BY_DEPTH,               /* the same by depth, of the leaf's own place and side; */
+    DEEP, CARD,             /* its area by depth, and by depth of the place of a card */
+    WOOD, WOOD_DEEP,        /* of the wood seen, and the same by depth; */
+    WOOD_LEFT,              /* its area by depth */
+    MIRRORED,               /* by the wax of leaves */
+    SENT
+};
+
 struct sent {
-    float seen;            /* area of leaves toward the eye */
-    float sides[2];        /* reflected and transmitted, */
-    float leaf;            /* the same by depth, of the leaf's own place and side; */
-    float deep, viewed;    /* its area by depth, and that by depth of the place of a card with what the eye sees */
-    float pictured, card;  /* area of leaves in pictures on cards, and that by depth of the card's place */
-    float wood, wood_deep; /* of the wood seen, and the same by depth; */
-    float wood_left;       /* its area by depth */
-    float mirrored;        /* by the wax of leaves */
+    float of[SENT];
 };
 
 struct fit {
@@ -149,39 +153,13 @@ static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
         float cosine = wd_v3_dot(normal, sun);
         bool behind = wd_v3_dot(face, sun) < 0, lost = behind != (cosine < 0);
         float side = lost ? 0 : area * fabsf(cosine);
-        sent->seen += area;
-        sent->sides[behind] += side * wd_sun_way_lit(point->lit, way);
-        sent->leaf += side * point->left[way];
-        sent->deep += area * point->left[way];
-        sent->viewed += area * card_left(fit, card, point->openness, way);
+        sent->of[SEEN] += area;
+        sent->of[behind ? TRANSMITTED : REFLECTED] += side * wd_sun_way_lit(point->lit, way);
+        sent->of[BY_DEPTH] += side * point->left[way];
+        sent->of[DEEP] += area * point->left[way];
+        sent->of[CARD] += area * card_left(fit, card, point->openness, way);
         if (area_above > 0 && !behind && cosine > 0 && wd_sun_way_lit(point->lit, way) > 0)
-            sent->mirrored += area * wax_mirrors(normal, toward, sun);
-    }
-}
-
-/* A card stands upright through the stem and shows what a level eye sees, to any eye: less open leaves than
- * those that one from above sees. `pictured`: the level eye. */
-static void send_card(struct fit *fit, const struct shown *point, const struct eye *pictured, uint32_t eye)
-{
-    const struct wd_vec3 level = wd_v3_unit(WD_V3(pictured->toward.x, pictured->toward.y, 0));
-    struct wd_vec3 p = wd_v3_add(point->place, fit->middle_m), toward = fit->eyes[eye].toward;
-    struct wd_vec3 across = wd_v3_unit(WD_V3(toward.x, toward.y, 0));
-    float area = fabsf(wd_v3_dot(point->face, pictured->toward) * wd_v3_dot(across, level));
-    p = wd_v3_mad(p, level, -wd_v3_dot(p, level));
-    struct wd_vec3 place = card_place(fit, p, toward);
-    for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
-        fit->sent[eye][way].pictured += area;
-        fit->sent[eye][way].card += area * card_left(fit, place, point->openness, way);
-    }
-}
-
-/* Every other point by one of the level eyes that see it, for each eye. */
-static void send_cards(struct fit *fit, const struct shown *point, uint32_t seen, uint32_t index)
-{
-    for (uint32_t eye = index % 2; eye < EYES; eye += 2) {
-        uint32_t pictured = LEVEL_EYE + (index / 2 + eye) % eyes_on_ring[LEVEL_RING];
-        if (seen >> pictured & 1)
-            send_card(fit, point, &fit->eyes[pictured], eye);
+            sent->of[MIRRORED] += area * wax_mirrors(normal, toward, sun);
     }
 }
 
@@ -191,9 +169,9 @@ static void send_wood(struct fit *fit, const struct shown *point, uint32_t eye)
     for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
         struct sent *sent = &fit->sent[eye][way];
         float side = area * fmaxf(wd_v3_dot(point->normal, fit->suns[way]), 0);
-        sent->wood += side * wd_sun_way_lit(point->lit, way);
-        sent->wood_deep += side * point->left[way];
-        sent->wood_left += area * point->left[way];
+        sent->of[WOOD] += side * wd_sun_way_lit(point->lit, way);
+        sent->of[WOOD_DEEP] += side * point->left[way];
+        sent->of[WOOD_LEFT] += area * point->left[way];
     }
 }
 
@@ -384,8 +362,6 @@ static void send(struct fit *fit, const struct wd_tree_points *points, const str
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
             shown.left[way] = wd_crown_lit(shown.left[way], fit->curve[0], fit->curve[1]);
         send_skylight(fit, &shown, fit->views[i], !(points->points[i].kind & WD_POINT_LEAF));
-        if (points->points[i].kind & WD_POINT_LEAF)
-            send_cards(fit, &shown, fit->views[i], (uint32_t)i);
         for (uint32_t eye = 0; eye < EYES; eye++)
             if (fit->views[i] >> eye & 1 && points->points[i].kind & WD_POINT_LEAF)
                 send_leaf(fit, &shown, eye);
@@ -401,10 +377,10 @@ static void fit_wax(float wax[2], const struct fit *fit)
     for (uint32_t eye = LEVEL_EYE; eye < EYES; eye++)
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
             const struct sent *sent = &fit->sent[eye][way];
-            float sides = sent->sides[0] + sent->sides[1];
-            if (sides <= 1e-4f * sent->seen)
+            float sides = sent->of[REFLECTED] + sent->of[TRANSMITTED];
+            if (sides <= 1e-4f * sent->of[SEEN])
                 continue;
-            double weight = (double)(sides / sent->seen), y = (double)(sent->mirrored / (sides * WD_WAX));
+            double weight = (double)(sides / sent->of[SEEN]), y = (double)(sent->of[MIRRORED] / (sides * WD_WAX));
             double x = (double)wd_cloud_wax_rise(wd_v3_dot(fit->eyes[eye].toward, fit->suns[way]));
             n += weight, sx += weight * x, sxx += weight * x * x;
             sy += weight * y, sxy += weight * x * y;
@@ -415,21 +391,6 @@ static void fit_wax(float wax[2], const struct fit *fit)
     wax[1] = (float)rise;
 }
 
-static void add_sent(struct sent *sum, const struct sent *sent, float weight)
-{
-    sum->seen += weight * sent->seen;
-    sum->sides[0] += weight * sent->sides[0];
-    sum->sides[1] += weight * sent->sides[1];
-    sum->pictured += weight * sent->pictured;
-    sum->card += weight * sent->card;
-    sum->leaf += weight * sent->leaf;
-    sum->deep += weight * sent->deep;
-    sum->viewed += weight * sent->viewed;
-    sum->wood += weight * sent->wood;
-    sum->wood_deep += weight * sent->wood_deep;
-    sum->wood_left += weight * sent->wood_left;
-}
-
 /* Steps of half a turn between an eye and a way of the sun. */
 static float steps_apart(const struct eye *eye, uint32_t sun_ring, uint32_t way)
 {
@@ -438,18 +399,53 @@ static float steps_apart(const struct eye *eye, uint32_t sun_ring, uint32_t way)
     return 2 * (WD_SUNLIT_TURNS - 1) * fminf(apart, 1 - apart);
 }
 
-static struct sent sum_near(const struct fit *fit, uint32_t eye_ring, uint32_t sun_ring, uint32_t turn)
+/* Least squares: what a table that is mixed between steps is to hold, so that it comes nearest to all that
+ * was sent. A triangle of normal equations: of each step, and of it and the next. */
+struct steps {
+    double own[WD_SUNLIT_TURNS], next[WD_SUNLIT_TURNS], sums[WD_SUNLIT_TURNS][SENT];
+};
+
+static void add_sent(struct steps *steps, const struct sent *sent, float apart)
 {
-    struct sent sum = {0};
-    uint32_t first = WD_SUN_RING_FIRST(sun_ring), end = first + WD_SUN_RING_COUNT(sun_ring);
-    bool level = eye_ring + 1 < WD_EYE_RINGS && sun_ring + 1 < WD_SUN_RINGS;
-    for (uint32_t eye = 0; eye < EYES; eye++)
-        for (uint32_t way = first; way < end && fit->eyes[eye].ring == eye_ring; way++) {
-            float off = fabsf(steps_apart(&fit->eyes[eye], sun_ring, way) - (float)turn);
-            float weight = level ? fmaxf(1 - off, 0) : 1;
-            add_sent(&sum, &fit->sent[eye][way], weight);
+    uint32_t step = (uint32_t)fminf(apart, WD_SUNLIT_TURNS - 2);
+    double on = (double)apart - step, here = 1 - on;
+    steps->own[step] += here * here;
+    steps->own[step + 1] += on * on;
+    steps->next[step] += here * on;
+    for (int k = 0; k < SENT; k++) {
+        steps->sums[step][k] += here * (double)sent->of[k];
+        steps->sums[step + 1][k] += on * (double)sent->of[k];
+    }
+}
+
+static void solve(struct sent sent[WD_SUNLIT_TURNS], struct steps *steps)
+{
+    for (uint32_t i = 1; i < WD_SUNLIT_TURNS; i++) {
+        double share = steps->next[i - 1] / steps->own[i - 1];
+        steps->own[i] -= share * steps->next[i - 1];
+        for (int k = 0; k < SENT; k++)
+            steps->sums[i][k] -= share * steps->sums[i - 1][k];
+    }
+    for (uint32_t i = WD_SUNLIT_TURNS; i-- > 0;)
+        for (int k = 0; k < SENT; k++) {
+            double on = i + 1 < WD_SUNLIT_TURNS ? steps->next[i] * steps->sums[i + 1][k] : 0;
+            steps->sums[i][k] = (steps->sums[i][k] - on) / steps->own[i];
+            sent[i].of[k] = fmaxf((float)steps->sums[i][k], 0);
         }
-    return sum;
+}
+
+/* What is sent from a ring of the sun to one of eyes, by the angle between both. */
+static void sent_between(struct sent sent[WD_SUNLIT_TURNS], const struct fit *fit, uint32_t eye_ring, uint32_t sun_ring)
+{
+    struct steps steps = {0};
+    uint32_t first = WD_SUN_RING_FIRST(sun_ring), end = first + WD_SUN_RING_COUNT(sun_ring);
+    bool overhead = eye_ring + 1 == WD_EYE_RINGS || sun_ring + 1 == WD_SUN_RINGS;
+    for (uint32_t eye = 0; eye < EYES; eye++)
+        for (uint32_t way = first; way < end && fit->eyes[eye].ring == eye_ring; way++)
+            for (uint32_t turn = 0; turn < (overhead ? WD_SUNLIT_TURNS : 1); turn++)
+                add_sent(&steps, &fit->sent[eye][way],
+                         overhead ? (float)turn : steps_apart(&fit->eyes[eye], sun_ring, way));
+    solve(sent, &steps);
 }
 
 /* Where too little is seen to tell: 1. */
@@ -502,6 +498,28 @@ static void light(struct wd_tree_points *points, struct wd_tree_model *model, co
     points->count = count;
 }
 
+static void fill_place(float *to, const float *of)
+{
+    for (int side = 0; side < 2; side++) {
+        to[2 * WD_SUNLIT_CARDS + side] = ratio(of[REFLECTED + side], of[CARD], of[SEEN]);
+        to[2 * WD_SUNLIT_DEEP + side] = ratio(of[REFLECTED + side], of[DEEP], of[SEEN]);
+    }
+    to[2 * WD_SUNLIT_WOOD] = ratio(of[WOOD], of[WOOD_DEEP], of[SEEN]);
+    to[2 * WD_SUNLIT_WOOD + 1] = ratio(of[WOOD], of[WOOD_LEFT], of[SEEN]);
+    to[2 * WD_SUNLIT_LEAVES] = ratio(of[REFLECTED] + of[TRANSMITTED], of[BY_DEPTH], of[SEEN]);
+}
+
+static void fill_table(struct wd_tree_model *model, const struct fit *fit)
+{
+    struct sent sent[WD_SUNLIT_TURNS];
+    for (uint32_t sun = 0; sun < WD_SUN_RINGS; sun++)
+        for (uint32_t eye = 0; eye < WD_EYE_RINGS; eye++) {
+            sent_between(sent, fit, eye, sun);
+            for (uint32_t turn = 0; turn < WD_SUNLIT_TURNS; turn++)
+                fill_place(model->sunlit[wd_sunlit_place(eye, sun, turn)], sent[turn].of);
+        }
+}
+
 void wd_tree_sunlit_fit(struct wd_tree_model *model)
 {
     static const uint8_t any[4 * WD_LOOK_LAYERS] = {0};
@@ -539,20 +557,7 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
     memcpy(model->sun_curve, fit->curve, sizeof fit->curve);
     fit_wax(model->cloud_wax, fit);
     wd_tree_points_finish(&points);
-    for (uint32_t k = 0; k < WD_SUNLIT_PLACES; k++) {
-        uint32_t turn = k % WD_SUNLIT_TURNS, rings = k / WD_SUNLIT_TURNS;
-        struct sent sum = sum_near(fit, rings % WD_EYE_RINGS, rings / WD_EYE_RINGS, turn);
-        float card = sum.pictured > 0 ? sum.card / sum.pictured * sum.seen : 0;
-        float *to = model->sunlit[k];
-        for (int side = 0; side < 2; side++) {
-            to[2 * WD_SUNLIT_CARDS + side] = ratio(sum.sides[side], card, sum.seen);
-            to[2 * WD_SUNLIT_VIEWS + side] = ratio(sum.sides[side], sum.viewed, sum.seen);
-            to[2 * WD_SUNLIT_DEEP + side] = ratio(sum.sides[side], sum.deep, sum.seen);
-        }
-        to[2 * WD_SUNLIT_WOOD] = ratio(sum.wood, sum.wood_deep, sum.seen);
-        to[2 * WD_SUNLIT_WOOD + 1] = ratio(sum.wood, sum.wood_left, sum.seen);
-        to[2 * WD_SUNLIT_LEAVES] = ratio(sum.sides[0] + sum.sides[1], sum.leaf, sum.seen);
-    }
+    fill_table(model, fit);
     for (uint32_t k = 0; k < WD_SKYLIT_PLACES * WD_SKYLIT_KINDS; k++) {
         uint32_t place = k / WD_SKYLIT_KINDS, kind = k % WD_SKYLIT_KINDS;
         const struct skylit *sum = &fit->skylit[place];
