@@ -28,6 +28,7 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
     at.eye_ring = eye_ring & 255u;
     at.place = wd_sunlit_place(eye_ring & 255u, (sun_ring & 255u) - 1u, turn);
     at.eye = float(eye_ring >> 8) * (1.0 / 65535.0);
+    at.eye *= at.eye_ring == 0u ? 2.0 - at.eye : 1.0; /* a level eye sees what one somewhat above sees, not below */
     at.sun = float(sun_ring >> 8) * (1.0 / 65535.0);
     at.turn = steps - float(turn);
     at.hot = hot_spot(dot(eye, frame.sun_direction));
@@ -92,13 +93,14 @@ vec4 skylit_of(int model, wd_sunlit_mix at, uint first)
 
 /* Of the sun that reaches leaves of a crown, what they scatter comes to other ones, and to its boughs, again and again.
  * Irradiance of each side of leaves of such albedo and transmittance, over the sun's share; those that the eye sees lie
- * outside and get little of it, by path-traced rows of six species. */
-const float SCATTERED_AGAIN = 0.21;
+ * outside and get little of it, the least below: by path-traced rows of six species and a beech from below. */
+const vec2 SCATTERED_AGAIN = vec2(0.23, 0.15);
 
-vec3 scattered_again(vec3 leaf, wd_lit_leaves model)
+vec3 scattered_again(vec3 leaf, wd_lit_leaves model, vec3 eye)
 {
     vec3 again = unpackHalf2x16(model.again_low).x * min(leaf, vec3(0.95));
-    return SCATTERED_AGAIN * again / (1.0 - again);
+    float below = 1.0 - smoothstep(-0.2, 0.2, eye.z);
+    return mix(SCATTERED_AGAIN.x, SCATTERED_AGAIN.y, below) * again / (1.0 - again);
 }
 
 /* Of light from the sky and the ground, what leaves of a tree that stands free scatter comes to its other leaves

@@ -165,7 +165,7 @@ static void cards_reflect_as_upper_sides(void **state)
 }
 
 /* Oaks as cards against the sun, without a sky: what comes through leaves, and what their wax mirrors, most of it ahead.
- * +23 % (+11 while a level eye was taken to see what one from 10 degrees above sees), and -28 without what wax mirrors. */
+ * +19 %, and -28 without what wax mirrors (measured when it was +23). */
 static void crowns_shine_against_the_light(void **state)
 {
     (void)state;
@@ -212,7 +212,7 @@ static void crowns_keep_their_cover_where_discs_follow_meshes(void **state)
     assert_true(fabs(found.cover_pct) < 6);
 }
 
-/* A beech's discs from below, the sun behind the eye and no sky: +3 %, and +13 where they show upper sides as they do from
+/* A beech's discs from below, the sun behind the eye and no sky: +7 %, and more where they show upper sides as they do from
  * above, lit alike. */
 static void upper_sides_are_rare_from_below(void **state)
 {
@@ -225,7 +225,7 @@ static void upper_sides_are_rare_from_below(void **state)
     assert_true(fabs(found.trees_pct) < 8);
 }
 
-/* A spruce under snow, looked up to with the sun behind the eye: -3 %; -12 if its snow has as little of the sun as upper sides
+/* A spruce under snow, looked up to with the sun behind the eye: -7 %; less if its snow has as little of the sun as upper sides
  * of bare leaves that are seen from below. */
 static void snow_is_bright_from_below(void **state)
 {
