@@ -361,7 +361,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
     float within = is_tree(crown) * (1.0 - alone.beneath);
     alone.again = mix(vec3(1.0), scattered_on(leaf, model), within);
-    alone.scattered = within * scattered_again(mix(leaf, leaves_albedo(), pixel.snow), model, -pixel.direction);
+    alone.scattered = within * scattered_again(mix(leaf, pixel.albedo, pixel.snow), model, -pixel.direction);
 }
 
 /* Mean normal of the sides of leaves that the eye sees (wd_leaves_seen_up), and how far their z spread, squared. */
@@ -699,6 +699,10 @@ vec3 mirrored_by_leaf(wd_pixel pixel, wd_around around, vec3 mirror, vec3 blade,
     return mix(own, around.mirrored, beyond);
 }
 
+/* Of the sun that a free tree's leaves scatter to one another, where each is lit by itself: by path-traced rows of six
+ * species and the gallery's lake. */
+const float OWN_OF_ONE_LEAF = 0.38;
+
 /* `sun_share` is what of the sun reaches the place, `ground_share` what the ground leaves of it. */
 vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share)
 {
@@ -763,7 +767,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 within_sky = within_wax(pixel.albedo * place.reflects_sky, place.waxed_lit.y) * place.body;
     vec3 sunlit = within_sun * place.sides.x + transmitted * place.sides.y;
     bool one_leaf = ALL_SINGLE || pixel.lit >= 0.0;
-    alone.scattered *= sunlight() * (place.about * ground_share * (one_leaf ? sky_about_sun(alone) : past_trees));
+    float scatters = one_leaf ? mix(1.0, OWN_OF_ONE_LEAF, alone.share) * sky_about_sun(alone) : past_trees;
+    alone.scattered *= sunlight() * (place.about * ground_share * scatters);
     vec3 mirror = wax_mirror(pixel.direction, pixel.normal);
     wd_around around = light_around(facing, mirror, shelter, ground_share, past_trees, alone, -pixel.direction.z);
     /* Upright ground is where the world is cut off: before it lies bright haze, as the path tracer has it. */
