@@ -5,6 +5,7 @@
 struct wd_sunlit_mix {
     uint place, eye_ring;
     float eye, sun, turn;
+    float opposite; /* of half a turn, how far the eye is from the sun's side */
     vec2 hot;
 };
 
@@ -21,14 +22,16 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
 {
     vec2 a = eye.xy, b = frame.sun_direction.xy;
     float cosine = dot(a, b) * inversesqrt(max(dot(a, a) * dot(b, b), 1e-12));
-    float steps = angle_of(cosine) * (float(WD_SUNLIT_TURNS - 1u) * PER_PI);
+    float opposite = angle_of(cosine) * PER_PI, steps = opposite * float(WD_SUNLIT_TURNS - 1u);
     uint turn = min(uint(steps), WD_SUNLIT_TURNS - 2u);
     uint eye_ring = wd_sunlit_ring(eye.z), sun_ring = wd_sunlit_ring(max(frame.sun_direction.z, WD_SUN_RING_SINE(0u)));
     wd_sunlit_mix at;
     at.eye_ring = eye_ring & 255u;
     at.place = wd_sunlit_place(eye_ring & 255u, (sun_ring & 255u) - 1u, turn);
     at.eye = float(eye_ring >> 8) * (1.0 / 65535.0);
-    at.eye *= at.eye_ring == 0u ? 2.0 - at.eye : 1.0; /* a level eye sees what one somewhat above sees, not below */
+    /* on the sun's side a level eye sees what one somewhat above sees, not below */
+    at.eye *= at.eye_ring == 0u ? mix(2.0 - at.eye, 1.0, opposite) : 1.0;
+    at.opposite = opposite;
     at.sun = float(sun_ring >> 8) * (1.0 / 65535.0);
     at.turn = steps - float(turn);
     at.hot = hot_spot(dot(eye, frame.sun_direction));
@@ -68,14 +71,15 @@ vec2 sunlit_of_pair(uint here, uint turn_on, wd_sunlit_mix at)
 }
 
 /* An eye as high as the sun sees the most lit leaves: between rings, what both of a step on and neither say
- * counts most (a simplex's shares), which keeps that ridge; all four alike would level it. */
+ * counts most (a simplex's shares), which keeps that ridge; all four alike would level it. Opposite the sun light goes
+ * by both heights together, and what the one or the other of a step on says counts most. */
 vec2 sunlit_of(int model, wd_sunlit_mix at)
 {
     int first = model + int(WD_LIT_LEAVES_TEXELS + at.place);
     uvec4 low = texelFetch(lit_models, first);
     uvec4 high = texelFetch(lit_models, first + int(WD_EYE_RINGS * WD_SUNLIT_TURNS));
-    float both = min(at.eye, at.sun);
-    vec2 known = sunlit_of_pair(low.x, low.y, at) * (1.0 - max(at.eye, at.sun))
+    float both = mix(min(at.eye, at.sun), max(at.eye + at.sun - 1.0, 0.0), at.opposite);
+    vec2 known = sunlit_of_pair(low.x, low.y, at) * (1.0 - at.eye - at.sun + both)
                  + sunlit_of_pair(low.z, low.w, at) * (at.eye - both)
                  + sunlit_of_pair(high.x, high.y, at) * (at.sun - both)
                  + sunlit_of_pair(high.z, high.w, at) * both;

@@ -296,14 +296,16 @@ vec3 leaves_albedo()
 const float FLAT_FROM = 0.55, FLAT_LEAVES = 1.04;
 
 /* Of a tree that stands free, an eye from above sees discs that lie deeper among its leaves than the leaves it would
- * see: factors on the sun's light and on the sky's. By path-traced rows of six species, from 4 and 40 degrees above,
- * under suns 0 to 136 degrees from the eye. */
-vec2 free_disc_light(vec3 eye, wd_crown crown, wd_lit_leaves model)
+ * see, one against the light some that others would leave less of the sun: factors on each disc's share of it, on the
+ * mean by depth, which is too much under a high sun, and on the sky's. By path-traced rows of six species at 32 and 128
+ * px, from 4 and 40 degrees above, under five suns 15 to 60 degrees high. */
+vec3 free_disc_light(vec3 eye, wd_crown crown, wd_lit_leaves model)
 {
-    float from_above = smoothstep(0.1, 0.6, eye.z);
+    float from_above = smoothstep(0.1, 0.6, eye.z), with_light = smoothstep(-0.1, 0.5, dot(eye, frame.sun_direction));
     float flatter = max(unpackHalf2x16(model.rough_flat).y - FLAT_FROM, 0.0);
-    vec2 of_tree = vec2(mix(1.0, 1.07, from_above) * (1.0 + FLAT_LEAVES * flatter), mix(1.0, 1.06, from_above));
-    return mix(vec2(1.0), of_tree, is_tree(crown));
+    float each = mix(1.0, 1.07, from_above) * mix(0.95, 1.01, with_light) * (1.0 + FLAT_LEAVES * flatter);
+    float by_depth = mix(1.04, 0.965, smoothstep(0.25, 0.95, frame.sun_direction.z));
+    return mix(vec3(1.0), vec3(each, by_depth, mix(1.0, 1.06, from_above)), is_tree(crown));
 }
 
 bool is_disc(wd_pixel pixel)
@@ -353,7 +355,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.side = mix(vec4(1.0), side, one_leaf ? alone.share : 0.0);
     float low_sky = unpackHalf2x16(model.again_low).y + (one_leaf ? 0.0 : LOW_SKY_CLOUD);
     alone.lets.xy *= 1.0 + alone.share * low_sky * brighter_low_sky();
-    alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown, model).y, alone.share) : 1.0;
+    alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown, model).z, alone.share) : 1.0;
     alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
     know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, side, pixel.openness), has_table(crown),
                     through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z)));
@@ -664,7 +666,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float sheet = pixel.lit >= 1.0 ? 1.0 - smoothstep(0.008, 0.04, pixel_size_m(pixel)) : plain;
     place.sheet = fine > 0.0 ? sheet * sunny * pixel.normal : vec3(0.0);
     vec2 in_stands = mix(vec2(1.0), STAND_DISC_SUN, is_tree(crown));
-    vec2 on_discs = vec2(hot, sunlit.x) * mix(in_stands, vec2(free_disc_light(eye, crown, model).x, 1.0), free);
+    vec2 on_discs = vec2(hot, sunlit.x) * mix(in_stands, free_disc_light(eye, crown, model).xy, free);
     light_disc(place, pixel, crown, model, free, on_discs, cascade);
     tell_sides(place, pixel, model);
     know_petals(place, pixel, model);
@@ -700,8 +702,8 @@ vec3 mirrored_by_leaf(wd_pixel pixel, wd_around around, vec3 mirror, vec3 blade,
 }
 
 /* Of the sun that a free tree's leaves scatter to one another, where each is lit by itself: by path-traced rows of six
- * species and the gallery's lake. */
-const float OWN_OF_ONE_LEAF = 0.38;
+ * species under five suns and the gallery's hedge rows. */
+const float OWN_OF_ONE_LEAF = 0.8;
 
 /* `sun_share` is what of the sun reaches the place, `ground_share` what the ground leaves of it. */
 vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share)

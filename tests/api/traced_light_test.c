@@ -116,7 +116,8 @@ static const char *const STAND = "26,30,tree,14\n34,30,tree,15\n26,38,tree,13\n3
 #define AS_CARDS "\"quality\": {\"mesh_distance_m\": 0, \"reduced_distance_m\": 0}"
 #define FROM_AFAR "\"position_m\": [30, -30, 8], \"look_at_m\": [30, 30, 8], \"fov_deg\": 20"
 
-/* Under a low sun: +11 %; with what grass sends up nine less (measured when it was +5). */
+/* Under a low sun: +16 %, 3 of it what leaves scatter to one another; with what grass sends up nine less (measured when it
+ * was +5). */
 static void snow_lights_trees_from_below(void **state)
 {
     (void)state;
@@ -124,7 +125,7 @@ static void snow_lights_trees_from_below(void **state)
         .species = "spruce", .trees = STAND, .size_m = "[60, 60]", .samples = 8,
         .keys = "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 20}, \"ground\": {\"snow\": 1}",
         .camera = FROM_AFAR});
-    assert_true(found.trees_pct > 5 && found.trees_pct < 15);
+    assert_true(found.trees_pct > 8 && found.trees_pct < 17);
 }
 
 /* Maples in October, under clouds: +7 %; where those of open stands scatter as an even layer of leaves five less (measured
