@@ -304,7 +304,7 @@ vec3 free_disc_light(vec3 eye, wd_crown crown, wd_lit_leaves model)
     float from_above = smoothstep(0.1, 0.6, eye.z), with_light = smoothstep(-0.1, 0.5, dot(eye, frame.sun_direction));
     float flatter = max(unpackHalf2x16(model.rough_flat).y - FLAT_FROM, 0.0);
     float each = mix(1.0, 1.07, from_above) * mix(0.95, 1.01, with_light) * (1.0 + FLAT_LEAVES * flatter);
-    float by_depth = mix(1.04, 0.965, smoothstep(0.25, 0.95, frame.sun_direction.z));
+    float by_depth = mix(1.05, 0.975, smoothstep(0.25, 0.95, frame.sun_direction.z));
     return mix(vec3(1.0), vec3(each, by_depth, mix(1.0, 1.06, from_above)), is_tree(crown));
 }
 
@@ -607,7 +607,7 @@ const float MESH_SINGLE = 0.6;
 
 /* Far off they show leaves that lie deeper than those that an eye would see, the more so from above: factors on the
  * table's light, by path-traced rows of four species at 32 px, which were up to 13 % too dark. */
-const vec2 MESH_DEEPER = vec2(1.07, 1.13);
+const vec2 MESH_DEEPER = vec2(1.08, 1.14);
 
 /* Of a z-field that stands free, the table alone lights leaves: maps hold others than it shows. By path-traced rows of
  * seven species at 32 and 128 px, which were up to 14 % too bright and of hazel from -18 to +31 %.
