@@ -451,8 +451,9 @@ vec2 past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
 }
 
 /* Where trees show so many discs or fewer, a pixel's share of the sun is the mean that its depth in the crown leaves,
- * which samples need not find; where they show so many or more, each disc's own. */
-const float FEW_DISCS = 100.0, MANY_DISCS = 400.0;
+ * which samples need not find; where they show so many or more, each disc's own. Of trees that stand free few discs are
+ * lit by up to a quarter too much, each by itself, up to so many times as many (path-traced oaks of 64 px). */
+const float FEW_DISCS = 100.0, MANY_DISCS = 400.0, FREE_DISCS = 4.0;
 
 /* In stands, where crowns reach into one another, the map is asked from so far on of the way out of the own one, and
  * tells some of its shade again: factors on each disc's own share of the sun and on the mean. Where there is no map, a
@@ -483,7 +484,8 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     float known = wd_disc_close(discs) * map_holds_leaves(cascade, 1.0);
     float path_m = wd_crown_path_m(place.rel - crown.center_rel, crown.radii_m, frame.sun_direction);
     float mean = wd_crown_lit(wd_crown_through(crown.radii_m, path_m, pixel.openness), curve.x, curve.y);
-    float singly = mix(1.0, smoothstep(FEW_DISCS, MANY_DISCS, discs), is_tree(crown));
+    float few = discs / mix(1.0, FREE_DISCS, free);
+    float singly = mix(1.0, smoothstep(FEW_DISCS, MANY_DISCS, few), is_tree(crown));
     float lit = mix(mean * sun.y, pixel.lit * sun.x, singly);
     /* its own tree is in `lit`; shrubs are not much wider than half a metre */
     float tree_m = is_tree(crown) * min(0.5, 0.25 * crown.radii_m.x);
@@ -726,11 +728,12 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         uint leaves = pixel.material == WD_MATERIAL_CARD ? WD_SUNLIT_CARDS : WD_SUNLIT_DEEP;
         leaves = ALL_SINGLE || pixel.lit >= 0.0 ? WD_SUNLIT_LEAVES : leaves;
         mixed.place += (leaf ? leaves : WD_SUNLIT_WOOD) * WD_SUNLIT_PLACES;
-        vec2 sunlit = sunlit_of(model_at, mixed);
         uint seen_as = pixel.lit >= 0.0 ? WD_SKYLIT_LEAVES : WD_SKYLIT_CLOUDS;
         vec4 skylit = skylit_of(model_at, mixed, leaf ? seen_as : WD_SKYLIT_WOOD);
         wd_crown crown = crown_of(tree, model);
         alone = crown_alone(pixel, crown, skylit, shelter, pixel.rel.z - crown.foot_z);
+        mixed.opposite *= alone.share;
+        vec2 sunlit = sunlit_of(model_at, mixed);
         if (leaf)
             place = leaf_place(pixel, crown, model, alone.share, sunlit, hot, cascade);
         else
