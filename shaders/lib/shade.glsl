@@ -44,27 +44,6 @@ float herbs_sunlit(vec3 eye)
     return wide + hot * exp(-1.9 * apart);
 }
 
-/* Of trees in closed stands an eye sees the tops, and neighbours' shade where the sun does not come from behind it: so
- * much of what a model's table says of the whole tree. The sides of slender crowns that face away from the sun lie in one
- * another's shade (Li and Strahler 1992). Of leaves that lie flatter (mean |z| of their faces) than oaks' those that are
- * seen from above are the better lit. By path-traced stands of five species under suns of 20 and 50 degrees, seen
- * from eleven angles (docs/lighting.md). */
-const float STAND_FLAT_FROM = 0.66, STAND_FLAT = 1.05;
-
-float stand_sunlit(vec3 eye, wd_crown crown, wd_lit_leaves model)
-{
-    float flatter = max(unpackHalf2x16(model.rough_flat).y - STAND_FLAT_FROM, 0.0);
-    float apart = angle_of(dot(eye, frame.sun_direction));
-    vec2 sunward = normalize(frame.sun_direction.xy + 1e-6);
-    float above = smoothstep(0.8, 0.98, eye.z), low_sun = 1.0 - smoothstep(0.3, 0.8, frame.sun_direction.z);
-    float dark = (1.0 - smoothstep(-0.35, 0.35, dot(eye.xy, sunward))) * smoothstep(0.6, 0.95, eye.z);
-    float hot = mix(mix(0.75, 0.83, smoothstep(0.5, 0.8, eye.z)), 0.7, low_sun);
-    float seen = mix(hot, mix(0.63, 0.67, low_sun), smoothstep(0.2, 1.4, apart));
-    seen *= mix(1.0, mix(1.27, 1.6, low_sun), above) * mix(1.25, 1.0, smoothstep(0.1, 0.45, eye.z));
-    seen *= 1.0 + STAND_FLAT * flatter * smoothstep(0.62, 0.8, eye.z);
-    return seen * (1.0 - 0.6 * slenderness(crown) * dark);
-}
-
 #include "lib/lit_leaves.glsl"
 
 /* Where normals spread about their mean, how far one lies along some direction varies by this, squared.
@@ -607,9 +586,10 @@ const float BROAD_LEAVES_WAX = 0.49;
  * trees of four species close by. */
 const float MESH_SINGLE = 0.6;
 
-/* Far off they show leaves that lie deeper than those that an eye would see, the more so from above: factors on the
- * table's light, by path-traced rows of four species at 32 px, which were up to 13 % too dark. */
-const vec2 MESH_DEEPER = vec2(1.08, 1.14);
+/* Where a pixel of a tree that stands free is so wide, a reduced mesh's few leaves in the maps shade one another less than
+ * those that it stands for, and its table alone lights it. By path-traced oaks and birches at 128 px and hazels at 32,
+ * which were up to 19 and 48 % too bright. */
+const vec2 MESH_MAPPED_M = vec2(0.05, 0.15);
 
 /* Of a z-field that stands free, the table alone lights leaves: maps hold others than it shows. By path-traced rows of
  * seven species at 32 and 128 px, which were up to 14 % too bright and of hazel from -18 to +31 %.
@@ -628,7 +608,9 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float cosine = dot(eye, frame.sun_direction);
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
     bool pictured = pixel.lit < 0.0 && push.level_cards == 0u; /* a z-field's */
-    float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free) * (pictured ? 1.0 - free : 1.0);
+    bool reduced = !card && pixel.lit < 0.0 && !pictured;
+    float wide = reduced ? smoothstep(MESH_MAPPED_M.x, MESH_MAPPED_M.y, pixel_size_m(pixel)) : pictured ? 1.0 : 0.0;
+    float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free) * (1.0 - free * wide);
     float mapped = fine * mix(0.75, 1.0, is_tree(crown)), shade_near = near_shade(model, eye, cascade);
     wd_place place;
     place.bulges = 0.0;
@@ -639,11 +621,9 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     shade_by_map(place, mix(0.75 - 0.375 * sward, 1.0, is_tree(crown)), fine, shade_near);
     vec3 outward = crown_normal(crown, place.rel);
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
-    bool reduced = !card && pixel.lit < 0.0 && !pictured;
     plain = max(plain, reduced ? MESH_SINGLE * fine * is_tree(crown) : 0.0);
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), max(near, plain));
-    float deep = mix(MESH_DEEPER.x, MESH_DEEPER.y, smoothstep(0.1, 0.6, eye.z));
-    float deeper = reduced ? mix(1.0, deep, free * is_tree(crown)) : 1.0;
+    float deeper = reduced ? mix(1.0, reduced_sunlit(eye), free * is_tree(crown)) : 1.0;
     vec2 known = sunlit * (deeper * mix(stand_sunlit(eye, crown, model), 1.0, free));
     vec2 whole = mix(blades * herbs_sunlit(eye), known, has_table(crown));
     place.sides = mix(whole, blades, mapped);
