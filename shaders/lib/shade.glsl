@@ -437,7 +437,7 @@ const float FEW_DISCS = 100.0, MANY_DISCS = 400.0, FREE_DISCS = 4.0;
 /* In stands, where crowns reach into one another, the map is asked from so far on of the way out of the own one, and
  * tells some of its shade again: factors on each disc's own share of the sun and on the mean. Where there is no map, a
  * stand's cover stands for the shade that these make up for. By path-traced stands of bench75k and of beeches. */
-const float STAND_WAY = 0.4, STAND_NO_MAP = 1.25;
+const float STAND_WAY = 0.4, STAND_NO_MAP = 1.20;
 const vec2 STAND_DISC_SUN = vec2(1.12, 1.03);
 
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. `sun`: factors on each disc's share
