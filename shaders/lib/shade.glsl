@@ -575,7 +575,8 @@ float sward_tufts_lit()
 }
 
 /* Leaves of herbs lie in one another's shade and flat, where those of crowns lie every way: so much of what the wax
- * of many would mirror goes on to the eye. By path-traced ferns and tufts that stand free. */
+ * of many would mirror goes on to the eye, of the sky, and of the sun where no table tells it. By path-traced ferns and
+ * tufts that stand free. */
 const float HERB_SHINES = 0.4;
 
 /* Of wd_tree_model.cloud_wax, where light comes from behind the eye: of oaks, beeches and birches. Needles have wax on few
@@ -640,7 +641,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     vec2 wax = unpackHalf2x16(model.cloud_wax);
     float mirrors = WD_WAX * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
-    place.gloss = mix(place.gloss, shines * mirrors * (place.sides.x + place.sides.y), has_table(crown));
+    place.gloss = mix(place.gloss, mirrors * (place.sides.x + place.sides.y), has_table(crown));
     place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), has_table(crown));
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
