@@ -57,8 +57,8 @@ traced=$(ls "$truths" | wc -l)
 # shellcheck disable=SC2086
 steps lod-soft $near
 check 'settings of methods ask for no truth of their own' [ "$(ls "$truths" | wc -l)" -eq "$traced" ]
-# 7.0 and 5.5 over all; 7.4 and 5.5 while meshes and billboards were lit less alike
-boundary 'lod, reduced to billboard' 1 2 1.2
+# 5.6 and 5.4 over all, where billboards alone make 5.35; 7.4 and 5.5 while meshes and billboards were lit less alike
+boundary 'lod, reduced to billboard' 1 2 1.02
 
 steps patch-hard --methods patch --set methods.patch.near_begin_m=49.9 \
     --set methods.patch.near_end_m=50 --set quality.mesh_distance_m=5
