@@ -430,8 +430,9 @@ vec2 past_discs(wd_pixel pixel, wd_shelter shelter, wd_alone alone)
 }
 
 /* Where trees show so many discs or fewer, a pixel's share of the sun is the mean that its depth in the crown leaves,
- * which samples need not find; where they show so many or more, each disc's own. Of trees that stand free few discs are
- * lit by up to a quarter too much, each by itself, up to so many times as many (path-traced oaks of 64 px). */
+ * which samples need not find; where they show so many or more, each disc's own. Of trees that stand free
+ * with leaves that lie flatter than those of birches and pines few discs are lit by up to a quarter too much, each by
+ * itself, up to so many times as many (path-traced oaks of 64 px). */
 const float FEW_DISCS = 100.0, MANY_DISCS = 400.0, FREE_DISCS = 4.0;
 
 /* In stands, where crowns reach into one another, the map is asked from so far on of the way out of the own one, and
@@ -463,7 +464,8 @@ void shade_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     float known = wd_disc_close(discs) * map_holds_leaves(cascade, 1.0);
     float path_m = wd_crown_path_m(place.rel - crown.center_rel, crown.radii_m, frame.sun_direction);
     float mean = wd_crown_lit(wd_crown_through(crown.radii_m, path_m, pixel.openness), curve.x, curve.y);
-    float few = discs / mix(1.0, FREE_DISCS, free);
+    float lies_flat = smoothstep(FLAT_FROM, FLAT_FROM + 0.08, unpackHalf2x16(model.rough_flat).y);
+    float few = discs / mix(1.0, FREE_DISCS, free * lies_flat);
     float singly = mix(1.0, smoothstep(FEW_DISCS, MANY_DISCS, few), is_tree(crown));
     float lit = mix(mean * sun.y, pixel.lit * sun.x, singly);
     /* its own tree is in `lit`; shrubs are not much wider than half a metre */
