@@ -1,21 +1,21 @@
 /* What is known of a model's leaves and of the light that they send (shared/sunlit.h).
- * Expects `frame`, `lit_models`, PER_PI, angle_of and slenderness. */
+ * Expects `frame`, `lit_models`, PER_PI, angle_of, leaf_cloud and slenderness. */
 
 /* Of a model's table (shared/sunlit.h), for this eye: where its eight entries stand, and their shares. */
 struct wd_sunlit_mix {
     uint place, eye_ring;
     float eye, sun, turn;
     float opposite; /* of half a turn, how far the eye is from the sun's side */
-    vec2 hot;
+    float hot;
+    vec2 cloud;     /* what the table's two numbers are over besides */
+    float disc_hot;
 };
 
-/* The eye sees past a leaf's edge what the sun reaches past it, if both come nearly the same way: more than the table
- * tells between its ways (x), and than discs do, whose own few ways are mixed (y). By path-traced rows of six species
- * under suns 0 to 60 degrees from the eye. */
-vec2 hot_spot(float cosine)
+/* The eye sees past a leaf's edge what the sun reaches past it, if both come nearly the same way: more than discs show,
+ * whose own few ways are mixed. By path-traced rows of six species under suns 0 to 60 degrees from the eye. */
+float disc_hot_spot(float apart)
 {
-    float apart = angle_of(cosine);
-    return 1.0 + vec2(0.28, 0.36) * exp(-9.5 * apart) + vec2(0.0, 0.10) * exp(-2.6 * apart);
+    return 1.0 + 0.36 * exp(-9.5 * apart) + 0.10 * exp(-2.6 * apart);
 }
 
 wd_sunlit_mix sunlit_mix(vec3 eye)
@@ -34,7 +34,10 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
     at.opposite = opposite;
     at.sun = float(sun_ring >> 8) * (1.0 / 65535.0);
     at.turn = steps - float(turn);
-    at.hot = hot_spot(dot(eye, frame.sun_direction));
+    float toward_sun = dot(eye, frame.sun_direction), apart = angle_of(toward_sun);
+    at.hot = wd_sunlit_hot(apart);
+    at.cloud = leaf_cloud(toward_sun) + WD_CLOUD_LEAST;
+    at.disc_hot = disc_hot_spot(apart);
     return at;
 }
 
@@ -83,7 +86,7 @@ vec2 sunlit_of(int model, wd_sunlit_mix at)
                  + sunlit_of_pair(low.z, low.w, at) * (at.eye - both)
                  + sunlit_of_pair(high.x, high.y, at) * (at.sun - both)
                  + sunlit_of_pair(high.z, high.w, at) * both;
-    return known * at.hot.x;
+    return known * at.cloud * at.hot;
 }
 
 /* `first`: of leaves or of wood. */
@@ -131,11 +134,11 @@ float stand_sunlit(vec3 eye, wd_crown crown, wd_lit_leaves model)
     float flatter = max(unpackHalf2x16(model.rough_flat).y - STAND_FLAT_FROM, 0.0);
     float apart = angle_of(dot(eye, frame.sun_direction));
     vec2 sunward = normalize(frame.sun_direction.xy + 1e-6);
-    float above = smoothstep(0.8, 0.98, eye.z), low_sun = 1.0 - smoothstep(0.3, 0.8, frame.sun_direction.z);
+    float above = smoothstep(0.82, 0.98, eye.z), low_sun = 1.0 - smoothstep(0.3, 0.8, frame.sun_direction.z);
     float dark = (1.0 - smoothstep(-0.35, 0.35, dot(eye.xy, sunward))) * smoothstep(0.6, 0.95, eye.z);
-    float hot = mix(mix(0.75, 0.83, smoothstep(0.5, 0.8, eye.z)), 0.7, low_sun);
-    float seen = mix(hot, mix(0.63, 0.67, low_sun), smoothstep(0.2, 1.4, apart));
-    seen *= mix(1.0, mix(1.27, 1.6, low_sun), above) * mix(1.25, 1.0, smoothstep(0.1, 0.45, eye.z));
+    float hot = mix(mix(0.79, 0.91, smoothstep(0.5, 0.8, eye.z)), 0.72, low_sun);
+    float seen = mix(hot, mix(0.66, 0.69, low_sun), smoothstep(0.0, 1.4, apart));
+    seen *= mix(1.0, mix(1.27, 1.6, low_sun), above) * mix(1.25, 1.0, smoothstep(0.1, 0.65, eye.z));
     seen *= 1.0 + STAND_FLAT * flatter * smoothstep(0.62, 0.8, eye.z);
     return seen * (1.0 - 0.6 * slenderness(crown) * dark);
 }

@@ -21,12 +21,11 @@ float angle_of(float cosine)
     return cosine < 0.0 ? 3.14159265 - angle : angle;
 }
 
-/* Leaves turned every way, seen and lit from directions whose cosine is given: mean share of their
- * reflected (x) and transmitted (y) light relative to a lit wall (Ross 1981). */
+/* Of leaves turned every way, reflected (x) and transmitted (y). */
 vec2 leaf_cloud(float cosine)
 {
-    float angle = angle_of(cosine), sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-    return vec2(sine + (3.14159265 - angle) * cosine, sine - angle * cosine) * (2.0 / 9.4247780);
+    float angle = angle_of(cosine);
+    return vec2(wd_cloud_reflects(cosine, angle), wd_cloud_transmits(cosine, angle));
 }
 
 float slenderness(wd_crown crown)
@@ -706,11 +705,12 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         int model_at = int(index * WD_LIT_MODEL_TEXELS);
         wd_lit_leaves model = lit_leaves(model_at);
         wd_sunlit_mix mixed = sunlit_mix(-pixel.direction);
-        hot = mixed.hot.y;
+        hot = mixed.disc_hot;
         bool leaf = pixel.material >= WD_MATERIAL_LEAF;
         uint leaves = pixel.material == WD_MATERIAL_CARD ? WD_SUNLIT_CARDS : WD_SUNLIT_DEEP;
         leaves = ALL_SINGLE || pixel.lit >= 0.0 ? WD_SUNLIT_LEAVES : leaves;
         mixed.place += (leaf ? leaves : WD_SUNLIT_WOOD) * WD_SUNLIT_PLACES;
+        mixed.cloud = !leaf ? vec2(1.0, mixed.cloud.x) : leaves == WD_SUNLIT_LEAVES ? vec2(1.0) : mixed.cloud;
         uint seen_as = pixel.lit >= 0.0 ? WD_SKYLIT_LEAVES : WD_SKYLIT_CLOUDS;
         vec4 skylit = skylit_of(model_at, mixed, leaf ? seen_as : WD_SKYLIT_WOOD);
         wd_crown crown = crown_of(tree, model);

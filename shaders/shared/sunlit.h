@@ -50,13 +50,35 @@ WD_FUNC float wd_lower_sides(float sine)
  * nearer than this hides the sun, and by which power of the distance that goes with. */
 #define WD_NEAR_SHADE_M 0.08f
 
+/* Leaves turned every way, seen and lit from directions so far apart: mean share of their reflected and of their
+ * transmitted light relative to a lit wall (Ross 1981). */
+WD_FUNC float wd_cloud_reflects(float cosine, float angle)
+{
+    return (WD_SQRT(WD_MAX(1.0f - cosine * cosine, 0.0f)) + (3.14159265f - angle) * cosine) * (2.0f / 9.4247780f);
+}
+
+WD_FUNC float wd_cloud_transmits(float cosine, float angle)
+{
+    return (WD_SQRT(WD_MAX(1.0f - cosine * cosine, 0.0f)) - angle * cosine) * (2.0f / 9.4247780f);
+}
+
+/* The table holds what a model sends over what an even cloud of leaves would, whose own light has a little added, so that
+ * this is never over nothing, and over how an eye that comes nearer to the sun sees more of what this reaches: what is
+ * left of both hardly bends between the table's ways. */
+#define WD_CLOUD_LEAST 0.02f
+
+WD_FUNC float wd_sunlit_hot(float angle)
+{
+    return 1.0f + 0.5f * WD_EXP(-6.0f * angle);
+}
+
 #define WD_SUNLIT_TURNS 7u
 #define WD_SUNLIT_PLACES 140u /* WD_SUN_RINGS * WD_EYE_RINGS * WD_SUNLIT_TURNS */
-/* Two numbers each. Of leaves as a cloud, reflected and transmitted over a lit wall to which depth leaves as much of the
- * sun as to what shows them: */
+/* Two numbers each, over wd_sunlit_hot. Of leaves as a cloud, over wd_cloud_* and what depth leaves of the sun to what
+ * shows them: */
 #define WD_SUNLIT_CARDS 0u  /* a card, */
 #define WD_SUNLIT_DEEP 1u   /* or places of their own. */
-#define WD_SUNLIT_WOOD 2u   /* Of wood, a factor on what is left to it; as a cloud, reflected over a lit wall. */
+#define WD_SUNLIT_WOOD 2u   /* Of wood, a factor on what is left to it; and as a cloud. */
 #define WD_SUNLIT_LEAVES 3u /* Of single leaves, the former. */
 #define WD_SUNLIT_KINDS 7u
 

@@ -70,6 +70,8 @@ enum {
     WOOD, WOOD_DEEP,        /* of the wood seen, and the same by depth; */
     WOOD_LEFT,              /* its area by depth */
     MIRRORED,               /* by the wax of leaves */
+    LIT,                    /* reflected and transmitted, and */
+    WOOD_LIT,               /* the wood, where those are over a cloud's (over_cloud) */
     SENT
 };
 
@@ -399,6 +401,21 @@ static float steps_apart(const struct eye *eye, uint32_t sun_ring, uint32_t way)
     return 2 * (WD_SUNLIT_TURNS - 1) * fminf(apart, 1 - apart);
 }
 
+/* What a model sends over what wd_cloud_* and wd_sunlit_hot tell. */
+static struct sent over_cloud(const struct sent *sent, float cosine)
+{
+    struct sent over = *sent;
+    float angle = acosf(fminf(fmaxf(cosine, -1), 1)), hot = wd_sunlit_hot(angle);
+    float reflects = hot * (wd_cloud_reflects(cosine, angle) + WD_CLOUD_LEAST);
+    float transmits = hot * (wd_cloud_transmits(cosine, angle) + WD_CLOUD_LEAST);
+    over.of[LIT] = (sent->of[REFLECTED] + sent->of[TRANSMITTED]) / hot;
+    over.of[WOOD_LIT] = sent->of[WOOD] / hot;
+    over.of[REFLECTED] /= reflects;
+    over.of[TRANSMITTED] /= transmits;
+    over.of[WOOD] /= reflects;
+    return over;
+}
+
 /* Least squares: what a table that is mixed between steps is to hold, so that it comes nearest to all that
  * was sent. A triangle of normal equations: of each step, and of it and the next. */
 struct steps {
@@ -442,9 +459,12 @@ static void sent_between(struct sent sent[WD_SUNLIT_TURNS], const struct fit *fi
     bool overhead = eye_ring + 1 == WD_EYE_RINGS || sun_ring + 1 == WD_SUN_RINGS;
     for (uint32_t eye = 0; eye < EYES; eye++)
         for (uint32_t way = first; way < end && fit->eyes[eye].ring == eye_ring; way++)
-            for (uint32_t turn = 0; turn < (overhead ? WD_SUNLIT_TURNS : 1); turn++)
-                add_sent(&steps, &fit->sent[eye][way],
+            for (uint32_t turn = 0; turn < (overhead ? WD_SUNLIT_TURNS : 1); turn++) {
+                float cosine = wd_v3_dot(fit->eyes[eye].toward, fit->suns[way]);
+                const struct sent over = over_cloud(&fit->sent[eye][way], cosine);
+                add_sent(&steps, &over,
                          overhead ? (float)turn : steps_apart(&fit->eyes[eye], sun_ring, way));
+            }
     solve(sent, &steps);
 }
 
@@ -504,9 +524,9 @@ static void fill_place(float *to, const float *of)
         to[2 * WD_SUNLIT_CARDS + side] = ratio(of[REFLECTED + side], of[CARD], of[SEEN]);
         to[2 * WD_SUNLIT_DEEP + side] = ratio(of[REFLECTED + side], of[DEEP], of[SEEN]);
     }
-    to[2 * WD_SUNLIT_WOOD] = ratio(of[WOOD], of[WOOD_DEEP], of[SEEN]);
+    to[2 * WD_SUNLIT_WOOD] = ratio(of[WOOD_LIT], of[WOOD_DEEP], of[SEEN]);
     to[2 * WD_SUNLIT_WOOD + 1] = ratio(of[WOOD], of[WOOD_LEFT], of[SEEN]);
-    to[2 * WD_SUNLIT_LEAVES] = ratio(of[REFLECTED] + of[TRANSMITTED], of[BY_DEPTH], of[SEEN]);
+    to[2 * WD_SUNLIT_LEAVES] = ratio(of[LIT], of[BY_DEPTH], of[SEEN]);
 }
 
 static void fill_table(struct wd_tree_model *model, const struct fit *fit)
