@@ -282,7 +282,7 @@ vec3 free_disc_light(vec3 eye, wd_crown crown, wd_lit_leaves model)
     float from_above = smoothstep(0.1, 0.6, eye.z), with_light = smoothstep(-0.1, 0.5, dot(eye, frame.sun_direction));
     float flatter = max(unpackHalf2x16(model.rough_flat).y - FLAT_FROM, 0.0);
     float each = mix(1.0, 1.07, from_above) * mix(0.95, 1.01, with_light) * (1.0 + FLAT_LEAVES * flatter);
-    float by_depth = mix(1.05, 0.975, smoothstep(0.25, 0.95, frame.sun_direction.z));
+    float by_depth = mix(1.05, 0.975, smoothstep(0.25, 0.95, frame.sun_direction.z)) * mix(1.06, 0.99, with_light);
     return mix(vec3(1.0), vec3(each, by_depth, mix(1.0, 1.06, from_above)), is_tree(crown));
 }
 
