@@ -438,7 +438,7 @@ const float FEW_DISCS = 100.0, MANY_DISCS = 400.0, FREE_DISCS = 4.0;
  * tells some of its shade again: factors on each disc's own share of the sun and on the mean. Where there is no map, a
  * stand's cover stands for the shade that these make up for. By path-traced stands of bench75k and of beeches. */
 const float STAND_WAY = 0.4, STAND_NO_MAP = 1.20;
-const vec2 STAND_DISC_SUN = vec2(1.12, 1.03);
+const vec2 STAND_DISC_SUN = vec2(1.12, 1.02);
 
 /* What of the sun a disc's own tree leaves it: what is known of ways through that. `sun`: factors on each disc's share
  * and on the mean by depth. A map that holds leaves tells more where discs are as near as they are; a disc may lie a
