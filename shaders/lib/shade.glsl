@@ -275,8 +275,8 @@ const float FLAT_FROM = 0.55, FLAT_LEAVES = 1.04;
 
 /* Of a tree that stands free, an eye from above sees discs that lie deeper among its leaves than the leaves it would
  * see, one against the light some that others would leave less of the sun: factors on each disc's share of it, on the
- * mean by depth, which is too much under a high sun, and on the sky's. By path-traced rows of six species at 32 and 128
- * px, from 4 and 40 degrees above, under five suns 15 to 60 degrees high. */
+ * mean by depth, which is too much under a high sun and too little against the light, and on the sky's. By path-traced
+ * rows of six species at 32 and 128 px, from 4 and 40 degrees above, under five suns 15 to 60 degrees high. */
 vec3 free_disc_light(vec3 eye, wd_crown crown, wd_lit_leaves model)
 {
     float from_above = smoothstep(0.1, 0.6, eye.z), with_light = smoothstep(-0.1, 0.5, dot(eye, frame.sun_direction));

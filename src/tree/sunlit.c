@@ -458,13 +458,13 @@ static void sent_between(struct sent sent[WD_SUNLIT_TURNS], const struct fit *fi
     uint32_t first = WD_SUN_RING_FIRST(sun_ring), end = first + WD_SUN_RING_COUNT(sun_ring);
     bool overhead = eye_ring + 1 == WD_EYE_RINGS || sun_ring + 1 == WD_SUN_RINGS;
     for (uint32_t eye = 0; eye < EYES; eye++)
-        for (uint32_t way = first; way < end && fit->eyes[eye].ring == eye_ring; way++)
-            for (uint32_t turn = 0; turn < (overhead ? WD_SUNLIT_TURNS : 1); turn++) {
-                float cosine = wd_v3_dot(fit->eyes[eye].toward, fit->suns[way]);
-                const struct sent over = over_cloud(&fit->sent[eye][way], cosine);
+        for (uint32_t way = first; way < end && fit->eyes[eye].ring == eye_ring; way++) {
+            float cosine = wd_v3_dot(fit->eyes[eye].toward, fit->suns[way]);
+            const struct sent over = over_cloud(&fit->sent[eye][way], cosine);
+            for (uint32_t turn = 0; turn < (overhead ? WD_SUNLIT_TURNS : 1); turn++)
                 add_sent(&steps, &over,
                          overhead ? (float)turn : steps_apart(&fit->eyes[eye], sun_ring, way));
-            }
+        }
     solve(sent, &steps);
 }
 
