@@ -9,6 +9,7 @@ struct wd_crown {
     float foot_z; /* rel */
     float sward;  /* 1 where the plant is one of low or dense grasses that close over the ground, and have no
                      sides that light could come in by */
+    float told;   /* how far its model's tables tell its light (shared/sunlit.h) */
 };
 
 wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
@@ -23,6 +24,7 @@ wd_crown crown_of(wd_tree tree, wd_lit_leaves model)
     float roughness = unpackHalf2x16(model.rough_flat).x;
     float closes = roughness <= -1.0 ? 1.0 : 1.0 - smoothstep(0.22, 0.35, crown.radii_m.z);
     crown.sward = roughness < 0.0 ? closes : 0.0;
+    crown.told = 0.0;
     return crown;
 }
 

@@ -78,9 +78,9 @@ wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec4 sid
 }
 
 /* A tree that stands free is lit as its model's table and the canopy's field say. */
-void know_neighbours(inout wd_alone alone, wd_past_neighbours past, float has_table, float herbs)
+void know_neighbours(inout wd_alone alone, wd_past_neighbours past, float told, float herbs)
 {
-    alone.by_crown = past.share * has_table * (1.0 - alone.share);
+    alone.by_crown = past.share * told * (1.0 - alone.share);
     alone.high = mix(alone.high, past.high * herbs, alone.by_crown);
     alone.low = mix(alone.low, past.low * herbs, alone.by_crown);
     alone.sides = mix(alone.sides, 0.75 * alone.high + 0.25 * alone.low, alone.by_crown);

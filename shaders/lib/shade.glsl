@@ -217,10 +217,19 @@ vec4 canopy_light_near(vec2 place_m, int layer)
 #endif
 }
 
-/* A model's table holds for single plants, as far as they are no herbs. */
-float has_table(wd_crown crown)
+/* By the sky over the ground beside the crown, toward the sun: whether the plant stands free of trees. */
+float stands_free(wd_crown crown)
 {
-    return smoothstep(0.25, 0.35, crown.radii_m.z) * (1.0 - crown.sward);
+    vec2 center = crown.center_rel.xy + push.camera_m;
+    vec4 open = canopy_light_near(center + 1.5 * crown.radii_m.x * frame.sun_direction.xy, 0);
+    return smoothstep(0.2, 0.5, 0.25 * dot(open, open));
+}
+
+/* A model's tables hold for trees and shrubs, and for herbs that stand free, of trees (`free`) and of one another. */
+float tables_hold(wd_crown crown, float free, float herbs)
+{
+    float alone = free * (1.0 - smoothstep(0.1, 0.4, herbs));
+    return (1.0 - crown.sward) * mix(alone, 1.0, smoothstep(0.25, 0.35, crown.radii_m.z));
 }
 
 /* How far from a crown's middle, east and north, its own leaves are no part of what the canopy's field tells, which
@@ -234,13 +243,12 @@ float clear_of_crown_m(wd_crown crown)
     return max(1.1 * crown.radii_m.x, clear_m);
 }
 
-/* By the sky over the ground beside the crown, toward the sun: whether it stands free; and each quarter of its
- * sky where the crown is not before it. Low plants close over the ground, of which that knows nothing. */
-wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter shelter, float height_m)
+/* Whether it stands free, and each quarter of its sky where the crown is not before it. Low plants close over the
+ * ground, of which that knows nothing. */
+wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter shelter, float free)
 {
+    float height_m = pixel.rel.z - crown.foot_z;
     vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(clear_of_crown_m(crown));
-    vec2 sunward = center + 1.5 * crown.radii_m.x * frame.sun_direction.xy;
-    vec4 open = canopy_light_near(sunward, 0);
     vec4 field = vec4(canopy_light_near(center + corner, 0).xy, canopy_light_near(center - corner, 0).zw);
     vec4 high = vec4(canopy_light_near(center + corner, 2).xy, canopy_light_near(center - corner, 2).zw);
     vec4 low = vec4(canopy_light_near(center + corner, 3).xy, canopy_light_near(center - corner, 3).zw);
@@ -249,8 +257,8 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     alone.beside = field * field * herbs;
     alone.high = high * high * herbs;
     alone.low = low * low * herbs;
-    alone.share = smoothstep(0.2, 0.5, 0.25 * dot(open, open)) * has_table(crown);
-    alone.outside = mix(1.0, eye_outside(crown, -pixel.direction), has_table(crown));
+    alone.share = free * crown.told;
+    alone.outside = mix(1.0, eye_outside(crown, -pixel.direction), crown.told);
     alone.lets.xy = mix(vec2(pixel.openness), skylit.xy * wd_skylit_above(pixel.openness), alone.outside);
     alone.lets.zw = skylit.zw * wd_skylit_below(pixel.openness);
     alone.leaf = pixel.material >= WD_MATERIAL_LEAF ? is_tree(crown) : 0.0;
@@ -323,7 +331,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     bool one_leaf = ALL_SINGLE || pixel.lit >= 0.0;
     float over = pow(canopy_above(shelter.layer_m, place.rel.z - crown.foot_z), NEIGHBOURS_OVER);
     float from_above = smoothstep(0.15, 0.45, -pixel.direction.z) * (1.0 - shelter.within);
-    from_above *= has_table(crown);
+    from_above *= crown.told;
     float hidden = mix(1.0, over, from_above);
     alone.sides = exp2(hidden * log2(max(alone.beside, 1e-3)));
     alone.high = exp2(hidden * log2(max(alone.high, 1e-3)));
@@ -335,7 +343,7 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.lets.xy *= 1.0 + alone.share * low_sky * brighter_low_sky();
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown, model).z, alone.share) : 1.0;
     alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
-    know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, side, pixel.openness), has_table(crown),
+    know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, side, pixel.openness), crown.told,
                     through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z)));
     alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, max(alone.share, alone.by_crown) * is_tree(crown));
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
@@ -360,8 +368,8 @@ void shade_by_crown(inout wd_place place, wd_crown crown, vec2 curve, float open
     wd_crown_way way = crown_way(crown, place.rel);
     float path_m = way.ends_m - way.begins_m;
     float through = wd_crown_through(crown.radii_m, path_m, openness);
-    place.about = mix(through, wd_crown_lit(through, curve.x, curve.y), has_table(crown));
-    place.own = place.about * mix(1.0, factor, has_table(crown));
+    place.about = mix(through, wd_crown_lit(through, curve.x, curve.y), crown.told);
+    place.own = place.about * mix(1.0, factor, crown.told);
     float left_m = max(way.ends_m, crown_card_m(crown, place.rel)); /* all of the tree itself */
     place.ahead_m = mix(path_m, left_m, free) + cascade_numbers(cascade)[WD_CASCADE_TEXEL_M];
 }
@@ -627,7 +635,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), max(near, plain));
     float deeper = reduced ? mix(1.0, reduced_sunlit(eye), free * is_tree(crown)) : 1.0;
     vec2 known = sunlit * (deeper * mix(stand_sunlit(eye, crown, model), 1.0, free));
-    vec2 whole = mix(blades * herbs_sunlit(eye), known, has_table(crown));
+    vec2 whole = mix(blades * herbs_sunlit(eye), known, crown.told);
     place.sides = mix(whole, blades, mapped);
     place.transmittance = leaf_transmittance(model);
     place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
@@ -642,8 +650,8 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     vec2 wax = unpackHalf2x16(model.cloud_wax);
     float mirrors = WD_WAX * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
-    place.gloss = mix(place.gloss, mirrors * (place.sides.x + place.sides.y), has_table(crown));
-    place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), has_table(crown));
+    place.gloss = mix(place.gloss, mirrors * (place.sides.x + place.sides.y), crown.told);
+    place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), crown.told);
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
@@ -714,7 +722,9 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         uint seen_as = pixel.lit >= 0.0 ? WD_SKYLIT_LEAVES : WD_SKYLIT_CLOUDS;
         vec4 skylit = skylit_of(model_at, mixed, leaf ? seen_as : WD_SKYLIT_WOOD);
         wd_crown crown = crown_of(tree, model);
-        alone = crown_alone(pixel, crown, skylit, shelter, pixel.rel.z - crown.foot_z);
+        float free = stands_free(crown);
+        crown.told = tables_hold(crown, free, shelter.herbs);
+        alone = crown_alone(pixel, crown, skylit, shelter, free);
         mixed.opposite *= alone.share;
         vec2 sunlit = sunlit_of(model_at, mixed);
         if (leaf)

@@ -7,7 +7,11 @@
 #include "base/memory.h"
 #include "tree/silhouette.h"
 
-enum { VIEWS = 2, STEPS = 3, MOST_TURNS = 4 };
+enum {
+    VIEWS = 2, /* from the side and from half above */
+    MORE_VIEWS = 8, FEW_TRIANGLES = 10000, /* of meshes whose few leaves leave more to chance */
+    STEPS = 3, MOST_TURNS = 4
+};
 /* Beyond these, leaves would no longer look like leaves. */
 static const float LEAST = 0.25f, MOST = 4;
 /* How much of a leaf's growth is seen in a crown, mostly: the rest hides behind other leaves. */
@@ -23,7 +27,8 @@ struct fit {
     uint32_t *parts;         /* [vertex] number of its leaf */
     struct middle *middles;  /* [leaf] */
     struct wd_vec3 *unscaled; /* [vertex] */
-    struct wd_silhouette wood[VIEWS]; /* what it covers, whatever the size of leaves */
+    struct wd_silhouette *views, *wood; /* [view_count]; wood: what it covers, whatever the size of leaves */
+    int view_count;
 };
 
 static struct wd_vec3 position(const struct wd_tree_mesh *mesh, uint32_t vertex)
@@ -86,16 +91,20 @@ static void scale_leaves(struct fit *fit, float factor)
     }
 }
 
-static float covered(const struct fit *fit)
+static float seen(const struct wd_silhouette *views, int count)
 {
     size_t sum = 0;
-    struct wd_silhouette views[VIEWS];
-    memcpy(views, fit->wood, sizeof views);
-    wd_silhouette_cover(views, VIEWS, fit->mesh, fit->mesh->wood_index_count,
-                        fit->mesh->index_count);
-    for (int i = 0; i < VIEWS; i++)
+    for (int i = 0; i < count; i++)
         sum += wd_silhouette_count(&views[i]);
     return (float)sum;
+}
+
+static float covered(const struct fit *fit)
+{
+    memcpy(fit->views, fit->wood, (size_t)fit->view_count * sizeof *fit->views);
+    wd_silhouette_cover(fit->views, fit->view_count, fit->mesh, fit->mesh->wood_index_count,
+                        fit->mesh->index_count);
+    return seen(fit->views, fit->view_count);
 }
 
 /* Coverage grows with the factor, slower and slower: the secant through the last two tries. */
@@ -117,30 +126,42 @@ static float find_factor(struct fit *fit, float wanted)
     return factor;
 }
 
-float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full)
+/* Level and from half above in turn, pairs an eighth of a turn apart. */
+static struct wd_vec3 view_toward(int view)
 {
     static const struct wd_vec3 towards[VIEWS] = {{0.998f, 0, 0.07f}, {0, 0.77f, 0.64f}};
+    static const float eighths[MORE_VIEWS / VIEWS][2] = {{1, 0}, {0.70710678f, 0.70710678f}, {0, 1}, {-0.70710678f, 0.70710678f}};
+    struct wd_vec3 v = towards[view % VIEWS];
+    const float *turn = eighths[view / VIEWS];
+    return WD_V3(turn[0] * v.x - turn[1] * v.y, turn[1] * v.x + turn[0] * v.y, v.z);
+}
+
+float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full)
+{
     if (reduced->wood_index_count == reduced->index_count)
         return 1;
+    int view_count = full->index_count < 3 * FEW_TRIANGLES ? MORE_VIEWS : VIEWS;
     struct fit fit = {
         .mesh = reduced,
         .parts = wd_alloc_array(reduced->vertex_count, sizeof *fit.parts),
         .unscaled = wd_alloc_array(reduced->vertex_count, sizeof *fit.unscaled),
+        .views = wd_alloc_array((size_t)view_count, sizeof *fit.views),
+        .wood = wd_alloc_array((size_t)view_count, sizeof *fit.wood),
+        .view_count = view_count,
     };
-    size_t wanted = 0;
-    struct wd_silhouette whole[VIEWS];
-    for (int i = 0; i < VIEWS; i++)
-        wd_silhouette_init(&whole[i], full, towards[i]);
-    memcpy(fit.wood, whole, sizeof whole);
-    wd_silhouette_cover(fit.wood, VIEWS, reduced, 0, reduced->wood_index_count);
-    wd_silhouette_cover(whole, VIEWS, full, 0, full->index_count);
-    for (int i = 0; i < VIEWS; i++)
-        wanted += wd_silhouette_count(&whole[i]);
+    for (int i = 0; i < view_count; i++)
+        wd_silhouette_init(&fit.views[i], full, view_toward(i));
+    memcpy(fit.wood, fit.views, (size_t)view_count * sizeof *fit.views);
+    wd_silhouette_cover(fit.wood, view_count, reduced, 0, reduced->wood_index_count);
+    wd_silhouette_cover(fit.views, view_count, full, 0, full->index_count);
+    float wanted = seen(fit.views, view_count);
     find_middles(&fit);
-    float factor = find_factor(&fit, (float)wanted);
+    float factor = find_factor(&fit, wanted);
     free(fit.parts);
     free(fit.middles);
     free(fit.unscaled);
+    free(fit.views);
+    free(fit.wood);
     wd_tree_mesh_update_bounds(reduced);
     return factor;
 }

@@ -1,16 +1,25 @@
 #include "tree/form.h"
 
+/* A dead tree's crown is what its stubs reach in the mean; whole limbs, a few of which are left, reach as far as its
+ * envelope, which is so many times as wide. */
+static const float LIVING_CROWN = 2.4f;
+
+/* Of the envelope. */
+static float crown_m(const struct wd_species *species, double dbh_cm)
+{
+    return (species->form == WD_FORM_SNAG ? LIVING_CROWN : 1) * (float)wd_species_crown_m(species, dbh_cm);
+}
+
 struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
                                     const struct wd_grow_params *params)
 {
     float height = params->height_m, open = params->openness;
     double dbh_cm = 100 * (double)params->dbh_m;
     struct wd_random random = wd_random_of(params->seed, 0x7ee5);
-    float crown = (float)wd_species_crown_m(species, dbh_cm);
+    float crown = crown_m(species, dbh_cm);
     crown *= (float)wd_species_open_crown(species, (double)open);
     crown *= wd_random_range(&random, 0.92f, 1.08f);
-    float typical_crown = (float)wd_species_crown_m(
-        species, wd_species_dbh_cm(species, (double)species->typical_height_m));
+    float typical_crown = crown_m(species, wd_species_dbh_cm(species, (double)species->typical_height_m));
     float young = wd_minf(height / species->typical_height_m, 1); /* in the open: clear later */
     float clear = wd_mixf(species->crown_base_forest, young * species->crown_base_open, open);
     float length = height * (1 - clear) /

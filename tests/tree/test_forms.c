@@ -58,12 +58,15 @@ static void variants_look_different(void **state)
     wd_arena_finish(&arena);
 }
 
-/* Crowns are as wide as the allometry that the file cites. */
+/* Crowns are as wide as the allometry that the file tells, by which trees are planted: others would be
+ * drawn stretched, stems and leaves with them. */
 static void crowns_follow_the_allometry(void **state)
 {
     (void)state;
     static const char *const names[] = {"oak", "beech", "birch", "spruce", "pine", "maple",
-                                        "larch", "angelique", "fern"};
+                                        "larch", "angelique", "willow", "catalpa", "coconut",
+                                        "hazel", "camellia-red", "fern", "grass",
+                                        "snag"};
     struct wd_arena arena = {0};
     for (size_t s = 0; s < sizeof names / sizeof *names; s++) {
         struct wd_species species = test_species(&arena, names[s]);
