@@ -5,9 +5,11 @@
 struct wd_sunlit_mix {
     uint place, eye_ring;
     float eye, sun, turn;
+    float wood_eye; /* `eye` of wood's light of the sun */
     float opposite; /* of half a turn, how far the eye is from the sun's side */
     float hot;
-    vec2 cloud;     /* what the table's two numbers are over besides */
+    vec2 cloud;     /* what the table's two numbers are over besides, */
+    float wood;     /* and its number of many branches */
     float disc_hot;
 };
 
@@ -28,8 +30,9 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
     wd_sunlit_mix at;
     at.eye_ring = eye_ring & 255u;
     at.place = wd_sunlit_place(eye_ring & 255u, (sun_ring & 255u) - 1u, turn);
-    at.eye = float(eye_ring >> 8) * (1.0 / 65535.0);
-    /* on the sun's side a level eye sees what one somewhat above sees, not below */
+    at.wood_eye = float(eye_ring >> 8) * (1.0 / 65535.0);
+    /* on the sun's side a level eye sees of leaves what one somewhat above sees, not below */
+    at.eye = at.wood_eye;
     at.eye *= at.eye_ring == 0u ? mix(2.0 - at.eye, 1.0, opposite) : 1.0;
     at.opposite = opposite;
     at.sun = float(sun_ring >> 8) * (1.0 / 65535.0);
@@ -37,6 +40,7 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
     float toward_sun = dot(eye, frame.sun_direction), apart = angle_of(toward_sun);
     at.hot = wd_sunlit_hot(apart);
     at.cloud = leaf_cloud(toward_sun) + WD_CLOUD_LEAST;
+    at.wood = wd_wood_reflects(toward_sun, apart, cosine, opposite * 3.14159265, sqrt(dot(a, a) * dot(b, b)));
     at.disc_hot = disc_hot_spot(apart);
     return at;
 }

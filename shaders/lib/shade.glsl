@@ -718,7 +718,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         uint leaves = pixel.material == WD_MATERIAL_CARD ? WD_SUNLIT_CARDS : WD_SUNLIT_DEEP;
         leaves = ALL_SINGLE || pixel.lit >= 0.0 ? WD_SUNLIT_LEAVES : leaves;
         mixed.place += (leaf ? leaves : WD_SUNLIT_WOOD) * WD_SUNLIT_PLACES;
-        mixed.cloud = !leaf ? vec2(1.0, mixed.cloud.x) : leaves == WD_SUNLIT_LEAVES ? vec2(1.0) : mixed.cloud;
+        mixed.cloud = !leaf ? vec2(1.0, mixed.wood) : leaves == WD_SUNLIT_LEAVES ? vec2(1.0) : mixed.cloud;
         uint seen_as = pixel.lit >= 0.0 ? WD_SKYLIT_LEAVES : WD_SKYLIT_CLOUDS;
         vec4 skylit = skylit_of(model_at, mixed, leaf ? seen_as : WD_SKYLIT_WOOD);
         wd_crown crown = crown_of(tree, model);
@@ -726,6 +726,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         crown.told = tables_hold(crown, free, shelter.herbs);
         alone = crown_alone(pixel, crown, skylit, shelter, free);
         mixed.opposite *= alone.share;
+        mixed.eye = leaf ? mixed.eye : mixed.wood_eye;
         vec2 sunlit = sunlit_of(model_at, mixed);
         if (leaf)
             place = leaf_place(pixel, crown, model, alone.share, sunlit, hot, cascade);

@@ -67,6 +67,13 @@ WD_FUNC float wd_cloud_transmits(float cosine, float angle)
  * left of both hardly bends between the table's ways. */
 #define WD_CLOUD_LEAST 0.02f
 
+/* The same of wood: three fifths are upright stems, lit by how far eye and sun are apart on the ground (`turned`) and how
+ * level both are (`level`, the cosines of their elevations, one times the other), with less added. */
+WD_FUNC float wd_wood_reflects(float cosine, float angle, float turned_cosine, float turned, float level)
+{
+    return 0.4f * wd_cloud_reflects(cosine, angle) + 0.6f * level * wd_cloud_reflects(turned_cosine, turned) + 0.003f;
+}
+
 WD_FUNC float wd_sunlit_hot(float angle)
 {
     return 1.0f + 0.5f * WD_EXP(-6.0f * angle);
@@ -78,7 +85,7 @@ WD_FUNC float wd_sunlit_hot(float angle)
  * shows them: */
 #define WD_SUNLIT_CARDS 0u  /* a card, */
 #define WD_SUNLIT_DEEP 1u   /* or places of their own. */
-#define WD_SUNLIT_WOOD 2u   /* Of wood, a factor on what is left to it; and as a cloud. */
+#define WD_SUNLIT_WOOD 2u   /* Of wood, a factor on what is left to it; and of many branches, over wd_wood_reflects. */
 #define WD_SUNLIT_LEAVES 3u /* Of single leaves, the former. */
 #define WD_SUNLIT_KINDS 7u
 

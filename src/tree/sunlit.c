@@ -401,18 +401,25 @@ static float steps_apart(const struct eye *eye, uint32_t sun_ring, uint32_t way)
     return 2 * (WD_SUNLIT_TURNS - 1) * fminf(apart, 1 - apart);
 }
 
-/* What a model sends over what wd_cloud_* and wd_sunlit_hot tell. */
-static struct sent over_cloud(const struct sent *sent, float cosine)
+static float angle_of(float cosine)
+{
+    return acosf(fminf(fmaxf(cosine, -1), 1));
+}
+
+/* What a model sends over what wd_cloud_*, wd_wood_reflects and wd_sunlit_hot tell. */
+static struct sent over_cloud(const struct sent *sent, struct wd_vec3 eye, struct wd_vec3 sun)
 {
     struct sent over = *sent;
-    float angle = acosf(fminf(fmaxf(cosine, -1), 1)), hot = wd_sunlit_hot(angle);
+    float cosine = wd_v3_dot(eye, sun), angle = angle_of(cosine), hot = wd_sunlit_hot(angle);
+    float level = sqrtf((1 - eye.z * eye.z) * (1 - sun.z * sun.z));
+    float turned = level > 1e-4f ? (eye.x * sun.x + eye.y * sun.y) / level : 1;
     float reflects = hot * (wd_cloud_reflects(cosine, angle) + WD_CLOUD_LEAST);
     float transmits = hot * (wd_cloud_transmits(cosine, angle) + WD_CLOUD_LEAST);
     over.of[LIT] = (sent->of[REFLECTED] + sent->of[TRANSMITTED]) / hot;
     over.of[WOOD_LIT] = sent->of[WOOD] / hot;
     over.of[REFLECTED] /= reflects;
     over.of[TRANSMITTED] /= transmits;
-    over.of[WOOD] /= reflects;
+    over.of[WOOD] /= hot * wd_wood_reflects(cosine, angle, turned, angle_of(turned), level);
     return over;
 }
 
@@ -459,8 +466,7 @@ static void sent_between(struct sent sent[WD_SUNLIT_TURNS], const struct fit *fi
     bool overhead = eye_ring + 1 == WD_EYE_RINGS || sun_ring + 1 == WD_SUN_RINGS;
     for (uint32_t eye = 0; eye < EYES; eye++)
         for (uint32_t way = first; way < end && fit->eyes[eye].ring == eye_ring; way++) {
-            float cosine = wd_v3_dot(fit->eyes[eye].toward, fit->suns[way]);
-            const struct sent over = over_cloud(&fit->sent[eye][way], cosine);
+            const struct sent over = over_cloud(&fit->sent[eye][way], fit->eyes[eye].toward, fit->suns[way]);
             for (uint32_t turn = 0; turn < (overhead ? WD_SUNLIT_TURNS : 1); turn++)
                 add_sent(&steps, &over,
                          overhead ? (float)turn : steps_apart(&fit->eyes[eye], sun_ring, way));
