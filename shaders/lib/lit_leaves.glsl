@@ -131,7 +131,7 @@ vec3 scattered_on(vec3 leaf, wd_lit_leaves model)
  * another's shade (Li and Strahler 1992). Of leaves that lie flatter (mean |z| of their faces) than oaks' those that are
  * seen from above are the better lit. By path-traced stands of five species under suns of 20 and 50 degrees, seen
  * from eleven angles (docs/lighting.md). */
-const float STAND_FLAT_FROM = 0.66, STAND_FLAT = 1.05;
+const float STAND_FLAT_FROM = 0.66, STAND_FLAT = 1.2;
 
 float stand_sunlit(vec3 eye, wd_crown crown, wd_lit_leaves model)
 {

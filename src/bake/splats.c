@@ -67,13 +67,14 @@ static uint32_t albedo_level(float albedo, uint32_t random)
     return dithered(level, above * (1 - half_step * (1 - above)), random);
 }
 
-static uint32_t point_look(const struct wd_tree_point *point)
+/* `gain`: on the albedo. */
+static uint32_t point_look(const struct wd_tree_point *point, float gain)
 {
     uint32_t look = point->kind & WD_POINT_LEAF ? 0 : 1u << WD_SPLAT_WOOD_BIT;
     uint32_t random = wd_hash3(point->albedo, point->normal, point->face);
     for (uint32_t k = 0; k < 3; k++) {
         random = wd_hash1(random);
-        look |= albedo_level(wd_srgb_decode((uint8_t)(point->albedo >> (8 * k))), random) << (5 * k);
+        look |= albedo_level(gain * wd_srgb_decode((uint8_t)(point->albedo >> (8 * k))), random) << (5 * k);
     }
     float openness = (float)(point->albedo >> 24) * (WD_SPLAT_OPENNESS_MOST / 255.0f);
     look |= dithered(openness, openness - floorf(openness), wd_hash1(random)) << WD_SPLAT_OPENNESS_BIT;
@@ -132,7 +133,7 @@ static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *
         drawn->points[used * step + stratum] = *point;
         drawn->lit[used * step + stratum] = lit[used] = (uint32_t)i;
         to[used] = leaf_at(&splats->model, point);
-        looks[used++] = point_look(point);
+        looks[used++] = point_look(point, 1);
     }
     for (uint32_t i = used; used && i < WD_STRATUM_SPLATS; i++) {
         drawn->points[i * step + stratum] = drawn->points[(i - used) * step + stratum];
@@ -343,7 +344,7 @@ static bool fill_wood(struct wd_splats *splats, uint32_t half, const struct wd_t
         drawn->points[i] = *point;
         drawn->lit[i] = splats->lit[first + i] = chosen;
         splats->splats[first + i] = splat_at(&splats->model, point->position_m, point->face);
-        splats->looks[first + i] = point_look(point);
+        splats->looks[first + i] = point_look(point, 1);
     }
     free(which);
     free(order);
@@ -452,6 +453,9 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     /* trees near enough for triangles are seen level or from half above */
     splats->model.leaf_past_bark = 0.5f * (fits.past_bark[0] + fits.past_bark[1]);
     splats->model.thin_wood = 0.5f * (fits.thin[0] + fits.thin[1]);
+    for (size_t i = 0; i < WD_WOOD_SPLATS && points->wood_area_m2 > 0; i++)
+        splats->looks[WD_LEAF_STRATA * WD_STRATUM_SPLATS + i] =
+            point_look(&discs[0].points[i], 0.5f * (fits.bark[0] + fits.bark[1]));
     memcpy(splats->model.lower, fits.lower, sizeof fits.lower);
     for (int class = 0; class < 3; class++)
         wd_tree_points_finish(&discs[class]);

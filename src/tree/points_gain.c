@@ -5,7 +5,9 @@
  * drawing the mesh and windows of discs from the same sides, with depth, until discs cover as many
  * pixels as the mesh and show as much wood between the leaves. */
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/color.h"
 #include "base/dmath.h"
 #include "base/memory.h"
 #include "shared/hash.h"
@@ -14,7 +16,7 @@
 enum { FIRST_ROUNDS = 5, ROUNDS = 2, MOST_VIEWS = 6, MOST_WINDOWS = 48 };
 /* Of 256 discs, about as many as the smallest trees have whose thick wood is there as triangles, and of 2,048, where
  * all of it is. */
-enum { AT_THIN = 5, AT_TRIANGLES = 8 };
+enum { AT_THIN = 5, AT_TRIANGLES = 8, AT_BARK = 6 /* of 512: trees of 32 to 64 pixels */ };
 /* Discs much larger than their share of the surface would be a tree's only look. */
 static const float LEAST_GAIN = 0.02f, MOST_GAIN = 4;
 
@@ -206,6 +208,41 @@ static float thin_gain(const struct plan *plan, const float gains[2])
     return first > 0 ? wd_clampf(thin[0] / first, 0.5f, 2.5f) : 1;
 }
 
+/* Facets whose openness stands for the green albedo of their points. */
+static struct wd_facet *facets_of_bark(const struct wd_facet *facets, const struct wd_tree_points *discs, double *sum)
+{
+    struct wd_facet *bark = wd_alloc_array(discs->count + 1, sizeof *bark);
+    memcpy(bark, facets, discs->count * sizeof *bark);
+    *sum = 0;
+    for (size_t i = 0; i < discs->count; i++) {
+        bark[i].openness = wd_unorm_encode(wd_srgb_decode((uint8_t)(discs->points[i].albedo >> 8)));
+        *sum += bark[i].openness;
+    }
+    return bark;
+}
+
+/* Leaves hide discs on twigs among them more than those on a bare stem, whose bark may be another. The mesh shows what
+ * all discs have in the mean, for they are kept by how much of them is seen: factor on their albedo. */
+static float bark_gain(const struct plan *plan, const float gains[2])
+{
+    const struct wd_tree_points *discs = plan->classes[0]->discs;
+    double sum = 0;
+    struct plan of_bark = *plan;
+    if (!(plan->classes[0]->area_m2 > 0) || discs->count == 0)
+        return 1;
+    for (int view = 0; view < plan->view_count; view++)
+        of_bark.facets[view][0] = facets_of_bark(plan->facets[view][0], discs, &sum);
+    struct windows *windows = wd_alloc(sizeof *windows);
+    windows_init(windows, &of_bark, AT_BARK);
+    const struct wd_shown shown = show_discs(&of_bark, windows, gains, NULL);
+    windows_finish(windows, &of_bark);
+    free(windows);
+    for (int view = 0; view < plan->view_count; view++)
+        free(of_bark.facets[view][0]);
+    double mean = sum / (double)discs->count;
+    return shown.openness[0] > 0 ? wd_clampf((float)(mean * shown.wood / shown.openness[0]), 0.7f, 1.3f) : 1;
+}
+
 /* Windows leave chance in each count's gains, which change little from one to the next but where discs
  * cease to be larger and nearer than their share (wd_disc_close). */
 static void smooth(float gains[WD_POINT_GAINS])
@@ -241,6 +278,8 @@ static void fit_side(const struct plan *plan, struct wd_disc_fit *fits, int side
         fits->light.gains[side][k] = light[1];
         if (k == AT_THIN)
             fits->thin[side] = thin_gain(plan, gains);
+        if (k == AT_BARK)
+            fits->bark[side] = bark_gain(plan, gains);
         if (k == AT_TRIANGLES)
             fits->past_bark[side] = leaves > 0 ? past_bark(plan, gains) : 1;
         windows_finish(windows, plan);

@@ -8,7 +8,7 @@
 #include "shared/wax.h"
 #include "tree/leaves_open.h"
 
-enum { POINTS = 4096, EYES = 21, STEPS = 16, LOW_WAYS = 8, NEAR_EACH = 4 /* way of the sun */ };
+enum { POINTS = 4096, EYES = 21, STEPS = 16, LOW_WAYS = 8, NEAR_EACH = 4 /* way of the sun */, CELLS = 10 };
 
 /* Eyes stand between the sun's ways: of what an eye sees that looks along one of these, all would be lit. */
 static const uint32_t eyes_on_ring[WD_EYE_RINGS] = {5, 6, 5, 4, 1};
@@ -143,7 +143,7 @@ static float card_left(const struct fit *fit, struct wd_vec3 place, float openne
     return wd_crown_lit(wd_crown_through(fit->radii_m, path_m, openness), fit->curve[0], fit->curve[1]);
 }
 
-static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
+static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye, float mixed)
 {
     struct wd_vec3 toward = fit->eyes[eye].toward, face = point->face, normal = point->normal;
     turn_to_eye(&face, &normal, toward);
@@ -159,7 +159,7 @@ static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye)
         sent->of[behind ? TRANSMITTED : REFLECTED] += side * wd_sun_way_lit(point->lit, way);
         sent->of[BY_DEPTH] += side * point->left[way];
         sent->of[DEEP] += area * point->left[way];
-        sent->of[CARD] += area * card_left(fit, card, point->openness, way);
+        sent->of[CARD] += area * card_left(fit, card, mixed, way);
         if (area_above > 0 && !behind && cosine > 0 && wd_sun_way_lit(point->lit, way) > 0)
             sent->of[MIRRORED] += area * wax_mirrors(normal, toward, sun);
     }
@@ -357,8 +357,54 @@ static void fit_curve(struct fit *fit, const struct wd_tree_points *points,
     fit->curve[0] = n > 0 ? (float)exp((sy - (double)fit->curve[1] * sx) / n) : 1;
 }
 
+/* A texel of a picture has the mean openness of all that it shows, leaves and wood: that of a cell of the crown's outline,
+ * as the eye sees it. */
+struct cell {
+    float open, area;
+};
+
+struct cells {
+    struct wd_vec3 right, up;
+    float per_m;
+    struct cell of[CELLS][CELLS];
+};
+
+static struct cell *cell_at(struct cells *cells, struct wd_vec3 place)
+{
+    float x = wd_v3_dot(place, cells->right) * cells->per_m, y = wd_v3_dot(place, cells->up) * cells->per_m;
+    int row = (int)wd_clampf(y + 0.5f * CELLS, 0, CELLS - 1);
+    return &cells->of[row][(int)wd_clampf(x + 0.5f * CELLS, 0, CELLS - 1)];
+}
+
+static void fill_cells(struct cells *cells, const struct fit *fit, const struct wd_tree_points *points,
+                       const struct shown *shown, uint32_t eye)
+{
+    struct wd_vec3 toward = fit->eyes[eye].toward;
+    float half_m = 1.1f * fmaxf(fit->radii_m.x, fit->radii_m.z);
+    *cells = (struct cells){.right = wd_v3_side(toward), .per_m = 0.5f * CELLS / half_m};
+    cells->up = wd_v3_cross(cells->right, toward);
+    for (size_t i = 0; i < points->count; i++) {
+        float area = wd_v3_dot(shown[i].face, toward);
+        area = points->points[i].kind & WD_POINT_LEAF ? fabsf(area) : fmaxf(area, 0);
+        if (!(fit->views[i] >> eye & 1))
+            continue;
+        struct cell *cell = cell_at(cells, shown[i].place);
+        cell->open += area * shown[i].openness;
+        cell->area += area;
+    }
+}
+
+static float mixed_openness(struct cells *cells, struct wd_vec3 place)
+{
+    const struct cell *cell = cell_at(cells, place);
+    return cell->area > 0 ? cell->open / cell->area : 1;
+}
+
 static void send(struct fit *fit, const struct wd_tree_points *points, const struct shown *all)
 {
+    struct cells *cells = wd_alloc_array(EYES, sizeof *cells);
+    for (uint32_t eye = 0; eye < EYES; eye++)
+        fill_cells(&cells[eye], fit, points, all, eye);
     for (size_t i = 0; i < points->count; i++) {
         struct shown shown = all[i];
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
@@ -366,10 +412,11 @@ static void send(struct fit *fit, const struct wd_tree_points *points, const str
         send_skylight(fit, &shown, fit->views[i], !(points->points[i].kind & WD_POINT_LEAF));
         for (uint32_t eye = 0; eye < EYES; eye++)
             if (fit->views[i] >> eye & 1 && points->points[i].kind & WD_POINT_LEAF)
-                send_leaf(fit, &shown, eye);
+                send_leaf(fit, &shown, eye, mixed_openness(&cells[eye], shown.place));
             else if (fit->views[i] >> eye & 1)
                 send_wood(fit, &shown, eye);
     }
+    free(cells);
 }
 
 /* Least squares, each way by how much of its light is seen from above. */
