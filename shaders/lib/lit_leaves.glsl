@@ -147,10 +147,13 @@ float stand_sunlit(vec3 eye, wd_crown crown, wd_lit_leaves model)
     return seen * (1.0 - 0.6 * slenderness(crown) * dark);
 }
 
-/* Far off, reduced meshes show leaves that lie deeper than those that an eye would see, the more so from above, under a low
- * sun and with the light: a factor on the table's light, by path-traced rows of six species at 32 px under five suns. */
-float reduced_sunlit(vec3 eye)
+/* Far off, reduced meshes of fewer leaves show some that lie deeper than those that an eye would see, the more so from above,
+ * under a low sun and with the light: a factor on the table's light, by path-traced rows of six species at 32 px under five
+ * suns. */
+float reduced_sunlit(vec3 eye, wd_lit_leaves model)
 {
+    if ((model.through & WD_THROUGH_ALL_LEAVES) != 0u)
+        return 1.0;
     float from_above = mix(1.08, 1.14, smoothstep(0.1, 0.6, eye.z));
     float high_sun = mix(1.04, 0.98, smoothstep(0.25, 0.95, frame.sun_direction.z));
     return from_above * high_sun * mix(0.95, 1.0, smoothstep(-0.2, 0.3, dot(eye, frame.sun_direction)));

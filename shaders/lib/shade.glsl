@@ -633,7 +633,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
     plain = max(plain, reduced ? MESH_SINGLE * fine * is_tree(crown) : 0.0);
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), max(near, plain));
-    float deeper = reduced ? mix(1.0, reduced_sunlit(eye), free * is_tree(crown)) : 1.0;
+    float deeper = reduced ? mix(1.0, reduced_sunlit(eye, model), free * is_tree(crown)) : 1.0;
     vec2 known = sunlit * (deeper * mix(stand_sunlit(eye, crown, model), 1.0, free));
     vec2 whole = mix(blades * herbs_sunlit(eye), known, crown.told);
     place.sides = mix(whole, blades, mapped);

@@ -38,6 +38,8 @@ WD_FUNC float wd_leaves_seen_up(float eye)
 #define WD_PALER_MOST 8.0f
 #define WD_PALER_STEPS 1023.0f
 #define WD_PALER_ANY_WAY 0x40000000u
+/* Of wd_lit_leaves.through: the reduced mesh has every leaf. */
+#define WD_THROUGH_ALL_LEAVES 0x40000000u
 
 /* Share of lower sides among the leaves of a crown that turn one side to a way, or the same side to two ways: by the
  * sine of its elevation, or by the sum of both. Of oaks, beeches, birches, maples and hazels, counted by rays. */
@@ -116,7 +118,8 @@ struct wd_lit_leaves {
     uint32_t cloud_wax;           /* two half floats, as of struct wd_tree_model */
     uint32_t sun_curve;           /* of wd_crown_lit: two half floats */
     uint32_t paler;               /* WD_PALER_*: albedo of leaves' lower sides over that of the upper ones */
-    uint32_t through;             /* WD_PALER_*: transmittance of a leaf over its upper side's albedo, linear */
+    uint32_t through;             /* WD_PALER_*: transmittance of a leaf over its upper side's albedo, linear; and
+                                     WD_THROUGH_ALL_LEAVES */
     uint32_t again_low;           /* two half floats: recollision and low_sky of struct wd_tree_model */
     uint32_t near_shade;          /* at WD_NEAR_SHADE_M, and the power: two half floats */
     uint32_t rough_flat;          /* two half floats: roughness of leaves, the root of GGX's alpha, minus that of a grass's

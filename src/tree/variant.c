@@ -144,12 +144,14 @@ void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species
 {
     const float EVERY_WAY = 0.5f; /* mean |z| of faces turned so */
     bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
+    uint32_t leaves = grown->sets[0][WD_SET_LEAVES].leaf_count; /* none of imported models */
+    bool all = leaves > 0 && grown->sets[1][WD_SET_LEAVES].leaf_count == leaves;
     lit->leaves = (struct wd_lit_leaves){
         .base_petals = wd_pack_uv(model->crown_base_m / model->height_m, petal_leaf_green(species)),
         .cloud_wax = wd_pack_uv(grown->cloud_wax[0], grown->cloud_wax[1]),
         .sun_curve = wd_pack_uv(grown->sun_curve[0], grown->sun_curve[1]),
         .paler = paler_below(species),
-        .through = pack_ratios(model->transmittance),
+        .through = pack_ratios(model->transmittance) | (all ? WD_THROUGH_ALL_LEAVES : 0),
         .again_low = wd_pack_uv(grown->recollision, grown->low_sky),
         .near_shade = wd_pack_uv(grown->near_shade[0], grown->near_shade[1]),
         .rough_flat = wd_pack_uv(model->roughness, needles ? EVERY_WAY : grown->flatness),
