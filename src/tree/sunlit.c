@@ -384,10 +384,10 @@ static void fill_cells(struct cells *cells, const struct fit *fit, const struct 
     *cells = (struct cells){.right = wd_v3_side(toward), .per_m = 0.5f * CELLS / half_m};
     cells->up = wd_v3_cross(cells->right, toward);
     for (size_t i = 0; i < points->count; i++) {
-        float area = wd_v3_dot(shown[i].face, toward);
-        area = points->points[i].kind & WD_POINT_LEAF ? fabsf(area) : fmaxf(area, 0);
         if (!(fit->views[i] >> eye & 1))
             continue;
+        float area = wd_v3_dot(shown[i].face, toward);
+        area = points->points[i].kind & WD_POINT_LEAF ? fabsf(area) : fmaxf(area, 0);
         struct cell *cell = cell_at(cells, shown[i].place);
         cell->open += area * shown[i].openness;
         cell->area += area;
