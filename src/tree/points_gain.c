@@ -213,9 +213,11 @@ static struct wd_facet *facets_of_bark(const struct wd_facet *facets, const stru
 {
     struct wd_facet *bark = wd_alloc_array(discs->count + 1, sizeof *bark);
     memcpy(bark, facets, discs->count * sizeof *bark);
+    float linear[256];
+    wd_srgb_table(linear);
     *sum = 0;
     for (size_t i = 0; i < discs->count; i++) {
-        bark[i].openness = wd_unorm_encode(wd_srgb_decode((uint8_t)(discs->points[i].albedo >> 8)));
+        bark[i].openness = wd_unorm_encode(linear[(uint8_t)(discs->points[i].albedo >> 8)]);
         *sum += bark[i].openness;
     }
     return bark;
@@ -278,7 +280,7 @@ static void fit_side(const struct plan *plan, struct wd_disc_fit *fits, int side
         fits->light.gains[side][k] = light[1];
         if (k == AT_THIN)
             fits->thin[side] = thin_gain(plan, gains);
-        if (k == AT_BARK)
+        if (k == AT_BARK && side < 2)
             fits->bark[side] = bark_gain(plan, gains);
         if (k == AT_TRIANGLES)
             fits->past_bark[side] = leaves > 0 ? past_bark(plan, gains) : 1;
