@@ -60,9 +60,9 @@ wd_billboard billboard_corner(wd_model model, tree_pose pose, vec3 toward, vec2 
     return board;
 }
 
-/* What its fragments need, as those of cards; `tall_px`: the tree's height on screen. */
+/* What its fragments need, as those of cards; `tall_px`: the tree's height on screen; `sine`: of the eye's elevation. */
 wd_card_flat billboard_flat(wd_billboard board, wd_model model, tree_pose pose, wd_tree tree,
-                            float show, float tall_px, uint surface)
+                            float show, float tall_px, float sine, uint surface)
 {
     card_flat constants;
     constants.turn = pose.turn;
@@ -77,5 +77,9 @@ wd_card_flat billboard_flat(wd_billboard board, wd_model model, tree_pose pose, 
                           float(WD_CARD_LAST_MIP));
     constants.random = wd_tree_random(tree) ^ (board.card * 0x9e3779b9u);
     constants.surface = surface;
+    constants.mixed = model.mixed;
+    bool from_above = board.card == WD_CARD_SIDES;
+    constants.to_leaf = wood_to_leaf(model, sine, from_above);
+    constants.base = crown_begins(model, from_above);
     return card_pack(constants);
 }

@@ -211,5 +211,9 @@ wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show
     result.random = SHADOW != 0u ? wd_tree_random(t.tree) ^ (card.layer * 0x9e3779b9u)
                                  : card_noise_shift(t.tree, t.foot) | uint(card.begin * 255.0 + 0.5) << 8;
     result.surface = index + 1u;
+    result.mixed = t.model.mixed;
+    bool from_above = card.layer == WD_CARD_SIDES;
+    result.to_leaf = wood_to_leaf(t.model, t.toward.z, from_above);
+    result.base = crown_begins(t.model, from_above);
     return card_pack(result);
 }

@@ -1,5 +1,6 @@
 /* Constants of a card, from its vertices to its fragments. */
 #include "shared/card_soup.h"
+#include "shared/sunlit.h"
 
 struct card_flat {
     vec2 turn;
@@ -11,19 +12,56 @@ struct card_flat {
     float ratio;  /* vertical over horizontal scale */
     uint layer;
     float lod;
-    uint random, surface;
+    uint random, surface, mixed;
+    float to_leaf; /* of the picture's wood what is to be leaves; below 0: of its leaves what is to be wood */
+    float base;    /* of its height down to the lowest living branch */
 };
+
+/* Of what an eye on a ring sees of the crown. */
+float wood_on_ring(wd_model model, uint ring)
+{
+    return float(model.wood_seen[ring / 4u] >> 8u * (ring % 4u) & 255u) * (1.0 / 255.0);
+}
+
+/* From an elevation of this sine. */
+float wood_seen(wd_model model, float sine)
+{
+    uint at = wd_sunlit_ring(sine), ring = at & 255u;
+    return mix(wood_on_ring(model, ring), wood_on_ring(model, ring + 1u), float(at >> 8) * (1.0 / 65535.0));
+}
+
+/* Eyes from above see fewer boughs than one of the same height, whose picture a card shows, and more than one right
+ * above the tree: what of either is to be the other, card_flat's `to_leaf`. */
+float wood_to_leaf(wd_model model, float sine, bool from_above)
+{
+    float shown = wood_seen(model, from_above ? 1.0 : 0.0), seen = wood_seen(model, sine);
+    return seen < shown ? 1.0 - seen / shown : (shown - seen) / max(1.0 - shown, 0.01);
+}
+
+float crown_begins(wd_model model, bool from_above)
+{
+    return from_above ? 1.0 : clamp((model.top_m - model.crown_base_m) / (model.top_m - model.bottom_m), 0.0, 1.0);
+}
 
 wd_card_flat card_pack(card_flat card)
 {
     uint flags = (card.mirror < 0.0 ? WD_CARD_MIRRORED : 0u)
                  | (card.behind ? WD_CARD_BEHIND : 0u)
                  | (card.normal.z > 0.5 ? WD_CARD_LEVEL : 0u);
+    uint wood = uint(card.base * 31.0 + 0.5) << 19 | uint(clamp(card.to_leaf, -1.0, 1.0) * 127.0 + 128.5) << 24;
     uint lod = uint(clamp(card.lod + 1.0, 0.0, 255.0) * 256.0);
     return wd_card_flat(packSnorm2x16(card.turn), packUnorm4x8(vec4(card.tint * 0.5, card.show)),
                         packSnorm2x16(card.normal.xy),
-                        packHalf2x16(vec2(card.ratio, 0.0)) | flags, card.layer | (lod << 16),
-                        card.random & 0xffffff00u, card.surface);
+                        packHalf2x16(vec2(card.ratio, 0.0)) | flags | wood, card.layer | (lod << 16),
+                        card.random & 0xffffff00u, card.surface, card.mixed);
+}
+
+/* Share of leaves that a place `down` a picture is to show, where it has `leaf`. `flags`: of wd_card_flat. */
+float card_leaf_shown(float leaf, float down, uint flags)
+{
+    float to_leaf = (float(flags >> 24) - 128.0) * (1.0 / 127.0);
+    float shown = to_leaf < 0.0 ? leaf * (1.0 + to_leaf) : leaf + (1.0 - leaf) * to_leaf;
+    return down * 31.0 <= float(flags >> 19 & 31u) ? shown : leaf;
 }
 
 float card_lod(uint layer_lod)

@@ -1,5 +1,6 @@
-/* A picture's texel is leaf and wood; a pixel is lit as one of them, by lot. Expects `frame`. */
+/* A picture's texel is leaf and wood; a pixel is one of them, by lot. Expects `frame`. */
 #include "shared/hash.h"
+#include "lib/mixed.glsl"
 
 uint card_material(float leaf, uint surface)
 {

@@ -3,15 +3,16 @@
 #include "lib/card_material.glsl"
 
 /* `albedo` is that of the card at uv (z: layer); `card` is turn, tint_show, normal, ratio_flags. */
-void card_surface(vec3 uv, float lod, vec4 albedo, uvec4 card, uint surface)
+void card_surface(vec3 uv, float lod, vec4 albedo, uvec4 card, uint surface, uint mixed)
 {
     vec4 packed = textureLod(card_normal, uv, lod - float(WD_CARD_NORMAL_MIP));
     float leaf = textureLod(card_leaf, uv, lod - float(WD_CARD_NORMAL_MIP)).x;
-    albedo.rgb *= mix(vec3(1.0), unpackUnorm4x8(card.y).rgb * 2.0, leaf);
+    uint material = card_material(card_leaf_shown(leaf, uv.y, card.w), surface);
+    vec4 own = unmixed(vec4(albedo.rgb, packed.a), leaf, material == WD_MATERIAL_WOOD, mixed);
+    own.rgb *= material == WD_MATERIAL_WOOD ? vec3(1.0) : unpackUnorm4x8(card.y).rgb * 2.0;
     if (frame.view_mode == WD_MODE_LOD)
-        albedo.rgb = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * packed.a);
-    out_albedo = vec4(albedo.rgb, packed.a);
-    out_normal = vec4(card_world_normal(packed.xyz, card) * 0.5 + 0.5,
-                      float(card_material(leaf, surface)) / 3.0);
+        own.rgb = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * own.a);
+    out_albedo = own;
+    out_normal = vec4(card_world_normal(packed.xyz, card) * 0.5 + 0.5, float(material) / 3.0);
     out_surface = surface;
 }

@@ -3,7 +3,7 @@
 
 /* Of a model's table (shared/sunlit.h), for this eye: where its eight entries stand, and their shares. */
 struct wd_sunlit_mix {
-    uint place, eye_ring;
+    uint place, eye_ring, sun_ring;
     float eye, sun, turn;
     float wood_eye; /* `eye` of wood's light of the sun */
     float opposite; /* of half a turn, how far the eye is from the sun's side */
@@ -29,6 +29,7 @@ wd_sunlit_mix sunlit_mix(vec3 eye)
     uint eye_ring = wd_sunlit_ring(eye.z), sun_ring = wd_sunlit_ring(max(frame.sun_direction.z, WD_SUN_RING_SINE(0u)));
     wd_sunlit_mix at;
     at.eye_ring = eye_ring & 255u;
+    at.sun_ring = (sun_ring & 255u) - 1u;
     at.place = wd_sunlit_place(eye_ring & 255u, (sun_ring & 255u) - 1u, turn);
     at.wood_eye = float(eye_ring >> 8) * (1.0 / 65535.0);
     /* on the sun's side a level eye sees of leaves what one somewhat above sees, not below */
@@ -100,6 +101,31 @@ vec4 skylit_of(int model, wd_sunlit_mix at, uint first)
     uvec4 texel = texelFetch(lit_models, place);
     return mix(vec4(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y)),
                vec4(unpackHalf2x16(texel.z), unpackHalf2x16(texel.w)), at.eye);
+}
+
+/* Share of upper sides among the leaves that an eye sees, among those that reflect and that transmit the sun to it, and that
+ * reflect the sky's light; and among those of a picture that was taken level. */
+struct wd_upper_sides {
+    float seen, reflect, transmit, sky, level;
+    float mirrors; /* what wax mirrors of the sun over what cloud_wax tells */
+};
+
+wd_upper_sides upper_sides(int model, wd_sunlit_mix at)
+{
+    int first = model + int(WD_LIT_UPPER_TEXEL);
+    uvec4 texel = texelFetch(lit_models, first + int(at.eye_ring)), level = texelFetch(lit_models, first);
+    vec4 reflect = mix(unpackUnorm4x8(texel.x), unpackUnorm4x8(texel.y), at.wood_eye);
+    vec4 transmit = mix(unpackUnorm4x8(texel.z), unpackUnorm4x8(texel.w), at.wood_eye);
+    uint sun = min(at.sun_ring, WD_UPPER_SUNS - 1u), next = min(at.sun_ring + 1u, WD_UPPER_SUNS - 1u);
+    float level_on = -WD_EYE_RING_SINE(0u) / (WD_EYE_RING_SINE(1u) - WD_EYE_RING_SINE(0u));
+    wd_upper_sides upper;
+    upper.seen = reflect[WD_UPPER_SUNS];
+    upper.reflect = mix(reflect[sun], reflect[next], at.sun);
+    upper.transmit = mix(transmit[sun], transmit[next], at.sun);
+    upper.mirrors = WD_UPPER_MIRRORS_MOST * transmit[WD_UPPER_SUNS];
+    upper.sky = reflect[WD_UPPER_SKY_RING];
+    upper.level = mix(unpackUnorm4x8(level.x).w, unpackUnorm4x8(level.y).w, level_on);
+    return upper;
 }
 
 /* Of the sun that reaches leaves of a crown, what they scatter comes to other ones, and to its boughs, again and again.

@@ -513,13 +513,10 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), leaf_roughness(model));
 }
 
-/* The mean sine at which what reflects the sky's light to an eye has it. */
-const float SKY_SINE = 0.55;
-
-/* A pixel of many leaves has the mean colour of the sides that are seen. Of these, light from above is reflected for
- * the most part by upper ones, which are less pale, and comes through lower ones. By the albedo of a lower side goes
- * what it lets through, too, less the more it is the paler in green (look maps). */
-void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model)
+/* A pixel of many leaves has the mean colour of the sides that are seen: of these, upper ones, which are less pale, reflect
+ * most of what comes from above. By the albedo of a lower side goes what it lets through, too, less the more it is the
+ * paler in green (look maps). */
+void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, wd_upper_sides upper)
 {
     vec3 paler = paler_below(model);
     float through_below = 1.0 / max(paler.g, 1e-3);
@@ -527,18 +524,13 @@ void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model)
     place.waxed_lit = vec2(place.waxed);
     if (!ALL_SINGLE && pixel.lit < 0.0) {
         bool level = pixel.material == WD_MATERIAL_CARD && push.level_cards != 0u;
-        float eye = -pixel.direction.z, sun = frame.sun_direction.z;
         bool any_way = (model.paler & WD_PALER_ANY_WAY) != 0u;
-        vec3 lower = vec3(wd_lower_sides(level ? 0.0 : eye), wd_lower_sides(eye + sun), wd_lower_sides(eye + SKY_SINE));
-        lower = any_way ? vec3(0.5) : lower;
         place.waxed = any_way ? 0.5 : place.waxed;
-        float upper = any_way ? 0.5 : 1.0 / (1.0 + exp(3.0 * (sun - eye)));
-        vec3 all = 1.0 / mix(vec3(1.0), paler, lower.x);
-        place.reflects = mix(vec3(1.0), paler, lower.y) * all;
-        place.reflects_sky = mix(vec3(1.0), paler, lower.z) * all;
-        vec3 through = mix(paler * through_below, vec3(1.0), upper) * all;
-        place.transmittance *= through;
-        place.waxed_lit = 1.0 - lower.yz;
+        vec3 all = 1.0 / mix(paler, vec3(1.0), level ? upper.level : upper.seen);
+        place.reflects = mix(paler, vec3(1.0), upper.reflect) * all;
+        place.reflects_sky = mix(paler, vec3(1.0), upper.sky) * all;
+        place.transmittance *= mix(paler * through_below, vec3(1.0), upper.transmit) * all;
+        place.waxed_lit = vec2(upper.reflect, upper.sky);
     } else {
         place.transmittance *= mix(through_below, 1.0, place.waxed);
     }
@@ -608,8 +600,8 @@ const vec2 MESH_MAPPED_M = vec2(0.05, 0.15);
  * map is asked, and depth along the sun says where in it how much of the light is left. Of a tree that stands
  * free the model's own table says how much of that on all of it goes to this eye: of a cloud of leaves
  * (cards, and meshes of few that stand for many), or of leaves that are lit one by one. */
-wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float free, vec2 sunlit,
-                    float hot, uint cascade)
+wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_upper_sides upper, float free,
+                    vec2 sunlit, float hot, uint cascade)
 {
     bool card = pixel.material == WD_MATERIAL_CARD;
     bool disc = pixel.lit >= 0.0 && pixel.lit < 1.0;
@@ -644,12 +636,12 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
     place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WD_WAX * 0.39;
-    place.coat = WD_WAX * mix(1.85, 1.05, smoothstep(0.0, 0.64, eye.z)); /* of path-traced rows under an even sky */
+    place.coat = WD_WAX * mix(1.7, 0.8, smoothstep(0.0, 0.64, eye.z)); /* of path-traced rows under an even sky */
     float shines = mix(HERB_SHINES, 1.0, max(is_tree(crown), place.sward));
     place.coat *= shines;
     place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     vec2 wax = unpackHalf2x16(model.cloud_wax);
-    float mirrors = WD_WAX * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
+    float mirrors = WD_WAX * upper.mirrors * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
     place.gloss = mix(place.gloss, mirrors * (place.sides.x + place.sides.y), crown.told);
     place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), crown.told);
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
@@ -660,7 +652,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, float f
     vec2 in_stands = mix(vec2(1.0), STAND_DISC_SUN, is_tree(crown));
     vec2 on_discs = vec2(hot, sunlit.x) * mix(in_stands, free_disc_light(eye, crown, model).xy, free);
     light_disc(place, pixel, crown, model, free, on_discs, cascade);
-    tell_sides(place, pixel, model);
+    tell_sides(place, pixel, model, upper);
     know_petals(place, pixel, model);
     return place;
 }
@@ -729,13 +721,14 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         mixed.eye = leaf ? mixed.eye : mixed.wood_eye;
         vec2 sunlit = sunlit_of(model_at, mixed);
         if (leaf)
-            place = leaf_place(pixel, crown, model, alone.share, sunlit, hot, cascade);
+            place = leaf_place(pixel, crown, model, upper_sides(model_at, mixed), alone.share, sunlit, hot, cascade);
         else
             place = wood_place(pixel, crown, unpackHalf2x16(model.sun_curve), alone.share, sunlit, cascade);
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, pixel.rel.z - crown.foot_z);
         shelter = tree_shelter(pixel, place.rel, crown, shelter);
         light_past_neighbours(alone, pixel, crown, model, shelter, place);
-        facing = mix(vec4(place.normal, 0.0), leaves_seen(-pixel.direction), alone.share * place.cloud);
+        facing = leaf ? vec4(place.normal, 0.0) : vec4(pixel.facing, facing_spread(pixel.facing));
+        facing = mix(facing, leaves_seen(-pixel.direction), alone.share * place.cloud);
     } else {
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, 0.0);
         alone.edge = edge_of(pixel, shelter);

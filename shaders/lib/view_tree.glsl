@@ -12,6 +12,7 @@ layout(scalar, push_constant) uniform Push { wd_view_push push; };
 
 #include "lib/tree.glsl"
 #include "lib/card.glsl"
+#include "lib/mixed.glsl"
 
 layout(location = 0) in vec3 in_model;
 layout(location = 1) in vec2 in_side;
@@ -156,8 +157,12 @@ void main()
 #endif
     if (view_noise() >= found_cover(sum.covered) * in_tint.a)
         discard;
-    float per = 1.0 / max(sum.covered, 1e-5), openness = sum.openness * per;
-    vec3 albedo = sum.color * per * mix(vec3(1.0), in_tint.rgb, sum.leaf * per);
+    float per = 1.0 / max(sum.covered, 1e-5), leaf_share = sum.leaf * per;
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    bool wood = wd_hash_unit(wd_hash_mix((pixel.x | pixel.y << 16) ^ in_flat.y)) >= leaf_share;
+    vec4 own = unmixed(vec4(sum.color, sum.openness) * per, leaf_share, wood, view_models[in_flat.z].mixed);
+    vec3 albedo = wood ? own.rgb : own.rgb * in_tint.rgb;
+    float openness = own.a;
     if (frame.view_mode == WD_MODE_LOD)
         albedo = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * openness);
     vec2 scale = vec2(in_pose.w, abs(in_pose.z));
@@ -171,10 +176,7 @@ void main()
 #else
     uint leaf = WD_MATERIAL_CARD;
 #endif
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
-    float lot = wd_hash_unit(wd_hash_mix((pixel.x | pixel.y << 16) ^ in_flat.y));
-    uint material = lot < sum.leaf * per ? leaf : WD_MATERIAL_WOOD;
     out_albedo = vec4(albedo, openness);
-    out_normal = vec4(normal * 0.5 + 0.5, float(material) / 3.0);
+    out_normal = vec4(normal * 0.5 + 0.5, float(wood ? WD_MATERIAL_WOOD : leaf) / 3.0);
     out_surface = in_flat.x;
 }

@@ -42,5 +42,5 @@ void main()
     vec3 uv = vec3(card_uv(shown - 1u, clip), card_layer(card.layer_lod));
     float lod = card_lod(card.layer_lod);
     card_surface(uv, lod, textureLod(card_albedo, uv, lod),
-                 uvec4(card.turn, card.tint_show, card.normal, card.ratio_flags), card.surface);
+                 uvec4(card.turn, card.tint_show, card.normal, card.ratio_flags), card.surface, card.mixed);
 }

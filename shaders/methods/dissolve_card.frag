@@ -19,7 +19,7 @@ layout(set = 0, binding = 9) uniform sampler2DArray card_leaf;
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
-layout(location = 2) flat in uvec3 in_more; /* layer_lod, random, surface */
+layout(location = 2) flat in uvec4 in_more; /* layer_lod, random, surface, mixed */
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
@@ -36,7 +36,8 @@ void main()
     if (noise >= covered)
         discard;
     float normal_lod = lod - float(WD_CARD_NORMAL_MIP);
-    bool is_wood = noise >= covered * textureLod(card_leaf, uv, normal_lod).x;
+    float leaves = card_leaf_shown(textureLod(card_leaf, uv, normal_lod).x, uv.y, in_card.w);
+    bool is_wood = noise >= covered * leaves;
     vec4 packed = is_wood ? textureLod(wood_normal, uv, normal_lod)
                           : textureLod(leaf_normal, uv, normal_lod);
     vec3 albedo = is_wood ? wood.rgb : leaf.rgb * tint_show.rgb * 2.0;

@@ -16,7 +16,7 @@ layout(scalar, push_constant) uniform Push { wd_one_view_push push; };
 /* as tree_card.vert */
 layout(location = 0) out vec2 out_uv;
 layout(location = 1) flat out uvec4 out_card;
-layout(location = 2) flat out uvec3 out_more;
+layout(location = 2) flat out uvec4 out_more;
 
 void main()
 {
@@ -32,10 +32,10 @@ void main()
     vec3 offset = board.offset
                   + tree_sway(tree, model.flexibility, max(board.offset.z, 0.0), frame.time_s);
     float tall_px = WD_TREE_HEIGHT_M(tree) * push.pixels_per_radian / length(foot);
-    wd_card_flat packed = billboard_flat(board, model, pose, tree, instance.show, tall_px,
+    wd_card_flat packed = billboard_flat(board, model, pose, tree, instance.show, tall_px, toward.z,
                                          instance.tree + 1u);
     out_uv = board.uv;
     out_card = uvec4(packed.turn, packed.tint_show, packed.normal, packed.ratio_flags);
-    out_more = uvec3(packed.layer_lod, packed.random, packed.surface);
+    out_more = uvec4(packed.layer_lod, packed.random, packed.surface, packed.mixed);
     gl_Position = frame.clip_from_rel * vec4(card_over_ground(foot + offset, foot), 1.0);
 }

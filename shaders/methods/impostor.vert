@@ -5,6 +5,7 @@
 #include "shared/forest.h"
 #include "shared/impostor.h"
 #include "shared/hash.h"
+#include "lib/mixed.glsl"
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Impostors { wd_impostor impostors[]; };
@@ -12,10 +13,12 @@ layout(scalar, set = 0, binding = 2) readonly buffer List { uint list[]; };
 layout(scalar, push_constant) uniform Push { wd_impostor_push push; };
 
 layout(location = 0) out vec2 out_uv;
-layout(location = 1) flat out vec4 out_color;  /* linear; a: coverage */
-layout(location = 2) flat out vec4 out_normal; /* a: sky openness */
+layout(location = 1) flat out float out_cover;
+layout(location = 2) flat out vec3 out_normal;
 layout(location = 3) flat out vec3 out_cells;  /* of noise across and down; z: share of leaves */
 layout(location = 4) flat out uvec4 out_flat;  /* first tree, trees, random */
+layout(location = 5) flat out vec4 out_leaf;   /* linear; a: sky openness */
+layout(location = 6) flat out vec4 out_wood;
 
 vec3 linear_of(vec3 c)
 {
@@ -23,39 +26,43 @@ vec3 linear_of(vec3 c)
 }
 
 struct side_look {
-    vec4 color, normal;
-    float leaf;
+    vec4 leaf, wood; /* colour and openness */
+    vec3 normal;
+    float leaves, cover; /* share of leaves in what is covered */
 };
 
 side_look side_of(wd_octant_look look, uint axis, float toward)
 {
     uint side = axis * 2u + (toward > 0.0 ? 0u : 1u);
     vec4 color = unpackUnorm4x8(look.color[side]), normal = unpackUnorm4x8(look.normal[side]);
-    float leaf = unpackUnorm4x8(look.leaf[side / 4u])[side % 4u];
-    return side_look(vec4(linear_of(color.rgb), wd_octant_coverage(look.color[side])), vec4(normal.xyz * 2.0 - 1.0, normal.a),
-                     leaf);
+    float leaves = unpackUnorm4x8(look.leaf[side / 4u])[side % 4u];
+    vec4 mean = vec4(linear_of(color.rgb), normal.a);
+    return side_look(unmixed(mean, leaves, false, look.mixed[side]), unmixed(mean, leaves, true, look.mixed[side]),
+                     normal.xyz * 2.0 - 1.0, leaves, wd_octant_coverage(look.color[side]));
 }
 
 /* Each side counts by the area that it shows. Sides that are covered all over are those of a box, whose
  * outlines add; crowns are round, of outlines whose squares add (a spheroid covers pi / 4 of each side
- * of its box), and the trees' own slant tells how far from round. Colour's a is in square metres.
+ * of its box), and the trees' own slant tells how far from round. `cover` is in square metres.
  * `boxy`: 0 round, 1 a box; `area`: of the box's outline. */
 side_look mixed_sides(wd_octant_look look, vec3 toward, vec3 areas, float area, out float boxy)
 {
-    side_look sum = side_look(vec4(0.0), vec4(0.0), 0.0);
+    side_look sum = side_look(vec4(0.0), vec4(0.0), vec3(0.0), 0.0, 0.0);
     float covered = 0.0, squares[3];
     for (uint axis = 0u; axis < 3u; axis++) {
         side_look side = side_of(look, axis, toward[axis]);
-        float weight = abs(toward[axis]) * areas[axis] * side.color.a;
-        sum.color.rgb += weight * side.color.rgb;
+        float weight = abs(toward[axis]) * areas[axis] * side.cover;
+        sum.leaf += weight * side.leaves * side.leaf;
+        sum.wood += weight * (1.0 - side.leaves) * side.wood;
         sum.normal += weight * side.normal;
-        sum.leaf += weight * side.leaf;
+        sum.leaves += weight * side.leaves;
         covered += weight;
         squares[axis] = weight * weight;
     }
-    sum.color.rgb /= max(covered, 1e-6);
+    sum.leaf /= max(sum.leaves, 1e-6);
+    sum.wood /= max(covered - sum.leaves, 1e-6);
     sum.normal /= max(covered, 1e-6);
-    sum.leaf /= max(covered, 1e-6);
+    sum.leaves /= max(covered, 1e-6);
     /* what would be seen level, from half above and from above, squared */
     float sine = abs(toward.z), slant = wd_octant_slant(look);
     float level = (squares[0] + squares[1]) / max(1.0 - sine * sine, 1e-6);
@@ -63,7 +70,7 @@ side_look mixed_sides(wd_octant_look look, vec3 toward, vec3 areas, float area, 
     float half_above = 0.5 * slant * slant * (level + above);
     float round_m2 = sqrt(wd_seen_squared(level, half_above, above, sine));
     boxy = clamp((covered / area - 0.785) / 0.215, 0.0, 1.0);
-    sum.color.a = mix(round_m2, covered, boxy);
+    sum.cover = mix(round_m2, covered, boxy);
     return sum;
 }
 
@@ -108,7 +115,7 @@ void main()
         float boxy;
         look = mixed_sides(impostor.look, toward, size_m.yzx * size_m.zxy, 4.0 * box.x * box.y, boxy);
         vec2 reach = mix(round, box, boxy);
-        look.color.a = min(look.color.a / (4.0 * reach.x * reach.y), 1.0);
+        look.cover = min(look.cover / (4.0 * reach.x * reach.y), 1.0);
         rel = center + right * (side.x * reach.x) - up * (side.y * reach.y);
         /* from the box's near edge at its bottom to the far one at its top: the ground hides none */
         float nearer_m = dot(abs(toward.xy), half_m.xy) - toward.z * half_m.z;
@@ -116,11 +123,13 @@ void main()
         extent_m = 2.0 * reach;
     }
     out_uv = side * 0.5 + 0.5;
-    out_color = look.color;
+    out_cover = look.cover;
+    out_leaf = look.leaf;
+    out_wood = look.wood;
     out_normal = look.normal;
     out_cells = vec3(noise_cells(extent_m.x, distance_m), noise_cells(extent_m.y, distance_m),
-                     look.leaf);
+                     look.leaves);
     out_flat = uvec4(impostor.first_tree, impostor.tree_count, wd_hash2(index, vertex / 4u), 0u);
-    gl_Position = look.color.a > 0.0 ? frame.clip_from_rel * vec4(rel, 1.0)
+    gl_Position = look.cover > 0.0 ? frame.clip_from_rel * vec4(rel, 1.0)
                                      : vec4(0.0, 0.0, 0.0, 1.0);
 }

@@ -37,7 +37,7 @@ layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
-layout(location = 2) flat in uvec3 in_more; /* layer_lod, random, surface */
+layout(location = 2) flat in uvec4 in_more; /* layer_lod, random, surface, mixed */
 
 layout(location = 0) out vec4 out_color;
 
@@ -56,10 +56,12 @@ void main()
     pixel.direction = normalize(pixel.ray);
     pixel.axis_m = frame.near_m / gl_FragCoord.z;
     pixel.rel = pixel.ray * pixel.axis_m;
-    pixel.albedo = albedo.rgb * mix(vec3(1.0), tint_show.rgb * 2.0, leaf);
-    pixel.openness = packed.a;
+    pixel.material = card_material(card_leaf_shown(leaf, uv.y, in_card.w), in_more.z);
+    bool wood = pixel.material == WD_MATERIAL_WOOD;
+    vec4 own = unmixed(vec4(albedo.rgb, packed.a), leaf, wood, in_more.w);
+    pixel.albedo = wood ? own.rgb : own.rgb * tint_show.rgb * 2.0;
+    pixel.openness = own.a;
     pixel_set_normal(pixel, card_world_normal(packed.xyz, in_card));
-    pixel.material = card_material(leaf, in_more.z);
     pixel.surface = in_more.z;
     pixel.lit = -1.0;
     pixel.above = pixel.mirrors = 0.0;

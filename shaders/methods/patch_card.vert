@@ -29,7 +29,7 @@ uint first_tree(uint cell)
 /* as tree_card.vert */
 layout(location = 0) out vec2 out_uv;
 layout(location = 1) flat out uvec4 out_card;
-layout(location = 2) flat out uvec3 out_more;
+layout(location = 2) flat out uvec4 out_more;
 
 /* The tree that is number `place` from the back. */
 uint ordered_tree(uint place)
@@ -68,9 +68,9 @@ void main()
 
     float tall_px = WD_TREE_HEIGHT_M(tree) * push.pixels_per_radian / distance_m;
     wd_card_flat packed =
-        billboard_flat(board, model, pose, tree, show, tall_px, index + 1u);
+        billboard_flat(board, model, pose, tree, show, tall_px, toward.z, index + 1u);
     out_uv = board.uv;
     out_card = uvec4(packed.turn, packed.tint_show, packed.normal, packed.ratio_flags);
-    out_more = uvec3(packed.layer_lod, card_noise_shift(tree, foot), packed.surface);
+    out_more = uvec4(packed.layer_lod, card_noise_shift(tree, foot), packed.surface, packed.mixed);
     gl_Position = frame.clip_from_rel * vec4(card_over_ground(foot + offset, foot), 1.0);
 }

@@ -13,7 +13,7 @@ layout(set = 0, binding = 7) uniform sampler2DArray card_leaf;
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
-layout(location = 2) flat in uvec3 in_more; /* layer_lod, random, surface */
+layout(location = 2) flat in uvec4 in_more; /* layer_lod, random, surface, mixed */
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
@@ -29,5 +29,5 @@ void main()
     float opacity = card_opacity(albedo.a, lod) * unpackUnorm4x8(in_card.y).a;
     if (!card_shows(in_more.y, opacity, frame.sample_index))
         discard;
-    card_surface(uv, lod, albedo, in_card, in_more.z);
+    card_surface(uv, lod, albedo, in_card, in_more.z, in_more.w);
 }

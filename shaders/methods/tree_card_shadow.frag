@@ -9,7 +9,7 @@ layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
-layout(location = 2) flat in uvec3 in_more; /* layer_lod, random, surface */
+layout(location = 2) flat in uvec4 in_more; /* layer_lod, random, surface, mixed */
 
 void main()
 {

@@ -14,6 +14,7 @@ layout(scalar, push_constant) uniform Push { wd_octant_push push; };
 #include "lib/trees.glsl"
 #include "lib/octant.glsl"
 #include "lib/dither.glsl"
+#include "lib/mixed.glsl"
 
 layout(location = 0) in vec2 in_place;
 layout(location = 1) flat in uvec2 in_entry;
@@ -151,8 +152,9 @@ void main()
         discard;
     vec4 normal = textureLod(card_normal, card.uv, lod - float(WD_CARD_NORMAL_MIP));
     vec3 turned = world_normal(t, card, normal.xyz * 2.0 - 1.0);
-    albedo.rgb *= mix(vec3(1.0), wd_tree_tint(t.tree, t.model), depth.a);
-    out_albedo = vec4(albedo.rgb, WD_OCTANT_SHOWN + (1.0 - WD_OCTANT_SHOWN) * depth.a);
-    out_normal = vec4(turned * 0.5 + 0.5, normal.a);
+    bool wood = dither_from(at, wd_hash1(seed)) >= depth.a;
+    vec4 own = unmixed(vec4(albedo.rgb, normal.a), depth.a, wood, t.model.mixed);
+    out_albedo = wood ? vec4(own.rgb, WD_OCTANT_SHOWN) : vec4(own.rgb * wd_tree_tint(t.tree, t.model), 1.0);
+    out_normal = vec4(turned * 0.5 + 0.5, own.a);
     gl_FragDepth = (toward_m - from_m) / slice_m * 0.999 + 0.001;
 }

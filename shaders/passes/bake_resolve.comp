@@ -1,5 +1,5 @@
 #version 460
-/* Texels of a baked picture from the samples in them: what shared/view_set.h says. */
+/* Texels of a baked picture from the samples in them: what shared/view_set.h says; and sums of what its leaves show. */
 #include "shared/bake.h"
 #include "shared/tree.h"
 
@@ -12,7 +12,7 @@ layout(set = 0, binding = 2) uniform usamplerBuffer samples; /* wd_bake_sample *
 layout(set = 0, binding = 3) uniform usamplerBuffer rays;    /* wd_bake_ray */
 layout(set = 0, binding = 4) uniform usamplerBuffer flats;   /* wd_bake_flat */
 layout(set = 0, binding = 5) uniform sampler2DArray looks;
-layout(scalar, set = 0, binding = 6) writeonly buffer Texels { uint texels[]; };
+layout(scalar, set = 0, binding = 6) buffer Texels { uint texels[]; };
 layout(scalar, push_constant) uniform Push { wd_bake_push push; };
 
 #include "lib/bake_mesh.glsl"
@@ -21,8 +21,21 @@ layout(scalar, push_constant) uniform Push { wd_bake_push push; };
 struct bake_sum {
     vec3 color;
     vec4 around; /* normal * 0.5 + 0.5, sky openness */
+    vec4 leaves; /* colour and openness of leaves alone */
     float front, back, sheets, leaf, count;
 };
+
+bool shows_leaf(uint seen)
+{
+    return seen >> 2 > push.wood_triangles;
+}
+
+void add_shown(inout bake_sum sum, vec3 color, vec4 around, bool leaf)
+{
+    sum.color += color;
+    sum.around += around;
+    sum.leaves += leaf ? vec4(color, around.a) : vec4(0.0);
+}
 
 /* What a small triangle shows; nothing of others, whose words may be anything. */
 void add_flat(inout bake_sum sum, uint seen)
@@ -31,8 +44,8 @@ void add_flat(inout bake_sum sum, uint seen)
     words = WD_BAKE_IS_FLAT(seen) ? words : uvec4(0u);
     bool turned = WD_BAKE_IS_TURNED(seen);
     vec2 blues = unpackHalf2x16(words.z);
-    sum.color += vec3(unpackHalf2x16(turned ? words.y : words.x), turned ? blues.y : blues.x);
-    sum.around += unpackUnorm4x8(words.w);
+    vec3 color = vec3(unpackHalf2x16(turned ? words.y : words.x), turned ? blues.y : blues.x);
+    add_shown(sum, color, unpackUnorm4x8(words.w), shows_leaf(seen));
 }
 
 /* What a triangle shows at a place of the picture. */
@@ -49,8 +62,9 @@ void add_surface(inout bake_sum sum, uint triangle, vec2 place)
                   + share.z * bake_normal(corner.z);
     vec4 tint = share.x * bake_tint(corner.x) + share.y * bake_tint(corner.y)
                 + share.z * bake_tint(corner.z);
-    sum.color += bake_look_at(bake_look_of(corner, area), bc).rgb * tint.rgb;
-    sum.around += vec4(normalize(normal + vec3(0.0, 0.0, 1e-6)) * 0.5 + 0.5, tint.a);
+    vec3 color = bake_look_at(bake_look_of(corner, area), bc).rgb * tint.rgb;
+    vec4 around = vec4(normalize(normal + vec3(0.0, 0.0, 1e-6)) * 0.5 + 0.5, tint.a);
+    add_shown(sum, color, around, triangle >= push.wood_triangles);
 }
 
 /* Those of a sample that the texel sees at all, but for what a large triangle shows: returns 1 there. */
@@ -58,7 +72,7 @@ uint add_sample(inout bake_sum sum, int at)
 {
     uint seen = texelFetch(samples, at).x;
     add_flat(sum, seen);
-    sum.leaf += seen >> 2 > push.wood_triangles ? 1.0 : 0.0;
+    sum.leaf += shows_leaf(seen) ? 1.0 : 0.0;
     sum.count += seen != 0u ? 1.0 : 0.0;
     if (DEPTHS != 0u) {
         uvec2 ray = texelFetch(rays, at).xy;
@@ -87,6 +101,9 @@ void write_texel(bake_sum sum, uint within)
     texels[at] = empty ? 0u : packUnorm4x8(albedo);
     texels[at + picture] = empty ? 0u : packUnorm4x8(sum.around * per);
     texels[at + 2u * picture] = empty ? 0u : packUnorm4x8(depth);
+    uvec4 leaves = uvec4(sum.leaves * (WD_BAKE_LEAF_STEPS / float(s * s)) + 0.5);
+    for (uint k = 0u; k < 4u && sum.leaf > 0.0; k++)
+        atomicAdd(texels[push.leaf_sums + 4u * push.shot_index + k], leaves[k]);
 }
 
 void main()
@@ -98,7 +115,7 @@ void main()
     uvec2 corner = uvec2(within % push.width, within / push.width) * s;
     int stride = int(push.width * s);
     int first = int((push.shot_index * push.height * s + corner.y) * push.width * s + corner.x);
-    bake_sum sum = bake_sum(vec3(0.0), vec4(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    bake_sum sum = bake_sum(vec3(0.0), vec4(0.0), vec4(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     uvec2 large = uvec2(0u); /* bits of the samples that show large triangles */
     for (uint y = 0u, i = 0u; y < s; y++)
         for (uint x = 0u; x < s; x++, i++) {

@@ -33,8 +33,11 @@ struct wd_bake_push {
     uint32_t samples;          /* a texel, along each side */
     uint32_t wood_triangles;   /* of the mesh: those from here on are leaves */
     uint32_t look_layer;       /* the species' first */
+    uint32_t leaf_sums;        /* after the texels of the batch: four words a shot, of what its leaves show of linear
+                                  colour and openness, in WD_BAKE_LEAF_STEPS of a texel that is nothing else */
 };
-WD_STATIC_ASSERT_SIZE(wd_bake_push, 80);
+WD_STATIC_ASSERT_SIZE(wd_bake_push, 84);
+#define WD_BAKE_LEAF_STEPS 8192.0
 
 /* What one sample remembers while triangles are drawn: one number of 64 bits to
  * bake_raster_once.comp. */

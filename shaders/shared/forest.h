@@ -61,6 +61,9 @@ struct wd_model {
     WD_GROWTHS_STRUCT full_growth;    /* of the full mesh's leaves */
     WD_GROWTHS_STRUCT reduced_growth; /* and of the reduced one's */
     WD_VEC3(seen_m2); /* that the whole tree covers, seen from the sides of wd_seen_m2 */
+    uint32_t wood_seen[2]; /* share of wood in what eyes see above the lowest living branch: a byte for each ring of
+                              shared/sunlit.h, the lowest first */
+    uint32_t mixed;        /* wood over leaves in its cards, as shared/mixed.h packs it; not known before they are made */
 };
 
 /* Area that a tree covers seen from elevation asin(sine), squared, of what it covers level, from half above

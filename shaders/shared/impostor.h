@@ -14,7 +14,7 @@ struct wd_impostor {
     uint32_t first_tree, tree_count; /* octree order: the trees it stands for */
     WD_OCTANT_LOOK look; /* shares of the sides of that box */
 };
-WD_STATIC_ASSERT_SIZE(wd_impostor, 88);
+WD_STATIC_ASSERT_SIZE(wd_impostor, 112);
 
 struct wd_impostor_push {
     uint32_t first;  /* impostor of vertex 0, where they are not listed */

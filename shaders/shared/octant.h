@@ -13,7 +13,7 @@
 #define WD_OCTANT_LOOK wd_octant_look
 #endif
 
-/* 56 bytes. An empty side is 0. */
+/* 80 bytes. An empty side is 0. */
 struct wd_octant_look {
     uint32_t color[WD_OCTANT_SIDES];  /* R in the low byte, G, B: sRGB albedo of what shows;
                                          A: root of the share of the side that it covers, as
@@ -22,8 +22,9 @@ struct wd_octant_look {
                                          spread; A: sky openness */
     uint32_t leaf[2]; /* share of it that is leaf: bits 8 s .. of side s, four sides a word; in the
                          second word's bits 16..23: 128 times wd_octant_slant */
+    uint32_t mixed[WD_OCTANT_SIDES]; /* its wood over its leaves, as shared/mixed.h packs it */
 };
-WD_STATIC_ASSERT_SIZE(wd_octant_look, 56);
+WD_STATIC_ASSERT_SIZE(wd_octant_look, 80);
 
 WD_FUNC float wd_octant_coverage(uint32_t color)
 {

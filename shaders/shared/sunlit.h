@@ -41,12 +41,18 @@ WD_FUNC float wd_leaves_seen_up(float eye)
 /* Of wd_lit_leaves.through: the reduced mesh has every leaf. */
 #define WD_THROUGH_ALL_LEAVES 0x40000000u
 
-/* Share of lower sides among the leaves of a crown that turn one side to a way, or the same side to two ways: by the
- * sine of its elevation, or by the sum of both. Of oaks, beeches, birches, maples and hazels, counted by rays. */
-WD_FUNC float wd_lower_sides(float sine)
-{
-    return sine < 0.0f ? 1.0f - 0.59f * WD_EXP(1.7f * sine) : 0.41f * WD_EXP(-2.4f * sine);
-}
+/* Share of upper sides among what an eye sees of a model's leaves, by the eye's elevation (its rings): of what reflects,
+ * and of what transmits the sun toward it, by the sun's elevation (up to its third ring), and of all. */
+#define WD_UPPER_SUNS 3u
+#define WD_UPPER_REFLECTS 0u
+#define WD_UPPER_TRANSMITS 3u
+#define WD_UPPER_SEEN 6u
+/* And what its leaves' wax mirrors of the sun to that eye, over what cloud_wax of struct wd_tree_model tells for any. */
+#define WD_UPPER_MIRRORS 7u
+#define WD_UPPER_MIRRORS_MOST 4.0f
+#define WD_UPPER_KINDS 8u
+/* Of an even sky as much comes from the one side as of a sun on this ring. */
+#define WD_UPPER_SKY_RING 1u
 
 /* How far a model's leaves shade one another from close by is told by how many more places on them are lit if nothing
  * nearer than this hides the sun, and by which power of the distance that goes with. */
@@ -139,10 +145,15 @@ struct wd_lit_model {
      * of a turn on, of a ring of the eye on, and of both on. */
     uint32_t sunlit[4 * WD_SUNLIT_PLACES * 4];
     uint32_t skylit[WD_SKYLIT_PLACES * 4]; /* two half floats each: of a place, and of a ring on */
+    /* A texel for each ring of the eye: what reflects, and of a ring on, and what transmits, and of a ring on. Bytes of
+     * one for each ring of the sun, then, beside what reflects, what is seen, and beside what transmits, what is mirrored,
+     * of WD_UPPER_MIRRORS_MOST. */
+    uint32_t upper[4 * WD_EYE_RINGS];
 };
-WD_STATIC_ASSERT_SIZE(wd_lit_model, 9232);
+WD_STATIC_ASSERT_SIZE(wd_lit_model, 9312);
 #define WD_LIT_LEAVES_TEXELS 2u
 #define WD_LIT_SKYLIT_TEXEL 562u
-#define WD_LIT_MODEL_TEXELS 577u
+#define WD_LIT_UPPER_TEXEL 577u
+#define WD_LIT_MODEL_TEXELS 582u
 
 #endif

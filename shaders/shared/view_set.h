@@ -24,6 +24,7 @@ struct wd_view_model {
     float radius_m; /* about the trunk's axis */
     float bottom_m, top_m;
     uint32_t layer;
+    uint32_t mixed; /* its wood over its leaves, as shared/mixed.h packs it */
 };
 
 struct wd_view_atlas {

@@ -29,6 +29,7 @@ enum {
     GROUP = 64, /* threads, in every shader */
     BATCH_SAMPLE_BYTES = 32 << 20,
     BATCH_SHOTS = 16, /* they share the list of large triangles */
+    LEAF_BYTES = 16,  /* sums of what a picture's leaves show */
 };
 
 static bool init_raster(struct wd_baker *baker, uint32_t form)
@@ -240,6 +241,7 @@ static void record_resolve(struct wd_cmd *cmd, struct batch *batch)
     wd_cmd_use_buffer(cmd, &baker->samples, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &baker->rays, WD_USE_COMPUTE_READ);
     wd_cmd_use_buffer(cmd, &baker->flats, WD_USE_COMPUTE_READ);
+    wd_cmd_fill_buffer(cmd, &baker->texels, 0);
     wd_cmd_use_buffer(cmd, &baker->texels, WD_USE_COMPUTE_WRITE);
     wd_cmd_bind(cmd, resolve, bindings);
     dispatch_shots(cmd, batch, resolve, (uint64_t)batch->push.width * batch->push.height);
@@ -269,6 +271,11 @@ static bool run_batch(struct batch *batch)
     return wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE) && wd_frames_wait(&baker->frames);
 }
 
+static size_t picture_bytes(const struct wd_bake_job *job)
+{
+    return (size_t)job->width * job->height * WD_PLANES * 4;
+}
+
 /* Buffers of a batch of `shots` pictures, and of the mesh. */
 static bool grow_buffers(struct wd_baker *baker, const struct wd_bake_job *job, uint32_t shots)
 {
@@ -282,32 +289,37 @@ static bool grow_buffers(struct wd_baker *baker, const struct wd_bake_job *job, 
            grow(baker, &baker->flats, "bake flats",
                 (job->mesh.index_count / 3 + 1) * sizeof(struct wd_bake_flat),
                 VK_FORMAT_R32G32B32A32_UINT) &&
-           grow(baker, &baker->texels, "bake texels", texels * WD_PLANES * 4, 0);
+           grow(baker, &baker->texels, "bake texels", shots * (picture_bytes(job) + LEAF_BYTES), 0);
 }
 
-/* Pictures of a batch that have come back. */
+/* Pictures of a batch that have come back, and the sums after them. */
 struct taking {
-    void (*take)(void *user, uint32_t shot, const uint8_t *planes);
+    void (*take)(void *user, uint32_t shot, const struct wd_bake_picture *picture);
     void *user;
     const uint8_t *planes;
-    size_t shot_bytes;
+    size_t shot_bytes, leaf_sums;
     uint32_t first;
 };
 
 static void take_shot(void *user, size_t index)
 {
     const struct taking *taking = user;
-    taking->take(taking->user, taking->first + (uint32_t)index,
-                 taking->planes + index * taking->shot_bytes);
+    struct wd_bake_picture picture = {.planes = taking->planes + index * taking->shot_bytes};
+    uint32_t sums[4];
+    memcpy(sums, taking->planes + taking->leaf_sums + LEAF_BYTES * index, sizeof sums);
+    for (int k = 0; k < 4; k++)
+        picture.leaves[k] = (double)sums[k] / WD_BAKE_LEAF_STEPS;
+    taking->take(taking->user, taking->first + (uint32_t)index, &picture);
 }
 
 bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
-                  void (*take)(void *user, uint32_t shot, const uint8_t *planes), void *user)
+                  void (*take)(void *user, uint32_t shot, const struct wd_bake_picture *picture),
+                  void *user)
 {
     const size_t picture = (size_t)job->width * job->height;
     const size_t sample_bytes =
         picture * job->samples * job->samples * sizeof(struct wd_bake_sample);
-    const size_t shot_bytes = picture * WD_PLANES * 4;
+    const size_t shot_bytes = picture_bytes(job);
     uint32_t most = (uint32_t)(BATCH_SAMPLE_BYTES / sample_bytes);
     most = most < 1 ? 1 : most > BATCH_SHOTS ? BATCH_SHOTS : most;
     most = most > job->shot_count ? job->shot_count : most;
@@ -316,15 +328,17 @@ bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
            WD_BAKE_SIDE_MAX);
     if (!init_pipelines(baker, job) || !grow_buffers(baker, job, most))
         return false;
-    uint8_t *planes = wd_alloc(most * shot_bytes);
+    const size_t leaf_sums = most * shot_bytes, bytes = leaf_sums + most * LEAF_BYTES;
+    uint8_t *planes = wd_alloc(bytes);
     struct batch batch = {.baker = baker, .job = job, .push = job_push(job)};
+    batch.push.leaf_sums = (uint32_t)(leaf_sums / 4);
     bool ok = true;
     for (batch.first = 0; batch.first < job->shot_count && ok; batch.first += most) {
         uint32_t left = job->shot_count - batch.first;
         batch.count = left < most ? left : most;
         ok = run_batch(&batch) &&
-             wd_buffer_read(baker->gpu, &baker->texels, 0, planes, batch.count * shot_bytes);
-        struct taking taking = {take, user, planes, shot_bytes, batch.first};
+             wd_buffer_read(baker->gpu, &baker->texels, 0, planes, bytes);
+        struct taking taking = {take, user, planes, shot_bytes, leaf_sums, batch.first};
         wd_jobs_run(0, ok ? batch.count : 0, take_shot, &taking);
     }
     free(planes);

@@ -62,9 +62,16 @@ struct wd_bake_job {
 };
 #define WD_BAKE_SIDE_MAX 1024
 
-/* Calls `take` once for each shot, in any order and from several threads at once, with its finest mip:
- * WD_PLANES images of width x height texels of 4 bytes (see shared/view_set.h), one after the other. */
+/* What a shot shows. */
+struct wd_bake_picture {
+    const uint8_t *planes; /* the finest mip: WD_PLANES images of width x height texels of 4 bytes (see
+                              shared/view_set.h), one after the other */
+    double leaves[4];      /* linear colour and openness of leaves, summed over texels by what of each they cover */
+};
+
+/* Calls `take` once for each shot, in any order and from several threads at once. */
 bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
-                  void (*take)(void *user, uint32_t shot, const uint8_t *planes), void *user);
+                  void (*take)(void *user, uint32_t shot, const struct wd_bake_picture *picture),
+                  void *user);
 
 #endif

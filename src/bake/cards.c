@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bake/blocks.h"
+#include "bake/mixed.h"
 #include "bake/pyramid.h"
 #include "base/dmath.h"
 #include "base/memory.h"
@@ -118,17 +119,28 @@ static void keep_mip(const struct wd_cards *cards, const struct wd_pyramid *pyra
         out[i] = texels[4 * i + 3];
 }
 
-static void take_card(void *user, uint32_t card, const uint8_t *planes)
+/* Cards while they are baked, and what tells wood and leaves apart of each. */
+struct baked_cards {
+    struct wd_cards *cards;
+    struct wd_mixed_sums mixed[WD_CARDS];
+};
+
+/* Of trees 32 pixels tall or so. */
+enum { MIXED_MIP = 3 };
+
+static void take_card(void *user, uint32_t card, const struct wd_bake_picture *picture)
 {
-    const struct wd_cards *cards = user;
+    struct baked_cards *baked = user;
+    const struct wd_cards *cards = baked->cards;
     struct wd_pyramid pyramid;
     uint8_t *texels = wd_alloc((size_t)4 * WD_CARD_WIDTH * WD_CARD_HEIGHT);
     wd_pyramid_init(&pyramid, WD_CARD_WIDTH, WD_CARD_HEIGHT, WD_CARD_MIPS);
-    wd_pyramid_set(&pyramid, planes);
+    wd_pyramid_set(&pyramid, picture->planes);
     for (int plane = 0; plane < WD_PLANES; plane++)
         for (uint32_t mip = wd_card_first_mip(&cards->form, plane);
              mip < WD_CARD_MIPS && cards->planes[plane]; mip++)
             keep_mip(cards, &pyramid, texels, card, mip, plane);
+    wd_pyramid_tell_mixed(&pyramid, MIXED_MIP, picture->leaves, &baked->mixed[card]);
     wd_pyramid_finish(&pyramid);
     free(texels);
 }
@@ -152,7 +164,12 @@ bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct 
         .samples = WD_CARD_SUPERSAMPLING,
     };
     init_cards(cards, form);
-    bool ok = wd_baker_run(baker, &job, take_card, cards);
+    struct baked_cards *baked = wd_alloc(sizeof *baked);
+    memset(baked, 0, sizeof *baked);
+    baked->cards = cards;
+    bool ok = wd_baker_run(baker, &job, take_card, baked);
+    cards->mixed = ok ? wd_mixed_ratios(baked->mixed, WD_CARDS) : WD_MIXED_EVEN;
+    free(baked);
     if (!ok)
         wd_cards_finish(cards);
     return ok;
@@ -170,7 +187,7 @@ static uint64_t cards_key(uint64_t model_key, const struct wd_card_form *form)
 
 static size_t kept_bytes(const struct wd_card_form *form)
 {
-    size_t bytes = 0;
+    size_t bytes = WD_MIXED_BYTES;
     for (int plane = 0; plane < WD_PLANES; plane++)
         bytes += wd_card_plane_bytes(form, plane);
     return bytes;
@@ -190,6 +207,8 @@ bool wd_cards_load(struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t
             memcpy(cards->planes[plane], block + at, wd_card_plane_bytes(form, plane));
             at += wd_card_plane_bytes(form, plane);
         }
+    if (found)
+        cards->mixed = wd_mixed_get(block + at);
     free(block);
     return found;
 }
@@ -203,6 +222,7 @@ void wd_cards_store(const struct wd_cards *cards, struct wd_bake_cache *cache, u
             memcpy(block + at, cards->planes[plane], wd_card_plane_bytes(&cards->form, plane));
             at += wd_card_plane_bytes(&cards->form, plane);
         }
+    wd_mixed_put(block + at, cards->mixed);
     wd_cache_store(cache, "cards", cards_key(model_key, &cards->form), block, bytes);
     free(block);
 }

@@ -43,6 +43,7 @@ struct wd_card_form {
 struct wd_cards {
     struct wd_card_form form;
     uint8_t *planes[WD_PLANES]; /* wd_card_plane_bytes() each, or NULL */
+    uint32_t mixed;             /* its wood over its leaves, as shared/mixed.h packs it */
 };
 /* The finest mip of a plane that is kept. */
 uint32_t wd_card_first_mip(const struct wd_card_form *form, int plane);

@@ -20,7 +20,8 @@ enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD
        SUNLIT = (int)(WD_SUNLIT_PLACES * WD_SUNLIT_KINDS),
        SKYLIT = (int)(WD_SKYLIT_PLACES * WD_SKYLIT_KINDS), SKYLIT_AT = SUNLIT_AT + SUNLIT + 2,
        CLOUD_WAX_AT = SKYLIT_AT + SKYLIT,
-       NEAR_SHADE_AT = CLOUD_WAX_AT + 2, FIGURES = NEAR_SHADE_AT + 5,
+       NEAR_SHADE_AT = CLOUD_WAX_AT + 2, UPPER_AT = NEAR_SHADE_AT + 5,
+       UPPER = (int)(WD_EYE_RINGS * WD_UPPER_KINDS), FIGURES = UPPER_AT + UPPER + (int)WD_EYE_RINGS,
        SETS = 2 * WD_LEAF_SETS, SET_WORDS = 10, SET_AT = FIGURES + MESHES * MESH_WORDS,
        LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
@@ -147,6 +148,10 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
     figures[NEAR_SHADE_AT + 2] = &model->recollision;
     figures[NEAR_SHADE_AT + 3] = &model->low_sky;
     figures[NEAR_SHADE_AT + 4] = &model->flatness;
+    for (size_t k = 0; k < UPPER; k++)
+        figures[UPPER_AT + k] = &model->upper[k / WD_UPPER_KINDS][k % WD_UPPER_KINDS];
+    for (size_t k = 0; k < WD_EYE_RINGS; k++)
+        figures[UPPER_AT + UPPER + k] = &model->wood_seen[k];
     for (size_t k = 0; k < SKYLIT; k++)
         figures[SKYLIT_AT + k] = &model->skylit[k / WD_SKYLIT_KINDS][k % WD_SKYLIT_KINDS];
 }

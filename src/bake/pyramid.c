@@ -123,3 +123,21 @@ void wd_pyramid_get(const struct wd_pyramid *pyramid, uint32_t mip, int plane, u
                    out + y * stride + 4 * (size_t)x);
     }
 }
+
+void wd_pyramid_tell_mixed(const struct wd_pyramid *pyramid, uint32_t mip, const double leaves[WD_MIXED_KINDS],
+                           struct wd_mixed_sums *sums)
+{
+    enum { OPENNESS = 4 * WD_PLANE_NORMAL + 3, LEAF = 4 * WD_PLANE_DEPTH + 3 };
+    const struct wd_pyramid_level *finest = &pyramid->levels[0], *level = &pyramid->levels[mip];
+    size_t count = (size_t)level->width * level->height;
+    double per_texel = (double)count / (double)((size_t)finest->width * finest->height);
+    *sums = (struct wd_mixed_sums){0};
+    for (int k = 0; k < WD_MIXED_KINDS; k++)
+        sums->leaves[k] = per_texel * leaves[k];
+    for (size_t i = 0; i < count; i++) {
+        const float *values = level->texels[i].values;
+        uint8_t leaf = wd_unorm_encode(values[COVERAGE] > 0 ? values[LEAF] / values[COVERAGE] : 0);
+        for (int k = 0; k < WD_MIXED_KINDS; k++)
+            sums->all[leaf][k] += (double)values[k < COVERAGE ? k : OPENNESS];
+    }
+}

@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "bake/mixed.h"
 #include "shared/view_set.h"
 
 enum { WD_PYRAMID_MIPS = 12 };
@@ -32,5 +33,9 @@ void wd_pyramid_set(struct wd_pyramid *pyramid, const uint8_t *planes);
 /* Writes a mip of a plane (WD_PLANE_*) at `out`, rows `stride` bytes apart. */
 void wd_pyramid_get(const struct wd_pyramid *pyramid, uint32_t mip, int plane, uint8_t *out,
                     size_t stride);
+
+/* What tells wood and leaves of a mip apart. `leaves`: what leaves alone show, of struct wd_bake_picture. */
+void wd_pyramid_tell_mixed(const struct wd_pyramid *pyramid, uint32_t mip, const double leaves[WD_MIXED_KINDS],
+                           struct wd_mixed_sums *sums);
 
 #endif

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bake/mixed.h"
 #include "bake/pyramid.h"
 #include "base/memory.h"
 
@@ -118,13 +119,22 @@ static struct wd_bake_shot shot_of(const struct wd_view_frame *frame, float samp
     };
 }
 
-static void take_view(void *user, uint32_t view, const uint8_t *planes)
+/* A set while it is baked, and what tells wood and leaves apart of each view: by texels of twice the finest's size. */
+enum { MIXED_MIP = 1 };
+struct baked_set {
+    struct wd_view_set *set;
+    struct wd_mixed_sums *mixed;
+};
+
+static void take_view(void *user, uint32_t view, const struct wd_bake_picture *picture)
 {
-    const struct wd_view_set *set = user;
+    const struct baked_set *baked = user;
+    const struct wd_view_set *set = baked->set;
     const struct wd_view_atlas *atlas = &set->atlas;
     struct wd_pyramid pyramid;
     wd_pyramid_init(&pyramid, atlas->size, atlas->size, atlas->mips);
-    wd_pyramid_set(&pyramid, planes);
+    wd_pyramid_set(&pyramid, picture->planes);
+    wd_pyramid_tell_mixed(&pyramid, atlas->mips > MIXED_MIP ? MIXED_MIP : 0, picture->leaves, &baked->mixed[view]);
     for (uint32_t mip = 0; mip < atlas->mips; mip++) {
         size_t stride = (size_t)4 * wd_view_layer_size(atlas, mip), tile = atlas->size >> mip;
         size_t at = wd_view_mip_offset(atlas, mip) + view / atlas->columns * tile * stride +
@@ -156,7 +166,11 @@ bool wd_view_set_bake(struct wd_view_set *set, struct wd_baker *baker,
         .samples = params->samples,
     };
     init_set(set, atlas, model);
-    bool ok = wd_baker_run(baker, &job, take_view, set);
+    struct baked_set baked = {set, wd_alloc_array(views, sizeof *baked.mixed)};
+    bool ok = wd_baker_run(baker, &job, take_view, &baked);
+    if (ok)
+        set->model.mixed = wd_mixed_ratios(baked.mixed, views);
+    free(baked.mixed);
     free(shots);
     if (!ok)
         wd_view_set_finish(set);
@@ -179,15 +193,16 @@ static uint64_t set_key(const struct wd_view_set_params *params, const struct wd
 bool wd_view_set_load(struct wd_view_set *set, const struct wd_view_atlas *atlas,
                       const struct wd_view_set_name *name)
 {
-    size_t plane = wd_view_plane_bytes(atlas), size;
+    size_t plane = wd_view_plane_bytes(atlas), bytes = WD_PLANES * plane + WD_MIXED_BYTES, size;
     uint64_t key = set_key(name->params, name->model, name->model_key);
-    uint8_t *block = wd_cache_load(name->cache, "views", key, WD_PLANES * plane, &size);
-    bool found = block && size == WD_PLANES * plane;
+    uint8_t *block = wd_cache_load(name->cache, "views", key, bytes, &size);
+    bool found = block && size == bytes;
     *set = (struct wd_view_set){0};
     if (found) {
         init_set(set, atlas, name->model);
         for (int i = 0; i < WD_PLANES; i++)
             memcpy(set->planes[i], block + (size_t)i * plane, plane);
+        set->model.mixed = wd_mixed_get(block + WD_PLANES * plane);
     }
     free(block);
     return found;
@@ -196,10 +211,11 @@ bool wd_view_set_load(struct wd_view_set *set, const struct wd_view_atlas *atlas
 void wd_view_set_store(const struct wd_view_set *set, const struct wd_view_set_name *name)
 {
     size_t plane = wd_view_plane_bytes(&set->atlas);
-    uint8_t *block = wd_alloc(WD_PLANES * plane);
+    size_t bytes = WD_PLANES * plane + WD_MIXED_BYTES;
+    uint8_t *block = wd_alloc(bytes);
     for (int i = 0; i < WD_PLANES; i++)
         memcpy(block + (size_t)i * plane, set->planes[i], plane);
-    wd_cache_store(name->cache, "views", set_key(name->params, name->model, name->model_key), block,
-                   WD_PLANES * plane);
+    wd_mixed_put(block + WD_PLANES * plane, set->model.mixed);
+    wd_cache_store(name->cache, "views", set_key(name->params, name->model, name->model_key), block, bytes);
     free(block);
 }

@@ -38,8 +38,8 @@ uint32_t wd_view_layer_size(const struct wd_view_atlas *atlas, uint32_t mip);
 size_t wd_view_mip_offset(const struct wd_view_atlas *atlas, uint32_t mip);
 size_t wd_view_plane_bytes(const struct wd_view_atlas *atlas);
 
-/* Renders every view of `mesh`. `params` as filled in by
- * wd_view_atlas_init. Deterministic on one device. */
+/* Renders every view of `mesh`, and finds how its wood differs from its leaves (set->model.mixed). `params` as filled in
+ * by wd_view_atlas_init. Deterministic on one device. */
 bool wd_view_set_bake(struct wd_view_set *set, struct wd_baker *baker,
                       const struct wd_bake_mesh *mesh, const struct wd_view_model *model,
                       const struct wd_view_atlas *atlas, const struct wd_view_set_params *params);

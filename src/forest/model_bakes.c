@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "base/jobs.h"
 #include "base/memory.h"
+#include "shared/mixed.h"
 
 static const VkFormat formats[WD_PLANES] = {
     VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM};
@@ -197,6 +198,8 @@ static bool make_cards(struct wd_forest_device *forest, struct wd_gpu *gpu, stru
     }
     wd_jobs_run(0, count, store_cards, &made); /* also of one that was stopped half-way */
     for (uint32_t i = 0; i < count; i++) {
+        if (form->parts == WD_BAKE_ALL)
+            forest->host_models[first + i].mixed = made.models[i].cards.mixed;
         for (int k = 0; k < WD_PLANES && ok; k++)
             ok = !images[k] || wd_image_upload_layers(gpu, images[k], (first + i) * WD_CARDS,
                                                       WD_CARDS, made.models[i].cards.planes[k]);
@@ -230,7 +233,9 @@ bool wd_forest_make_cards(struct wd_forest_device *forest, struct wd_gpu *gpu)
                                           &forest->card_leaf};
     if (forest->card_albedo.image || !forest->model_count)
         return true;
-    bool ok = wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, images, WD_CARD_DEPTH_LEAVES);
+    size_t models = forest->model_count * sizeof *forest->host_models;
+    bool ok = wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, images, WD_CARD_DEPTH_LEAVES) &&
+              wd_buffer_upload(gpu, &forest->models, 0, forest->host_models, models);
     for (int k = 0; k < WD_PLANES && !ok; k++)
         wd_image_finish(images[k], gpu);
     wd_transfer_drop_staging(gpu);
@@ -245,7 +250,7 @@ static struct wd_view_model view_model(const struct wd_forest_device *forest, ui
     const struct wd_model *model = &forest->host_models[index];
     uint32_t species = index / forest->variants, variant = index % forest->variants;
     return (struct wd_view_model){model->half_width_m, model->bottom_m, model->top_m,
-                                  species * variants + variant % variants};
+                                  species * variants + variant % variants, WD_MIXED_EVEN};
 }
 
 static bool upload_set(struct wd_view_sets *sets, struct wd_gpu *gpu, const struct wd_view_set *set)
@@ -263,7 +268,7 @@ static bool upload_set(struct wd_view_sets *sets, struct wd_gpu *gpu, const stru
 
 static bool get_set(struct wd_view_sets *sets, struct wd_gpu *gpu, struct wd_forest_device *forest,
                     struct wd_baker *baker, uint32_t index, const struct wd_view_set_params *params,
-                    const struct wd_view_model *model)
+                    struct wd_view_model *model)
 {
     const struct wd_view_set_name name = {&forest->cache, forest->model_keys[index], params, model};
     struct wd_view_set set = {0};
@@ -280,6 +285,7 @@ static bool get_set(struct wd_view_sets *sets, struct wd_gpu *gpu, struct wd_for
         if (ok)
             wd_view_set_store(&set, &name);
     }
+    model->mixed = ok ? set.model.mixed : WD_MIXED_EVEN;
     ok = ok && upload_set(sets, gpu, &set);
     wd_view_set_finish(&set);
     return ok;
@@ -297,6 +303,8 @@ static bool fill_sets(struct wd_view_sets *sets, struct wd_gpu *gpu,
         if (i % forest->variants < variants)
             ok = wd_progress_report(progress, "baking views", models[i].layer, sets->layers) &&
                  get_set(sets, gpu, forest, &baker, i, views, &models[i]);
+        else
+            models[i].mixed = models[i - i % forest->variants + i % forest->variants % variants].mixed;
     }
     size_t bytes = forest->model_count * sizeof *models;
     const struct wd_buffer_params params = {"view models", bytes,

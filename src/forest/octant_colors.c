@@ -43,6 +43,8 @@ static void add_below(struct wd_octant_mean *sum, const struct wd_octant_mean *b
         sum->color[k] += share * below->color[k];
         sum->normal[k] += share * below->normal[k];
     }
+    for (int k = 0; k < WD_MIXED_KINDS; k++)
+        sum->leaves[k] += share * below->leaves[k];
     sum->openness += share * below->openness;
     sum->leaf += share * below->leaf;
     sum->coverage += share * below->coverage;

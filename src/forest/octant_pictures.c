@@ -20,6 +20,26 @@ enum { ATLAS_PIXELS = 2048, MAX_ENTRIES = 1 << 19, ENTRY_VERTICES = 6 };
 
 /* --- means ------------------------------------------------------------------------------- */
 
+/* What leaves have of a mean of both. */
+static float leaves_of(float mean, float leaf, uint32_t mixed, uint32_t kind)
+{
+    return mean * leaf / fmaxf(leaf + (1 - leaf) * wd_mixed_ratio(mixed, kind), 1e-6f);
+}
+
+static uint32_t mixed_of(const struct wd_octant_mean *mean)
+{
+    const float all[WD_MIXED_KINDS] = {mean->color[0], mean->color[1], mean->color[2], mean->openness};
+    const float few = 0.004f * mean->coverage, wood = mean->coverage - mean->leaf;
+    uint32_t packed = 0;
+    if (wood < few || mean->leaf < few)
+        return WD_MIXED_EVEN;
+    for (uint32_t k = 0; k < WD_MIXED_KINDS; k++) {
+        float leaf = fmaxf(mean->leaves[k] / mean->leaf, 1e-4f), rest = fmaxf(all[k] - mean->leaves[k], 0);
+        packed |= wd_mixed_byte(rest / wood / leaf) << (8 * k);
+    }
+    return packed;
+}
+
 struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint32_t side,
                                         const float linear[256])
 {
@@ -32,6 +52,8 @@ struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint3
     }
     mean.openness = mean.coverage * (float)(normal >> 24) / 255.0f;
     mean.leaf = mean.coverage * (float)leaf / 255.0f;
+    for (uint32_t k = 0; k < WD_MIXED_KINDS; k++)
+        mean.leaves[k] = leaves_of(k < 3 ? mean.color[k] : mean.openness, (float)leaf / 255.0f, look->mixed[side], k);
     return mean;
 }
 
@@ -39,7 +61,7 @@ void wd_octant_mean_pack(const struct wd_octant_mean *mean, struct wd_octant_loo
                          uint32_t side)
 {
     uint32_t *color = &look->color[side], *normal = &look->normal[side], at = 8 * (side % 4);
-    *color = *normal = 0;
+    *color = *normal = look->mixed[side] = 0;
     look->leaf[side / 4] &= ~(0xffu << at);
     uint32_t root = wd_unorm_encode(sqrtf(mean->coverage));
     if (root == 0)
@@ -51,6 +73,7 @@ void wd_octant_mean_pack(const struct wd_octant_mean *mean, struct wd_octant_loo
     }
     *color |= root << 24;
     *normal |= (uint32_t)wd_unorm_encode(mean->openness * scale) << 24;
+    look->mixed[side] = mixed_of(mean);
     look->leaf[side / 4] |= (uint32_t)wd_unorm_encode(mean->leaf * scale) << at;
 }
 
@@ -75,8 +98,12 @@ static struct wd_octant_mean mean_of_pixels(const struct wd_octant_pictures *p, 
                 sum.color[k] += weight * p->linear[albedo[k]];
                 sum.normal[k] += weight * ((float)normal[k] / 127.5f - 1.0f);
             }
-            sum.openness += weight * (float)normal[3] / 255.0f;
-            sum.leaf += weight * leaf_of((float)albedo[3] / 255.0f);
+            float openness = weight * (float)normal[3] / 255.0f, leaf = leaf_of((float)albedo[3] / 255.0f);
+            for (int k = 0; k < 3; k++)
+                sum.leaves[k] += leaf * weight * p->linear[albedo[k]];
+            sum.leaves[3] += leaf * openness;
+            sum.openness += openness;
+            sum.leaf += weight * leaf;
             sum.coverage += weight;
         }
     }

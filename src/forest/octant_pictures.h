@@ -4,12 +4,14 @@
 #define WD_FOREST_OCTANT_PICTURES_H
 
 #include "forest/forest.h"
+#include "shared/mixed.h"
 #include "shared/octant.h"
 
 /* Mean of what a cell shows: sums over its pixels, colours linear. */
 struct wd_octant_mean {
     float color[3], normal[3], openness, leaf; /* weighted by coverage */
     float coverage;                            /* 0..1 */
+    float leaves[WD_MIXED_KINDS];              /* colour and openness of leaves alone */
 };
 struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint32_t side,
                                         const float linear[256]);

@@ -72,6 +72,8 @@ enum {
     MIRRORED,               /* by the wax of leaves */
     LIT,                    /* reflected and transmitted, and */
     WOOD_LIT,               /* the wood, where those are over a cloud's (over_cloud) */
+    UPPER,                  /* area of upper sides of leaves, */
+    UPPER_REFLECTED, UPPER_TRANSMITTED, /* and what eyes see of these of the sun */
     SENT
 };
 
@@ -89,6 +91,7 @@ struct fit {
                                          below are open */
     struct sent sent[EYES][WD_SUN_WAYS];
     struct skylit skylit[WD_SKYLIT_PLACES];
+    float crown_seen[WD_EYE_RINGS], crown_wood[WD_EYE_RINGS]; /* area toward eyes above the lowest living branch */
 };
 
 static void set_crown(struct fit *fit, const struct wd_tree_model *model)
@@ -156,7 +159,12 @@ static void send_leaf(struct fit *fit, const struct shown *point, uint32_t eye, 
         bool behind = wd_v3_dot(face, sun) < 0, lost = behind != (cosine < 0);
         float side = lost ? 0 : area * fabsf(cosine);
         sent->of[SEEN] += area;
-        sent->of[behind ? TRANSMITTED : REFLECTED] += side * wd_sun_way_lit(point->lit, way);
+        float lit = side * wd_sun_way_lit(point->lit, way);
+        sent->of[behind ? TRANSMITTED : REFLECTED] += lit;
+        if (area_above > 0) {
+            sent->of[UPPER] += area;
+            sent->of[behind ? UPPER_TRANSMITTED : UPPER_REFLECTED] += lit;
+        }
         sent->of[BY_DEPTH] += side * point->left[way];
         sent->of[DEEP] += area * point->left[way];
         sent->of[CARD] += area * card_left(fit, card, mixed, way);
@@ -400,6 +408,18 @@ static float mixed_openness(struct cells *cells, struct wd_vec3 place)
     return cell->area > 0 ? cell->open / cell->area : 1;
 }
 
+/* What eyes see of the crown, and of wood in it. */
+static void count_crown(struct fit *fit, const struct shown *point, uint32_t seen, bool wood)
+{
+    for (uint32_t i = 0; i < EYES && point->place.z > -fit->radii_m.z; i++) {
+        float area = wd_v3_dot(point->face, fit->eyes[i].toward);
+        if (!(seen >> i & 1) || (wood && area <= 0))
+            continue;
+        fit->crown_seen[fit->eyes[i].ring] += fabsf(area);
+        fit->crown_wood[fit->eyes[i].ring] += wood ? area : 0;
+    }
+}
+
 static void send(struct fit *fit, const struct wd_tree_points *points, const struct shown *all)
 {
     struct cells *cells = wd_alloc_array(EYES, sizeof *cells);
@@ -410,6 +430,7 @@ static void send(struct fit *fit, const struct wd_tree_points *points, const str
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
             shown.left[way] = wd_crown_lit(shown.left[way], fit->curve[0], fit->curve[1]);
         send_skylight(fit, &shown, fit->views[i], !(points->points[i].kind & WD_POINT_LEAF));
+        count_crown(fit, &shown, fit->views[i], !(points->points[i].kind & WD_POINT_LEAF));
         for (uint32_t eye = 0; eye < EYES; eye++)
             if (fit->views[i] >> eye & 1 && points->points[i].kind & WD_POINT_LEAF)
                 send_leaf(fit, &shown, eye, mixed_openness(&cells[eye], shown.place));
@@ -593,6 +614,51 @@ static void fill_table(struct wd_tree_model *model, const struct fit *fit)
         }
 }
 
+/* Share of upper sides, of few that are as likely the one as the other. */
+static float upper_share(float upper, float all, float seen)
+{
+    float few = 0.01f * seen;
+    return (upper + 0.5f * few) / fmaxf(all + few, 1e-9f);
+}
+
+/* What is mirrored to eyes on a ring over what `wax` tells. */
+static float mirrored_on(const float wax[2], const struct fit *fit, uint32_t ring)
+{
+    float mirrored = 0, told = 0, seen = 0;
+    for (uint32_t eye = 0; eye < EYES; eye++)
+        for (uint32_t way = 0; way < WD_SUN_WAYS && fit->eyes[eye].ring == ring; way++) {
+            const float *sent = fit->sent[eye][way].of;
+            float rise = wd_cloud_wax_rise(wd_v3_dot(fit->eyes[eye].toward, fit->suns[way]));
+            told += WD_WAX * (wax[0] + wax[1] * rise) * (sent[REFLECTED] + sent[TRANSMITTED]);
+            mirrored += sent[MIRRORED], seen += sent[SEEN];
+        }
+    return fminf(ratio(mirrored, told, seen), WD_UPPER_MIRRORS_MOST);
+}
+
+static void fill_upper(struct wd_tree_model *model, const struct fit *fit)
+{
+    for (uint32_t ring = 0; ring < WD_EYE_RINGS; ring++) {
+        float of[WD_UPPER_SUNS][SENT] = {{0}}, upper = 0, seen = 0;
+        for (uint32_t eye = 0; eye < EYES; eye++)
+            for (uint32_t way = 0; way < WD_SUN_RING_FIRST(WD_UPPER_SUNS) && fit->eyes[eye].ring == ring; way++) {
+                uint32_t sun = way < WD_SUN_RING_FIRST(1) ? 0 : way < WD_SUN_RING_FIRST(2) ? 1 : 2;
+                for (int k = 0; k < SENT; k++)
+                    of[sun][k] += fit->sent[eye][way].of[k];
+            }
+        for (uint32_t sun = 0; sun < WD_UPPER_SUNS; sun++) {
+            const float *sent = of[sun];
+            upper += sent[UPPER], seen += sent[SEEN];
+            model->upper[ring][WD_UPPER_REFLECTS + sun] =
+                upper_share(sent[UPPER_REFLECTED], sent[REFLECTED], sent[SEEN]);
+            model->upper[ring][WD_UPPER_TRANSMITS + sun] =
+                upper_share(sent[UPPER_TRANSMITTED], sent[TRANSMITTED], sent[SEEN]);
+        }
+        model->upper[ring][WD_UPPER_MIRRORS] = mirrored_on(model->cloud_wax, fit, ring);
+        model->upper[ring][WD_UPPER_SEEN] = upper_share(upper, seen, seen);
+        model->wood_seen[ring] = fit->crown_wood[ring] / fmaxf(fit->crown_seen[ring], 1e-9f);
+    }
+}
+
 void wd_tree_sunlit_fit(struct wd_tree_model *model)
 {
     static const uint8_t any[4 * WD_LOOK_LAYERS] = {0};
@@ -631,6 +697,7 @@ void wd_tree_sunlit_fit(struct wd_tree_model *model)
     fit_wax(model->cloud_wax, fit);
     wd_tree_points_finish(&points);
     fill_table(model, fit);
+    fill_upper(model, fit);
     for (uint32_t k = 0; k < WD_SKYLIT_PLACES * WD_SKYLIT_KINDS; k++) {
         uint32_t place = k / WD_SKYLIT_KINDS, kind = k % WD_SKYLIT_KINDS;
         const struct skylit *sum = &fit->skylit[place];

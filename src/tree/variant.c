@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "shared/mixed.h"
 #include "tree/look.h"
 #include "tree/look_map.h"
 
@@ -71,7 +72,10 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         .moss = species->bark.moss,
         .fall_mps = species->form == WD_FORM_FALLING ? 1.0f : 0,
         .phase = variant_phase(scene, index),
+        .mixed = WD_MIXED_EVEN,
     };
+    for (uint32_t ring = 0; ring < WD_EYE_RINGS; ring++)
+        model->wood_seen[ring / 4] |= (uint32_t)(255.0f * grown->wood_seen[ring] + 0.5f) << (8 * (ring % 4));
     for (int k = 0; k < 3; k++) {
         float late = species->leaf.season_color[0][k], early = species->leaf.season_color[1][k];
         model->behind[k] = late > 0 ? late : 1;
@@ -108,6 +112,25 @@ static void pack_skylit(uint32_t *texels, const struct wd_tree_model *grown)
             texels[4 * place + k] = wd_pack_uv(skylit[0], skylit[1]);
         }
     }
+}
+
+static uint32_t pack_bytes(const float *shares, float last)
+{
+    const float of[4] = {shares[0], shares[1], shares[2], last};
+    uint32_t packed = 0;
+    for (int k = 0; k < 4; k++)
+        packed |= (uint32_t)(255.0f * of[k] + 0.5f) << (8 * k);
+    return packed;
+}
+
+static void pack_upper(uint32_t *texels, const struct wd_tree_model *grown)
+{
+    for (uint32_t ring = 0; ring < WD_EYE_RINGS; ring++)
+        for (uint32_t on = 0; on < 2; on++) {
+            const float *upper = grown->upper[ring + on < WD_EYE_RINGS ? ring + on : ring];
+            texels[4 * ring + on] = pack_bytes(upper + WD_UPPER_REFLECTS, upper[WD_UPPER_SEEN]);
+            texels[4 * ring + 2 + on] = pack_bytes(upper + WD_UPPER_TRANSMITS, upper[WD_UPPER_MIRRORS] / WD_UPPER_MIRRORS_MOST);
+        }
 }
 
 static uint32_t pack_ratios(const float ratios[3])
@@ -159,4 +182,5 @@ void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species
     for (uint32_t kind = WD_SUNLIT_CARDS; kind <= WD_SUNLIT_LEAVES; kind++)
         pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * kind, grown, kind);
     pack_skylit(lit->skylit, grown);
+    pack_upper(lit->upper, grown);
 }
