@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "bake/pyramid.h"
+#include "base/color.h"
 #include "base/memory.h"
 #include "shared/hash.h"
 
@@ -105,12 +106,48 @@ static void nothing_stays_nothing(void **state)
     free(planes);
 }
 
+/* Bark twice as red as leaves, half as green, as blue, and a quarter as open, in no pattern: what
+ * leaves alone show tells how both differ, and a texel's own share of each then what both have. */
+static void mips_tell_wood_from_leaves(void **state)
+{
+    (void)state;
+    enum { MIP = 3 };
+    static const double leaf[4] = {0.1, 0.2, 0.05, 0.8}, bark[4] = {0.2, 0.1, 0.05, 0.2};
+    struct wd_pyramid pyramid;
+    struct wd_mixed_sums sums;
+    double leaves[4] = {0};
+    uint8_t *planes = wd_alloc((size_t)4 * TEXELS * WD_PLANES);
+    for (uint32_t i = 0; i < TEXELS; i++) {
+        bool wood = wd_hash2(i, 7) % 10 <= i % WIDTH / 32;
+        const double *has = wood ? bark : leaf;
+        for (int k = 0; k < 4; k++) {
+            uint8_t *at = planes + 4 * i + (k < 3 ? (size_t)k : 4 * (size_t)TEXELS + 3);
+            *at = k < 3 ? wd_srgb_encode((float)has[k]) : wd_unorm_encode((float)has[k]);
+            leaves[k] += wood ? 0 : k < 3 ? (double)wd_srgb_decode(*at) : *at / 255.0;
+        }
+        planes[4 * i + 3] = 255;
+        planes[4 * (i + 2 * (size_t)TEXELS) + 3] = wood ? 0 : 255;
+    }
+    wd_pyramid_init(&pyramid, WIDTH, HEIGHT, MIPS);
+    wd_pyramid_set(&pyramid, planes);
+    wd_pyramid_tell_mixed(&pyramid, MIP, leaves, &sums);
+    uint32_t mixed = wd_mixed_ratios(&sums, 1);
+    for (uint32_t k = 0; k < 4; k++)
+        assert_float_equal((double)wd_mixed_ratio(mixed, k), bark[k] / leaf[k], 0.03 * bark[k] / leaf[k]);
+    uint8_t bytes[WD_MIXED_BYTES];
+    wd_mixed_put(bytes, mixed);
+    assert_int_equal(wd_mixed_get(bytes), mixed);
+    wd_pyramid_finish(&pyramid);
+    free(planes);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_mip_keeps_coverage),
         cmocka_unit_test(looks_reach_into_empty_texels),
         cmocka_unit_test(nothing_stays_nothing),
+        cmocka_unit_test(mips_tell_wood_from_leaves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

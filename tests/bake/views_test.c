@@ -7,8 +7,10 @@
 
 #include "bake/cards.h"
 #include "bake/views.h"
+#include "base/color.h"
 #include "base/memory.h"
 #include "device_mesh.h"
+#include "shared/mixed.h"
 
 enum { SIZE = 32, LOOK_SIZE = 2 };
 
@@ -76,6 +78,18 @@ static void add_ball(struct wd_tree_mesh *mesh)
             add_quad(mesh, corners, normal, WD_VERTEX_LEAF);
         }
     }
+}
+
+/* Bars before the ball, narrower than a texel. */
+static void add_bars(struct wd_tree_mesh *mesh)
+{
+    static const float normal[3] = {1, 0, 0};
+    for (int bar = -8; bar < 8; bar++) {
+        float from = 0.125f * (float)bar, to = from + 0.03f;
+        float corners[4][3] = {{1.3f, from, 0}, {1.3f, to, 0}, {1.3f, from, 2}, {1.3f, to, 2}};
+        add_quad(mesh, corners, normal, 0);
+    }
+    mesh->wood_index_count = mesh->index_count;
 }
 
 static void make(struct fixture *f, void **state, void (*add)(struct wd_tree_mesh *mesh),
@@ -211,9 +225,25 @@ static void parts_come_apart(void **state)
     assert_int_equal(texel(&leaves, WD_PLANE_DEPTH, 0, SIZE / 2, SIZE / 2)[3], 255);
     assert_int_equal(texel(&wood, WD_PLANE_ALBEDO, 0, SIZE / 2, SIZE / 2)[0], BARK[0]);
     assert_int_equal(texel(&leaves, WD_PLANE_ALBEDO, 0, SIZE / 2, SIZE / 2)[0], LEAF[0]);
+    /* where there is but the one, nothing is to be told apart */
+    assert_int_equal(wood.model.mixed, WD_MIXED_EVEN);
+    assert_int_equal(leaves.model.mixed, WD_MIXED_EVEN);
     wd_view_set_finish(&all);
     wd_view_set_finish(&wood);
     wd_view_set_finish(&leaves);
+    finish(&f);
+}
+
+/* By what leaves alone show light can tell what bars and ball have where a texel holds both. */
+static void mixed_texels_are_told_apart(void **state)
+{
+    struct fixture f;
+    make(&f, state, add_bars, add_ball);
+    struct wd_view_set set = bake(&f, (struct wd_view_model){1.5f, 0.0f, 2.0f, 0}, WD_BAKE_ALL);
+    double green = (double)wd_srgb_decode(BARK[1]) / (double)wd_srgb_decode(LEAF[1]);
+    assert_float_equal((double)wd_mixed_ratio(set.model.mixed, 1), green, 0.05 * green);
+    assert_true(wd_mixed_ratio(set.model.mixed, 0) > 7.5f); /* it goes no further */
+    wd_view_set_finish(&set);
     finish(&f);
 }
 
@@ -339,6 +369,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_cube_is_seen_as_a_cube, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(a_ball_is_round_from_everywhere, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(parts_come_apart, gpu_setup, gpu_teardown),
+        cmocka_unit_test_setup_teardown(mixed_texels_are_told_apart, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(baking_twice_gives_the_same, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(one_pass_and_two_give_the_same, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(cards_without_depth_show_the_same, gpu_setup, gpu_teardown),

@@ -83,7 +83,7 @@ static void one_trees_octant_shows_the_trees_area(void **state)
     assert_true(wd_octant_colors_bake(&colors, &planted.test->gpu, &planted.forest, &params));
     assert_int_equal(colors.count, 1);
     assert_int_equal(colors.renders, 6);
-    assert_int_equal(colors.bytes, 56);
+    assert_int_equal(colors.bytes, 80);
     const struct wd_model *model = &planted.forest.host_models[0];
     const struct wd_tree *tree = &planted.world.trees[0];
     double up = 0.01 * (tree->size & 0xffff) / (double)model->height_m;

@@ -570,6 +570,14 @@ static void models_tell_how_their_leaves_stand(void **state)
     const uint32_t below = wd_sunlit_place(0, 1, 1), level = wd_sunlit_place(1, 1, 1);
     for (uint32_t kind = WD_SUNLIT_CARDS; kind <= WD_SUNLIT_DEEP; kind++)
         assert_true(spruce.sunlit[below][2 * kind] < spruce.sunlit[level][2 * kind]);
+    /* Level eyes see nearly as many lower sides of broad leaves as upper ones, eyes from above few; what the sun lights
+     * are upper ones. Needles turn every way. From above less wood is seen. */
+    const float *level_birch = birch.upper[1], *high_birch = birch.upper[3], *level_spruce = spruce.upper[1];
+    assert_in_range(100 * level_birch[WD_UPPER_SEEN], 55, 80);
+    assert_true(high_birch[WD_UPPER_SEEN] > 0.9f && level_birch[WD_UPPER_REFLECTS + 1] > level_birch[WD_UPPER_SEEN] + 0.1f);
+    assert_true(level_birch[WD_UPPER_TRANSMITS + 1] < level_birch[WD_UPPER_SEEN]);
+    assert_in_range(100 * level_spruce[WD_UPPER_REFLECTS + 1], 45, 55);
+    assert_true(birch.wood_seen[3] < 0.7f * birch.wood_seen[1] && birch.wood_seen[3] > 0);
     wd_tree_model_finish(&spruce);
     wd_tree_model_finish(&palm);
     wd_tree_model_finish(&birch);
