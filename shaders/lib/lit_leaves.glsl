@@ -180,7 +180,7 @@ float reduced_sunlit(vec3 eye, wd_lit_leaves model)
 {
     if ((model.through & WD_THROUGH_ALL_LEAVES) != 0u)
         return 1.0;
-    float from_above = mix(1.08, 1.14, smoothstep(0.1, 0.6, eye.z));
+    float from_above = mix(1.03, 1.07, smoothstep(0.1, 0.6, eye.z));
     float high_sun = mix(1.04, 0.98, smoothstep(0.25, 0.95, frame.sun_direction.z));
     return from_above * high_sun * mix(0.95, 1.0, smoothstep(-0.2, 0.3, dot(eye, frame.sun_direction)));
 }

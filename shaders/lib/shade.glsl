@@ -641,7 +641,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     place.coat *= shines;
     place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     vec2 wax = unpackHalf2x16(model.cloud_wax);
-    float mirrors = WD_WAX * upper.mirrors * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
+    float mirrors = WD_WAX * shines * upper.mirrors * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
     place.gloss = mix(place.gloss, mirrors * (place.sides.x + place.sides.y), crown.told);
     place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), crown.told);
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
