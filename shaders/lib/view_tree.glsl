@@ -12,7 +12,7 @@ layout(scalar, push_constant) uniform Push { wd_view_push push; };
 
 #include "lib/tree.glsl"
 #include "lib/card.glsl"
-#include "lib/mixed.glsl"
+#include "lib/card_material.glsl"
 
 layout(location = 0) in vec3 in_model;
 layout(location = 1) in vec2 in_side;
@@ -158,8 +158,7 @@ void main()
     if (view_noise() >= found_cover(sum.covered) * in_tint.a)
         discard;
     float per = 1.0 / max(sum.covered, 1e-5), leaf_share = sum.leaf * per;
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
-    bool wood = wd_hash_unit(wd_hash_mix((pixel.x | pixel.y << 16) ^ in_flat.y)) >= leaf_share;
+    bool wood = card_material(leaf_share, in_flat.y) == WD_MATERIAL_WOOD;
     vec4 own = unmixed(vec4(sum.color, sum.openness) * per, leaf_share, wood, view_models[in_flat.z].mixed);
     vec3 albedo = wood ? own.rgb : own.rgb * in_tint.rgb;
     float openness = own.a;
