@@ -4,10 +4,14 @@
 #include "shared/hash.h"
 #include "lib/dither.glsl"
 
+uvec2 card_cell(vec2 uv, float lod)
+{
+    return uvec2(uv * vec2(WD_CARD_WIDTH_TEXELS, WD_CARD_HEIGHT_TEXELS) * exp2(-max(floor(lod), 0.0)));
+}
+
 float card_noise(vec2 uv, float lod, uint random, uint sample_index)
 {
-    vec2 cells = vec2(WD_CARD_WIDTH_TEXELS, WD_CARD_HEIGHT_TEXELS) * exp2(-max(floor(lod), 0.0));
-    uvec2 cell = uvec2(uv * cells);
+    uvec2 cell = card_cell(uv, lod);
     return wd_hash_unit(wd_hash_mix((cell.x | (cell.y << 16)) ^ random ^ sample_index * 0x9e3779b9u));
 }
 

@@ -2,10 +2,10 @@
 #include "shared/hash.h"
 #include "lib/mixed.glsl"
 
-uint card_material(float leaf, uint surface)
+/* `cell` of the picture, so that it stays with the tree. */
+uint card_material(float leaf, uvec2 cell, uint surface)
 {
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
-    uint name = wd_hash_mix((pixel.x | pixel.y << 16) ^ surface * 0x9e3779b9u);
+    uint name = wd_hash_mix((cell.x | cell.y << 16) ^ surface * 0x9e3779b9u);
     float lot = fract(wd_hash_unit(name) + float(frame.sample_index & 1023u) * 0.61803399);
     return lot < leaf ? WD_MATERIAL_CARD : WD_MATERIAL_WOOD;
 }

@@ -7,7 +7,7 @@ void card_surface(vec3 uv, float lod, vec4 albedo, uvec4 card, uint surface, uin
 {
     vec4 packed = textureLod(card_normal, uv, lod - float(WD_CARD_NORMAL_MIP));
     float leaf = textureLod(card_leaf, uv, lod - float(WD_CARD_NORMAL_MIP)).x;
-    uint material = card_material(card_leaf_shown(leaf, uv.y, card.w), surface);
+    uint material = card_material(card_leaf_shown(leaf, uv.y, card.w), card_cell(uv.xy, lod), surface);
     vec4 own = unmixed(vec4(albedo.rgb, packed.a), leaf, material == WD_MATERIAL_WOOD, mixed);
     own.rgb *= material == WD_MATERIAL_WOOD ? vec3(1.0) : unpackUnorm4x8(card.y).rgb * 2.0;
     if (frame.view_mode == WD_MODE_LOD)

@@ -513,11 +513,18 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), leaf_roughness(model));
 }
 
+/* Blades in a sward bend over, and hide one another's lower sides: share of upper ones among those that are seen, and
+ * that reflect. */
+const float BLADES_BEND = 0.85, BLADES_LIT = 0.95;
+
 /* A pixel of many leaves has the mean colour of the sides that are seen: of these, upper ones, which are less pale, reflect
  * most of what comes from above. By the albedo of a lower side goes what it lets through, too, less the more it is the
  * paler in green (look maps). */
 void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, wd_upper_sides upper)
 {
+    upper.seen = mix(upper.seen, BLADES_BEND, place.sward);
+    upper.reflect = mix(upper.reflect, BLADES_LIT, place.sward);
+    upper.sky = mix(upper.sky, BLADES_LIT, place.sward);
     vec3 paler = paler_below(model);
     float through_below = 1.0 / max(paler.g, 1e-3);
     place.reflects = place.reflects_sky = vec3(1.0);
@@ -630,7 +637,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     vec2 whole = mix(blades * herbs_sunlit(eye), known, crown.told);
     place.sides = mix(whole, blades, mapped);
     place.transmittance = leaf_transmittance(model);
-    place.waxed = mix(0.5 + 0.5 * eye.z, 0.85, sward); /* blades bend over */
+    place.waxed = mix(0.5 + 0.5 * eye.z, BLADES_BEND, sward);
     place.body = 1.0 - WAX_CLOUD * place.waxed * (1.0 - sward);
     place.sward = sward;
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */

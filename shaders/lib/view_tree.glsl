@@ -133,10 +133,14 @@ vec3 world_vector(vec3 v, vec2 scale)
     return vec3(turned * scale.x, v.z * scale.y);
 }
 
+uvec2 view_cell()
+{
+    return uvec2((in_side * 0.5 + 1.0) * float(push.atlas.size) * exp2(-max(floor(in_foot.w), 0.0)));
+}
+
 float view_noise()
 {
-    float cells = float(push.atlas.size) * exp2(-max(floor(in_foot.w), 0.0));
-    uvec2 cell = uvec2((in_side * 0.5 + 1.0) * cells);
+    uvec2 cell = view_cell();
     return wd_hash_unit(wd_hash_mix((cell.x | cell.y << 16) ^ in_flat.y
                                     ^ frame.sample_index * 0x9e3779b9u));
 }
@@ -158,7 +162,7 @@ void main()
     if (view_noise() >= found_cover(sum.covered) * in_tint.a)
         discard;
     float per = 1.0 / max(sum.covered, 1e-5), leaf_share = sum.leaf * per;
-    bool wood = card_material(leaf_share, in_flat.y) == WD_MATERIAL_WOOD;
+    bool wood = card_material(leaf_share, view_cell(), in_flat.y) == WD_MATERIAL_WOOD;
     vec4 own = unmixed(vec4(sum.color, sum.openness) * per, leaf_share, wood, view_models[in_flat.z].mixed);
     vec3 albedo = wood ? own.rgb : own.rgb * in_tint.rgb;
     float openness = own.a;

@@ -17,6 +17,7 @@ layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_surface;
 
 #include "lib/tree.glsl"
+#include "lib/card.glsl"
 #include "lib/card_flat.glsl"
 #include "lib/card_surface.glsl"
 

@@ -31,7 +31,7 @@ void main()
     if (threshold >= in_cover)
         discard;
     uint tree = in_flat.x + wd_hash1(noise) % max(in_flat.y, 1u);
-    uint material = card_material(in_cells.z, noise);
+    uint material = card_material(in_cells.z, cell, noise);
     vec4 own = material == WD_MATERIAL_WOOD ? in_wood : in_leaf;
     if (frame.view_mode == WD_MODE_LOD)
         own.rgb = vec3(0.5, 0.05, 0.6) * (0.3 + 0.7 * own.a);
