@@ -643,7 +643,8 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
     place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WD_WAX * 0.39;
-    place.coat = WD_WAX * mix(1.7, 0.8, smoothstep(0.0, 0.64, eye.z)); /* of path-traced rows under an even sky */
+    vec2 around = mix(vec2(1.85, 1.05), vec2(1.7, 0.8), free); /* by path-traced stands and rows under an even sky */
+    place.coat = WD_WAX * mix(around.x, around.y, smoothstep(0.0, 0.64, eye.z));
     float shines = mix(HERB_SHINES, 1.0, max(is_tree(crown), place.sward));
     place.coat *= shines;
     place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
