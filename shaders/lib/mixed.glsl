@@ -5,6 +5,5 @@
 vec4 unmixed(vec4 mean, float leaf, bool wood, uint ratios)
 {
     vec4 ratio = exp2((unpackUnorm4x8(ratios) * 255.0 - 128.0) * (1.0 / WD_MIXED_OCTAVE));
-    vec4 own = mean * (wood ? ratio : vec4(1.0)) / mix(ratio, vec4(1.0), leaf);
-    return vec4(own.rgb, min(own.a, 1.0));
+    return min(mean * (wood ? ratio : vec4(1.0)) / mix(ratio, vec4(1.0), leaf), vec4(1.0));
 }
