@@ -4,6 +4,10 @@
 /* `mean`: linear albedo, and openness; `wood`: whether the pixel is that. */
 vec4 unmixed(vec4 mean, float leaf, bool wood, uint ratios)
 {
-    vec4 ratio = exp2((unpackUnorm4x8(ratios) * 255.0 - 128.0) * (1.0 / WD_MIXED_OCTAVE));
-    return min(mean * (wood ? ratio : vec4(1.0)) / mix(ratio, vec4(1.0), leaf), vec4(1.0));
+    vec4 own;
+    for (uint k = 0u; k < WD_MIXED_KINDS; k++) {
+        float ratio = wd_mixed_ratio(ratios, k);
+        own[k] = wd_mixed_leaf(mean[k], leaf, ratio) * (wood ? ratio : 1.0);
+    }
+    return min(own, vec4(1.0));
 }

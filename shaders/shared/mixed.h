@@ -16,6 +16,12 @@ WD_FUNC float wd_mixed_ratio(uint32_t ratios, uint32_t kind)
     return WD_EXP2((WD_FLOAT(ratios >> (8u * kind) & 0xffu) - 128.0f) / WD_MIXED_OCTAVE);
 }
 
+/* What leaves have, of a mean of both. */
+WD_FUNC float wd_mixed_leaf(float mean, float leaf, float ratio)
+{
+    return mean / (leaf + (1.0f - leaf) * ratio);
+}
+
 WD_FUNC uint32_t wd_mixed_byte(float ratio)
 {
     return WD_UINT(128.5f + WD_MIXED_OCTAVE * WD_LOG2(WD_CLAMP(ratio, 0.125f, 8.0f)));

@@ -58,6 +58,20 @@ static uint64_t get_u64(const uint8_t *at)
     return value;
 }
 
+void wd_cache_put_word(uint8_t *words, size_t at, uint32_t value)
+{
+    for (size_t i = 0; i < 4; i++)
+        words[4 * at + i] = (uint8_t)(value >> (8 * i));
+}
+
+uint32_t wd_cache_get_word(const uint8_t *words, size_t at)
+{
+    uint32_t value = 0;
+    for (size_t i = 0; i < 4; i++)
+        value |= (uint32_t)words[4 * at + i] << (8 * i);
+    return value;
+}
+
 static void ignore_message(void *user, enum wd_log_level level, const char *message)
 {
     (void)user;

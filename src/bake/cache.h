@@ -29,6 +29,10 @@ struct wd_bake_cache {
 uint64_t wd_cache_code_key(void);
 uint64_t wd_cache_key(uint64_t key, const void *data, size_t size);
 
+/* Words of blocks, `at` counted in words, alike on any machine. */
+void wd_cache_put_word(uint8_t *words, size_t at, uint32_t value);
+uint32_t wd_cache_get_word(const uint8_t *words, size_t at);
+
 /* The block stored under `kind` (letters) and `key`, or NULL. At most `max_size` bytes are taken.
  * free() it. Safe to call from several threads and processes. */
 void *wd_cache_load(struct wd_bake_cache *cache, const char *kind, uint64_t key,

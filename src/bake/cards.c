@@ -165,10 +165,10 @@ bool wd_cards_bake(struct wd_cards *cards, struct wd_baker *baker, const struct 
     };
     init_cards(cards, form);
     struct baked_cards *baked = wd_alloc(sizeof *baked);
-    memset(baked, 0, sizeof *baked);
     baked->cards = cards;
     bool ok = wd_baker_run(baker, &job, take_card, baked);
-    cards->mixed = ok ? wd_mixed_ratios(baked->mixed, WD_CARDS) : WD_MIXED_EVEN;
+    if (ok)
+        cards->mixed = wd_mixed_ratios(baked->mixed, WD_CARDS);
     free(baked);
     if (!ok)
         wd_cards_finish(cards);
@@ -187,7 +187,7 @@ static uint64_t cards_key(uint64_t model_key, const struct wd_card_form *form)
 
 static size_t kept_bytes(const struct wd_card_form *form)
 {
-    size_t bytes = WD_MIXED_BYTES;
+    size_t bytes = sizeof(uint32_t); /* of wd_cards.mixed */
     for (int plane = 0; plane < WD_PLANES; plane++)
         bytes += wd_card_plane_bytes(form, plane);
     return bytes;
@@ -208,7 +208,7 @@ bool wd_cards_load(struct wd_cards *cards, struct wd_bake_cache *cache, uint64_t
             at += wd_card_plane_bytes(form, plane);
         }
     if (found)
-        cards->mixed = wd_mixed_get(block + at);
+        cards->mixed = wd_cache_get_word(block + at, 0);
     free(block);
     return found;
 }
@@ -222,7 +222,7 @@ void wd_cards_store(const struct wd_cards *cards, struct wd_bake_cache *cache, u
             memcpy(block + at, cards->planes[plane], wd_card_plane_bytes(&cards->form, plane));
             at += wd_card_plane_bytes(&cards->form, plane);
         }
-    wd_mixed_put(block + at, cards->mixed);
+    wd_cache_put_word(block + at, 0, cards->mixed);
     wd_cache_store(cache, "cards", cards_key(model_key, &cards->form), block, bytes);
     free(block);
 }

@@ -95,20 +95,6 @@ static uint64_t import_key(const struct wd_tree_import *import)
 
 /* --- models ------------------------------------------------------------------------------ */
 
-static void put_word(uint8_t *words, size_t at, uint32_t value)
-{
-    for (int i = 0; i < 4; i++)
-        words[4 * at + (size_t)i] = (uint8_t)(value >> (8 * i));
-}
-
-static uint32_t get_word(const uint8_t *words, size_t at)
-{
-    uint32_t value = 0;
-    for (int i = 0; i < 4; i++)
-        value |= (uint32_t)words[4 * at + (size_t)i] << (8 * i);
-    return value;
-}
-
 static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
 {
     figures[0] = &model->height_m;
@@ -233,62 +219,62 @@ static uint32_t *unpack_indices(struct block *block, size_t bytes, size_t count,
 /* A mesh, described at `words`. */
 static void pack_mesh(struct block *block, uint8_t *words, const struct wd_tree_mesh *mesh)
 {
-    put_word(words, 0, mesh->vertex_count);
-    put_word(words, 1, mesh->index_count);
-    put_word(words, 2, mesh->wood_index_count);
-    put_word(words, 3, (uint32_t)pack_vertices(block, mesh->vertices, mesh->vertex_count,
+    wd_cache_put_word(words, 0, mesh->vertex_count);
+    wd_cache_put_word(words, 1, mesh->index_count);
+    wd_cache_put_word(words, 2, mesh->wood_index_count);
+    wd_cache_put_word(words, 3, (uint32_t)pack_vertices(block, mesh->vertices, mesh->vertex_count,
                                                sizeof *mesh->vertices));
-    put_word(words, 4, (uint32_t)pack_indices(block, mesh->indices, mesh->index_count));
+    wd_cache_put_word(words, 4, (uint32_t)pack_indices(block, mesh->indices, mesh->index_count));
 }
 
 static bool unpack_mesh(struct wd_tree_mesh *mesh, const uint8_t *words, struct block *block)
 {
-    uint32_t vertices = get_word(words, 0), indices = get_word(words, 1);
-    mesh->vertices = unpack_vertices(block, get_word(words, 3), vertices, sizeof *mesh->vertices);
+    uint32_t vertices = wd_cache_get_word(words, 0), indices = wd_cache_get_word(words, 1);
+    mesh->vertices = unpack_vertices(block, wd_cache_get_word(words, 3), vertices, sizeof *mesh->vertices);
     mesh->indices = mesh->vertices
-                        ? unpack_indices(block, get_word(words, 4), indices, vertices)
+                        ? unpack_indices(block, wd_cache_get_word(words, 4), indices, vertices)
                         : NULL;
     mesh->vertex_count = mesh->vertex_capacity = vertices;
     mesh->index_count = mesh->index_capacity = indices;
-    mesh->wood_index_count = get_word(words, 2);
+    mesh->wood_index_count = wd_cache_get_word(words, 2);
     return mesh->indices && mesh->wood_index_count <= indices;
 }
 
 static void pack_set(struct block *block, uint8_t *words, const struct wd_leaf_set *set)
 {
-    put_word(words, 0, set->forms);
-    put_word(words, 1, set->corner_count);
-    put_word(words, 2, set->index_count);
-    put_word(words, 3, set->leaf_count);
-    put_word(words, 4, bits_of(set->own));
-    put_word(words, 5, bits_of(set->arch_least));
-    put_word(words, 6, bits_of(set->arch_range));
-    put_word(words, 9, bits_of(set->grain));
-    put_word(words, 7, (uint32_t)pack_vertices(block, set->corners,
+    wd_cache_put_word(words, 0, set->forms);
+    wd_cache_put_word(words, 1, set->corner_count);
+    wd_cache_put_word(words, 2, set->index_count);
+    wd_cache_put_word(words, 3, set->leaf_count);
+    wd_cache_put_word(words, 4, bits_of(set->own));
+    wd_cache_put_word(words, 5, bits_of(set->arch_least));
+    wd_cache_put_word(words, 6, bits_of(set->arch_range));
+    wd_cache_put_word(words, 9, bits_of(set->grain));
+    wd_cache_put_word(words, 7, (uint32_t)pack_vertices(block, set->corners,
                                                (size_t)set->forms * set->corner_count,
                                                sizeof *set->corners));
-    put_word(words, 8, (uint32_t)pack_indices(block, set->indices, set->index_count));
+    wd_cache_put_word(words, 8, (uint32_t)pack_indices(block, set->indices, set->index_count));
 }
 
 static bool unpack_set(struct wd_leaf_set *set, const uint8_t *words, struct block *block,
                        uint32_t leaves)
 {
     *set = (struct wd_leaf_set){
-        .forms = get_word(words, 0),
-        .corner_count = get_word(words, 1),
-        .index_count = get_word(words, 2),
-        .leaf_count = get_word(words, 3),
-        .own = float_of(get_word(words, 4)),
-        .arch_least = float_of(get_word(words, 5)),
-        .arch_range = float_of(get_word(words, 6)),
-        .grain = float_of(get_word(words, 9)),
+        .forms = wd_cache_get_word(words, 0),
+        .corner_count = wd_cache_get_word(words, 1),
+        .index_count = wd_cache_get_word(words, 2),
+        .leaf_count = wd_cache_get_word(words, 3),
+        .own = float_of(wd_cache_get_word(words, 4)),
+        .arch_least = float_of(wd_cache_get_word(words, 5)),
+        .arch_range = float_of(wd_cache_get_word(words, 6)),
+        .grain = float_of(wd_cache_get_word(words, 9)),
     };
     if (set->forms > MAX_FORMS || set->corner_count > MAX_VERTICES || set->leaf_count > leaves ||
         (set->leaf_count && !set->forms))
         return false;
-    set->corners = unpack_vertices(block, get_word(words, 7),
+    set->corners = unpack_vertices(block, wd_cache_get_word(words, 7),
                                    (size_t)set->forms * set->corner_count, sizeof *set->corners);
-    set->indices = set->corners ? unpack_indices(block, get_word(words, 8), set->index_count,
+    set->indices = set->corners ? unpack_indices(block, wd_cache_get_word(words, 8), set->index_count,
                                                  set->corner_count)
                                 : NULL;
     return set->indices != NULL;
@@ -327,12 +313,12 @@ static void store_model(struct wd_bake_cache *cache, uint64_t key, struct wd_tre
     float *figures[FIGURES];
     figures_of(figures, model);
     for (size_t i = 0; i < FIGURES; i++)
-        put_word(block.bytes, i, bits_of(*figures[i]));
+        wd_cache_put_word(block.bytes, i, bits_of(*figures[i]));
     for (int i = 0; i < MESHES; i++)
         pack_mesh(&block, block.bytes + 4 * (FIGURES + i * MESH_WORDS), meshes[i]);
-    put_word(block.bytes, LEAVES, model->leaf_count);
-    put_word(block.bytes, LEAVES + 1, model->flower_count);
-    put_word(block.bytes, LEAVES + 2,
+    wd_cache_put_word(block.bytes, LEAVES, model->leaf_count);
+    wd_cache_put_word(block.bytes, LEAVES + 1, model->flower_count);
+    wd_cache_put_word(block.bytes, LEAVES + 2,
              (uint32_t)pack_vertices(&block, model->leaves, model->leaf_count + model->flower_count,
                                      sizeof *model->leaves));
     for (int i = 0; i < SETS; i++)
@@ -345,10 +331,10 @@ static void store_model(struct wd_bake_cache *cache, uint64_t key, struct wd_tre
 static bool unpack_leaves(struct wd_tree_model *model, struct block *block)
 {
     const uint8_t *words = block->bytes;
-    uint32_t leaves = get_word(words, LEAVES), flowers = get_word(words, LEAVES + 1);
+    uint32_t leaves = wd_cache_get_word(words, LEAVES), flowers = wd_cache_get_word(words, LEAVES + 1);
     if (leaves > MAX_VERTICES || flowers > MAX_VERTICES)
         return false;
-    model->leaves = unpack_vertices(block, get_word(words, LEAVES + 2), leaves + flowers,
+    model->leaves = unpack_vertices(block, wd_cache_get_word(words, LEAVES + 2), leaves + flowers,
                                     sizeof *model->leaves);
     model->leaf_count = leaves;
     model->flower_count = flowers;
@@ -370,7 +356,7 @@ static bool load_model(struct wd_tree_model *model, struct wd_bake_cache *cache,
         float *figures[FIGURES];
         figures_of(figures, model);
         for (size_t i = 0; i < FIGURES; i++)
-            *figures[i] = float_of(get_word(block.bytes, i));
+            *figures[i] = float_of(wd_cache_get_word(block.bytes, i));
         struct wd_tree_mesh *meshes[MESHES];
         meshes_of(meshes, model);
         for (int i = 0; i < MESHES && ok; i++)

@@ -6,12 +6,12 @@
 enum { HALVINGS = 12 };
 
 /* What leaves would have if wood had `ratio` times as much. */
-static double leaves_at(const struct wd_mixed_sums *sums, int kind, double ratio)
+static double leaves_at(const struct wd_mixed_sums *sums, int kind, float ratio)
 {
     double leaves = 0;
     for (int i = 0; i < 256; i++) {
-        double leaf = i / 255.0;
-        leaves += sums->all[i][kind] * leaf / (leaf + (1 - leaf) * ratio);
+        float leaf = (float)i / 255;
+        leaves += (double)(leaf * wd_mixed_leaf((float)sums->all[i][kind], leaf, ratio));
     }
     return leaves;
 }
@@ -19,16 +19,17 @@ static double leaves_at(const struct wd_mixed_sums *sums, int kind, double ratio
 /* The more wood has, the less leaves. */
 static uint32_t find_ratio(const struct wd_mixed_sums *sums, int kind)
 {
-    double low = -3, high = 3, least = leaves_at(sums, kind, 8), most = leaves_at(sums, kind, 0.125);
+    double least = leaves_at(sums, kind, 8), most = leaves_at(sums, kind, 0.125f);
+    float low = -3, high = 3;
     if (most - least <= 1e-3 * most)
         return 128;
     for (int i = 0; i < HALVINGS; i++) {
-        double middle = 0.5 * (low + high);
-        bool more = leaves_at(sums, kind, exp2(middle)) > sums->leaves[kind];
+        float middle = 0.5f * (low + high);
+        bool more = leaves_at(sums, kind, exp2f(middle)) > sums->leaves[kind];
         low = more ? middle : low;
         high = more ? high : middle;
     }
-    return wd_mixed_byte((float)exp2(low));
+    return wd_mixed_byte(exp2f(low));
 }
 
 uint32_t wd_mixed_ratios(const struct wd_mixed_sums *sums, uint32_t count)
@@ -44,18 +45,4 @@ uint32_t wd_mixed_ratios(const struct wd_mixed_sums *sums, uint32_t count)
     for (int k = 0; k < WD_MIXED_KINDS; k++)
         packed |= find_ratio(&sum, k) << (8 * k);
     return packed;
-}
-
-void wd_mixed_put(uint8_t bytes[WD_MIXED_BYTES], uint32_t ratios)
-{
-    for (int k = 0; k < WD_MIXED_BYTES; k++)
-        bytes[k] = (uint8_t)(ratios >> (8 * k));
-}
-
-uint32_t wd_mixed_get(const uint8_t bytes[WD_MIXED_BYTES])
-{
-    uint32_t ratios = 0;
-    for (int k = 0; k < WD_MIXED_BYTES; k++)
-        ratios |= (uint32_t)bytes[k] << (8 * k);
-    return ratios;
 }

@@ -17,9 +17,4 @@ struct wd_mixed_sums {
  * in `leaves`, and so wood what is left. 1 where there is but the one. */
 uint32_t wd_mixed_ratios(const struct wd_mixed_sums *sums, uint32_t count);
 
-/* As bytes of a cache's block. */
-enum { WD_MIXED_BYTES = 4 };
-void wd_mixed_put(uint8_t bytes[WD_MIXED_BYTES], uint32_t ratios);
-uint32_t wd_mixed_get(const uint8_t bytes[WD_MIXED_BYTES]);
-
 #endif

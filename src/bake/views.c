@@ -193,7 +193,7 @@ static uint64_t set_key(const struct wd_view_set_params *params, const struct wd
 bool wd_view_set_load(struct wd_view_set *set, const struct wd_view_atlas *atlas,
                       const struct wd_view_set_name *name)
 {
-    size_t plane = wd_view_plane_bytes(atlas), bytes = WD_PLANES * plane + WD_MIXED_BYTES, size;
+    size_t plane = wd_view_plane_bytes(atlas), bytes = WD_PLANES * plane + sizeof set->model.mixed, size;
     uint64_t key = set_key(name->params, name->model, name->model_key);
     uint8_t *block = wd_cache_load(name->cache, "views", key, bytes, &size);
     bool found = block && size == bytes;
@@ -202,7 +202,7 @@ bool wd_view_set_load(struct wd_view_set *set, const struct wd_view_atlas *atlas
         init_set(set, atlas, name->model);
         for (int i = 0; i < WD_PLANES; i++)
             memcpy(set->planes[i], block + (size_t)i * plane, plane);
-        set->model.mixed = wd_mixed_get(block + WD_PLANES * plane);
+        set->model.mixed = wd_cache_get_word(block + WD_PLANES * plane, 0);
     }
     free(block);
     return found;
@@ -211,11 +211,11 @@ bool wd_view_set_load(struct wd_view_set *set, const struct wd_view_atlas *atlas
 void wd_view_set_store(const struct wd_view_set *set, const struct wd_view_set_name *name)
 {
     size_t plane = wd_view_plane_bytes(&set->atlas);
-    size_t bytes = WD_PLANES * plane + WD_MIXED_BYTES;
+    size_t bytes = WD_PLANES * plane + sizeof set->model.mixed;
     uint8_t *block = wd_alloc(bytes);
     for (int i = 0; i < WD_PLANES; i++)
         memcpy(block + (size_t)i * plane, set->planes[i], plane);
-    wd_mixed_put(block + WD_PLANES * plane, set->model.mixed);
+    wd_cache_put_word(block + WD_PLANES * plane, 0, set->model.mixed);
     wd_cache_store(name->cache, "views", set_key(name->params, name->model, name->model_key), block, bytes);
     free(block);
 }

@@ -20,12 +20,6 @@ enum { ATLAS_PIXELS = 2048, MAX_ENTRIES = 1 << 19, ENTRY_VERTICES = 6 };
 
 /* --- means ------------------------------------------------------------------------------- */
 
-/* What leaves have of a mean of both. */
-static float leaves_of(float mean, float leaf, uint32_t mixed, uint32_t kind)
-{
-    return mean * leaf / fmaxf(leaf + (1 - leaf) * wd_mixed_ratio(mixed, kind), 1e-6f);
-}
-
 static uint32_t mixed_of(const struct wd_octant_mean *mean)
 {
     const float all[WD_MIXED_KINDS] = {mean->color[0], mean->color[1], mean->color[2], mean->openness};
@@ -52,8 +46,10 @@ struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint3
     }
     mean.openness = mean.coverage * (float)(normal >> 24) / 255.0f;
     mean.leaf = mean.coverage * (float)leaf / 255.0f;
-    for (uint32_t k = 0; k < WD_MIXED_KINDS; k++)
-        mean.leaves[k] = leaves_of(k < 3 ? mean.color[k] : mean.openness, (float)leaf / 255.0f, look->mixed[side], k);
+    for (uint32_t k = 0; k < WD_MIXED_KINDS; k++) {
+        float all = k < 3 ? mean.color[k] : mean.openness, share = (float)leaf / 255.0f;
+        mean.leaves[k] = share * wd_mixed_leaf(all, share, wd_mixed_ratio(look->mixed[side], k));
+    }
     return mean;
 }
 

@@ -53,7 +53,7 @@ struct wd_tree_model {
     float sun_curve[2]; /* of wd_crown_lit (tree/sunlit.h); 0: not known yet */
     float sunlit[WD_SUNLIT_PLACES][WD_SUNLIT_KINDS]; /* tree/sunlit.h; 0: not known yet */
     float skylit[WD_SKYLIT_PLACES][WD_SKYLIT_KINDS]; /* likewise */
-    float upper[WD_EYE_RINGS][WD_UPPER_KINDS]; /* likewise */
+    float upper[WD_EYE_RINGS][WD_UPPER_KINDS]; /* shares of upper sides (shared/sunlit.h); likewise */
     float wood_seen[WD_EYE_RINGS]; /* share of wood in what eyes on these rings see above the lowest living branch; not
                                       known: 0 */
     float cloud_wax[2]; /* what leaves' wax mirrors of the sun to an eye, over WD_WAX of what they would send of it were

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/color.h"
 #include "shared/mixed.h"
 #include "tree/look.h"
 #include "tree/look_map.h"
@@ -75,7 +76,7 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         .mixed = WD_MIXED_EVEN,
     };
     for (uint32_t ring = 0; ring < WD_EYE_RINGS; ring++)
-        model->wood_seen[ring / 4] |= (uint32_t)(255.0f * grown->wood_seen[ring] + 0.5f) << (8 * (ring % 4));
+        model->wood_seen[ring / 4] |= (uint32_t)wd_unorm_encode(grown->wood_seen[ring]) << (8 * (ring % 4));
     for (int k = 0; k < 3; k++) {
         float late = species->leaf.season_color[0][k], early = species->leaf.season_color[1][k];
         model->behind[k] = late > 0 ? late : 1;
@@ -119,7 +120,7 @@ static uint32_t pack_bytes(const float *shares, float last)
     const float of[4] = {shares[0], shares[1], shares[2], last};
     uint32_t packed = 0;
     for (int k = 0; k < 4; k++)
-        packed |= (uint32_t)(255.0f * of[k] + 0.5f) << (8 * k);
+        packed |= (uint32_t)wd_unorm_encode(of[k]) << (8 * k);
     return packed;
 }
 

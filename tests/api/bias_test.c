@@ -21,23 +21,23 @@ static const struct row {
     int height; /* of bias_height_px */
     struct bound bounds[MOST_FORMS];
 } rows[] = {
-    /* cards: +7.2 (wood +9 and needles +2 with one bounce of the sun alone; +2.3 of needles that lacked the wax of sides
-       that they do not show, and had the bark's colour); discs: -3.2 (-0.7 by means about each step of the table in place of least squares, by which six species are nearer) */
+    /* cards: +7.2 (+2.3 while needles lacked the wax of sides that they do not show, and had the bark's colour: docs/trees.md);
+       discs: -3.4 (-0.7 by means about each step of the table in place of least squares, by which six species are nearer) */
     {"species/pine.json",
      2,
-     {{"full", 2.5, 3, false}, {"reduced", 2.5, 5.5, true}, {"cards", 3, 8, true}, {"splats", 3, 4, true}}},
+     {{"full", 2.5, 3, false}, {"reduced", 2.5, 3, true}, {"cards", 3, 8, true}, {"splats", 3, 4, true}}},
     /* plumes let as little through as blades: +13.3 otherwise, +0.1 */
-    {"species/grass.json", 0, {{"full", 2, 10, true}}},
-    /* tufts that stand free have their models' tables, and are as wide as they grew: -12.9 otherwise, +2.1 */
-    {"species/grass.json", 2, {{"zfield", 3, 4, true}}},
+    {"species/grass.json", 0, {{"full", 2, 4, true}}},
+    /* tufts that stand free have their models' tables, and are as wide as they grew: -12.9 otherwise, +0.2 */
+    {"species/grass.json", 2, {{"zfield", 3, 3, true}}},
     /* discs of wood show less of the white stem than they would: +8.3, +0.9 */
     {"species/birch.json", 3, {{"splats", 4, 3, true}}},
-    /* what shows leaves from above shows those that are the more open: +8.3 and +6.8 otherwise, -0.6 and -2.2 */
+    /* what shows leaves from above shows those that are the more open: +8.3 and +6.8 otherwise, -2.1 and -2.8 */
     {"species/spruce.json", 2, {{"views", 3, 3.5, true}, {"zfield", 4, 5.5, true}}},
-    /* as they fall leaves do not lie as their model has them (+48 otherwise, +16.5); far ones are not traced so */
+    /* as they fall leaves do not lie as their model has them (+48 otherwise, +19); far ones are not traced so */
     {"species/falling-leaves.json", 2, {{"reduced", 22, 8, false}}},
-    /* octants have colours of pictures taken level: +19.2 if of such as the eye would see, +4.9 */
-    {"species/maple.json", 3, {{"octants", 3, 6, true}}},
+    /* octants have colours of pictures taken level: +19.2 if of such as the eye would see, -0.1 */
+    {"species/maple.json", 3, {{"octants", 3, 3, true}}},
 };
 
 enum { FROM_ABOVE = 1 };

@@ -573,6 +573,8 @@ static void models_tell_how_their_leaves_stand(void **state)
     /* Level eyes see nearly as many lower sides of broad leaves as upper ones, eyes from above few; what the sun lights
      * are upper ones. Needles turn every way. From above less wood is seen. */
     const float *level_birch = birch.upper[1], *high_birch = birch.upper[3], *level_spruce = spruce.upper[1];
+    print_message("upper sides among what reflects the sun 35 degrees up to an eye 10 degrees up: birch %.2f, spruce %.2f\n",
+                  (double)level_birch[WD_UPPER_REFLECTS + 1], (double)level_spruce[WD_UPPER_REFLECTS + 1]);
     assert_in_range(100 * level_birch[WD_UPPER_SEEN], 55, 80);
     assert_true(high_birch[WD_UPPER_SEEN] > 0.9f && level_birch[WD_UPPER_REFLECTS + 1] > level_birch[WD_UPPER_SEEN] + 0.1f);
     assert_true(level_birch[WD_UPPER_TRANSMITS + 1] < level_birch[WD_UPPER_SEEN]);
