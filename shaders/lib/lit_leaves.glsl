@@ -103,11 +103,24 @@ vec4 skylit_of(int model, wd_sunlit_mix at, uint first)
                vec4(unpackHalf2x16(texel.z), unpackHalf2x16(texel.w)), at.eye);
 }
 
+/* How far a level eye is on the way from the lowest ring to the next. */
+const float LEVEL_ON = -WD_EYE_RING_SINE(0u) / (WD_EYE_RING_SINE(1u) - WD_EYE_RING_SINE(0u));
+
+/* Of what the model's table has in bytes for rings of the eye, this one's; rings 0 to 3 are in the first word. */
+float of_rings(uvec2 packed, uint ring, float on)
+{
+    float here = float(packed[ring >> 2u] >> 8u * (ring & 3u) & 255u);
+    float above = float(packed[ring + 1u >> 2u] >> 8u * (ring + 1u & 3u) & 255u);
+    return mix(here, above, on) * (1.0 / 255.0);
+}
+
 /* Share of upper sides among the leaves that an eye sees, among those that reflect and that transmit the sun to it, and that
  * reflect the sky's light; and among those of a picture that was taken level. */
 struct wd_upper_sides {
     float seen, reflect, transmit, sky, level;
-    float mirrors; /* what wax mirrors of the sun over what cloud_wax tells */
+    float mirrors;     /* what wax mirrors of the sun over what cloud_wax tells, */
+    float sky_mirrors; /* and of an even sky over what comes of that to the sides that are seen */
+    float open;        /* how open leaves are that eyes see from half above */
 };
 
 wd_upper_sides upper_sides(int model, wd_sunlit_mix at)
@@ -117,15 +130,26 @@ wd_upper_sides upper_sides(int model, wd_sunlit_mix at)
     vec4 reflect = mix(unpackUnorm4x8(texel.x), unpackUnorm4x8(texel.y), at.wood_eye);
     vec4 transmit = mix(unpackUnorm4x8(texel.z), unpackUnorm4x8(texel.w), at.wood_eye);
     uint sun = min(at.sun_ring, WD_UPPER_SUNS - 1u), next = min(at.sun_ring + 1u, WD_UPPER_SUNS - 1u);
-    float level_on = -WD_EYE_RING_SINE(0u) / (WD_EYE_RING_SINE(1u) - WD_EYE_RING_SINE(0u));
     wd_upper_sides upper;
     upper.seen = reflect[WD_UPPER_SUNS];
     upper.reflect = mix(reflect[sun], reflect[next], at.sun);
     upper.transmit = mix(transmit[sun], transmit[next], at.sun);
     upper.mirrors = WD_UPPER_MIRRORS_MOST * transmit[WD_UPPER_SUNS];
+    uvec4 rings = texelFetch(lit_models, model + int(WD_LIT_RINGS_TEXEL));
+    upper.sky_mirrors = WD_UPPER_SKY_WAX_MOST * of_rings(rings.xy, at.eye_ring, at.wood_eye);
+    upper.open = of_rings(rings.zw, 2u, 0.0);
     upper.sky = reflect[WD_UPPER_SKY_RING];
-    upper.level = mix(unpackUnorm4x8(level.x).w, unpackUnorm4x8(level.y).w, level_on);
+    upper.level = mix(unpackUnorm4x8(level.x).w, unpackUnorm4x8(level.y).w, LEVEL_ON);
     return upper;
+}
+
+/* Pictures taken level show leaves as open as level eyes see them; this eye sees others. Factors on skylit_of. */
+vec4 open_to_eye(int model, wd_sunlit_mix at)
+{
+    uvec2 rings = texelFetch(lit_models, model + int(WD_LIT_RINGS_TEXEL)).zw;
+    float level = of_rings(rings, 0u, LEVEL_ON), seen = of_rings(rings, at.eye_ring, at.wood_eye);
+    float above = wd_skylit_above(seen) / wd_skylit_above(level), below = wd_skylit_below(seen) / wd_skylit_below(level);
+    return vec4(above, above, below, below);
 }
 
 /* Of the sun that reaches leaves of a crown, what they scatter comes to other ones, and to its boughs, again and again.
@@ -155,11 +179,11 @@ vec3 scattered_on(vec3 leaf, wd_lit_leaves model)
 /* Of trees in closed stands an eye sees the tops, and neighbours' shade where the sun does not come from behind it: so
  * much of what a model's table says of the whole tree. The sides of slender crowns that face away from the sun lie in one
  * another's shade (Li and Strahler 1992). Of leaves that lie flatter (mean |z| of their faces) than oaks' those that are
- * seen from above are the better lit. By path-traced stands of five species under suns of 20 and 50 degrees, seen
- * from eleven angles (docs/lighting.md). */
-const float STAND_FLAT_FROM = 0.66, STAND_FLAT = 1.2;
+ * seen from above are the better lit. Through open crowns a free tree is lit from behind, which neighbours hide. By
+ * path-traced stands of five species under suns of 20 and 50 degrees, seen from eleven angles (docs/lighting.md). */
+const float STAND_FLAT_FROM = 0.66, STAND_FLAT = 1.2, STAND_OPEN_FROM = 0.4, STAND_OPEN = 0.7;
 
-float stand_sunlit(vec3 eye, wd_crown crown, wd_lit_leaves model)
+float stand_sunlit(vec3 eye, wd_crown crown, wd_lit_leaves model, float open)
 {
     float flatter = max(unpackHalf2x16(model.rough_flat).y - STAND_FLAT_FROM, 0.0);
     float apart = angle_of(dot(eye, frame.sun_direction));
@@ -170,17 +194,29 @@ float stand_sunlit(vec3 eye, wd_crown crown, wd_lit_leaves model)
     float seen = mix(hot, mix(0.66, 0.69, low_sun), smoothstep(0.0, 1.4, apart));
     seen *= mix(1.0, mix(1.27, 1.6, low_sun), above) * mix(1.25, 1.0, smoothstep(0.1, 0.65, eye.z));
     seen *= 1.0 + STAND_FLAT * flatter * smoothstep(0.62, 0.8, eye.z);
+    seen *= 1.0 - STAND_OPEN * max(open - STAND_OPEN_FROM, 0.0) * smoothstep(0.2, 1.6, apart);
     return seen * (1.0 - 0.6 * slenderness(crown) * dark);
 }
 
 /* Far off, reduced meshes of fewer leaves show some that lie deeper than those that an eye would see, the more so from above,
- * under a low sun and with the light: a factor on the table's light, by path-traced rows of six species at 32 px under five
- * suns. */
-float reduced_sunlit(vec3 eye, wd_lit_leaves model)
+ * under a low sun and with the light: factors on the table's light of the sun and of the sky, by path-traced rows of six
+ * species at 32 px under five suns and under the sky alone. */
+vec2 reduced_light(vec3 eye, wd_lit_leaves model)
 {
-    if ((model.through & WD_THROUGH_ALL_LEAVES) != 0u)
-        return 1.0;
-    float from_above = mix(1.03, 1.07, smoothstep(0.1, 0.6, eye.z));
+    float above = smoothstep(0.1, 0.6, eye.z);
     float high_sun = mix(1.04, 0.98, smoothstep(0.25, 0.95, frame.sun_direction.z));
-    return from_above * high_sun * mix(0.95, 1.0, smoothstep(-0.2, 0.3, dot(eye, frame.sun_direction)));
+    float ahead = mix(0.95, 1.0, smoothstep(-0.2, 0.3, dot(eye, frame.sun_direction)));
+    vec2 light = vec2(mix(1.03, 1.07, above) * high_sun * ahead, mix(1.02, 1.05, above));
+    return (model.through & WD_THROUGH_ALL_LEAVES) != 0u ? vec2(1.0) : light;
+}
+
+/* What of the sky's light a free tree sends to an eye, over what is known of its own leaves: of single ones, and of clouds
+ * to eyes on their level and from above. By path-traced rows of five species under a clear sky, and so of trees in stands
+ * whose neighbours are known. */
+const float SKY_OVER_TABLE = 1.07;
+const vec2 SKY_OVER_CLOUD = vec2(1.04, 0.98);
+
+float sky_over_table(float eye_z, bool one_leaf)
+{
+    return one_leaf ? SKY_OVER_TABLE : mix(SKY_OVER_CLOUD.x, SKY_OVER_CLOUD.y, smoothstep(0.1, 0.6, eye_z));
 }

@@ -299,6 +299,16 @@ bool is_disc(wd_pixel pixel)
     return pixel.lit > 0.0 && pixel.lit < 1.0;
 }
 
+bool is_level_picture(wd_pixel pixel)
+{
+    return pixel.material == WD_MATERIAL_CARD && push.level_cards != 0u;
+}
+
+bool is_reduced(wd_pixel pixel)
+{
+    return pixel.material == WD_MATERIAL_LEAF && pixel.lit < 0.0 && push.level_cards != 0u;
+}
+
 /* Of its neighbours' leaves over a place, this power of their share hides the sky there. By path-traced stands of
  * five species, 5 and 8 m apart, under an even sky. */
 const float NEIGHBOURS_OVER = 0.75;
@@ -307,10 +317,6 @@ const float NEIGHBOURS_OVER = 0.75;
  * of open ones less (low_sky of each model): by how much brighter an upright face's is than an even sky's. So much more of
  * clouds of leaves, whose mean normal alone is known; by path-traced oaks, spruces and birches. */
 const float LOW_SKY_CLOUD = 0.11;
-
-/* What of the sky's light a free tree sends to an eye, over what is known of its own leaves: by path-traced rows of five
- * species, which had 0.89 to 1.06 of it. So of trees in stands whose neighbours are known. */
-const float SKY_OVER_TABLE = 1.07;
 
 /* Between slender crowns of a stand an eye looks down to their lower parts, which one place for all of a card does not
  * tell: share of the sky's light. By path-traced stands of spruces, birches and pines under clouds. */
@@ -345,7 +351,8 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
     know_neighbours(alone, past_neighbours(pixel.surface - 1u, crown, place.rel, side, pixel.openness), crown.told,
                     through_herbs(herbs_above(shelter, place.rel.z - crown.foot_z)));
-    alone.lets.xy *= mix(1.0, SKY_OVER_TABLE, max(alone.share, alone.by_crown) * is_tree(crown));
+    alone.lets.xy *= is_reduced(pixel) ? mix(1.0, reduced_light(-pixel.direction, model).y, alone.share * is_tree(crown)) : 1.0;
+    alone.lets.xy *= mix(1.0, sky_over_table(-pixel.direction.z, one_leaf), max(alone.share, alone.by_crown) * is_tree(crown));
     vec3 leaf = pixel.material >= WD_MATERIAL_LEAF ? pixel.albedo * (1.0 + place.transmittance) : leaves_albedo();
     float within = is_tree(crown) * (1.0 - alone.beneath);
     alone.again = mix(vec3(1.0), scattered_on(leaf, model), within);
@@ -530,9 +537,10 @@ void tell_sides(inout wd_place place, wd_pixel pixel, wd_lit_leaves model, wd_up
     place.reflects = place.reflects_sky = vec3(1.0);
     place.waxed_lit = vec2(place.waxed);
     if (!ALL_SINGLE && pixel.lit < 0.0) {
-        bool level = pixel.material == WD_MATERIAL_CARD && push.level_cards != 0u;
+        bool level = is_level_picture(pixel);
         bool any_way = (model.paler & WD_PALER_ANY_WAY) != 0u;
         place.waxed = any_way ? 0.5 : place.waxed;
+        place.coat = upper.sky_mirrors / place.waxed;
         vec3 all = 1.0 / mix(paler, vec3(1.0), level ? upper.level : upper.seen);
         place.reflects = mix(paler, vec3(1.0), upper.reflect) * all;
         place.reflects_sky = mix(paler, vec3(1.0), upper.sky) * all;
@@ -587,10 +595,6 @@ float sward_tufts_lit()
  * tufts that stand free. */
 const float HERB_SHINES = 0.4;
 
-/* Of wd_tree_model.cloud_wax, where light comes from behind the eye: of oaks, beeches and birches. Needles have wax on few
- * of the sides that are seen. */
-const float BROAD_LEAVES_WAX = 0.49;
-
 /* Leaves of reduced meshes stand for several: how far maps that hold them light each as the leaf that it is. By path-traced
  * trees of four species close by. */
 const float MESH_SINGLE = 0.6;
@@ -617,7 +621,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     float cosine = dot(eye, frame.sun_direction);
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
     bool pictured = pixel.lit < 0.0 && push.level_cards == 0u; /* a z-field's */
-    bool reduced = !card && pixel.lit < 0.0 && !pictured;
+    bool reduced = is_reduced(pixel);
     float wide = reduced ? smoothstep(MESH_MAPPED_M.x, MESH_MAPPED_M.y, pixel_size_m(pixel)) : pictured ? 1.0 : 0.0;
     float fine = card || disc ? 0.0 : map_holds_leaves(cascade, free) * (1.0 - free * wide);
     float mapped = fine * mix(0.75, 1.0, is_tree(crown)), shade_near = near_shade(model, eye, cascade);
@@ -632,8 +636,8 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     float plain = card ? 0.0 : 1.0 - smoothstep(4.0, 20.0, pixel.axis_m);
     plain = max(plain, reduced ? MESH_SINGLE * fine * is_tree(crown) : 0.0);
     vec2 even = leaf_cloud(cosine), blades = mix(even, leaf_blade(pixel.facing, eye, plain), max(near, plain));
-    float deeper = reduced ? mix(1.0, reduced_sunlit(eye, model), free * is_tree(crown)) : 1.0;
-    vec2 known = sunlit * (deeper * mix(stand_sunlit(eye, crown, model), 1.0, free));
+    float deeper = reduced ? mix(1.0, reduced_light(eye, model).x, free * is_tree(crown)) : 1.0;
+    vec2 known = sunlit * (deeper * mix(stand_sunlit(eye, crown, model, upper.open), 1.0, free));
     vec2 whole = mix(blades * herbs_sunlit(eye), known, crown.told);
     place.sides = mix(whole, blades, mapped);
     place.transmittance = leaf_transmittance(model);
@@ -643,15 +647,12 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
     place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WD_WAX * 0.39;
-    vec2 around = mix(vec2(1.85, 1.05), vec2(1.7, 0.8), free); /* by path-traced stands and rows under an even sky */
-    place.coat = WD_WAX * mix(around.x, around.y, smoothstep(0.0, 0.64, eye.z));
     float shines = mix(HERB_SHINES, 1.0, max(is_tree(crown), place.sward));
-    place.coat *= shines;
+    upper.sky_mirrors *= shines;
     place.gloss = (shines * place.gloss + 0.25 * place.sward * wax_ahead(cosine)) * place.waxed;
     vec2 wax = unpackHalf2x16(model.cloud_wax);
     float mirrors = WD_WAX * shines * upper.mirrors * (wax.x + wax.y * wd_cloud_wax_rise(cosine));
     place.gloss = mix(place.gloss, mirrors * (place.sides.x + place.sides.y), crown.told);
-    place.coat *= mix(1.0, wax.x * (1.0 / BROAD_LEAVES_WAX), crown.told);
     place.normal = normalize(mix(outward, pixel.normal, 0.4 * near));
     place.cloud = 1.0;
     float sunny = dot(pixel.normal, frame.sun_direction) < 0.0 ? -1.0 : 1.0;
@@ -722,6 +723,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         uint seen_as = pixel.lit >= 0.0 ? WD_SKYLIT_LEAVES : WD_SKYLIT_CLOUDS;
         vec4 skylit = skylit_of(model_at, mixed, leaf ? seen_as : WD_SKYLIT_WOOD);
         wd_crown crown = crown_of(tree, model);
+        skylit *= leaf && is_level_picture(pixel) ? mix(vec4(1.0), open_to_eye(model_at, mixed), is_tree(crown)) : vec4(1.0);
         float free = stands_free(crown);
         crown.told = tables_hold(crown, free, shelter.herbs);
         alone = crown_alone(pixel, crown, skylit, shelter, free);

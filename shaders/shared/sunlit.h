@@ -50,7 +50,11 @@ WD_FUNC float wd_leaves_seen_up(float eye)
 /* And what its leaves' wax mirrors of the sun to that eye, over what cloud_wax of struct wd_tree_model tells for any. */
 #define WD_UPPER_MIRRORS 7u
 #define WD_UPPER_MIRRORS_MOST 4.0f
-#define WD_UPPER_KINDS 8u
+/* What it mirrors of an even sky, over what comes of that to the sides that are seen, and how open these leaves are. */
+#define WD_UPPER_SKY_WAX 8u
+#define WD_UPPER_SKY_WAX_MOST 0.0625f
+#define WD_UPPER_OPEN 9u
+#define WD_UPPER_KINDS 10u
 /* Of an even sky as much comes from the one side as of a sun on this ring. */
 #define WD_UPPER_SKY_RING 1u
 
@@ -149,11 +153,13 @@ struct wd_lit_model {
      * one for each ring of the sun, then, beside what reflects, what is seen, and beside what transmits, what is mirrored,
      * of WD_UPPER_MIRRORS_MOST. */
     uint32_t upper[4 * WD_EYE_RINGS];
+    uint32_t sky_wax[2], open[2]; /* WD_UPPER_SKY_WAX, of its most, and WD_UPPER_OPEN: a byte for each ring of the eye */
 };
-WD_STATIC_ASSERT_SIZE(wd_lit_model, 9312);
+WD_STATIC_ASSERT_SIZE(wd_lit_model, 9328);
 #define WD_LIT_LEAVES_TEXELS 2u
 #define WD_LIT_SKYLIT_TEXEL 562u
 #define WD_LIT_UPPER_TEXEL 577u
-#define WD_LIT_MODEL_TEXELS 582u
+#define WD_LIT_RINGS_TEXEL 582u
+#define WD_LIT_MODEL_TEXELS 583u
 
 #endif

@@ -92,6 +92,7 @@ struct fit {
     struct sent sent[EYES][WD_SUN_WAYS];
     struct skylit skylit[WD_SKYLIT_PLACES];
     float crown_seen[WD_EYE_RINGS], crown_wood[WD_EYE_RINGS]; /* area toward eyes above the lowest living branch */
+    float leaf_seen[WD_EYE_RINGS], leaf_open[WD_EYE_RINGS];   /* of leaves, and times their openness */
 };
 
 static void set_crown(struct fit *fit, const struct wd_tree_model *model)
@@ -271,6 +272,8 @@ static void send_skylight(struct fit *fit, const struct shown *point, uint32_t s
         add_skylight(&fit->skylit[(wood ? WD_SKYLIT_WOOD : WD_SKYLIT_LEAVES) + eye->ring], &of);
         if (wood)
             continue;
+        fit->leaf_seen[eye->ring] += fabsf(area);
+        fit->leaf_open[eye->ring] += fabsf(area) * point->openness;
         tell_cloud(&of, point, eye->toward.z, area);
         add_skylight(&fit->skylit[WD_SKYLIT_CLOUDS + eye->ring], &of);
     }
@@ -635,6 +638,16 @@ static float mirrored_on(const float wax[2], const struct fit *fit, uint32_t rin
     return fminf(ratio(mirrored, told, seen), WD_UPPER_MIRRORS_MOST);
 }
 
+/* What is mirrored of an even sky to eyes on a ring, over what comes of it to the sides that they see. */
+static float sky_mirrored_on(const struct fit *fit, uint32_t ring)
+{
+    float mirrored = 0, comes = fit->skylit[WD_SKYLIT_CLOUDS + ring].comes[0];
+    for (uint32_t eye = 0; eye < EYES; eye++)
+        for (uint32_t way = 0; way < WD_SUN_WAYS && fit->eyes[eye].ring == ring; way++)
+            mirrored += fit->sky[way].brings * fit->sent[eye][way].of[MIRRORED];
+    return fminf(ratio(mirrored, comes, fit->leaf_seen[ring]), WD_UPPER_SKY_WAX_MOST);
+}
+
 static void fill_upper(struct wd_tree_model *model, const struct fit *fit)
 {
     for (uint32_t ring = 0; ring < WD_EYE_RINGS; ring++) {
@@ -654,6 +667,8 @@ static void fill_upper(struct wd_tree_model *model, const struct fit *fit)
                 upper_share(sent[UPPER_TRANSMITTED], sent[TRANSMITTED], sent[SEEN]);
         }
         model->upper[ring][WD_UPPER_MIRRORS] = mirrored_on(model->cloud_wax, fit, ring);
+        model->upper[ring][WD_UPPER_SKY_WAX] = sky_mirrored_on(fit, ring);
+        model->upper[ring][WD_UPPER_OPEN] = fit->leaf_open[ring] / fmaxf(fit->leaf_seen[ring], 1e-9f);
         model->upper[ring][WD_UPPER_SEEN] = upper_share(upper, seen, seen);
         model->wood_seen[ring] = fit->crown_wood[ring] / fmaxf(fit->crown_seen[ring], 1e-9f);
     }

@@ -57,6 +57,14 @@ bool wd_variant_grow(struct wd_tree_model *model, const struct wd_scene *scene, 
     return wd_tree_grow(model, &species, &params, log);
 }
 
+/* A byte for each ring of the eye. */
+static void pack_rings(uint32_t packed[2], const float *of, size_t stride, float most)
+{
+    packed[0] = packed[1] = 0;
+    for (uint32_t ring = 0; ring < WD_EYE_RINGS; ring++)
+        packed[ring / 4] |= (uint32_t)wd_unorm_encode(of[ring * stride] / most) << (8 * (ring % 4));
+}
+
 void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, uint32_t index,
                          const struct wd_tree_model *grown)
 {
@@ -75,8 +83,7 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         .phase = variant_phase(scene, index),
         .mixed = WD_MIXED_EVEN,
     };
-    for (uint32_t ring = 0; ring < WD_EYE_RINGS; ring++)
-        model->wood_seen[ring / 4] |= (uint32_t)wd_unorm_encode(grown->wood_seen[ring]) << (8 * (ring % 4));
+    pack_rings(model->wood_seen, grown->wood_seen, 1, 1);
     for (int k = 0; k < 3; k++) {
         float late = species->leaf.season_color[0][k], early = species->leaf.season_color[1][k];
         model->behind[k] = late > 0 ? late : 1;
@@ -184,4 +191,6 @@ void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species
         pack_sunlit(lit->sunlit + 4 * WD_SUNLIT_PLACES * kind, grown, kind);
     pack_skylit(lit->skylit, grown);
     pack_upper(lit->upper, grown);
+    pack_rings(lit->sky_wax, &grown->upper[0][WD_UPPER_SKY_WAX], WD_UPPER_KINDS, WD_UPPER_SKY_WAX_MOST);
+    pack_rings(lit->open, &grown->upper[0][WD_UPPER_OPEN], WD_UPPER_KINDS, 1);
 }

@@ -580,6 +580,14 @@ static void models_tell_how_their_leaves_stand(void **state)
     assert_true(level_birch[WD_UPPER_TRANSMITS + 1] < level_birch[WD_UPPER_SEEN]);
     assert_in_range(100 * level_spruce[WD_UPPER_REFLECTS + 1], 45, 55);
     assert_true(birch.wood_seen[3] < 0.7f * birch.wood_seen[1] && birch.wood_seen[3] > 0);
+    /* The flatter leaves are looked at the more of the sky their wax mirrors, needles' half of their sides. From above
+     * those are seen that have more of the sky. */
+    print_message("of an even sky wax mirrors to eyes 10 and 62 degrees up: birch %.4f, %.4f, spruce %.4f, %.4f\n",
+                  (double)level_birch[WD_UPPER_SKY_WAX], (double)high_birch[WD_UPPER_SKY_WAX],
+                  (double)level_spruce[WD_UPPER_SKY_WAX], (double)spruce.upper[3][WD_UPPER_SKY_WAX]);
+    assert_true(level_birch[WD_UPPER_SKY_WAX] > 1.4f * high_birch[WD_UPPER_SKY_WAX] && high_birch[WD_UPPER_SKY_WAX] > 0.01f);
+    assert_true(level_spruce[WD_UPPER_SKY_WAX] < 0.7f * level_birch[WD_UPPER_SKY_WAX]);
+    assert_true(spruce.upper[3][WD_UPPER_OPEN] > level_spruce[WD_UPPER_OPEN] + 0.03f && high_birch[WD_UPPER_OPEN] < 1);
     wd_tree_model_finish(&spruce);
     wd_tree_model_finish(&palm);
     wd_tree_model_finish(&birch);
