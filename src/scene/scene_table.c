@@ -32,7 +32,8 @@ static const struct wd_key terrain_keys[] = {
     {"crs", WD_KEY_STRING, TERRAIN(crs),
      .doc = "raster: coordinates to assume where the file has none, such as \"EPSG:4326\"."},
     {"target_crs", WD_KEY_STRING, TERRAIN(target_crs),
-     .doc = "raster: coordinates in metres to reproject to; by default the UTM zone for degrees."},
+     .doc = "raster: coordinates in metres to reproject to; by default the UTM zone for degrees "
+            "and Mercator."},
     {"unit", WD_KEY_STRING, TERRAIN(unit), .choices = raster_units,
      .doc = "raster without coordinates: \"metres\" says that x and y are metres already."},
     {"band", WD_KEY_INTEGER, TERRAIN(band), 1, 10000, "1", "raster: band, from 1."},

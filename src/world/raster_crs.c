@@ -87,9 +87,16 @@ void wd_crs_free(OGRSpatialReferenceH crs)
         OSRDestroySpatialReference(crs);
 }
 
+/* A metre of Mercator's, and so of web maps, is one at the equator alone: at 50 degrees it is 64 cm. */
+static bool is_mercator(OGRSpatialReferenceH crs)
+{
+    const char *projection = OSRGetAttrValue(crs, "PROJECTION", 0);
+    return projection && strncmp(projection, "Mercator", strlen("Mercator")) == 0;
+}
+
 bool wd_crs_is_metric(OGRSpatialReferenceH crs)
 {
-    return OSRIsProjected(crs) && fabs(OSRGetLinearUnits(crs, NULL) - 1) < 1e-9;
+    return OSRIsProjected(crs) && fabs(OSRGetLinearUnits(crs, NULL) - 1) < 1e-9 && !is_mercator(crs);
 }
 
 char *wd_crs_wkt(OGRSpatialReferenceH crs)
@@ -123,7 +130,7 @@ char *wd_crs_wkt_in_metres(const char *crs, const struct wd_log *log)
     OGRSpatialReferenceH parsed = wd_crs_parse(crs, "terrain.target_crs", log);
     char *wkt = NULL;
     if (parsed && !wd_crs_is_metric(parsed))
-        wd_error(log, "terrain.target_crs: \"%s\" is not a projected system in metres", crs);
+        wd_error(log, "terrain.target_crs: \"%s\" is not a projected system in metres, as a UTM zone is", crs);
     else if (parsed)
         wkt = wd_crs_wkt(parsed);
     wd_crs_free(parsed);

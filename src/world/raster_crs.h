@@ -24,6 +24,7 @@ const char *wd_gdal_reason(struct wd_gdal_scope *scope);
 OGRSpatialReferenceH wd_crs_parse(const char *crs, const char *subject, const struct wd_log *log);
 OGRSpatialReferenceH wd_crs_copy(OGRSpatialReferenceH crs);
 void wd_crs_free(OGRSpatialReferenceH crs);
+/* Projected, in metres that are metres on the ground. */
 bool wd_crs_is_metric(OGRSpatialReferenceH crs);
 char *wd_crs_wkt(OGRSpatialReferenceH crs); /* free() it */
 /* The UTM zone (polar stereographic near the poles) around a longitude and latitude on WGS 84. */

@@ -121,7 +121,7 @@ static bool find_frame(struct dem *dem)
         dem->frame = wd_crs_parse(target, "terrain.target_crs", dem->log);
         return dem->frame && (wd_crs_is_metric(dem->frame) ||
                               wd_error(dem->log, "terrain.target_crs: \"%s\" is not a projected "
-                                                 "system in metres", target));
+                                                 "system in metres, as a UTM zone is", target));
     }
     if (!dem->source_crs)
         return true;

@@ -366,6 +366,26 @@ static void degrees_become_metres(void **state)
     wd_terrain_finish(&terrain);
 }
 
+/* Web maps' metres, of which there are 1.5 to one on the ground at 49 degrees. */
+static void mercator_becomes_metres(void **state)
+{
+    (void)state;
+    enum { SIDE = 40 };
+    double x = 9, y = 49;
+    assert_true(wd_reproject("EPSG:4326", "EPSG:3857", &x, &y, 1, &log_kept));
+    const double affine[6] = {x, 20, 0, y, 0, -20};
+    static float values[SIDE * SIDE];
+    make_raster(&(struct made_raster){.name = "/vsimem/web.tif", .width = SIDE, .height = SIDE,
+                                      .affine = affine, .epsg = 3857, .values = values});
+    struct wd_terrain terrain = read_file("/vsimem/web.tif");
+    assert_non_null(strstr(terrain.crs, "32632"));
+    assert_float_equal(wd_terrain_extent_x_m(&terrain), SIDE * 20 * cos(49 * M_PI / 180), 30);
+    wd_terrain_finish(&terrain);
+    struct wd_scene scene = scene_of("/vsimem/web.tif");
+    scene.terrain.target_crs = "EPSG:3857";
+    assert_refused(&scene, "is not a projected system in metres, as a UTM zone is");
+}
+
 static void half_the_earth_fits_no_zone(void **state)
 {
     (void)state;
@@ -640,6 +660,7 @@ int main(void)
         cmocka_unit_test_setup(files_without_a_crs_ask_for_it, forget_log),
         cmocka_unit_test_setup(pictures_without_a_position_get_one_from_the_cell, forget_log),
         cmocka_unit_test_setup(degrees_become_metres, forget_log),
+        cmocka_unit_test_setup(mercator_becomes_metres, forget_log),
         cmocka_unit_test_setup(half_the_earth_fits_no_zone, forget_log),
         cmocka_unit_test_setup(feet_become_metres, forget_log),
         cmocka_unit_test_setup(coarse_ground_is_refined_smoothly, forget_log),
