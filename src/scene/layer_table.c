@@ -91,7 +91,7 @@ static const struct wd_key column_keys[] = {
     {"dbh", WD_KEY_STRING, COLUMN(dbh), .doc = "Column of the stem diameter at 1.3 m."},
     {"height", WD_KEY_STRING, COLUMN(height), .doc = "Column of the tree's height."},
     {"crown_diameter", WD_KEY_STRING, COLUMN(crown_diameter),
-     .doc = "Column of the crown's diameter, in metres."},
+     .doc = "Column of the crown's diameter, in metres if its name has no unit."},
     {"id", WD_KEY_STRING, COLUMN(id), .doc = "Column of the tree's own number."},
     {"status", WD_KEY_STRING, COLUMN(status), .doc = "Column that says which stems are dead."},
     {0},

@@ -46,7 +46,7 @@ bool wd_world_make_terrain(struct wd_terrain *terrain, const struct wd_inventory
 
 /* Columns of a file by what they hold; -1: absent. */
 struct wd_inventory_columns {
-    int x, y, species, dbh, height, crown, status;
+    int x, y, species, dbh, height, crown, id, status;
     double dbh_cm, height_m, crown_m; /* of one unit */
 };
 bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struct wd_csv *csv,

@@ -342,6 +342,69 @@ static void test_errors(void **state)
                                  "has: px1, y");
     expect_error("x,y\n5000,5000\n", "no tree stands on the ground");
     expect_error("x,y\n,2\n", "no living tree");
+    expect_error("x,y,x,dbh\n1,2,3,4\n", "inventory_test.csv:1: column x is there twice");
+    expect_error("x,y,DBH (cm),dbh_cm\n1,2,3,4\n",
+                 "inventory_test.csv:1: columns DBH (cm) and dbh_cm can both be the trees' dbh; say "
+                 "which it is in columns.dbh");
+}
+
+/* How files name diameters and heights: a unit in brackets, after a dot or none, and other words. */
+static void test_names_of_columns(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *header, *row;
+        double dbh_cm;
+        uint32_t height_cm;
+    } files[] = {
+        {" X , Y ,DBH(cm),Height [m],crown", "10,10,20,10,3", 0.0, 1000},
+        {"x,y,dbh (mm),height (cm)", "10,10,305,1200", 30.5, 1200},
+        {"x,y,DBH.mm,Height.ft", "10,10,305,50", 30.5, 1524},
+        {"x [m],y [m],DBH [m],total height", "10,10,0.4,12", 40.0, 1200},
+        {"Easting (m),Northing (m),D130,Ht (feet)", "10,10,40,50", 40.0, 1524},
+        {"x,y,BHD,H", "10,10,40,12", 40.0, 1200},
+        {"x,y,diam_mm,tree height (m)", "10,10,400,12", 40.0, 1200},
+        {"x,y,D1.3 [mm],h/m", "10,10,400,12", 40.0, 1200},
+        {"x,y,dbh,dbh_mm,height", "10,10,7,400,12", 40.0, 1200}, /* the one that has its unit */
+    };
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        struct small_scene small;
+        struct wd_world world;
+        small_scene_init(&small);
+        small_scene_inventory(&small, path);
+        char *text = wd_format("%s\n%s\n", files[i].header, files[i].row);
+        write_file(text);
+        free(text);
+        make_or_fail(&small, &world);
+        struct wd_tree tree = tree_at(&world, 0);
+        assert_stands(&world, 0, 10000, 10000);
+        assert_int_equal(tree.size & 0xffff, files[i].height_cm);
+        double crown_m = files[i].dbh_cm > 0.0 ? wd_species_crown_m(&small.species[0], files[i].dbh_cm) : 3.0;
+        assert_true(fabs((tree.size >> 16) - crown_m * 100.0) < 1.0);
+        assert_null(strstr(captured.others, "recognised"));
+        wd_world_finish(&world);
+    }
+}
+
+static void test_no_sizes(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path);
+    write_file("x,y,girth\n10,10,94\n20,20,94\n");
+    make_or_fail(&small, &world);
+    wd_world_finish(&world);
+    assert_said(captured.others, "inventory_test.csv:1: neither a stem diameter nor a height");
+    assert_said(captured.others, "\"columns\": {\"dbh\": \"...\"}");
+    assert_said(captured.others, "the header has: x, y, girth");
+    assert_null(strstr(strstr(captured.others, "neither") + 1, "neither"));
+    /* places alone are meant so */
+    write_file("x,y,species\n10,10,oak\n");
+    make_or_fail(&small, &world);
+    wd_world_finish(&world);
+    assert_null(strstr(captured.others, "neither"));
 }
 
 static void test_wrong_column(void **state)
@@ -495,6 +558,8 @@ int main(void)
         cmocka_unit_test(test_degrees),
 #endif
         cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_names_of_columns),
+        cmocka_unit_test(test_no_sizes),
         cmocka_unit_test(test_wrong_column),
         cmocka_unit_test(test_unmapped_species),
         cmocka_unit_test(test_delimiter_given_wrongly),
