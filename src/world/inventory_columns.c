@@ -153,22 +153,29 @@ static bool find(const struct wd_csv *csv, const struct wish *wish, const struct
     return wish->wanted ? find_wanted(csv, wish, log, column) : find_usual(csv, wish, log, column);
 }
 
-/* A unit that ends the name of a column counts where none is given. */
+static const struct unit *find_given(const char *name, const struct unit *units)
+{
+    for (; units->name; units++)
+        if (strcasecmp(name, units->name) == 0)
+            return units;
+    return NULL;
+}
+
+/* What the scene says counts before the unit that ends the column's name, that before the usual. */
 static bool find_unit(const struct wd_csv *csv, const char *key, const char *wanted, int column,
                       const struct unit *units, const struct wd_log *log, double *factor)
 {
     size_t length;
     const struct unit *named = column >= 0 ? unit_of_name(csv->header[column], units, &length) : NULL;
-    *factor = named ? named->factor : units[0].factor;
-    if (wanted == NULL || (named && strcmp(wanted, units[0].name) == 0))
-        return true;
-    for (const struct unit *unit = units; unit->name; unit++)
-        if (strcasecmp(wanted, unit->name) == 0) {
-            *factor = unit->factor;
-            return true;
-        }
-    return wd_error(log, "%s: %s: \"%s\" is not a unit for it; the usual one is \"%s\"", csv->path,
-                    key, wanted, units[0].name);
+    const struct unit *given = wanted ? find_given(wanted, units) : NULL;
+    if (wanted && !given)
+        return wd_error(log, "%s: %s: \"%s\" is not a unit for it; the usual one is \"%s\"", csv->path,
+                        key, wanted, units[0].name);
+    if (given && named && given->factor != named->factor)
+        wd_warn(log, "%s:1: the name of column %s says %s, but the scene's %s says %s, which counts",
+                csv->path, csv->header[column], named->name, key, wanted);
+    *factor = given ? given->factor : named ? named->factor : units[0].factor;
+    return true;
 }
 
 static bool need(const struct wd_csv *csv, const char *what, int column, const struct wd_log *log)

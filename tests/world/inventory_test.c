@@ -386,6 +386,34 @@ static void test_names_of_columns(void **state)
     }
 }
 
+/* What the scene says of units counts, and is told from what it leaves to the column's name. */
+static void test_units_said_twice(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->dbh_unit = "cm";
+    inventory->height_unit = "m";
+    write_file("x,y,dbh_mm,height (ft),crown_cm\n10,10,30,20,250\n20,20,30,,\n");
+    make_or_fail(&small, &world);
+    assert_int_equal(tree_at(&world, 0).size, 2000 | 250 << 16);
+    double crown_m = wd_species_crown_m(&small.species[0], 30.0);
+    assert_true(fabs((tree_at(&world, 1).size >> 16) - crown_m * 100.0) < 1.0);
+    wd_world_finish(&world);
+    assert_said(captured.others, "inventory_test.csv:1: the name of column dbh_mm says mm, but the scene's "
+                                 "dbh_unit says cm, which counts");
+    assert_said(captured.others, "the name of column height (ft) says ft, but the scene's height_unit says m");
+
+    inventory->dbh_unit = "mm";
+    inventory->height_unit = "ft";
+    make_or_fail(&small, &world);
+    assert_int_equal(tree_at(&world, 0).size & 0xffff, 610);
+    wd_world_finish(&world);
+    assert_null(strstr(captured.others, "which counts"));
+}
+
 static void test_no_sizes(void **state)
 {
     (void)state;
@@ -559,6 +587,7 @@ int main(void)
 #endif
         cmocka_unit_test(test_errors),
         cmocka_unit_test(test_names_of_columns),
+        cmocka_unit_test(test_units_said_twice),
         cmocka_unit_test(test_no_sizes),
         cmocka_unit_test(test_wrong_column),
         cmocka_unit_test(test_unmapped_species),
