@@ -157,6 +157,7 @@ bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *sc
     reader.names = (struct wd_species_names){.scene = scene, .wanted = inventory->wanted};
     bool ok = wd_csv_open(&reader.csv, inventory->path, inventory->wanted->delimiter, log) &&
               wd_inventory_find_columns(&reader.columns, &reader.csv, inventory->wanted, log) &&
+              wd_inventory_check_frame(&reader.columns, &reader.csv, inventory->wanted, log) &&
               check_species_column(&reader, scene) && read_rows(&reader);
     wd_csv_close(&reader.csv);
     wd_species_names_finish(&reader.names);

@@ -51,6 +51,9 @@ struct wd_inventory_columns {
 };
 bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struct wd_csv *csv,
                                const struct wd_scene_inventory *wanted, const struct wd_log *log);
+/* False, logged, where columns called longitude or latitude would count as metres. */
+bool wd_inventory_check_frame(const struct wd_inventory_columns *columns, const struct wd_csv *csv,
+                              const struct wd_scene_inventory *wanted, const struct wd_log *log);
 
 /* Finds species by the names in a file. Names that are not found are counted for the error. */
 struct wd_species_names {

@@ -234,3 +234,25 @@ bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struc
                      &columns->height_m) &&
            find_unit(csv, "", NULL, columns->crown, height_units, log, &columns->crown_m);
 }
+
+static bool is_degrees(const struct wd_csv *csv, int column)
+{
+    static const char *const names[] = {"lon", "long", "longitude", "lat", "latitude"};
+    const char *name = csv->header[column];
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (reads_as(name, strlen(name), names[i]))
+            return true;
+    return false;
+}
+
+bool wd_inventory_check_frame(const struct wd_inventory_columns *columns, const struct wd_csv *csv,
+                              const struct wd_scene_inventory *wanted, const struct wd_log *log)
+{
+    if (wd_inventory_frame(wanted) == WD_FRAME_CRS ||
+        (!is_degrees(csv, columns->x) && !is_degrees(csv, columns->y)))
+        return true;
+    return wd_error(log, "%s:1: columns %s and %s read as degrees, but the frame \"%s\" is in metres; say "
+                    "\"frame\": \"EPSG:4326\", or name the columns in metres in columns.x and columns.y",
+                    csv->path, csv->header[columns->x], csv->header[columns->y],
+                    wanted->frame ? wanted->frame : "local");
+}

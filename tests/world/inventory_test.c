@@ -435,6 +435,25 @@ static void test_no_sizes(void **state)
     assert_null(strstr(captured.others, "neither"));
 }
 
+static void test_degrees_as_metres(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    expect_error("lon,lat,dbh\n10,10,30\n", "inventory_test.csv:1: columns lon and lat read as degrees, but "
+                                             "the frame \"local\" is in metres; say \"frame\": \"EPSG:4326\"");
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->frame = "projected";
+    inventory->columns.x = "Longitude";
+    write_file("x,Longitude,y\n10,10,30\n");
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "columns Longitude and y read as degrees, but the frame \"projected\"");
+    inventory->columns.x = NULL;
+    make_or_fail(&small, &world); /* degrees beside metres do no harm */
+    wd_world_finish(&world);
+}
+
 static void test_wrong_column(void **state)
 {
     (void)state;
@@ -589,6 +608,7 @@ int main(void)
         cmocka_unit_test(test_names_of_columns),
         cmocka_unit_test(test_units_said_twice),
         cmocka_unit_test(test_no_sizes),
+        cmocka_unit_test(test_degrees_as_metres),
         cmocka_unit_test(test_wrong_column),
         cmocka_unit_test(test_unmapped_species),
         cmocka_unit_test(test_delimiter_given_wrongly),
