@@ -92,7 +92,8 @@ static const struct wd_key column_keys[] = {
     {"height", WD_KEY_STRING, COLUMN(height), .doc = "Column of the tree's height."},
     {"crown_diameter", WD_KEY_STRING, COLUMN(crown_diameter),
      .doc = "Column of the crown's diameter, in metres if its name has no unit."},
-    {"id", WD_KEY_STRING, COLUMN(id), .doc = "Column of the tree's own number."},
+    {"id", WD_KEY_STRING, COLUMN(id), .doc = "Column of the tree's own number or name: rows of others are no "
+     "duplicates, and lists of trees have it as tag."},
     {"status", WD_KEY_STRING, COLUMN(status), .doc = "Column that says which stems are dead."},
     {0},
 };

@@ -98,6 +98,8 @@ static bool read_tree(struct reader *reader)
     struct wd_inventory_tree *added = wd_push(inventory->trees, inventory->count,
                                               inventory->capacity);
     *added = tree;
+    if (columns->id >= 0 && !wd_csv_is_missing(reader->csv.fields[columns->id]))
+        wd_tree_tags_set(&inventory->tags, inventory->count - 1, reader->csv.fields[columns->id]);
     return true;
 }
 
@@ -170,5 +172,6 @@ void wd_inventory_finish(struct wd_inventory *inventory)
 {
     free(inventory->path);
     free(inventory->trees);
+    wd_tree_tags_finish(&inventory->tags);
     *inventory = (struct wd_inventory){0};
 }

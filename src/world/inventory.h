@@ -4,6 +4,7 @@
 
 #include "world/csv.h"
 #include "world/placement.h"
+#include "world/tree_tags.h"
 #include "world/world.h"
 
 /* A living tree as its row says. */
@@ -19,6 +20,7 @@ struct wd_inventory {
     char *path;
     struct wd_inventory_tree *trees;
     size_t count, capacity;
+    struct wd_tree_tags tags; /* by index into trees */
     struct wd_inventory_report report; /* rows, dead and invalid so far */
 };
 
@@ -26,10 +28,12 @@ bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *sc
                        const struct wd_log *log);
 void wd_inventory_finish(struct wd_inventory *inventory);
 
-/* Adds the trees to the list, in the order of rows; completes and logs the report. `fitted`: the
- * ground was made round the inventories, so local coordinates count from its origin too. */
+/* Adds the trees to the list, in the order of rows, and their tags by id; completes and logs the
+ * report. `fitted`: the ground was made round the inventories, so local coordinates count from its
+ * origin too. */
 bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placement_params *params,
-                        size_t index, bool fitted, struct wd_tree_list *list);
+                        size_t index, bool fitted, struct wd_tree_list *list,
+                        struct wd_tree_tags *tags);
 
 enum wd_inventory_frame { WD_FRAME_LOCAL, WD_FRAME_PROJECTED, WD_FRAME_CRS };
 enum wd_inventory_frame wd_inventory_frame(const struct wd_scene_inventory *wanted);

@@ -97,6 +97,15 @@ expect 0 'trees +2 ' info "$scratch/bom.json"
 printf 'x_m,y_m,height_m\n10,10,12\n20,20\n30,30,9\n' >"$scratch/ragged.csv"
 inventory ragged
 expect 1 'ragged.csv:3' info "$scratch/ragged.json"
+# What trees are called in an inventory is what they are called in the list of those that stand.
+printf 'x_m,y_m,height_m,nr\n10,10,12,A-7\n10,10,12,"A ""8"""\n20,20,13,\n' >"$scratch/tagged.csv"
+inventory tagged
+jq '.inventories[0].columns.id = "nr"' "$scratch/tagged.json" >"$scratch/tags.json"
+expect 0 'list.csv: ' export "$scratch/tags.json" -o "$scratch/list.csv"
+check 'the list has a column of tags' sh -c "head -1 '$scratch/list.csv' | grep -q ',layer,tag\$'"
+check 'a tag stands in its row' grep -q '^1,.*,"inventory","A-7"$' "$scratch/list.csv"
+check 'a tag with quotes too' grep -q '^2,.*,"inventory","A ""8"""$' "$scratch/list.csv"
+check 'a tree without has none' grep -q '^3,.*,"inventory",$' "$scratch/list.csv"
 # A semicolon is seen to be the delimiter.
 printf 'x_m;y_m;height_m\n10;10;12\n' >"$scratch/semicolon.csv"
 inventory semicolon

@@ -195,6 +195,36 @@ static void test_dead_duplicates_outside_invalid(void **state)
     assert_said(captured.errors, "inventory_test.csv:9: stands at (-1.000, 20.000), outside");
 }
 
+/* Trees with other numbers are other trees; a number goes with its tree. */
+static void test_tags(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_layer(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    small_scene_inventory(&small, path)->offset_m[0] = 100.0;
+    write_file("nr,x,y,dbh\n"
+               "A-7,10,10,30\n"
+               "A-8,10,10,30\n"  /* another tree */
+               "A-7,10,10,30\n"  /* the same again */
+               ",10,10,30\n"     /* none of them */
+               "NA,10,10,30\n"   /* the same again */
+               "B 1,20,10,30\n");
+    inventory->columns.id = "nr";
+    make_or_fail(&small, &world);
+    assert_int_equal(world.inventories[0].planted, 4);
+    assert_int_equal(world.inventories[0].duplicates, 2);
+    assert_int_equal(world.inventories[1].planted, 2); /* its numbers are not asked for */
+    static const char *const tags[] = {"A-7", "A-8", "", "B 1", "", ""};
+    for (size_t i = 0; i < sizeof tags / sizeof *tags; i++)
+        assert_string_equal(wd_tree_tags_get(&world.tags, i + 1), tags[i]);
+    assert_stands(&world, 3, 20000, 10000);
+    assert_string_equal(wd_tree_tags_get(&world.tags, world.tree_count), "");
+    wd_world_finish(&world);
+}
+
 static void test_rotation_and_offset(void **state)
 {
     (void)state;
@@ -598,6 +628,7 @@ int main(void)
         cmocka_unit_test(test_positions_and_sizes),
         cmocka_unit_test(test_mapping_units_and_commas),
         cmocka_unit_test(test_dead_duplicates_outside_invalid),
+        cmocka_unit_test(test_tags),
         cmocka_unit_test(test_rotation_and_offset),
         cmocka_unit_test(test_fitted_ground),
         cmocka_unit_test(test_ground_under_data),
