@@ -151,6 +151,7 @@ bool wd_forest_get_inventory(const struct wd_forest *forest, uint32_t index,
         .dead = report->dead,
         .duplicates = report->duplicates,
         .outside = report->outside,
+        .invalid = report->invalid,
     };
     return true;
 }

@@ -106,6 +106,12 @@ check 'the list has a column of tags' sh -c "head -1 '$scratch/list.csv' | grep 
 check 'a tag stands in its row' grep -q '^1,.*,"inventory","A-7"$' "$scratch/list.csv"
 check 'a tag with quotes too' grep -q '^2,.*,"inventory","A ""8"""$' "$scratch/list.csv"
 check 'a tree without has none' grep -q '^3,.*,"inventory",$' "$scratch/list.csv"
+printf 'x_m,y_m,height_m\n10,10,12\n,10,12\n20,NA,13\n10,10,12\n' >"$scratch/placeless.csv"
+inventory placeless
+expect 0 'inventory .*: 4 rows, 1 planted, 0 dead, 1 duplicate, 0 outside, 2 without a position' \
+    info "$scratch/placeless.json"
+check 'info --json: rows without a position are counted' sh -c "'$weald' info '$scratch/placeless.json' --json |
+    jq -e '.inventories[0] | .without_position == 2 and .rows == .planted + .duplicates + .without_position'"
 # A semicolon is seen to be the delimiter.
 printf 'x_m;y_m;height_m\n10;10;12\n' >"$scratch/semicolon.csv"
 inventory semicolon
