@@ -14,8 +14,9 @@ struct wd_specimen;
 /* Zeroes are a typical tree of the species in summer. Models take height_m (scaling them) only, any
  * other value is refused. */
 struct wd_specimen_params {
-    const char *source; /* a species ("oak": looked for in species/, ../species/ and among the
-                           installed ones), a species file (.json) or a model (.obj, .gltf, .glb,
+    const char *source; /* a species ("oak": looked for in species/, ../species/, the tree that
+                           the program and the library lie in, and among the installed
+                           ones), a species file (.json) or a model (.obj, .gltf, .glb,
                            .fbx, .dae) */
     uint32_t seed;      /* another seed, another individual */
     double height_m, dbh_m, age_years; /* at most two that do not contradict each other; 0: open */

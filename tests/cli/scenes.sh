@@ -82,6 +82,41 @@ expect 1 'binary.json' check "$tiny" "$scratch/binary.json"
 expect 1 'tiny.json: ok' check "$scratch/binary.json" "$tiny"
 expect 1 'nowhere' info "$scratch/raster.json" --data /nowhere
 
+# Species are found from any folder, in the tree that the program or the library lies in; and where they
+# are not, what to do is told. In a tree without species first, as far as none are installed.
+own=$scratch/own
+mkdir -p "$own/bin" "$own/lib" "$own/away"
+cp "$weald" "$own/bin"
+library=$(ldd "$weald" | awk '/libweald/ { print $3 }')
+[ -z "$library" ] || cp -L "$library" "$own/lib/$(basename "$library")"
+printf '{"terrain": {"kind": "flat", "size_m": [40, 40]}, "layers": [{"species": "oak"}]}' >"$own/away/a.json"
+from_away() { (cd "$own/away" && LD_LIBRARY_PATH=$own/lib:${LD_LIBRARY_PATH:-} "$@"); }
+away() { # away PATTERN ARGUMENT...: a line of what the tree's own program says in a folder of its own
+    pattern=$1
+    shift
+    check "away: weald $*" sh -c 'echo "$1" | grep -qE -- "$2"' - "$(from_away "$own/bin/weald" "$@" 2>&1)" "$pattern"
+}
+if from_away "$own/bin/weald" grow oak --height 4 -o "$own/oak.obj" >/dev/null 2>&1; then
+    echo "skip a tree without species: some are installed"
+else
+    away 'unknown species "oak"; name a species file .* it was looked for in species, .*own/share/weald/species' \
+        grow oak --height 4 -o "$own/oak.obj"
+    away '"species": \{"oak": "PATH.json"\}; it was looked for in species, .*own/share/weald/species' info a.json
+fi
+mkdir -p "$own/share/weald"
+cp -r "$root/species" "$own/share/weald/species"
+away 'oak .*4.0 m high' grow oak --height 4 --detail 0.2 -o "$own/oak.obj"
+away '^trees ' info a.json
+mv "$own/bin/weald" "$own/away/weald" # the library's tree alone
+if [ -n "$library" ]; then
+    check 'the library finds its own species' from_away "$own/away/weald" info a.json
+fi
+rm -r "$own/share"
+mkdir "$own/build" "$own/build/cli"
+mv "$own/away/weald" "$own/build/cli"
+cp -r "$root/species" "$own/species"
+check 'so does a program that lies where it was built' from_away "$own/build/cli/weald" info a.json
+
 # inventories
 inventory() { # inventory NAME: a scene that plants $scratch/NAME.csv
     jq --arg file "$1.csv" 'del(.layers) | .inventories = [{"file": $file, "species": {"*": "oak"},
