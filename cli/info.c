@@ -66,10 +66,12 @@ static void print_trees(const struct wd_forest *forest, const struct wd_forest_i
     free(stands);
     struct wd_inventory_info inventory;
     for (uint32_t i = 0; wd_forest_get_inventory(forest, i, &inventory); i++)
-        printf("inventory   %s: %llu rows, %llu planted, %llu dead, %llu duplicate, %llu outside\n",
+        printf("inventory   %s: %llu rows, %llu planted, %llu dead, %llu duplicate, %llu outside, "
+               "%llu without a position\n",
                inventory.file, (unsigned long long)inventory.rows,
                (unsigned long long)inventory.planted, (unsigned long long)inventory.dead,
-               (unsigned long long)inventory.duplicates, (unsigned long long)inventory.outside);
+               (unsigned long long)inventory.duplicates, (unsigned long long)inventory.outside,
+               (unsigned long long)inventory.invalid);
 }
 
 static void print_cameras(const struct wd_forest *forest)
@@ -174,10 +176,10 @@ static void json_inventories(const struct wd_forest *forest)
         printf("%s\n    {\"file\": ", i ? "," : "");
         json_string(inventory.file, SIZE_MAX);
         printf(", \"rows\": %llu, \"planted\": %llu, \"dead\": %llu, \"duplicates\": %llu, "
-               "\"outside\": %llu}",
+               "\"outside\": %llu, \"without_position\": %llu}",
                (unsigned long long)inventory.rows, (unsigned long long)inventory.planted,
                (unsigned long long)inventory.dead, (unsigned long long)inventory.duplicates,
-               (unsigned long long)inventory.outside);
+               (unsigned long long)inventory.outside, (unsigned long long)inventory.invalid);
     }
     printf("\n  ],\n");
 }

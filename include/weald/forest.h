@@ -73,7 +73,7 @@ bool wd_forest_get_species(const struct wd_forest *forest, uint32_t index,
 
 struct wd_inventory_info {
     const char *file;
-    uint64_t rows, planted, dead, duplicates, outside;
+    uint64_t rows, planted, dead, duplicates, outside, invalid; /* invalid: without a position */
 };
 bool wd_forest_get_inventory(const struct wd_forest *forest, uint32_t index,
                              struct wd_inventory_info *info);

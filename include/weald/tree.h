@@ -14,8 +14,9 @@ struct wd_specimen;
 /* Zeroes are a typical tree of the species in summer. Models take height_m (scaling them) only, any
  * other value is refused. */
 struct wd_specimen_params {
-    const char *source; /* a species ("oak": looked for in species/, ../species/ and among the
-                           installed ones), a species file (.json) or a model (.obj, .gltf, .glb,
+    const char *source; /* a species ("oak": looked for in species/, ../species/, the tree that
+                           the program and the library lie in, and among the installed
+                           ones), a species file (.json) or a model (.obj, .gltf, .glb,
                            .fbx, .dae) */
     uint32_t seed;      /* another seed, another individual */
     double height_m, dbh_m, age_years; /* at most two that do not contradict each other; 0: open */
@@ -83,9 +84,10 @@ void wd_forest_set_specimen_form(struct wd_forest *forest, enum wd_specimen_form
 
 /* Writes a forest for other programs. As ".csv": a row for each tree: id as in the tree_id layer of
  * a picture, species, the trunk's foot in the terrain's own coordinates, height, crown diameter,
- * layer. As ".glb": each individual's meshes once (MSFT_lod), its trees as instances
- * (EXT_mesh_gpu_instancing, with tree ids), the ground as a mesh; metres, y up, about the middle of
- * the ground, whose true coordinates are in the root's extras.
+ * layer, and as tag what an inventory's column for "id" calls it. As ".glb": each individual's
+ * meshes once (MSFT_lod), its trees as instances (EXT_mesh_gpu_instancing, with tree ids), the
+ * ground as a mesh; metres, y up, about the middle of the ground, whose true coordinates are in the
+ * root's extras.
  *   max_trees  a forest with more is refused; 0: a million in a .glb, any number in a .csv
  * Errors: as wd_specimens_write; WD_ERROR_INTERRUPTED. */
 enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path, uint64_t max_trees,

@@ -82,6 +82,7 @@ static uint64_t host_bytes(const struct wd_world *world)
     uint64_t samples = (uint64_t)terrain->width * terrain->height;
     return samples * (sizeof *terrain->height_m + (terrain->hole ? 1 : 0)) +
            world->tree_count * (sizeof *world->trees + sizeof *world->tree_of_id + 1) +
+           world->tags.count * sizeof *world->tags.places + world->tags.size +
            (uint64_t)world->octree.count * sizeof *world->octree.octants +
            (uint64_t)world->octree.tight_count * sizeof *world->octree.tight_trees +
            (uint64_t)world->cover_width * world->cover_height;
@@ -150,6 +151,7 @@ bool wd_forest_get_inventory(const struct wd_forest *forest, uint32_t index,
         .dead = report->dead,
         .duplicates = report->duplicates,
         .outside = report->outside,
+        .invalid = report->invalid,
     };
     return true;
 }

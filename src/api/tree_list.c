@@ -31,6 +31,9 @@ static void put_tree(FILE *stream, const struct wd_forest *forest, uint32_t id)
             WD_TREE_CROWN_M(*tree));
     wd_point_locale_leave(&point);
     put_quoted(stream, layer < scene->layer_count ? scene->layers[layer].name : "inventory");
+    putc(',', stream);
+    if (*wd_tree_tags_get(&world->tags, id))
+        put_quoted(stream, wd_tree_tags_get(&world->tags, id));
     putc('\n', stream);
 }
 
@@ -43,7 +46,7 @@ enum wd_result wd_tree_list_write(const struct wd_forest *forest, const char *pa
     bool going = true;
     if (!wd_output_open(&file, path, log))
         return WD_ERROR_OUTPUT;
-    fputs("id,species,x_m,y_m,z_m,height_m,crown_diameter_m,layer\n", file.stream);
+    fputs("id,species,x_m,y_m,z_m,height_m,crown_diameter_m,layer,tag\n", file.stream);
     for (uint32_t id = 1; id <= count && going; id++) {
         if (id % TREES_A_REPORT == 0)
             going = wd_progress_report(progress, "writing trees", id, count);

@@ -91,8 +91,9 @@ static const struct wd_key column_keys[] = {
     {"dbh", WD_KEY_STRING, COLUMN(dbh), .doc = "Column of the stem diameter at 1.3 m."},
     {"height", WD_KEY_STRING, COLUMN(height), .doc = "Column of the tree's height."},
     {"crown_diameter", WD_KEY_STRING, COLUMN(crown_diameter),
-     .doc = "Column of the crown's diameter, in metres."},
-    {"id", WD_KEY_STRING, COLUMN(id), .doc = "Column of the tree's own number."},
+     .doc = "Column of the crown's diameter, in metres if its name has no unit."},
+    {"id", WD_KEY_STRING, COLUMN(id), .doc = "Column of the tree's own number or name: rows of others are no "
+     "duplicates, and lists of trees have it as tag."},
     {"status", WD_KEY_STRING, COLUMN(status), .doc = "Column that says which stems are dead."},
     {0},
 };
@@ -106,10 +107,10 @@ static const struct wd_key inventory_keys[] = {
      .doc = "One character between columns; found out from the header row where absent."},
     {"columns", WD_KEY_OBJECT, INVENTORY(columns), .table = &column_table,
      .doc = "Names of the columns; found out from usual names where absent."},
-    {"dbh_unit", WD_KEY_STRING, INVENTORY(dbh_unit), .fallback = "\"cm\"", .choices = dbh_units,
-     .doc = "Unit of the stem diameters."},
-    {"height_unit", WD_KEY_STRING, INVENTORY(height_unit), .fallback = "\"m\"",
-     .choices = height_units, .doc = "Unit of the heights."},
+    {"dbh_unit", WD_KEY_STRING, INVENTORY(dbh_unit), .choices = dbh_units,
+     .doc = "Unit of the stem diameters; where absent what the column's name says, else cm."},
+    {"height_unit", WD_KEY_STRING, INVENTORY(height_unit), .choices = height_units,
+     .doc = "Unit of the heights; where absent what the column's name says, else m."},
     {"frame", WD_KEY_STRING, INVENTORY(frame), .fallback = "\"local\"",
      .doc = "\"local\": metres from the terrain's south-west corner; \"projected\": the terrain's "
             "own coordinates; or \"EPSG:n\"."},

@@ -5,30 +5,16 @@
 
 #include "base/file.h"
 #include "scene/scene_parts.h"
+#include "scene/species_folders.h"
 
-enum { MAX_SPECIES = 255, FOLDER_COUNT = 3 };
+enum { MAX_SPECIES = 255 };
 
 struct loader {
     const struct wd_keys_place *root;
     struct wd_string_pair *files;
     size_t count, capacity;
-    char *folders[FOLDER_COUNT]; /* where species without a file are looked for, in order */
+    struct wd_species_folders folders; /* where species without a file are looked for */
 };
-
-static void open_folders(struct loader *loader)
-{
-    const char *scene_path = wd_keys_path(loader->root);
-    loader->folders[0] = wd_path_beside(scene_path, "species");
-    loader->folders[1] = wd_path_beside(scene_path, "../species");
-    loader->folders[2] = wd_strdup(WD_DATA_DIR "/species");
-}
-
-static void finish(struct loader *loader)
-{
-    for (size_t i = 0; i < FOLDER_COUNT; i++)
-        free(loader->folders[i]);
-    free(loader->files);
-}
 
 static bool has(const struct loader *loader, const char *name)
 {
@@ -74,8 +60,8 @@ static struct names known_names(const struct loader *loader)
     struct wd_arena *arena = wd_keys_arena(loader->root);
     for (size_t i = 0; i < loader->count; i++)
         push_name(&names, loader->files[i].name, strlen(loader->files[i].name), arena);
-    for (size_t i = 0; i < FOLDER_COUNT; i++) {
-        DIR *folder = opendir(loader->folders[i]);
+    for (size_t i = 0; i < loader->folders.count; i++) {
+        DIR *folder = opendir(loader->folders.paths[i]);
         for (struct dirent *entry; folder && (entry = readdir(folder));) {
             size_t length = strlen(entry->d_name);
             if (length > 5 && strcmp(entry->d_name + length - 5, ".json") == 0)
@@ -87,6 +73,16 @@ static struct names known_names(const struct loader *loader)
     if (names.count)
         qsort(names.items, names.count, sizeof *names.items, compare_names);
     return names;
+}
+
+static bool no_species(const struct loader *loader, const char *name, const struct wd_keys_place *place,
+                       const char *key)
+{
+    char *text = wd_species_folders_text(&loader->folders);
+    wd_keys_error(place, key, "unknown species \"%.60s\"; say which file it is, at the scene's root: "
+                  "\"species\": {\"%.60s\": \"PATH.json\"}; it was looked for in %s", name, name, text);
+    free(text);
+    return false;
 }
 
 static bool unknown_species(const struct loader *loader, const char *name,
@@ -102,8 +98,10 @@ static bool unknown_species(const struct loader *loader, const char *name,
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%.40s", used ? ", " : "",
                                  names.items[i]);
     free(names.items);
+    if (!near && names.count <= loader->count) /* no folder has another */
+        return no_species(loader, name, place, key);
     return wd_keys_error(place, key, "unknown species \"%.60s\"%s Known are: %s", name,
-                         near ? hint : ".", used ? list : "none");
+                         near ? hint : ".", list);
 }
 
 /* Finds the file of a species that has no entry in the scene. A name is no path. */
@@ -112,16 +110,12 @@ static bool want(struct loader *loader, const char *name, const struct wd_keys_p
 {
     if (!name || has(loader, name)) /* no name: an error that has been reported */
         return true;
-    for (size_t i = 0; i < FOLDER_COUNT && !strchr(name, '/') && name[0] != '.'; i++) {
-        char *file = wd_format("%s/%s.json", loader->folders[i], name);
-        bool found = wd_file_exists(file);
-        if (found)
-            add(loader, name, file);
-        free(file);
-        if (found)
-            return true;
-    }
-    return unknown_species(loader, name, place, key);
+    char *file = wd_species_folders_find(&loader->folders, name);
+    if (!file)
+        return unknown_species(loader, name, place, key);
+    add(loader, name, file);
+    free(file);
+    return true;
 }
 
 static bool take_entries(struct loader *loader, const struct wd_scene *scene)
@@ -272,13 +266,14 @@ static bool set_openness(const struct loader *loader, struct wd_scene *scene)
 bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *place)
 {
     struct loader loader = {.root = place};
-    open_folders(&loader);
+    wd_species_folders_init(&loader.folders, wd_keys_path(place));
     bool ok = take_entries(&loader, scene);
     ok = take_layers(&loader, scene) && ok;
     ok = take_inventories(&loader, scene) && ok;
     ok = load_all(&loader, scene) && ok;
     ok = ok && cut_hedges(&loader, scene);
     ok = ok && set_openness(&loader, scene);
-    finish(&loader);
+    wd_species_folders_finish(&loader.folders);
+    free(loader.files);
     return ok;
 }

@@ -3,12 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "scene/nearest.h"
 #include "scene/species.h"
+#include "scene/species_folders.h"
 
-static const char *const folders[] = {"species", "../species", WD_DATA_DIR "/species"};
-enum { FOLDER_COUNT = sizeof folders / sizeof *folders, MAX_NAMES = 256 };
+enum { MAX_NAMES = 256 };
 
 static int compare_names(const void *a, const void *b)
 {
@@ -16,11 +15,12 @@ static int compare_names(const void *a, const void *b)
 }
 
 /* Names of the species in the first folder that has any, sorted. */
-static size_t list_names(const char **names, struct wd_arena *arena)
+static size_t list_names(const struct wd_species_folders *folders, const char **names,
+                         struct wd_arena *arena)
 {
     size_t count = 0;
-    for (size_t i = 0; i < FOLDER_COUNT && count == 0; i++) {
-        DIR *folder = opendir(folders[i]);
+    for (size_t i = 0; i < folders->count && count == 0; i++) {
+        DIR *folder = opendir(folders->paths[i]);
         for (struct dirent *entry; folder && count < MAX_NAMES && (entry = readdir(folder));) {
             size_t length = strlen(entry->d_name);
             if (length <= 5 || strcmp(entry->d_name + length - 5, ".json") != 0)
@@ -38,15 +38,33 @@ static size_t list_names(const char **names, struct wd_arena *arena)
 
 size_t wd_species_list(const char ***names, struct wd_arena *arena)
 {
+    struct wd_species_folders folders;
+    wd_species_folders_init(&folders, NULL);
     *names = wd_arena_alloc(arena, MAX_NAMES * sizeof **names);
-    return list_names(*names, arena);
+    size_t count = list_names(&folders, *names, arena);
+    wd_species_folders_finish(&folders);
+    return count;
 }
 
-static void complain(const char *name, const struct wd_log *log)
+static void complain_of_folders(const char *name, const struct wd_species_folders *folders,
+                                const struct wd_log *log)
+{
+    char *text = wd_species_folders_text(folders);
+    wd_error(log, "unknown species \"%.60s\"; name a species file (.json) or a model (.obj, .gltf, .glb, "
+             ".fbx, .dae) by its path; it was looked for in %s", name, text);
+    free(text);
+}
+
+static void complain(const char *name, const struct wd_species_folders *folders,
+                     const struct wd_log *log)
 {
     struct wd_arena arena = {0};
-    const char **names;
-    size_t count = wd_species_list(&names, &arena), used = 0;
+    const char *names[MAX_NAMES];
+    size_t count = list_names(folders, names, &arena), used = 0;
+    if (count == 0) {
+        complain_of_folders(name, folders, log);
+        return;
+    }
     const char *near = wd_nearest_name(name, names, count);
     char list[1024] = "";
     for (size_t i = 0; i < count && used < sizeof list; i++)
@@ -54,18 +72,17 @@ static void complain(const char *name, const struct wd_log *log)
                                  names[i]);
     wd_error(log, "unknown species \"%.60s\"%s%.40s%s Known are: %s; or name a species file (.json) "
              "or a model (.obj, .gltf, .glb, .fbx, .dae)", name, near ? "; did you mean \"" : ".",
-             near ? near : "", near ? "\"?" : "", count ? list : "none");
+             near ? near : "", near ? "\"?" : "", list);
     wd_arena_finish(&arena);
 }
 
 char *wd_species_find_file(const char *name, const struct wd_log *log)
 {
-    for (size_t i = 0; i < FOLDER_COUNT && !strchr(name, '/') && name[0] != '.'; i++) {
-        char *path = wd_format("%s/%s.json", folders[i], name);
-        if (wd_file_exists(path))
-            return path;
-        free(path);
-    }
-    complain(name, log);
-    return NULL;
+    struct wd_species_folders folders;
+    wd_species_folders_init(&folders, NULL);
+    char *path = wd_species_folders_find(&folders, name);
+    if (!path)
+        complain(name, &folders, log);
+    wd_species_folders_finish(&folders);
+    return path;
 }

@@ -291,7 +291,7 @@ static bool parse_number(const char *text, bool decimal_comma, double *value)
     return *value <= 1e300 && *value >= -1e300;
 }
 
-static bool is_missing(const char *text)
+bool wd_csv_is_missing(const char *text)
 {
     return *text == 0 || strcmp(text, "NA") == 0 || strcasecmp(text, "null") == 0;
 }
@@ -300,7 +300,7 @@ enum wd_csv_value wd_csv_number(const struct wd_csv *csv, int column, double *va
 {
     const char *text = csv->fields[column];
     *value = 0.0;
-    if (is_missing(text))
+    if (wd_csv_is_missing(text))
         return WD_CSV_MISSING;
     if (parse_number(text, csv->decimal_comma, value))
         return WD_CSV_NUMBER;

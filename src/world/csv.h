@@ -34,9 +34,11 @@ int wd_csv_find(const struct wd_csv *csv, const char *name);
 /* The header's names for an error message: "a, b, c"; free() it. */
 char *wd_csv_names(const struct wd_csv *csv);
 
+/* Whether a field says nothing: empty, NA or NULL. */
+bool wd_csv_is_missing(const char *text);
+
 enum wd_csv_value { WD_CSV_NUMBER, WD_CSV_MISSING, WD_CSV_BAD };
-/* Reads a field as a number; empty, NA and NULL are missing. BAD has been logged with
- * file:line:column name. NaN and infinities are BAD. */
+/* Reads a field as a number. BAD has been logged with file:line:column name. NaN and infinities are BAD. */
 enum wd_csv_value wd_csv_number(const struct wd_csv *csv, int column, double *value);
 
 #endif

@@ -98,6 +98,8 @@ static bool read_tree(struct reader *reader)
     struct wd_inventory_tree *added = wd_push(inventory->trees, inventory->count,
                                               inventory->capacity);
     *added = tree;
+    if (columns->id >= 0 && !wd_csv_is_missing(reader->csv.fields[columns->id]))
+        wd_tree_tags_set(&inventory->tags, inventory->count - 1, reader->csv.fields[columns->id]);
     return true;
 }
 
@@ -157,6 +159,7 @@ bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *sc
     reader.names = (struct wd_species_names){.scene = scene, .wanted = inventory->wanted};
     bool ok = wd_csv_open(&reader.csv, inventory->path, inventory->wanted->delimiter, log) &&
               wd_inventory_find_columns(&reader.columns, &reader.csv, inventory->wanted, log) &&
+              wd_inventory_check_frame(&reader.columns, &reader.csv, inventory->wanted, log) &&
               check_species_column(&reader, scene) && read_rows(&reader);
     wd_csv_close(&reader.csv);
     wd_species_names_finish(&reader.names);
@@ -169,5 +172,6 @@ void wd_inventory_finish(struct wd_inventory *inventory)
 {
     free(inventory->path);
     free(inventory->trees);
+    wd_tree_tags_finish(&inventory->tags);
     *inventory = (struct wd_inventory){0};
 }

@@ -4,6 +4,7 @@
 
 #include "world/csv.h"
 #include "world/placement.h"
+#include "world/tree_tags.h"
 #include "world/world.h"
 
 /* A living tree as its row says. */
@@ -19,6 +20,7 @@ struct wd_inventory {
     char *path;
     struct wd_inventory_tree *trees;
     size_t count, capacity;
+    struct wd_tree_tags tags; /* by index into trees */
     struct wd_inventory_report report; /* rows, dead and invalid so far */
 };
 
@@ -26,10 +28,12 @@ bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *sc
                        const struct wd_log *log);
 void wd_inventory_finish(struct wd_inventory *inventory);
 
-/* Adds the trees to the list, in the order of rows; completes and logs the report. `fitted`: the
- * ground was made round the inventories, so local coordinates count from its origin too. */
+/* Adds the trees to the list, in the order of rows, and their tags by id; completes and logs the
+ * report. `fitted`: the ground was made round the inventories, so local coordinates count from its
+ * origin too. */
 bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placement_params *params,
-                        size_t index, bool fitted, struct wd_tree_list *list);
+                        size_t index, bool fitted, struct wd_tree_list *list,
+                        struct wd_tree_tags *tags);
 
 enum wd_inventory_frame { WD_FRAME_LOCAL, WD_FRAME_PROJECTED, WD_FRAME_CRS };
 enum wd_inventory_frame wd_inventory_frame(const struct wd_scene_inventory *wanted);
@@ -46,11 +50,14 @@ bool wd_world_make_terrain(struct wd_terrain *terrain, const struct wd_inventory
 
 /* Columns of a file by what they hold; -1: absent. */
 struct wd_inventory_columns {
-    int x, y, species, dbh, height, crown, status;
+    int x, y, species, dbh, height, crown, id, status;
     double dbh_cm, height_m, crown_m; /* of one unit */
 };
 bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struct wd_csv *csv,
                                const struct wd_scene_inventory *wanted, const struct wd_log *log);
+/* False, logged, where columns called longitude or latitude would count as metres. */
+bool wd_inventory_check_frame(const struct wd_inventory_columns *columns, const struct wd_csv *csv,
+                              const struct wd_scene_inventory *wanted, const struct wd_log *log);
 
 /* Finds species by the names in a file. Names that are not found are counted for the error. */
 struct wd_species_names {

@@ -158,10 +158,11 @@ static bool plant_all(struct planting *planting, const double *x, const double *
 struct stand {
     int32_t x_mm, y_mm;
     const struct wd_inventory_tree *tree;
+    const char *tag;
     uint32_t index; /* in the list */
 };
 
-/* By place, then by what was measured; 0: the same tree twice. */
+/* By place, then by what was measured, then by its number; 0: the same tree twice. */
 static int compare_measured(const struct stand *a, const struct stand *b)
 {
     if (a->x_mm != b->x_mm)
@@ -176,7 +177,7 @@ static int compare_measured(const struct stand *a, const struct stand *b)
         return a->tree->height_m < b->tree->height_m ? -1 : 1;
     if (a->tree->crown_m != b->tree->crown_m)
         return a->tree->crown_m < b->tree->crown_m ? -1 : 1;
-    return 0;
+    return strcmp(a->tag, b->tag);
 }
 
 static int compare_stands(const void *first, const void *second)
@@ -186,8 +187,8 @@ static int compare_stands(const void *first, const void *second)
     return order != 0 ? order : a->index < b->index ? -1 : a->index > b->index;
 }
 
-/* Marks rows that repeat an earlier one's place, species and sizes, by size 0. Stems of other
- * sizes on the same place are neighbours that were mapped coarsely: they stay. */
+/* Marks rows that repeat an earlier one's place, species, sizes and number, by size 0. Stems of other
+ * sizes or numbers on the same place are neighbours that were mapped coarsely: they stay. */
 static void drop_duplicates(struct planting *planting)
 {
     struct wd_inventory *inventory = planting->inventory;
@@ -196,7 +197,8 @@ static void drop_duplicates(struct planting *planting)
     struct stand *stands = wd_alloc_array(count, sizeof *stands);
     for (size_t i = 0; i < count; i++)
         stands[i] = (struct stand){trees[i].x_mm, trees[i].y_mm,
-                                   &inventory->trees[planting->planted[i]], (uint32_t)i};
+                                   &inventory->trees[planting->planted[i]],
+                                   wd_tree_tags_get(&inventory->tags, planting->planted[i]), (uint32_t)i};
     qsort(stands, count, sizeof *stands, compare_stands);
     uint32_t first_line = 0;
     for (size_t i = 1; i < count; i++) {
@@ -214,8 +216,9 @@ static void drop_duplicates(struct planting *planting)
                 first_line, inventory->report.duplicates);
 }
 
-static bool take(struct planting *planting, struct wd_tree_list *list)
+static bool take(struct planting *planting, struct wd_tree_list *list, struct wd_tree_tags *tags)
 {
+    const struct wd_tree_tags *own = &planting->inventory->tags;
     struct wd_inventory_report *report = &planting->inventory->report;
     for (size_t i = 0; i < planting->trees.count; i++) {
         if (planting->trees.trees[i].size == 0)
@@ -223,6 +226,7 @@ static bool take(struct planting *planting, struct wd_tree_list *list)
         if (list->count >= planting->params->max_trees)
             return wd_too_many_trees(planting->params, planting->inventory->path);
         wd_tree_list_add(list, &planting->trees.trees[i]);
+        wd_tree_tags_set(tags, list->count, wd_tree_tags_get(own, planting->planted[i]));
         report->planted++;
     }
     wd_info(planting->params->log,
@@ -243,7 +247,8 @@ static bool take(struct planting *planting, struct wd_tree_list *list)
 }
 
 bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placement_params *params,
-                        size_t index, bool fitted, struct wd_tree_list *list)
+                        size_t index, bool fitted, struct wd_tree_list *list,
+                        struct wd_tree_tags *tags)
 {
     static const double zero[2] = {0.0, 0.0};
     struct planting planting = {
@@ -260,7 +265,7 @@ bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placemen
     bool ok = plant_all(&planting, x, y, local ? zero : params->terrain->origin_m);
     if (ok) {
         drop_duplicates(&planting);
-        ok = take(&planting, list);
+        ok = take(&planting, list, tags);
     }
     wd_tree_list_finish(&planting.trees);
     free(planting.planted);

@@ -118,7 +118,7 @@ static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool
 {
     const struct wd_scene *scene = params->scene;
     for (size_t i = 0; i < scene->inventory_count; i++) {
-        if (!wd_inventory_plant(&inventories[i], params, i, fitted, list))
+        if (!wd_inventory_plant(&inventories[i], params, i, fitted, list, &world->tags))
             return false;
         world->inventories[i] = inventories[i].report;
     }
@@ -198,6 +198,7 @@ void wd_world_finish(struct wd_world *world)
     free(world->tree_of_id);
     free(world->species_counts);
     free(world->layer_of_tree);
+    wd_tree_tags_finish(&world->tags);
     free(world->inventories);
     free(world->cover);
     free(world->sward);

@@ -6,6 +6,7 @@
 #include "world/on_demand.h"
 #include "world/sky_map.h"
 #include "world/terrain.h"
+#include "world/tree_tags.h"
 
 struct wd_world_params {
     uint32_t seed;          /* used when has_seed; else the scene's */
@@ -19,8 +20,8 @@ struct wd_world_params {
 };
 
 /* What became of an inventory's rows: each is counted once, but with the rule "keep" those outside
- * are planted as well. invalid: without a position; duplicates: place, species and sizes as in an
- * earlier row. */
+ * are planted as well. invalid: without a position; duplicates: place, species, sizes and id as
+ * in an earlier row. */
 struct wd_inventory_report {
     uint64_t rows, planted, dead, duplicates, outside, invalid;
 };
@@ -35,6 +36,7 @@ struct wd_world {
     uint32_t *tree_of_id;           /* tree_of_id[id] is an index into trees; [0] unused */
     uint64_t *species_counts;       /* parallel to scene->species; of layers on demand expected */
     uint8_t *layer_of_tree;         /* parallel to trees: layer index; 255: inventory */
+    struct wd_tree_tags tags;       /* by id, where an inventory's id column says what a tree is called */
     struct wd_inventory_report *inventories; /* parallel to scene->inventories */
     struct wd_demand demand;        /* layers of which nothing else here says anything */
     struct wd_octree octree;

@@ -82,6 +82,41 @@ expect 1 'binary.json' check "$tiny" "$scratch/binary.json"
 expect 1 'tiny.json: ok' check "$scratch/binary.json" "$tiny"
 expect 1 'nowhere' info "$scratch/raster.json" --data /nowhere
 
+# Species are found from any folder, in the tree that the program or the library lies in; and where they
+# are not, what to do is told. In a tree without species first, as far as none are installed.
+own=$scratch/own
+mkdir -p "$own/bin" "$own/lib" "$own/away"
+cp "$weald" "$own/bin"
+library=$(ldd "$weald" | awk '/libweald/ { print $3 }')
+[ -z "$library" ] || cp -L "$library" "$own/lib/$(basename "$library")"
+printf '{"terrain": {"kind": "flat", "size_m": [40, 40]}, "layers": [{"species": "oak"}]}' >"$own/away/a.json"
+from_away() { (cd "$own/away" && LD_LIBRARY_PATH=$own/lib:${LD_LIBRARY_PATH:-} "$@"); }
+away() { # away PATTERN ARGUMENT...: a line of what the tree's own program says in a folder of its own
+    pattern=$1
+    shift
+    check "away: weald $*" sh -c 'echo "$1" | grep -qE -- "$2"' - "$(from_away "$own/bin/weald" "$@" 2>&1)" "$pattern"
+}
+if from_away "$own/bin/weald" grow oak --height 4 -o "$own/oak.obj" >/dev/null 2>&1; then
+    echo "skip a tree without species: some are installed"
+else
+    away 'unknown species "oak"; name a species file .* it was looked for in species, .*own/share/weald/species' \
+        grow oak --height 4 -o "$own/oak.obj"
+    away '"species": \{"oak": "PATH.json"\}; it was looked for in species, .*own/share/weald/species' info a.json
+fi
+mkdir -p "$own/share/weald"
+cp -r "$root/species" "$own/share/weald/species"
+away 'oak .*4.0 m high' grow oak --height 4 --detail 0.2 -o "$own/oak.obj"
+away '^trees ' info a.json
+mv "$own/bin/weald" "$own/away/weald" # the library's tree alone
+if [ -n "$library" ]; then
+    check 'the library finds its own species' from_away "$own/away/weald" info a.json
+fi
+rm -r "$own/share"
+mkdir "$own/build" "$own/build/cli"
+mv "$own/away/weald" "$own/build/cli"
+cp -r "$root/species" "$own/species"
+check 'so does a program that lies where it was built' from_away "$own/build/cli/weald" info a.json
+
 # inventories
 inventory() { # inventory NAME: a scene that plants $scratch/NAME.csv
     jq --arg file "$1.csv" 'del(.layers) | .inventories = [{"file": $file, "species": {"*": "oak"},
@@ -97,6 +132,21 @@ expect 0 'trees +2 ' info "$scratch/bom.json"
 printf 'x_m,y_m,height_m\n10,10,12\n20,20\n30,30,9\n' >"$scratch/ragged.csv"
 inventory ragged
 expect 1 'ragged.csv:3' info "$scratch/ragged.json"
+# What trees are called in an inventory is what they are called in the list of those that stand.
+printf 'x_m,y_m,height_m,nr\n10,10,12,A-7\n10,10,12,"A ""8"""\n20,20,13,\n' >"$scratch/tagged.csv"
+inventory tagged
+jq '.inventories[0].columns.id = "nr"' "$scratch/tagged.json" >"$scratch/tags.json"
+expect 0 'list.csv: ' export "$scratch/tags.json" -o "$scratch/list.csv"
+check 'the list has a column of tags' sh -c "head -1 '$scratch/list.csv' | grep -q ',layer,tag\$'"
+check 'a tag stands in its row' grep -q '^1,.*,"inventory","A-7"$' "$scratch/list.csv"
+check 'a tag with quotes too' grep -q '^2,.*,"inventory","A ""8"""$' "$scratch/list.csv"
+check 'a tree without has none' grep -q '^3,.*,"inventory",$' "$scratch/list.csv"
+printf 'x_m,y_m,height_m\n10,10,12\n,10,12\n20,NA,13\n10,10,12\n' >"$scratch/placeless.csv"
+inventory placeless
+expect 0 'inventory .*: 4 rows, 1 planted, 0 dead, 1 duplicate, 0 outside, 2 without a position' \
+    info "$scratch/placeless.json"
+check 'info --json: rows without a position are counted' sh -c "'$weald' info '$scratch/placeless.json' --json |
+    jq -e '.inventories[0] | .without_position == 2 and .rows == .planted + .duplicates + .without_position'"
 # A semicolon is seen to be the delimiter.
 printf 'x_m;y_m;height_m\n10;10;12\n' >"$scratch/semicolon.csv"
 inventory semicolon

@@ -195,6 +195,36 @@ static void test_dead_duplicates_outside_invalid(void **state)
     assert_said(captured.errors, "inventory_test.csv:9: stands at (-1.000, 20.000), outside");
 }
 
+/* Trees with other numbers are other trees; a number goes with its tree. */
+static void test_tags(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_layer(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    small_scene_inventory(&small, path)->offset_m[0] = 100.0;
+    write_file("nr,x,y,dbh\n"
+               "A-7,10,10,30\n"
+               "A-8,10,10,30\n"  /* another tree */
+               "A-7,10,10,30\n"  /* the same again */
+               ",10,10,30\n"     /* none of them */
+               "NA,10,10,30\n"   /* the same again */
+               "B 1,20,10,30\n");
+    inventory->columns.id = "nr";
+    make_or_fail(&small, &world);
+    assert_int_equal(world.inventories[0].planted, 4);
+    assert_int_equal(world.inventories[0].duplicates, 2);
+    assert_int_equal(world.inventories[1].planted, 2); /* its numbers are not asked for */
+    static const char *const tags[] = {"A-7", "A-8", "", "B 1", "", ""};
+    for (size_t i = 0; i < sizeof tags / sizeof *tags; i++)
+        assert_string_equal(wd_tree_tags_get(&world.tags, i + 1), tags[i]);
+    assert_stands(&world, 3, 20000, 10000);
+    assert_string_equal(wd_tree_tags_get(&world.tags, world.tree_count), "");
+    wd_world_finish(&world);
+}
+
 static void test_rotation_and_offset(void **state)
 {
     (void)state;
@@ -342,6 +372,116 @@ static void test_errors(void **state)
                                  "has: px1, y");
     expect_error("x,y\n5000,5000\n", "no tree stands on the ground");
     expect_error("x,y\n,2\n", "no living tree");
+    expect_error("x,y,x,dbh\n1,2,3,4\n", "inventory_test.csv:1: column x is there twice");
+    expect_error("x,y,DBH (cm),dbh_cm\n1,2,3,4\n",
+                 "inventory_test.csv:1: columns DBH (cm) and dbh_cm can both be the trees' dbh; say "
+                 "which it is in columns.dbh");
+}
+
+/* How files name diameters and heights: a unit in brackets, after a dot or none, and other words. */
+static void test_names_of_columns(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *header, *row;
+        double dbh_cm;
+        uint32_t height_cm;
+    } files[] = {
+        {" X , Y ,DBH(cm),Height [m],crown", "10,10,20,10,3", 0.0, 1000},
+        {"x,y,dbh (mm),height (cm)", "10,10,305,1200", 30.5, 1200},
+        {"x,y,DBH.mm,Height.ft", "10,10,305,50", 30.5, 1524},
+        {"x [m],y [m],DBH [m],total height", "10,10,0.4,12", 40.0, 1200},
+        {"Easting (m),Northing (m),D130,Ht (feet)", "10,10,40,50", 40.0, 1524},
+        {"x,y,BHD,H", "10,10,40,12", 40.0, 1200},
+        {"x,y,diam_mm,tree height (m)", "10,10,400,12", 40.0, 1200},
+        {"x,y,D1.3 [mm],h/m", "10,10,400,12", 40.0, 1200},
+        {"x,y,dbh,dbh_mm,height", "10,10,7,400,12", 40.0, 1200}, /* the one that has its unit */
+    };
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        struct small_scene small;
+        struct wd_world world;
+        small_scene_init(&small);
+        small_scene_inventory(&small, path);
+        char *text = wd_format("%s\n%s\n", files[i].header, files[i].row);
+        write_file(text);
+        free(text);
+        make_or_fail(&small, &world);
+        struct wd_tree tree = tree_at(&world, 0);
+        assert_stands(&world, 0, 10000, 10000);
+        assert_int_equal(tree.size & 0xffff, files[i].height_cm);
+        double crown_m = files[i].dbh_cm > 0.0 ? wd_species_crown_m(&small.species[0], files[i].dbh_cm) : 3.0;
+        assert_true(fabs((tree.size >> 16) - crown_m * 100.0) < 1.0);
+        assert_null(strstr(captured.others, "recognised"));
+        wd_world_finish(&world);
+    }
+}
+
+/* What the scene says of units counts, and is told from what it leaves to the column's name. */
+static void test_units_said_twice(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->dbh_unit = "cm";
+    inventory->height_unit = "m";
+    write_file("x,y,dbh_mm,height (ft),crown_cm\n10,10,30,20,250\n20,20,30,,\n");
+    make_or_fail(&small, &world);
+    assert_int_equal(tree_at(&world, 0).size, 2000 | 250 << 16);
+    double crown_m = wd_species_crown_m(&small.species[0], 30.0);
+    assert_true(fabs((tree_at(&world, 1).size >> 16) - crown_m * 100.0) < 1.0);
+    wd_world_finish(&world);
+    assert_said(captured.others, "inventory_test.csv:1: the name of column dbh_mm says mm, but the scene's "
+                                 "dbh_unit says cm, which counts");
+    assert_said(captured.others, "the name of column height (ft) says ft, but the scene's height_unit says m");
+
+    inventory->dbh_unit = "mm";
+    inventory->height_unit = "ft";
+    make_or_fail(&small, &world);
+    assert_int_equal(tree_at(&world, 0).size & 0xffff, 610);
+    wd_world_finish(&world);
+    assert_null(strstr(captured.others, "which counts"));
+}
+
+static void test_no_sizes(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path);
+    write_file("x,y,girth\n10,10,94\n20,20,94\n");
+    make_or_fail(&small, &world);
+    wd_world_finish(&world);
+    assert_said(captured.others, "inventory_test.csv:1: neither a stem diameter nor a height");
+    assert_said(captured.others, "\"columns\": {\"dbh\": \"...\"}");
+    assert_said(captured.others, "the header has: x, y, girth");
+    assert_null(strstr(strstr(captured.others, "neither") + 1, "neither"));
+    /* places alone are meant so */
+    write_file("x,y,species\n10,10,oak\n");
+    make_or_fail(&small, &world);
+    wd_world_finish(&world);
+    assert_null(strstr(captured.others, "neither"));
+}
+
+static void test_degrees_as_metres(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    expect_error("lon,lat,dbh\n10,10,30\n", "inventory_test.csv:1: columns lon and lat read as degrees, but "
+                                             "the frame \"local\" is in metres; say \"frame\": \"EPSG:4326\"");
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->frame = "projected";
+    inventory->columns.x = "Longitude";
+    write_file("x,Longitude,y\n10,10,30\n");
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "columns Longitude and y read as degrees, but the frame \"projected\"");
+    inventory->columns.x = NULL;
+    make_or_fail(&small, &world); /* degrees beside metres do no harm */
+    wd_world_finish(&world);
 }
 
 static void test_wrong_column(void **state)
@@ -488,6 +628,7 @@ int main(void)
         cmocka_unit_test(test_positions_and_sizes),
         cmocka_unit_test(test_mapping_units_and_commas),
         cmocka_unit_test(test_dead_duplicates_outside_invalid),
+        cmocka_unit_test(test_tags),
         cmocka_unit_test(test_rotation_and_offset),
         cmocka_unit_test(test_fitted_ground),
         cmocka_unit_test(test_ground_under_data),
@@ -495,6 +636,10 @@ int main(void)
         cmocka_unit_test(test_degrees),
 #endif
         cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_names_of_columns),
+        cmocka_unit_test(test_units_said_twice),
+        cmocka_unit_test(test_no_sizes),
+        cmocka_unit_test(test_degrees_as_metres),
         cmocka_unit_test(test_wrong_column),
         cmocka_unit_test(test_unmapped_species),
         cmocka_unit_test(test_delimiter_given_wrongly),
