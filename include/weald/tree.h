@@ -54,10 +54,17 @@ struct wd_specimen_level {
 bool wd_specimen_get_level(const struct wd_specimen *specimen, uint32_t level,
                            struct wd_specimen_level *info);
 
+/* Whether `path` can be written without loss of what the specimens were read from (species, models
+ * with their materials and textures, clips), whatever links lead there; of an .obj also the files beside
+ * it. Writing as a model asks this by itself. WD_ERROR_INPUT, logged, if not. */
+enum wd_result wd_specimens_check_output(const struct wd_specimen *const *specimens, uint32_t count,
+                                         const char *path);
+
 /* Writes specimens, side by side in a row, as a whole or not at all.
  *   path  ".glb": every level of detail (MSFT_lod), textures within, metres, y up; ".obj": the full
  *         meshes, with NAME.mtl and NAME-*.png beside it
- * Errors: WD_ERROR_INPUT (another ending, more than a GLB can hold), WD_ERROR_OUTPUT. */
+ * Errors: WD_ERROR_INPUT (another ending, more than a GLB can hold, a file that the specimens were read
+ * from), WD_ERROR_OUTPUT. */
 enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, uint32_t count,
                                   const char *path, const struct wd_log *log);
 

@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "api/forest.h"
+#include "api/sources.h"
 #include "api/specimen.h"
 #include "api/tree_list.h"
 #include "base/memory.h"
@@ -27,6 +28,8 @@ enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, ui
         wd_error(log, "%s: trees are written as .glb or .obj", path);
         return WD_ERROR_INPUT;
     }
+    if (wd_specimens_check_output(specimens, count, path) != WD_OK)
+        return WD_ERROR_INPUT;
     struct wd_export_tree *trees = wd_alloc_array(count, sizeof *trees);
     for (uint32_t i = 0; i < count; i++) {
         trees[i] = (struct wd_export_tree){
@@ -191,7 +194,8 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
     bool csv = has_ending(path, ".csv");
     uint64_t most = max_trees ? max_trees : csv ? UINT64_MAX : DEFAULT_MAX_TREES;
     struct scene_export export = {.forest = forest, .variants = (uint32_t)forest->scene.variants};
-    if (!wd_demand_is_none(&forest->world.demand, path, log))
+    if (!wd_demand_is_none(&forest->world.demand, path, log) ||
+        !wd_scene_check_output(&forest->scene, path, log))
         return WD_ERROR_INPUT;
     if (!csv && !has_ending(path, ".glb")) {
         wd_error(log, "%s: forests are written as .glb or .csv", path);

@@ -49,6 +49,10 @@ bool wd_export_glb(const struct wd_export *what, const char *path, const struct 
 /* The full meshes with NAME.mtl and NAME-SPECIES-*.png beside them; metres, y up. */
 bool wd_export_obj(const struct wd_export *what, const char *path, const struct wd_log *log);
 
+/* Files that wd_export_obj may write beside `path` for a species, from `index` 0 on; free() the name.
+ * NULL: there are no more, or `path` is no .obj. */
+char *wd_export_obj_beside(const char *path, const char *species, uint32_t index);
+
 /* The maps of a layer (WD_LOOK_*) as PNG files in memory; free each. `normal` and `surface` may be
  * NULL. `*holes`: whether the colour's alpha cuts. False: no memory. */
 struct wd_export_maps {

@@ -151,6 +151,22 @@ expect 1 'cut.glb: ' grow "$out/cut.glb" -o "$out/a.glb"
 expect 1 'cut.glb: ' check "$out/cut.glb"
 check 'a failed command leaves nothing' sh -c "! ls '$out' | grep -E '^a\\.|weald-'"
 
+# What is read is never written over, whatever links lead there.
+ln -s "$out/oak.glb" "$out/link.glb"
+sed 's/^o oak/o own/' "$out/oak.obj" >"$out/own.obj"
+ln "$out/trees.csv" "$out/hard.csv"
+(cd "$out" && sha256sum oak.* own.obj oak-oak-* box.obj trees.csv) >"$scratch/sums"
+expect 1 'oak.glb: is the model of' grow "$out/oak.glb" -o "$out/oak.glb"
+expect 1 'link.glb: is the model of' grow "$out/oak.glb" -o "$out/link.glb"
+expect 1 'oak.glb: is the model of' grow "$out/link.glb" -o "$out/../out/oak.glb"
+expect 1 'oak.mtl: is the material library of' grow "$out/own.obj" -o "$out/oak.obj"
+expect 1 'oak-oak-leaf.png: is the texture of' grow "$out/own.obj" -o "$out/oak-oak-leaf.png" --gpu software
+expect 1 'oak-oak-leaf.png: is the texture of' grow --sheet "$out/own.obj" -o "$out/oak-oak-leaf.png" --gpu software
+expect 1 'box.obj: is the clip of' grow beech --clip "$out/box.obj" -o "$out/box.obj"
+expect 1 'trees.csv: is the inventory of' export "$out/listed.json" -o "$out/trees.csv"
+expect 1 'hard.csv: is the inventory of' export "$out/listed.json" -o "$out/hard.csv"
+check 'and all of it is as it was' sh -c "cd '$out' && sha256sum -c --quiet '$scratch/sums'"
+
 expect 0 "sheet.png: " grow --sheet "$out/oak.obj" -o "$out/sheet.png" --gpu software --size 96x96 --samples 2
 check 'a sheet is no small picture' test "$(wc -c <"$out/sheet.png")" -gt 20000
 finish
