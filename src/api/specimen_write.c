@@ -221,11 +221,9 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
         place_trees(&export);
         make_ground(&export);
         export.what.trees = export.trees;
-        if (terrain->crs) { /* what is placed is placed: from here on it is for the reader */
-            export.what.crs = terrain->crs;
-            origin[0] += terrain->origin_m[0];
-            origin[1] += terrain->origin_m[1];
-        }
+        export.what.crs = terrain->crs;
+        origin[0] += terrain->origin_m[0]; /* what is placed is placed: this is for the reader */
+        origin[1] += terrain->origin_m[1];
         result = wd_export_glb(&export.what, path, log) ? WD_OK : WD_ERROR_OUTPUT;
     }
     finish(&export);

@@ -13,6 +13,8 @@ cat >"$out/planted.json" <<EOF
  "species": {"mine": "oak.obj"},
  "layers": [{"species": {"mine": 1}, "spacing_m": 8, "height_m": [4, 7]}]}
 EOF
+# Ground with coordinates of its own, but without a system that they are of.
+sed 's/"size_m": \[40, 40\]/"window_m": [500000, 4600000, 500040, 4600040]/' "$out/planted.json" >"$out/afar.json"
 # shellcheck disable=SC2086  # $small is many words
 {
     expect 0 'oak .* m high, .*20 years; triangles' grow oak --age 20 --open 1 --seed 3 -o "$out/oak.glb"
@@ -28,6 +30,8 @@ EOF
     draw 'tiny.glb: ' export "$tiny" -o "$out/tiny.glb"
     draw 'oak.glb: ' check "$out/oak.glb" "$out/oak.obj"
     draw 'trees.csv: ' export "$tiny" -o "$out/trees.csv"
+    draw 'afar.glb: ' export "$out/afar.json" -o "$out/afar.glb"
+    draw 'afar.csv: ' export "$out/afar.json" -o "$out/afar.csv"
     draw '"name": "mine"' info "$out/planted.json" --json
     drawn
     check 'a model is read without standard input' sh -c "'$weald' check '$out/oak.obj' <&-"
@@ -39,7 +43,8 @@ check 'oak.glb is sound' sound "$out/oak.glb" roots=1 levels=1
 check 'a model written again is sound' sound "$out/again.glb" roots=1 levels=1
 check 'three variants are sound' sound "$out/three.glb" roots=3 levels=3
 trees=$("$weald" info "$tiny" --json | jq .tree_count)
-check 'a scene is sound' sound "$out/tiny.glb" "instances=$trees"
+check 'a scene is sound' sound "$out/tiny.glb" "instances=$trees" "trees=$out/trees.csv"
+check 'a scene afar stands where its list says' sound "$out/afar.glb" "trees=$out/afar.csv"
 
 # A forest's list of trees, planted again from that list, is the same list.
 check 'a row for each tree' test "$(wc -l <"$out/trees.csv")" -eq $((trees + 1))
