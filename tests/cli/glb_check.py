@@ -101,7 +101,7 @@ def main():
     for image in root.get("images", []):
         view = root["bufferViews"][image["bufferView"]]
         need(binary[view["byteOffset"] :][:4] == b"\x89PNG", "image is no PNG")
-    levels = instances = 0
+    levels = instances = mirrored = 0
     for node in root["nodes"]:
         extensions = node.get("extensions", {})
         need(set(extensions) <= set(root.get("extensionsUsed", [])), "extension not declared")
@@ -109,9 +109,13 @@ def main():
             need("mesh" in root["nodes"][index], "level without a mesh")
             levels += 1
         places = extensions.get("EXT_mesh_gpu_instancing", {}).get("attributes", {})
+        if places:
+            need(min(values(root, binary, places["SCALE"])[0]) > 0, "instance that turns triangles inside out")
+            mirrored += "MSFT_lod" in extensions and node.get("scale", [1])[0] < 0
         if "MSFT_lod" in extensions and places:
             instances += root["accessors"][places["TRANSLATION"]]["count"]
-    found = {"levels": levels, "instances": instances, "roots": len(root["scenes"][0]["nodes"])}
+    found = {"levels": levels, "instances": instances, "mirrored": mirrored,
+             "roots": len(root["scenes"][0]["nodes"])}
     for word in sys.argv[2:]:
         name, value = word.split("=", 1)
         if name == "trees":
