@@ -59,8 +59,8 @@ static const struct cli_command commands[] = {
     {"check", CLI_CHECK, "FILE...", 1, 1 << 20,
      "look for faults in scene, species, CSV and raster files",
      "Checks files without building anything: scenes and species (.json), inventories (.csv),\n"
-     "rasters (anything else). Every fault is named with file, line and key. Exits with 1 if any\n"
-     "file has one.",
+     "rasters (anything else). Files that a scene names must be there and readable. Every fault is\n"
+     "named with file, line and key. Exits with 1 if any file has one.",
      "  weald check scenes/*.json species/*.json\n"
      "  weald check my-plot.csv --data ~/plots\n",
      cli_check},
