@@ -38,7 +38,7 @@ static const struct cli_command commands[] = {
      "with levels of detail (MSFT_lod), and where it stands (EXT_mesh_gpu_instancing). Metres, y up,\n"
      "about the middle of the ground, whose own coordinates are in the scene's extras. Or writes its\n"
      "trees as a .csv, a row for each: id (as in the tree_id layer of pictures), species, place in the\n"
-     "terrain's own coordinates, height, crown diameter, layer.",
+     "terrain's own coordinates, height, crown diameter, layer. Ctrl-C leaves no file.",
      "  weald export scenes/bei.json --data ~/data -o bei.glb\n"
      "  weald export scenes/valley.json -o valley.glb --max-trees 2000000\n"
      "  weald export scenes/valley.json -o trees.csv\n",

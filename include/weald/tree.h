@@ -94,7 +94,7 @@ void wd_forest_set_specimen_form(struct wd_forest *forest, enum wd_specimen_form
  * (EXT_mesh_gpu_instancing, with tree ids), the ground as a mesh; metres, y up, about the middle of
  * the ground, whose true coordinates are in the root's extras.
  *   max_trees  a forest with more is refused; 0: a million in a .glb, any number in a .csv
- * Errors: as wd_specimens_write; WD_ERROR_INTERRUPTED. */
+ * Errors: as wd_specimens_write; WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED (nothing is written). */
 enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path, uint64_t max_trees,
                                const struct wd_progress *progress, const struct wd_log *log);
 

@@ -364,10 +364,26 @@ static void put_scene(struct wd_glb *glb, const struct wd_export *what, json_t *
     json_object_set_new(glb->root, "scene", json_integer(0));
 }
 
-bool wd_export_glb(const struct wd_export *what, const char *path, const struct wd_log *log)
+static enum wd_result put_trees(struct export *export, const char *path, json_t *roots,
+                                const struct wd_log *log)
+{
+    const struct wd_export *what = export->what;
+    for (uint32_t i = 0; i < what->tree_count; i++) {
+        if (!wd_progress_report(what->progress, "writing trees", i, what->tree_count))
+            return WD_ERROR_INTERRUPTED;
+        if (!put_tree(export, &what->trees[i], roots)) {
+            wd_error(log, "%s: no memory for the textures of %s", path, what->trees[i].name);
+            return WD_ERROR_MEMORY;
+        }
+    }
+    return WD_OK;
+}
+
+enum wd_result wd_export_glb(const struct wd_export *what, const char *path,
+                             const struct wd_log *log)
 {
     if (!check_size(what, path, log) || !check_ids(what, path, log))
-        return false;
+        return WD_ERROR_INPUT;
     struct export export = {.what = what};
     wd_glb_init(&export.glb);
     enum { LINEAR = 9729, LINEAR_MIPMAP_LINEAR = 9987, REPEAT = 10497 };
@@ -375,15 +391,13 @@ bool wd_export_glb(const struct wd_export *what, const char *path, const struct 
                                 json_pack("{s:i,s:i,s:i,s:i}", "magFilter", LINEAR, "minFilter",
                                           LINEAR_MIPMAP_LINEAR, "wrapS", REPEAT, "wrapT", REPEAT));
     json_t *roots = json_array();
-    bool ok = true;
-    for (uint32_t i = 0; i < what->tree_count && ok; i++)
-        ok = put_tree(&export, &what->trees[i], roots) ||
-             wd_error(log, "%s: no memory for the textures of %s", path, what->trees[i].name);
+    enum wd_result result = put_trees(&export, path, roots, log);
     if (what->ground)
         put_ground(&export.glb, what->ground, roots);
     put_scene(&export.glb, what, roots);
-    ok = ok && wd_glb_write(&export.glb, path, log);
+    if (result == WD_OK)
+        result = wd_glb_write(&export.glb, path, what->progress, log);
     wd_glb_finish(&export.glb);
     free(export.materials);
-    return ok;
+    return result;
 }
