@@ -28,6 +28,13 @@ static bool settle_frames(struct cli_film *film)
     return result == WD_OK;
 }
 
+static enum wd_result check_output(const struct cli_film *film)
+{
+    uint64_t pictures = film->plan->kind > CLI_OUTPUT_FILM ? film->frame_count : 0;
+    return wd_forest_check_output(film->forest, film->session->options->output, pictures,
+                                  &film->session->log);
+}
+
 enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
                              const struct wd_forest *forest, const struct cli_plan *plan)
 {
@@ -41,7 +48,8 @@ enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
         .height = plan->params.height,
         .frames_per_second = film->frames_per_second,
     };
-    return wd_film_open(&film->output, &params, &session->log);
+    enum wd_result result = wd_film_open(&film->output, &params, &session->log);
+    return result == WD_OK ? check_output(film) : result;
 }
 
 /* Frames asked for by number are spread over the whole path; without a number, it is flown at its

@@ -213,6 +213,9 @@ static enum wd_result grow(struct cli_session *session, enum grow_kind kind)
 {
     struct grown grown = {0};
     enum wd_result result = grow_all(session, &grown);
+    if (result == WD_OK)
+        result = wd_specimens_check_output((const struct wd_specimen *const *)grown.items,
+                                           grown.count, session->options->output);
     if (result == WD_OK && kind == GROW_PICTURE)
         result = draw(session, &grown);
     else if (result == WD_OK)

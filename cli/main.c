@@ -39,7 +39,7 @@ static const struct cli_command commands[] = {
      "about the middle of the ground, whose own coordinates are in the scene's extras. Or writes its\n"
      "trees as a .csv, a row for each: id (as in the tree_id layer of pictures), species, place in the\n"
      "terrain's own coordinates, height, crown diameter, layer, and as tag what an inventory's\n"
-     "column for \"id\" calls it.",
+     "column for \"id\" calls it. Ctrl-C leaves no file.",
      "  weald export scenes/bei.json --data ~/data -o bei.glb\n"
      "  weald export scenes/valley.json -o valley.glb --max-trees 2000000\n"
      "  weald export scenes/valley.json -o trees.csv\n",
@@ -60,8 +60,8 @@ static const struct cli_command commands[] = {
     {"check", CLI_CHECK, "FILE...", 1, 1 << 20,
      "look for faults in scene, species, CSV and raster files",
      "Checks files without building anything: scenes and species (.json), inventories (.csv),\n"
-     "rasters (anything else). Every fault is named with file, line and key. Exits with 1 if any\n"
-     "file has one.",
+     "rasters (anything else). Files that a scene names must be there and readable. Every fault is\n"
+     "named with file, line and key. Exits with 1 if any file has one.",
      "  weald check scenes/*.json species/*.json\n"
      "  weald check my-plot.csv --data ~/plots\n",
      cli_check},

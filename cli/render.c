@@ -175,6 +175,8 @@ enum cli_status cli_render(struct cli_session *session)
     if (!plan.film && !cli_output_probe(session, session->options->output))
         return CLI_FAILED;
     enum wd_result result = cli_forest_open(session, &forest);
+    if (result == WD_OK && !plan.film)
+        result = wd_forest_check_output(forest, session->options->output, 0, &session->log);
     if (result == WD_OK && !(cli_places_check(session, forest) && cli_bound_check(session, forest)))
         result = WD_ERROR_INPUT;
     if (result == WD_OK) {

@@ -111,8 +111,11 @@ static double typical_height(struct sheet *sheet, const char *source, bool *ages
     struct wd_specimen_info info = {0};
     const struct wd_specimen_params params = {.source = source, .log = sheet->session->log};
     *result = wd_specimen_create(&specimen, &params);
-    if (*result == WD_OK)
+    if (*result == WD_OK) {
         wd_specimen_get_info(specimen, &info);
+        *result = wd_specimens_check_output((const struct wd_specimen *const *)&specimen, 1,
+                                            sheet->session->options->output);
+    }
     wd_specimen_destroy(&specimen);
     *ages = info.age_years > 0;
     return info.height_m;

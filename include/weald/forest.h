@@ -115,6 +115,14 @@ enum wd_result wd_forest_get_path_camera(const struct wd_forest *forest, const c
                                          double time_s, struct wd_camera *camera,
                                          double *duration_s);
 
+/* Whether `path` can be written without loss of what the forest was read from: its scene, species,
+ * models, inventories, rasters, sky and clips, whatever links lead there. Writing pictures and films does
+ * not ask; wd_forest_write (weald/tree.h) does.
+ *   frames  of numbered pictures (frame-%05d.png) how many; 0: `path` is one file
+ * Errors: WD_ERROR_INPUT. Thread-safe. */
+enum wd_result wd_forest_check_output(const struct wd_forest *forest, const char *path,
+                                      uint64_t frames, const struct wd_log *log);
+
 /* What the scene asks for where the caller does not say otherwise. */
 struct wd_render_defaults {
     uint32_t width, height, samples;
@@ -124,7 +132,8 @@ void wd_forest_get_render_defaults(const struct wd_forest *forest,
                                    struct wd_render_defaults *defaults);
 
 /* Checks a file without building anything: a scene or species (.json), an inventory (.csv) or a
- * raster. Every fault found is logged with file, line and key. */
+ * raster. Files that a scene names must be there and readable. Every fault found is logged with file, line
+ * and key. */
 enum wd_result wd_file_check(const char *path, const char *data_dir, const struct wd_log *log);
 
 /* JSON Schema of scene ("scene") files, or of species that are grown ("species") or an artist's

@@ -48,8 +48,8 @@ struct wd_reference_picture_params {
  * renderer's samples). The picture is a function of the forest and these parameters, the same for
  * any number of threads and interruptions.
  *   picture  overwritten; free with wd_picture_finish
- * Errors: WD_ERROR_INPUT (parameters; a checkpoint of another picture; trees on demand), WD_ERROR_OUTPUT (a
- * checkpoint that cannot be written), WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED. */
+ * Errors: WD_ERROR_INPUT (parameters; a checkpoint of another picture or with more samples; trees on demand),
+ * WD_ERROR_OUTPUT (a checkpoint that cannot be written), WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED. */
 enum wd_result wd_reference_render(struct wd_reference *reference,
                                    const struct wd_reference_picture_params *params,
                                    struct wd_picture *picture);

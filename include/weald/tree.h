@@ -55,10 +55,17 @@ struct wd_specimen_level {
 bool wd_specimen_get_level(const struct wd_specimen *specimen, uint32_t level,
                            struct wd_specimen_level *info);
 
+/* Whether `path` can be written without loss of what the specimens were read from (species, models
+ * with their materials and textures, clips), whatever links lead there; of an .obj also the files beside
+ * it. Writing as a model asks this by itself. WD_ERROR_INPUT, logged, if not. */
+enum wd_result wd_specimens_check_output(const struct wd_specimen *const *specimens, uint32_t count,
+                                         const char *path);
+
 /* Writes specimens, side by side in a row, as a whole or not at all.
  *   path  ".glb": every level of detail (MSFT_lod), textures within, metres, y up; ".obj": the full
  *         meshes, with NAME.mtl and NAME-*.png beside it
- * Errors: WD_ERROR_INPUT (another ending, more than a GLB can hold), WD_ERROR_OUTPUT. */
+ * Errors: WD_ERROR_INPUT (another ending, more than a GLB can hold, a file that the specimens were read
+ * from), WD_ERROR_OUTPUT. */
 enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, uint32_t count,
                                   const char *path, const struct wd_log *log);
 
@@ -89,7 +96,7 @@ void wd_forest_set_specimen_form(struct wd_forest *forest, enum wd_specimen_form
  * ground as a mesh; metres, y up, about the middle of the ground, whose true coordinates are in the
  * root's extras.
  *   max_trees  a forest with more is refused; 0: a million in a .glb, any number in a .csv
- * Errors: as wd_specimens_write; WD_ERROR_INTERRUPTED. */
+ * Errors: as wd_specimens_write; WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED (nothing is written). */
 enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path, uint64_t max_trees,
                                const struct wd_progress *progress, const struct wd_log *log);
 

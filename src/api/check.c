@@ -19,7 +19,7 @@ static bool has_ending(const char *path, const char *ending)
 
 /* --- scenes and species ------------------------------------------------------------------ */
 
-/* All end in .json; only species have allometry or a model. */
+/* All end in .json. */
 static bool is_species(const char *path, bool *species, const struct wd_log *log)
 {
     enum { MAX_BYTES = 64 << 20 };
@@ -27,8 +27,7 @@ static bool is_species(const char *path, bool *species, const struct wd_log *log
     size_t size;
     if (!wd_file_read(path, MAX_BYTES, log, &text, &size))
         return false;
-    bool told = strstr(text, "\"allometry\"") || strstr(text, "\"model\"");
-    *species = told && !strstr(text, "\"terrain\"");
+    *species = wd_scene_text_is_species(path, text, size);
     free(text);
     return true;
 }
@@ -53,7 +52,7 @@ static bool check_json(const char *path, const char *data_dir, const struct wd_l
         return false;
     if (species_file)
         return check_species(path, log);
-    const struct wd_scene_params params = {.data_dir = data_dir};
+    const struct wd_scene_params params = {.data_dir = data_dir, .find_files = true};
     struct wd_scene scene;
     if (!wd_scene_load_with(&scene, path, &params, log))
         return false;

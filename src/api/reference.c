@@ -191,6 +191,21 @@ static bool prepare(struct work *work)
     return ok;
 }
 
+/* A picture of fewer samples than some tile has already would not be that of a run without a break. */
+static bool take_samples(struct work *work, const char *path)
+{
+    const struct wd_trace_sums *sums = &work->sums;
+    uint32_t most = 0;
+    for (size_t i = 0; i < (size_t)sums->tile_columns * sums->tile_rows; i++) {
+        most = sums->tile_samples[i] > most ? sums->tile_samples[i] : most;
+        work->reference->stats.resumed_samples += sums->tile_samples[i];
+    }
+    return most <= work->samples ||
+           wd_error(&work->reference->log, "%s: holds %u samples a pixel already, %u are asked for; ask for "
+                    "%u or more, name another picture, or remove it to begin anew", path, most, work->samples,
+                    most);
+}
+
 static bool resume(struct work *work)
 {
     const char *path = work->params->checkpoint;
@@ -199,11 +214,8 @@ static bool resume(struct work *work)
     work->key = picture_key(work);
     if (!wd_file_exists(path))
         return true;
-    if (!wd_checkpoint_read(path, work->key, &work->sums, &work->reference->log))
-        return false;
-    for (size_t i = 0; i < (size_t)work->sums.tile_columns * work->sums.tile_rows; i++)
-        work->reference->stats.resumed_samples += work->sums.tile_samples[i];
-    return true;
+    return wd_checkpoint_read(path, work->key, &work->sums, &work->reference->log) &&
+           take_samples(work, path);
 }
 
 static enum wd_result trace(struct work *work)
@@ -235,7 +247,6 @@ static enum wd_result trace_paths(struct work *work)
     return resume(work) ? trace(work) : WD_ERROR_INPUT;
 }
 
-/* Tiles of a checkpoint may hold more samples than were asked for. */
 static float *mean_radiance(const struct wd_trace_sums *sums)
 {
     float *color = wd_alloc_array((size_t)sums->width * sums->height, 3 * sizeof *color);

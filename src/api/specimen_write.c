@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "api/forest.h"
+#include "api/sources.h"
 #include "api/specimen.h"
 #include "api/tree_list.h"
 #include "base/memory.h"
@@ -27,6 +28,8 @@ enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, ui
         wd_error(log, "%s: trees are written as .glb or .obj", path);
         return WD_ERROR_INPUT;
     }
+    if (wd_specimens_check_output(specimens, count, path) != WD_OK)
+        return WD_ERROR_INPUT;
     struct wd_export_tree *trees = wd_alloc_array(count, sizeof *trees);
     for (uint32_t i = 0; i < count; i++) {
         trees[i] = (struct wd_export_tree){
@@ -39,9 +42,11 @@ enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, ui
             trees[i].levels[level] = wd_specimen_mesh(specimens[i], level);
     }
     const struct wd_export what = {.trees = trees, .tree_count = count};
-    bool ok = glb ? wd_export_glb(&what, path, log) : wd_export_obj(&what, path, log);
+    enum wd_result result = glb                               ? wd_export_glb(&what, path, log)
+                            : wd_export_obj(&what, path, log) ? WD_OK
+                                                              : WD_ERROR_OUTPUT;
     free(trees);
-    return ok ? WD_OK : WD_ERROR_OUTPUT;
+    return result;
 }
 
 /* --- a whole forest ---------------------------------------------------------------------- */
@@ -90,9 +95,11 @@ static void place_tree(struct wd_export_instance *instance, const struct wd_tree
 }
 
 /* Counting sort by model. */
-static void place_trees(struct scene_export *export)
+static enum wd_result place_trees(struct scene_export *export, const struct wd_progress *progress)
 {
+    enum { TREES_A_REPORT = 100000 };
     const struct wd_world *world = &export->forest->world;
+    enum wd_result result = WD_OK;
     size_t *next = wd_alloc_array(export->model_count + 1, sizeof *next);
     export->instances = wd_alloc_array(world->tree_count + 1, sizeof *export->instances);
     for (size_t i = 0; i < world->tree_count; i++)
@@ -113,12 +120,16 @@ static void place_trees(struct scene_export *export)
             .instance_count = count,
         };
     }
-    for (size_t i = 0; i < world->tree_count; i++) {
+    for (size_t i = 0; i < world->tree_count && result == WD_OK; i++) {
         uint32_t m = model_of(export, &world->trees[i]);
+        if (i % TREES_A_REPORT == 0 &&
+            !wd_progress_report(progress, "placing trees", i, world->tree_count))
+            result = WD_ERROR_INTERRUPTED;
         place_tree(&export->instances[next[m]++], &world->trees[i], &export->described[m],
                    export->what.origin_m);
     }
     free(next);
+    return result;
 }
 
 static void ground_vertex(const struct scene_export *export, const double step_m[2], uint32_t x,
@@ -140,7 +151,7 @@ static void ground_vertex(const struct scene_export *export, const double step_m
     normal[2] = (float)(1 / length);
 }
 
-static void make_ground(struct scene_export *export)
+static enum wd_result make_ground(struct scene_export *export, const struct wd_progress *progress)
 {
     enum { SIDE = GROUND_SIDE, QUADS = SIDE - 1 };
     const struct wd_terrain *terrain = &export->forest->world.terrain;
@@ -149,7 +160,9 @@ static void make_ground(struct scene_export *export)
     float(*positions)[3] = wd_alloc_array((size_t)SIDE * SIDE, sizeof *positions);
     float(*normals)[3] = wd_alloc_array((size_t)SIDE * SIDE, sizeof *normals);
     uint32_t *indices = wd_alloc_array((size_t)QUADS * QUADS, 6 * sizeof *indices), *to = indices;
-    for (uint32_t y = 0; y < SIDE; y++) {
+    bool going = true;
+    for (uint32_t y = 0; y < SIDE && going; y++) {
+        going = wd_progress_report(progress, "making ground", y, SIDE);
         for (uint32_t x = 0; x < SIDE; x++) {
             uint32_t a = y * SIDE + x;
             ground_vertex(export, step_m, x, y, positions[a], normals[a]);
@@ -169,6 +182,7 @@ static void make_ground(struct scene_export *export)
     };
     memcpy(export->ground.color, export->forest->scene.ground.grass, sizeof export->ground.color);
     export->what.ground = &export->ground;
+    return going ? WD_OK : WD_ERROR_INTERRUPTED;
 }
 
 static void finish(struct scene_export *export)
@@ -191,7 +205,8 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
     bool csv = has_ending(path, ".csv");
     uint64_t most = max_trees ? max_trees : csv ? UINT64_MAX : DEFAULT_MAX_TREES;
     struct scene_export export = {.forest = forest, .variants = (uint32_t)forest->scene.variants};
-    if (!wd_demand_is_none(&forest->world.demand, path, log))
+    if (!wd_demand_is_none(&forest->world.demand, path, log) ||
+        !wd_scene_check_output(&forest->scene, path, log))
         return WD_ERROR_INPUT;
     if (!csv && !has_ending(path, ".glb")) {
         wd_error(log, "%s: forests are written as .glb or .csv", path);
@@ -213,16 +228,17 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
     origin[1] = 0.5 * wd_terrain_extent_y_m(terrain);
     origin[2] = wd_terrain_height(terrain, origin[0], origin[1]);
     enum wd_result result = grow_models(&export, progress, log);
+    if (result == WD_OK)
+        result = place_trees(&export, progress);
+    if (result == WD_OK)
+        result = make_ground(&export, progress);
     if (result == WD_OK) {
-        place_trees(&export);
-        make_ground(&export);
         export.what.trees = export.trees;
-        if (terrain->crs) { /* what is placed is placed: from here on it is for the reader */
-            export.what.crs = terrain->crs;
-            origin[0] += terrain->origin_m[0];
-            origin[1] += terrain->origin_m[1];
-        }
-        result = wd_export_glb(&export.what, path, log) ? WD_OK : WD_ERROR_OUTPUT;
+        export.what.progress = progress;
+        export.what.crs = terrain->crs;
+        origin[0] += terrain->origin_m[0]; /* what is placed is placed: this is for the reader */
+        origin[1] += terrain->origin_m[1];
+        result = wd_export_glb(&export.what, path, log);
     }
     finish(&export);
     return result;

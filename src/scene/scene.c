@@ -1,10 +1,12 @@
 #include "scene/scene.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
+#include "scene/json_text.h"
 
 enum { MAX_SCENE_BYTES = 16 << 20 };
 
@@ -30,6 +32,34 @@ bool wd_scene_load_with(struct wd_scene *scene, const char *path,
 bool wd_scene_load(struct wd_scene *scene, const char *path, const struct wd_log *log)
 {
     return wd_scene_load_with(scene, path, NULL, log);
+}
+
+static void say_nothing(void *user, enum wd_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    (void)message;
+}
+
+static size_t count_known(json_t *root, const struct wd_keys *table)
+{
+    size_t known = 0;
+    for (const struct wd_key *key = table->keys; key->name; key++)
+        known += json_object_get(root, key->name) != NULL;
+    return known;
+}
+
+bool wd_scene_text_is_species(const char *path, const char *text, size_t size)
+{
+    const struct wd_log silent = {say_nothing, NULL};
+    char *json = wd_json_blank_comments(path, text, size, &silent);
+    json_t *root = json ? json_loadb(json, strlen(json), 0, NULL) : NULL;
+    size_t scene = count_known(root, &wd_scene_keys);
+    bool species = count_known(root, &wd_species_keys) > scene ||
+                   count_known(root, &wd_species_model_keys) > scene;
+    json_decref(root);
+    free(json);
+    return species;
 }
 
 void wd_scene_finish(struct wd_scene *scene)

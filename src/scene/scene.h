@@ -236,6 +236,7 @@ extern const struct wd_keys wd_scene_keys;
 /* What a scene is loaded with. */
 struct wd_scene_params {
     const char *data_dir;    /* what ${data} in file names stands for; NULL: none */
+    bool find_files;         /* rasters, maps, inventories and the sky must be there and readable */
     bool planted;            /* trees come from elsewhere: bare ground is no cause to warn */
     const char *const *settings; /* "key=value" in place of the file's: struct wd_keys_input */
 };
@@ -246,6 +247,10 @@ struct wd_scene_params {
  * installed ones. File names that begin with ${data} become absolute. `params` may be NULL. */
 bool wd_scene_load_with(struct wd_scene *scene, const char *path,
                         const struct wd_scene_params *params, const struct wd_log *log);
+
+/* Whether a file's text has more keys of a species, of either kind, than of a scene at its root. Text
+ * that is no JSON object has none. */
+bool wd_scene_text_is_species(const char *path, const char *text, size_t size);
 bool wd_scene_load(struct wd_scene *scene, const char *path, const struct wd_log *log);
 void wd_scene_finish(struct wd_scene *scene);
 

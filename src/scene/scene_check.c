@@ -1,6 +1,10 @@
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include "base/file.h"
 #include "scene/scene_parts.h"
 
 static struct wd_keys_place child(const struct wd_keys_place *place, const char *key)
@@ -37,6 +41,33 @@ bool wd_scene_expand_file(const char **file, const char *key, const struct wd_ke
     return true;
 }
 
+static bool check_readable(const char *path, bool raster, const char *key,
+                           const struct wd_keys_place *place)
+{
+    struct stat info;
+    if (stat(path, &info) != 0 && errno == ENOENT)
+        return wd_keys_error(place, key, "there is no file %.200s", path);
+    if (access(path, R_OK) != 0)
+        return wd_keys_error(place, key, "%.200s cannot be opened: %s", path, strerror(errno));
+    return raster || !S_ISDIR(info.st_mode) ||
+           wd_keys_error(place, key, "%.200s is a directory, a file is wanted", path);
+}
+
+/* GDAL has names that are no file's (/vsizip/..., NETCDF:...), and rasters that are directories. */
+static bool find_file(const char **file, bool raster, const struct wd_keys_place *place)
+{
+    const struct wd_scene_params *params = wd_keys_user(place);
+    if (!wd_scene_expand_file(file, "file", place))
+        return false;
+    if (!*file || !params || !params->find_files ||
+        (raster && (strncmp(*file, "/vsi", 4) == 0 || strchr(*file, ':'))))
+        return true;
+    char *path = wd_path_beside(wd_keys_path(place), *file);
+    bool ok = check_readable(path, raster, "file", place);
+    free(path);
+    return ok;
+}
+
 bool wd_scene_check_terrain(void *object, const struct wd_keys_place *place)
 {
     struct wd_scene_terrain *terrain = object;
@@ -58,7 +89,7 @@ bool wd_scene_check_terrain(void *object, const struct wd_keys_place *place)
         return wd_keys_error(place, "window_m", "found [%.9g, %.9g, %.9g, %.9g]; allowed is [xmin, "
                              "ymin, xmax, ymax] with xmin < xmax and ymin < ymax", window[0],
                              window[1], window[2], window[3]);
-    return wd_scene_expand_file(&terrain->file, "file", place);
+    return find_file(&terrain->file, true, place);
 }
 
 bool wd_scene_check_sky(void *object, const struct wd_keys_place *place)
@@ -70,7 +101,7 @@ bool wd_scene_check_sky(void *object, const struct wd_keys_place *place)
     if (!sky->file && sky->turn_deg != 0)
         return wd_keys_error(place, "turn_deg", "found %g without a \"file\"; only a map can be "
                              "turned", sky->turn_deg);
-    return wd_scene_expand_file(&sky->file, "file", place);
+    return find_file(&sky->file, false, place);
 }
 
 bool wd_scene_check_map(void *object, const struct wd_keys_place *place)
@@ -85,7 +116,7 @@ bool wd_scene_check_map(void *object, const struct wd_keys_place *place)
     if (map->class_count && ranged)
         return wd_keys_error(place, "value_range", "found together with classes; allowed is one of "
                              "the two");
-    return wd_scene_expand_file(&map->file, "file", place);
+    return find_file(&map->file, true, place);
 }
 
 static bool check_layer_maps(const struct wd_scene_layer *layer, const struct wd_keys_place *place)
@@ -140,7 +171,7 @@ bool wd_scene_check_inventory(void *object, const struct wd_keys_place *place)
                            "or \"EPSG:n\"", inventory->frame);
     else if (inventory->rotate_deg != 0 && strcmp(inventory->frame, "local") != 0)
         ok = wd_keys_error(place, "rotate_deg", "only the local frame can be turned");
-    return wd_scene_expand_file(&inventory->file, "file", place) && ok;
+    return find_file(&inventory->file, false, place) && ok;
 }
 
 bool wd_scene_check_camera(void *object, const struct wd_keys_place *place)

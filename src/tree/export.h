@@ -39,15 +39,22 @@ struct wd_export {
     const struct wd_export_ground *ground; /* NULL: none */
     double origin_m[3]; /* what the file's (0, 0, 0) is in the scene's own frame; kept in extras */
     const char *crs;    /* of origin_m, or NULL */
+    const struct wd_progress *progress; /* of a GLB, stages "writing trees" and "writing the file"; or NULL */
 };
 
 /* glTF 2.0 binary: metres, y up; levels by MSFT_lod, instances by EXT_mesh_gpu_instancing; colour,
  * normal and roughness maps within as PNG. The file appears whole or not at all. Refuses what
- * needs more than 2 GiB, and trees with ids over 2^24, which _TREE_ID, a float, would not tell apart. */
-bool wd_export_glb(const struct wd_export *what, const char *path, const struct wd_log *log);
+ * needs more than 2 GiB, and trees with ids over 2^24, which _TREE_ID, a float, would not tell apart:
+ * WD_ERROR_INPUT. Others are WD_ERROR_OUTPUT, WD_ERROR_MEMORY and WD_ERROR_INTERRUPTED. */
+enum wd_result wd_export_glb(const struct wd_export *what, const char *path,
+                             const struct wd_log *log);
 
 /* The full meshes with NAME.mtl and NAME-SPECIES-*.png beside them; metres, y up. */
 bool wd_export_obj(const struct wd_export *what, const char *path, const struct wd_log *log);
+
+/* Files that wd_export_obj may write beside `path` for a species, from `index` 0 on; free() the name.
+ * NULL: there are no more, or `path` is no .obj. */
+char *wd_export_obj_beside(const char *path, const char *species, uint32_t index);
 
 /* The maps of a layer (WD_LOOK_*) as PNG files in memory; free each. `normal` and `surface` may be
  * NULL. `*holes`: whether the colour's alpha cuts. False: no memory. */

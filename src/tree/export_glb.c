@@ -163,24 +163,33 @@ static int put_mesh(struct export *export, const struct wd_tree_mesh *mesh,
 
 /* --- nodes ------------------------------------------------------------------------------- */
 
-/* Accessors of the places that all levels of a tree share, or NULL for a single one. */
-static json_t *put_instances(struct wd_glb *glb, const struct wd_export_tree *tree)
+/* Mirrored ones stand under nodes that mirror in x, M; there T R(yaw) S M = M T' R(-yaw) S, with T' at
+ * -x. No scale of theirs is below zero: instancing does not turn the winding of triangles. */
+static void place_instance(const struct wd_export_instance *from, float translation[3],
+                           float rotation[4], float scale[3])
 {
-    size_t count = tree->instance_count;
-    if (!tree->instances)
-        return NULL;
-    float(*translation)[3] = wd_alloc_array(count, sizeof *translation);
-    float(*rotation)[4] = wd_alloc_array(count, sizeof *rotation);
-    float(*scale)[3] = wd_alloc_array(count, sizeof *scale), *id = wd_alloc_array(count, 4);
-    for (size_t i = 0; i < count; i++) {
+    float side = from->across < 0 ? -1.0f : 1.0f;
+    turn(from->position_m, translation);
+    translation[0] *= side;
+    rotation[1] = side * sinf(0.5f * from->yaw_rad);
+    rotation[3] = cosf(0.5f * from->yaw_rad);
+    scale[0] = scale[2] = fabsf(from->across);
+    scale[1] = from->up;
+}
+
+/* Accessors of the places that all levels of a tree share, mirrored ones or the others; NULL: none. */
+static json_t *put_instances(struct wd_glb *glb, const struct wd_export_tree *tree, bool mirrored)
+{
+    size_t most = tree->instance_count, count = 0;
+    float(*translation)[3] = wd_alloc_array(most + 1, sizeof *translation);
+    float(*rotation)[4] = wd_alloc_array(most + 1, sizeof *rotation);
+    float(*scale)[3] = wd_alloc_array(most + 1, sizeof *scale), *id = wd_alloc_array(most + 1, 4);
+    for (size_t i = 0; i < most; i++) {
         const struct wd_export_instance *from = &tree->instances[i];
-        turn(from->position_m, translation[i]);
-        rotation[i][1] = sinf(0.5f * from->yaw_rad);
-        rotation[i][3] = cosf(0.5f * from->yaw_rad);
-        scale[i][0] = from->across;
-        scale[i][1] = from->up;
-        scale[i][2] = fabsf(from->across);
-        id[i] = (float)from->id;
+        if ((from->across < 0) != mirrored)
+            continue;
+        place_instance(from, translation[count], rotation[count], scale[count]);
+        id[count++] = (float)from->id;
     }
     const struct wd_glb_array arrays[] = {
         {translation, count, 3, WD_GLB_FLOAT, WD_GLB_NO_TARGET, true},
@@ -189,8 +198,8 @@ static json_t *put_instances(struct wd_glb *glb, const struct wd_export_tree *tr
         {id, count, 1, WD_GLB_FLOAT, WD_GLB_NO_TARGET, false},
     };
     static const char *const names[] = {"TRANSLATION", "ROTATION", "SCALE", "_TREE_ID"};
-    json_t *attributes = json_object();
-    for (int i = 0; i < 4; i++)
+    json_t *attributes = count ? json_object() : NULL;
+    for (int i = 0; i < 4 && count; i++)
         json_object_set_new(attributes, names[i], json_integer(wd_glb_accessor(glb, &arrays[i])));
     free(translation);
     free(rotation);
@@ -199,18 +208,27 @@ static json_t *put_instances(struct wd_glb *glb, const struct wd_export_tree *tr
     return attributes;
 }
 
-static json_t *make_node(struct wd_glb *glb, const struct wd_export_tree *tree, int mesh,
-                         uint32_t level, json_t *instances)
+/* What the nodes of a tree's levels share. */
+struct level_node {
+    const struct wd_export_tree *tree;
+    json_t *instances; /* NULL: a tree alone */
+    bool mirrored;
+};
+
+static json_t *make_node(struct wd_glb *glb, const struct level_node *of, int mesh, uint32_t level)
 {
-    char *name = wd_format("%s LOD%u", tree->name, level);
+    const struct wd_export_tree *tree = of->tree;
+    char *name = wd_format("%s%s LOD%u", tree->name, of->mirrored ? " mirrored" : "", level);
     json_t *node = json_pack("{s:s,s:i}", "name", name, "mesh", mesh);
     free(name);
     if (tree->place_m != 0)
         json_object_set_new(node, "translation", json_pack("[f,f,f]", tree->place_m, 0.0, 0.0));
-    if (instances) {
+    if (of->mirrored)
+        json_object_set_new(node, "scale", json_pack("[i,i,i]", -1, 1, 1));
+    if (of->instances) {
         json_object_set_new(node, "extensions",
                             json_pack("{s:{s:O}}", "EXT_mesh_gpu_instancing", "attributes",
-                                      instances));
+                                      of->instances));
         wd_glb_use(glb, "EXT_mesh_gpu_instancing");
     }
     return node;
@@ -235,25 +253,38 @@ static void link_levels(struct wd_glb *glb, json_t *first, const int *nodes, uin
     wd_glb_use(glb, "MSFT_lod");
 }
 
+static void put_nodes(struct wd_glb *glb, const struct level_node *of, const int *meshes,
+                      json_t *roots)
+{
+    int nodes[WD_EXPORT_LEVELS] = {0};
+    uint32_t count = of->tree->level_count;
+    for (uint32_t level = 0; level < count; level++)
+        nodes[level] = wd_glb_add(glb, "nodes", make_node(glb, of, meshes[level], level));
+    json_t *list = json_object_get(glb->root, "nodes");
+    if (count > 1)
+        link_levels(glb, json_array_get(list, (size_t)nodes[0]), nodes, count);
+    json_array_append_new(roots, json_integer(nodes[0]));
+}
+
 static bool put_tree(struct export *export, const struct wd_export_tree *tree, json_t *roots)
 {
-    int nodes[WD_EXPORT_LEVELS];
-    struct wd_glb *glb = &export->glb;
-    json_t *instances = put_instances(glb, tree);
-    bool ok = true;
-    for (uint32_t level = 0; level < tree->level_count && ok; level++) {
+    int meshes[WD_EXPORT_LEVELS];
+    for (uint32_t level = 0; level < tree->level_count; level++) {
         char *name = wd_format("%s LOD%u", tree->name, level);
-        int mesh = put_mesh(export, tree->levels[level], tree->species, name);
+        meshes[level] = put_mesh(export, tree->levels[level], tree->species, name);
         free(name);
-        ok = mesh >= 0;
-        nodes[level] = wd_glb_add(glb, "nodes", make_node(glb, tree, mesh, level, instances));
+        if (meshes[level] < 0)
+            return false;
     }
-    json_decref(instances);
-    json_t *list = json_object_get(glb->root, "nodes");
-    if (ok && tree->level_count > 1)
-        link_levels(glb, json_array_get(list, (size_t)nodes[0]), nodes, tree->level_count);
-    json_array_append_new(roots, json_integer(nodes[0]));
-    return ok;
+    if (!tree->instances)
+        put_nodes(&export->glb, &(struct level_node){tree, NULL, false}, meshes, roots);
+    for (int mirrored = 0; mirrored < 2 && tree->instances; mirrored++) {
+        json_t *instances = put_instances(&export->glb, tree, mirrored);
+        if (instances)
+            put_nodes(&export->glb, &(struct level_node){tree, instances, mirrored}, meshes, roots);
+        json_decref(instances);
+    }
+    return true;
 }
 
 static void put_ground(struct wd_glb *glb, const struct wd_export_ground *ground, json_t *roots)
@@ -333,10 +364,26 @@ static void put_scene(struct wd_glb *glb, const struct wd_export *what, json_t *
     json_object_set_new(glb->root, "scene", json_integer(0));
 }
 
-bool wd_export_glb(const struct wd_export *what, const char *path, const struct wd_log *log)
+static enum wd_result put_trees(struct export *export, const char *path, json_t *roots,
+                                const struct wd_log *log)
+{
+    const struct wd_export *what = export->what;
+    for (uint32_t i = 0; i < what->tree_count; i++) {
+        if (!wd_progress_report(what->progress, "writing trees", i, what->tree_count))
+            return WD_ERROR_INTERRUPTED;
+        if (!put_tree(export, &what->trees[i], roots)) {
+            wd_error(log, "%s: no memory for the textures of %s", path, what->trees[i].name);
+            return WD_ERROR_MEMORY;
+        }
+    }
+    return WD_OK;
+}
+
+enum wd_result wd_export_glb(const struct wd_export *what, const char *path,
+                             const struct wd_log *log)
 {
     if (!check_size(what, path, log) || !check_ids(what, path, log))
-        return false;
+        return WD_ERROR_INPUT;
     struct export export = {.what = what};
     wd_glb_init(&export.glb);
     enum { LINEAR = 9729, LINEAR_MIPMAP_LINEAR = 9987, REPEAT = 10497 };
@@ -344,15 +391,13 @@ bool wd_export_glb(const struct wd_export *what, const char *path, const struct 
                                 json_pack("{s:i,s:i,s:i,s:i}", "magFilter", LINEAR, "minFilter",
                                           LINEAR_MIPMAP_LINEAR, "wrapS", REPEAT, "wrapT", REPEAT));
     json_t *roots = json_array();
-    bool ok = true;
-    for (uint32_t i = 0; i < what->tree_count && ok; i++)
-        ok = put_tree(&export, &what->trees[i], roots) ||
-             wd_error(log, "%s: no memory for the textures of %s", path, what->trees[i].name);
+    enum wd_result result = put_trees(&export, path, roots, log);
     if (what->ground)
         put_ground(&export.glb, what->ground, roots);
     put_scene(&export.glb, what, roots);
-    ok = ok && wd_glb_write(&export.glb, path, log);
+    if (result == WD_OK)
+        result = wd_glb_write(&export.glb, path, what->progress, log);
     wd_glb_finish(&export.glb);
     free(export.materials);
-    return ok;
+    return result;
 }

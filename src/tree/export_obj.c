@@ -1,6 +1,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -184,4 +185,20 @@ bool wd_export_obj(const struct wd_export *what, const char *path, const struct 
     wd_point_locale_leave(&point);
     free(obj.stem);
     return ok;
+}
+
+char *wd_export_obj_beside(const char *path, const char *species, uint32_t index)
+{
+    static const uint32_t layers[] = {WD_LOOK_BARK, WD_LOOK_LEAF, WD_LOOK_FLOWER};
+    const char *dot = strrchr(path, '.');
+    if (!dot || strcasecmp(dot, ".obj") != 0 || index > 6)
+        return NULL;
+    int stem = (int)(dot - path);
+    if (index == 0)
+        return wd_format("%.*s.mtl", stem, path);
+    char *plain = plain_name(species);
+    char *name = wd_format("%.*s-%s-%s%s.png", stem, path, plain, layer_name(layers[(index - 1) / 2]),
+                           index % 2 ? "" : "-normal");
+    free(plain);
+    return name;
 }

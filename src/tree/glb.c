@@ -102,17 +102,35 @@ int wd_glb_accessor(struct wd_glb *glb, const struct wd_glb_array *array)
     return wd_glb_add(glb, "accessors", accessor);
 }
 
-static void put_chunk(FILE *stream, uint32_t kind, const void *data, size_t size, char pad)
+/* False where it is to stop. */
+static bool put_bytes(FILE *stream, const uint8_t *bytes, size_t size,
+                      const struct wd_progress *progress)
+{
+    enum { REPORT_BYTES = 16 << 20 };
+    for (size_t at = 0; at < size; at += REPORT_BYTES) {
+        size_t rest = size - at;
+        if (!wd_progress_report(progress, "writing the file", at, size))
+            return false;
+        fwrite(bytes + at, 1, rest < REPORT_BYTES ? rest : REPORT_BYTES, stream);
+    }
+    return true;
+}
+
+static bool put_chunk(FILE *stream, uint32_t kind, const void *data, size_t size, char pad,
+                      const struct wd_progress *progress)
 {
     uint32_t whole = (uint32_t)((size + 3) / 4 * 4);
     const uint32_t head[2] = {whole, kind};
     fwrite(head, 1, sizeof head, stream);
-    fwrite(data, 1, size, stream);
+    if (!put_bytes(stream, data, size, progress))
+        return false;
     for (size_t i = size; i < whole; i++)
         fputc(pad, stream);
+    return true;
 }
 
-bool wd_glb_write(const struct wd_glb *glb, const char *path, const struct wd_log *log)
+enum wd_result wd_glb_write(const struct wd_glb *glb, const char *path,
+                            const struct wd_progress *progress, const struct wd_log *log)
 {
     enum { JSON_CHUNK = 0x4e4f534a, BIN_CHUNK = 0x004e4942 };
     json_object_set_new(glb->root, "buffers",
@@ -121,14 +139,18 @@ bool wd_glb_write(const struct wd_glb *glb, const char *path, const struct wd_lo
     struct wd_output_file file;
     if (!text || !wd_output_open(&file, path, log)) {
         free(text);
-        return false;
+        return WD_ERROR_OUTPUT;
     }
     size_t length = strlen(text);
     uint64_t total = 12 + 8 + (length + 3) / 4 * 4 + 8 + (glb->size + 3) / 4 * 4;
     const uint32_t head[3] = {0x46546c67, 2, (uint32_t)total};
     fwrite(head, 1, sizeof head, file.stream);
-    put_chunk(file.stream, JSON_CHUNK, text, length, ' ');
-    put_chunk(file.stream, BIN_CHUNK, glb->bytes, glb->size, '\0');
+    bool going = put_chunk(file.stream, JSON_CHUNK, text, length, ' ', NULL) &&
+                 put_chunk(file.stream, BIN_CHUNK, glb->bytes, glb->size, '\0', progress);
     free(text);
-    return wd_output_commit(&file, log);
+    enum wd_result result = !going                         ? WD_ERROR_INTERRUPTED
+                            : wd_output_commit(&file, log) ? WD_OK
+                                                           : WD_ERROR_OUTPUT;
+    wd_output_discard(&file);
+    return result;
 }

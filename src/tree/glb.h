@@ -35,7 +35,9 @@ struct wd_glb_array {
 };
 int wd_glb_accessor(struct wd_glb *glb, const struct wd_glb_array *array);
 
-/* Writes header, JSON and bytes; the file appears whole or not at all. */
-bool wd_glb_write(const struct wd_glb *glb, const char *path, const struct wd_log *log);
+/* Writes header, JSON and bytes; the file appears whole or not at all. Progress stage "writing the
+ * file"; WD_ERROR_OUTPUT, logged, or WD_ERROR_INTERRUPTED. */
+enum wd_result wd_glb_write(const struct wd_glb *glb, const char *path,
+                            const struct wd_progress *progress, const struct wd_log *log);
 
 #endif

@@ -21,8 +21,7 @@ struct loader {
     const struct wd_log *log;
 };
 
-/* The file beside the model; else, for paths of the artist's own machine, its last part. */
-static char *find_texture(const char *model_path, const char *texture)
+char *wd_model_texture_path(const char *model_path, const char *texture)
 {
     char *name = wd_strdup(texture);
     for (char *c = name; *c; c++)
@@ -58,7 +57,7 @@ static bool load_image(const struct loader *loader, const char *texture, const c
     if (texture[0] == '*') {
         ok = decode_embedded(loader, texture, image, &why);
     } else {
-        char *path = find_texture(loader->path, texture), *bytes = NULL;
+        char *path = wd_model_texture_path(loader->path, texture), *bytes = NULL;
         size_t size;
         if (wd_file_exists(path) &&
             wd_file_read(path, MAX_TEXTURE_BYTES, loader->log, &bytes, &size))

@@ -36,4 +36,8 @@ bool wd_model_materials_init(struct wd_model_materials *materials, const struct 
                              const struct wd_species *species, const struct wd_log *log);
 void wd_model_materials_finish(struct wd_model_materials *materials);
 
+/* The file of a texture that is not embedded: beside the model; else, for paths of the artist's own
+ * machine, its last part. free() it. */
+char *wd_model_texture_path(const char *model_path, const char *texture);
+
 #endif

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/file.h"
+
 struct text {
     char *bytes;
     size_t size, place;
@@ -164,4 +166,23 @@ struct aiFileIO *wd_model_obj_io(void)
     if (io)
         *io = (struct aiFileIO){.OpenProc = open_file, .CloseProc = close_file};
     return io;
+}
+
+char *wd_model_obj_library(const char *path)
+{
+    FILE *file = is_obj(path) ? fopen(path, "rb") : NULL;
+    char *line = NULL, *found = NULL;
+    size_t room = 0;
+    while (file && !found && getline(&line, &room, file) > 0) {
+        char *name = line + 6;
+        if (strncmp(line, "mtllib", 6) != 0 || !is_blank(*name))
+            continue;
+        name += strspn(name, " \t");
+        name[strcspn(name, "\r\n")] = '\0';
+        found = wd_path_beside(path, name);
+    }
+    free(line);
+    if (file)
+        fclose(file);
+    return found;
 }

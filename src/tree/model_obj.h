@@ -12,4 +12,7 @@ bool wd_model_obj_is_short(const char *path);
 /* Reads files as they are, but OBJ files with those zeroes. */
 struct aiFileIO *wd_model_obj_io(void);
 
+/* The file of materials that an OBJ file names, beside it; NULL: none, or no OBJ. free() it. */
+char *wd_model_obj_library(const char *path);
+
 #endif

@@ -3,6 +3,7 @@
 #include "../base/comma_locale.h"
 #include "suite.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -197,6 +198,29 @@ static void files_have_points_in_numbers(void **state)
     for (const char *at = line; *at; at++)
         commas += *at == ',';
     assert_int_equal(commas, 8);
+}
+
+/* A forest's file is stopped in each of its stages; neither it nor a temporary of it is left. */
+static bool not_at_stage(void *user, const char *stage, uint64_t done, uint64_t total)
+{
+    (void)done, (void)total;
+    return strcmp(stage, user) != 0;
+}
+
+static void stopped_exports_leave_nothing(void **state)
+{
+    struct suite *suite = *state;
+    char stages[][24] = {"growing trees", "placing trees", "making ground", "writing trees", "writing the file"};
+    char *path = strdup(suite_path(suite, "stopped.glb"));
+    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
+        const struct wd_progress progress = {not_at_stage, stages[i]};
+        assert_int_equal(wd_forest_write(suite->forest, path, 0, &progress, &suite->log), WD_ERROR_INTERRUPTED);
+        DIR *folder = opendir(suite->scratch);
+        for (struct dirent *entry; (entry = readdir(folder));)
+            assert_null(strstr(entry->d_name, "stopped.glb"));
+        closedir(folder);
+    }
+    free(path);
 }
 
 /* --- what is refused --------------------------------------------------------------------- */
@@ -729,6 +753,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(seeds_are_whole_numbers, &suite),
         cmocka_unit_test_prestate(a_seed_is_a_world, &suite),
         cmocka_unit_test_prestate(files_have_points_in_numbers, &suite),
+        cmocka_unit_test_prestate(stopped_exports_leave_nothing, &suite),
         cmocka_unit_test_prestate(too_many_trees_are_refused, &suite),
         cmocka_unit_test_prestate(trees_on_demand_need_continuum, &suite),
         cmocka_unit_test_prestate(without_a_forest_nothing_is_drawn, &suite),

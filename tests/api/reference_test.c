@@ -109,6 +109,33 @@ static void test_resume(void **state)
     wd_reference_destroy(&reference);
 }
 
+/* Fewer samples than a checkpoint has are refused, and it stays; as many as it has, or more, are taken. */
+static void test_fewer_samples(void **state)
+{
+    struct suite *suite = suite_of(state);
+    struct wd_reference *stopping = open_reference(suite, stop_half_way);
+    struct wd_reference *reference = open_reference(suite, NULL);
+    struct wd_reference_picture_params params = picture_params(suite), fewer;
+    struct wd_picture whole, resumed;
+    params.samples = 24;
+    assert_int_equal(wd_reference_render(reference, &params, &whole), WD_OK);
+    params.checkpoint = suite_path(suite, "longer.partial");
+    assert_int_equal(wd_reference_render(stopping, &params, &resumed), WD_ERROR_INTERRUPTED);
+    fewer = params;
+    fewer.samples = 1;
+    suite_clear(suite);
+    assert_int_equal(wd_reference_render(reference, &fewer, &resumed), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "longer.partial") && suite_logged(suite, "1 are asked for"));
+    assert_null(resumed.color);
+    assert_int_equal(access(params.checkpoint, F_OK), 0);
+    assert_int_equal(wd_reference_render(reference, &params, &resumed), WD_OK);
+    assert_memory_equal(whole.color, resumed.color, (size_t)48 * 36 * 3 * sizeof(float));
+    wd_picture_finish(&whole);
+    wd_picture_finish(&resumed);
+    wd_reference_destroy(&stopping);
+    wd_reference_destroy(&reference);
+}
+
 /* Turned leaves on the same trees are another picture. */
 static void test_other_leaves(void **state)
 {
@@ -167,6 +194,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(test_agreement, &suite),
         cmocka_unit_test_prestate(layers_need_no_paths, &suite),
         cmocka_unit_test_prestate(test_resume, &suite),
+        cmocka_unit_test_prestate(test_fewer_samples, &suite),
         cmocka_unit_test_prestate(test_other_leaves, &suite),
         cmocka_unit_test_prestate(test_bad_input, &suite),
     };

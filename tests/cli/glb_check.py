@@ -1,6 +1,8 @@
 """A GLB's structure, from its own bytes: chunks, bounds, ranges, unit normals, levels.
-   glb_check.py FILE [NAME=VALUE...]: also compares counts of what is in it."""
+   glb_check.py FILE [NAME=VALUE...]: also compares counts of what is in it; with trees=LIST.csv
+   where its instances stand with the list's rows."""
 
+import csv
 import json
 import struct
 import sys
@@ -56,6 +58,34 @@ def check_primitive(root, binary, primitive):
     need(0 <= primitive["material"] < len(root["materials"]), "material")
 
 
+def tree_places(root, binary):
+    """Places by id: x, y, z with z up, as the extras' origin has them."""
+    origin = root["scenes"][0]["extras"]["origin_m"]
+    places = {}
+    for node in root["nodes"]:
+        extensions = node.get("extensions", {})
+        if "MSFT_lod" not in extensions or "EXT_mesh_gpu_instancing" not in extensions:
+            continue
+        attributes = extensions["EXT_mesh_gpu_instancing"]["attributes"]
+        ids, _ = values(root, binary, attributes["_TREE_ID"])
+        at, _ = values(root, binary, attributes["TRANSLATION"])
+        scale = node.get("scale", [1, 1, 1])
+        for i, number in enumerate(ids):
+            x, y, z = (at[3 * i + k] * scale[k] for k in range(3))
+            places[int(number)] = (origin[0] + x, origin[1] - z, origin[2] + y)
+    return places
+
+
+def check_trees(root, binary, path):
+    places = tree_places(root, binary)
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    need(len(rows) == len(places), f"{len(places)} trees instead of {len(rows)}")
+    for row in rows:
+        for found, name in zip(places[int(row["id"])], ("x_m", "y_m", "z_m")):
+            need(abs(found - float(row[name])) < 2e-3, f"tree {row['id']}: {name} {found}")
+
+
 def main():
     with open(sys.argv[1], "rb") as file:
         root, binary = chunks(file.read())
@@ -71,7 +101,7 @@ def main():
     for image in root.get("images", []):
         view = root["bufferViews"][image["bufferView"]]
         need(binary[view["byteOffset"] :][:4] == b"\x89PNG", "image is no PNG")
-    levels = instances = 0
+    levels = instances = mirrored = 0
     for node in root["nodes"]:
         extensions = node.get("extensions", {})
         need(set(extensions) <= set(root.get("extensionsUsed", [])), "extension not declared")
@@ -79,11 +109,18 @@ def main():
             need("mesh" in root["nodes"][index], "level without a mesh")
             levels += 1
         places = extensions.get("EXT_mesh_gpu_instancing", {}).get("attributes", {})
+        if places:
+            need(min(values(root, binary, places["SCALE"])[0]) > 0, "instance that turns triangles inside out")
+            mirrored += "MSFT_lod" in extensions and node.get("scale", [1])[0] < 0
         if "MSFT_lod" in extensions and places:
             instances += root["accessors"][places["TRANSLATION"]]["count"]
-    found = {"levels": levels, "instances": instances, "roots": len(root["scenes"][0]["nodes"])}
+    found = {"levels": levels, "instances": instances, "mirrored": mirrored,
+             "roots": len(root["scenes"][0]["nodes"])}
     for word in sys.argv[2:]:
-        name, value = word.split("=")
+        name, value = word.split("=", 1)
+        if name == "trees":
+            check_trees(root, binary, value)
+            continue
         need(found[name] == int(value), f"{name} {found[name]} instead of {value}")
     print(f"{sys.argv[1]}: {found}")
 

@@ -13,6 +13,8 @@ cat >"$out/planted.json" <<EOF
  "species": {"mine": "oak.obj"},
  "layers": [{"species": {"mine": 1}, "spacing_m": 8, "height_m": [4, 7]}]}
 EOF
+# Ground with coordinates of its own, but without a system that they are of.
+sed 's/"size_m": \[40, 40\]/"window_m": [500000, 4600000, 500040, 4600040]/' "$out/planted.json" >"$out/afar.json"
 # shellcheck disable=SC2086  # $small is many words
 {
     expect 0 'oak .* m high, .*20 years; triangles' grow oak --age 20 --open 1 --seed 3 -o "$out/oak.glb"
@@ -28,6 +30,8 @@ EOF
     draw 'tiny.glb: ' export "$tiny" -o "$out/tiny.glb"
     draw 'oak.glb: ' check "$out/oak.glb" "$out/oak.obj"
     draw 'trees.csv: ' export "$tiny" -o "$out/trees.csv"
+    draw 'afar.glb: ' export "$out/afar.json" -o "$out/afar.glb"
+    draw 'afar.csv: ' export "$out/afar.json" -o "$out/afar.csv"
     draw '"name": "mine"' info "$out/planted.json" --json
     drawn
     check 'a model is read without standard input' sh -c "'$weald' check '$out/oak.obj' <&-"
@@ -39,7 +43,8 @@ check 'oak.glb is sound' sound "$out/oak.glb" roots=1 levels=1
 check 'a model written again is sound' sound "$out/again.glb" roots=1 levels=1
 check 'three variants are sound' sound "$out/three.glb" roots=3 levels=3
 trees=$("$weald" info "$tiny" --json | jq .tree_count)
-check 'a scene is sound' sound "$out/tiny.glb" "instances=$trees"
+check 'a scene is sound' sound "$out/tiny.glb" "instances=$trees" mirrored=2 "trees=$out/trees.csv"
+check 'a scene afar stands where its list says' sound "$out/afar.glb" "trees=$out/afar.csv"
 
 # A forest's list of trees, planted again from that list, is the same list.
 check 'a row for each tree' test "$(wc -l <"$out/trees.csv")" -eq $((trees + 1))
@@ -150,6 +155,22 @@ head -c 30000 "$out/oak.glb" >"$out/cut.glb"
 expect 1 'cut.glb: ' grow "$out/cut.glb" -o "$out/a.glb"
 expect 1 'cut.glb: ' check "$out/cut.glb"
 check 'a failed command leaves nothing' sh -c "! ls '$out' | grep -E '^a\\.|weald-'"
+
+# What is read is never written over, whatever links lead there.
+ln -s "$out/oak.glb" "$out/link.glb"
+sed 's/^o oak/o own/' "$out/oak.obj" >"$out/own.obj"
+ln "$out/trees.csv" "$out/hard.csv"
+(cd "$out" && sha256sum oak.* own.obj oak-oak-* box.obj trees.csv) >"$scratch/sums"
+expect 1 'oak.glb: is the model of' grow "$out/oak.glb" -o "$out/oak.glb"
+expect 1 'link.glb: is the model of' grow "$out/oak.glb" -o "$out/link.glb"
+expect 1 'oak.glb: is the model of' grow "$out/link.glb" -o "$out/../out/oak.glb"
+expect 1 'oak.mtl: is the material library of' grow "$out/own.obj" -o "$out/oak.obj"
+expect 1 'oak-oak-leaf.png: is the texture of' grow "$out/own.obj" -o "$out/oak-oak-leaf.png" --gpu software
+expect 1 'oak-oak-leaf.png: is the texture of' grow --sheet "$out/own.obj" -o "$out/oak-oak-leaf.png" --gpu software
+expect 1 'box.obj: is the clip of' grow beech --clip "$out/box.obj" -o "$out/box.obj"
+expect 1 'trees.csv: is the inventory of' export "$out/listed.json" -o "$out/trees.csv"
+expect 1 'hard.csv: is the inventory of' export "$out/listed.json" -o "$out/hard.csv"
+check 'and all of it is as it was' sh -c "cd '$out' && sha256sum -c --quiet '$scratch/sums'"
 
 expect 0 "sheet.png: " grow --sheet "$out/oak.obj" -o "$out/sheet.png" --gpu software --size 96x96 --samples 2
 check 'a sheet is no small picture' test "$(wc -c <"$out/sheet.png")" -gt 20000

@@ -75,6 +75,16 @@ cp "$out/a.png" "$out/keep.png"
     ln -s /dev/full "$out/full.png"
     expect 1 'device' render "$tiny" -o "$out/full.png" $soft
 }
+# Nor do pictures replace what they are made from.
+# shellcheck disable=SC2086  # $soft is two words
+{
+    expect 0 'sky-0.exr: ' render "$tiny" -o "$out/sky-0.exr" $soft --size 8x4 --layers color
+    cp "$out/sky-0.exr" "$scratch/sky.exr"
+    expect 1 'sky-0.exr: is the sky of' render "$tiny" --set "sky.file=$out/sky-0.exr" -o "$out/sky-0.exr" $soft
+    expect 1 'sky-0.exr: is the sky of' render "$tiny" --set "sky.file=$out/sky-0.exr" -o "$out/sky-%d.exr" \
+        --path fly --frames 2 $soft
+}
+check 'a sky stays as it was' cmp "$out/sky-0.exr" "$scratch/sky.exr"
 check 'a failed render keeps the older file' cmp "$out/a.png" "$out/keep.png"
 
 # A full disk, as a limit on the size of files: one block of 512 bytes.

@@ -65,7 +65,24 @@ bad species 'oakk'
 change raster '.terrain = {"kind": "raster", "file": "nowhere.tif"}'
 expect 1 'nowhere.tif' info "$scratch/raster.json"
 expect 1 'nowhere.tif' render "$scratch/raster.json" -o "$scratch/out.png" --gpu software
+expect 1 'raster.json:[0-9]+:[0-9]+: terrain.file: there is no file .*nowhere.tif' check "$scratch/raster.json"
 check 'raster: no picture' test ! -e "$scratch/out.png"
+# What a scene names is looked for, key by key, and told by its keys from a species.
+change named '.sky = {"file": "no.exr"} | .water = {"enabled": true, "map": {"file": "no-water.tif"}} |
+    .layers[0].map = {"file": "no-map.tif", "classes": 1} | .layers[0].canopy = {"file": "no-canopy.tif"} |
+    .inventories = [{"file": "no.csv", "species": {"*": "oak"}}, {"file": "directory.json", "species": {"*": "oak"}}]'
+for key in 'sky.file' 'water.map.file' 'layers\[0\].map.file' 'layers\[0\].canopy.file' 'inventories\[0\].file'; do
+    expect 1 "named.json:[0-9]+:[0-9]+: $key: there is no file .*/no" check "$scratch/named.json"
+done
+expect 1 'inventories\[1\].file: .*is a directory' check "$scratch/named.json"
+change layer '.layers[0].name = "model" | .name = "allometry"'
+echo '// a "model" with "allometry"' >>"$scratch/layer.json"
+expect 0 'layer.json: ok' check "$scratch/layer.json"
+change layer '.layers[0].name = "model" | .terain = .terrain | del(.terrain)'
+expect 1 'terain.*did you mean.*terrain' check "$scratch/layer.json"
+sed 's/"allometry"/"alometry"/' "$root/species/oak.json" >"$scratch/alometry.json"
+expect 1 'alometry.*did you mean.*allometry' check "$scratch/alometry.json"
+
 change date '.time = {"date": "2026-02-30"}'
 bad date 'date.*2026-02-30.*YYYY-MM-DD'
 change placeless '.time = {"date": "2026-02-20", "clock": "12:00"}'
