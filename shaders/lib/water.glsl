@@ -82,6 +82,14 @@ ivec2 screen_meeting(wd_screen_ray ray, float before, float behind)
     return screen_texel(ray.from + ray.along * behind);
 }
 
+/* The next pixel: where a ray has met the bed of shallow water, that of the shore. */
+ivec2 screen_onward(wd_screen_ray ray, ivec2 from)
+{
+    vec2 size = vec2(frame.width, frame.height), way = ray.along.xy * size;
+    vec2 on = vec2(from) + way / max(length(way), 1e-6);
+    return ivec2(clamp(round(on), vec2(0.0), size - 1.0));
+}
+
 /* What the eye sees at a pixel, as from the water at `water_m`: the same air lies before both, which is
  * taken off here and comes back with the water's own. w: 0 where water covers it. */
 vec4 mirrored_pixel(ivec2 at, vec3 direction, float water_m)
@@ -134,6 +142,8 @@ vec3 mirrored_light(vec3 rel, vec3 mirrored, float noise)
         if (behind_m > 0.0 && behind_m < 3.0 + 0.03 * at_m + way_m) {
             ivec2 met = screen_meeting(ray, max(i + noise - 1.0, 0.0) / STEPS, (i + noise) / STEPS);
             vec4 light = mirrored_pixel(met, normalize(rel), length(rel));
+            if (light.w == 0.0)
+                light = mirrored_pixel(screen_onward(ray, met), normalize(rel), length(rel));
             return mix(sky, light.rgb, light.w);
         }
         told = told && behind_m <= 0.0;
@@ -145,6 +155,11 @@ vec3 mirrored_light(vec3 rel, vec3 mirrored, float noise)
 
 /* --- all together --------------------------------------------------------------------------- */
 
+/* So many facets a pixel make its water even, over all its samples; by places of a plane that stay well
+ * apart however many they are (Roberts 2018). */
+const int FACETS = 9;
+const vec2 FACET_STEP = vec2(0.75487767, 0.56984029);
+
 /* `below` is the radiance of what lies under the surface, `depth_m` the way to it in water. */
 vec3 water_radiance(uvec2 at, vec3 below, vec3 direction, float distance_m, float depth_m,
                     float sun_share)
@@ -155,12 +170,13 @@ vec3 water_radiance(uvec2 at, vec3 below, vec3 direction, float distance_m, floa
                                  wd_water_footprint_m(direction, distance_m, pixel_rad));
     vec3 through = wd_water_through(depth_m);
     vec3 within = mix(wd_water_body(sun_share), below, through), light = vec3(0.0);
-    int facets = frame.sample_count > 3u ? 1 : 3;
+    int facets = clamp(FACETS / int(max(frame.sample_count, 1u)), 1, 3);
+    vec2 place = vec2(dither(vec2(at)), dither(vec2(at.yx + 17u)));
     for (int i = 0; i < facets; i++) {
         uint salt = frame.sample_index * uint(facets) + uint(i);
-        float first = pixel_noise(at, salt), second = pixel_noise(at.yx + 17u, salt * 3u + 1u);
-        vec3 facet = wd_water_facet(waves, direction, first, second);
-        vec3 mirrored = mirrored_light(rel, wd_water_mirrored(facet, direction), second);
+        vec2 noise = fract(place + FACET_STEP * float(salt));
+        vec3 facet = wd_water_facet(waves, direction, noise.x, noise.y);
+        vec3 mirrored = mirrored_light(rel, wd_water_mirrored(facet, direction), noise.y);
         light += mix(within, mirrored, wd_water_fresnel(facet, direction));
     }
     return light / float(facets) + wd_water_glint(waves, direction) * sun_share;

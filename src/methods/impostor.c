@@ -157,6 +157,9 @@ struct box {
     float min_m[3], max_m[3];
 };
 
+static const struct box NO_BOX = {{INFINITY, INFINITY, INFINITY},
+                                  {-INFINITY, -INFINITY, -INFINITY}};
+
 static void add_box(struct box *sum, const float min_m[3], const float max_m[3])
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -180,6 +183,18 @@ static struct box whole_tree(const struct wd_forest_device *forest, uint32_t ind
     return box;
 }
 
+/* As much of `box` as lies in a cube. */
+static struct box within_cube(const struct box *box, const float cube_min_m[3], float cube_m)
+{
+    struct box part;
+    for (int axis = 0; axis < 3; axis++) {
+        float low = cube_min_m[axis], high = low + cube_m;
+        part.min_m[axis] = fminf(fmaxf(box->min_m[axis], low), high);
+        part.max_m[axis] = fmaxf(fminf(box->max_m[axis], high), part.min_m[axis]);
+    }
+    return part;
+}
+
 /* What trees fill of each octant's cube; children come after their parents. */
 static struct box *filled_boxes(const struct wd_forest_device *forest)
 {
@@ -188,7 +203,7 @@ static struct box *filled_boxes(const struct wd_forest_device *forest)
     for (uint32_t i = octree->count; i-- > 0;) {
         const struct wd_octant *octant = &octree->octants[i];
         uint32_t child = octant->first_child;
-        struct box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+        struct box box = NO_BOX;
         for (uint32_t k = octant->tight_begin; k < octant->tight_end; k++) {
             struct box tree = whole_tree(forest, octree->tight_trees[k]);
             add_box(&box, tree.min_m, tree.max_m);
@@ -197,11 +212,7 @@ static struct box *filled_boxes(const struct wd_forest_device *forest)
             add_box(&box, boxes[child].min_m, boxes[child].max_m);
             child = octree->octants[child].next_sibling;
         }
-        for (int axis = 0; axis < 3; axis++) {
-            float low = octant->cube_min_m[axis], high = low + octant->cube_size_m;
-            boxes[i].min_m[axis] = fminf(fmaxf(box.min_m[axis], low), high);
-            boxes[i].max_m[axis] = fmaxf(fminf(box.max_m[axis], high), boxes[i].min_m[axis]);
-        }
+        boxes[i] = within_cube(&box, octant->cube_min_m, octant->cube_size_m);
     }
     return boxes;
 }
@@ -217,6 +228,15 @@ static void fit_look(struct wd_impostor *impostor, float cube_m)
     }
 }
 
+static void fit_box(struct wd_impostor *impostor, const struct box *box, float cube_m)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        impostor->min_m[axis] = box->min_m[axis];
+        impostor->size_m[axis] = box->max_m[axis] - box->min_m[axis];
+    }
+    fit_look(impostor, cube_m);
+}
+
 static void fill_octants(struct wd_impostor *table, const struct wd_forest_device *forest,
                          const struct wd_octant_colors *colors)
 {
@@ -229,11 +249,7 @@ static void fill_octants(struct wd_impostor *table, const struct wd_forest_devic
             .tree_count = octant->end - octant->begin,
             .look = colors->looks[i],
         };
-        for (int axis = 0; axis < 3; axis++) {
-            table[i].min_m[axis] = boxes[i].min_m[axis];
-            table[i].size_m[axis] = boxes[i].max_m[axis] - boxes[i].min_m[axis];
-        }
-        fit_look(&table[i], octant->cube_size_m);
+        fit_box(&table[i], &boxes[i], octant->cube_size_m);
     }
     free(boxes);
 }
@@ -251,41 +267,122 @@ static int by_tree(const void *a, const void *b)
     return 0;
 }
 
+/* A cluster's cells, and boxes of all trees that reach into each; x runs fastest. */
+struct grid {
+    const struct wd_octant *octant;
+    struct box *boxes; /* [size^3]: whole trees */
+    uint32_t size;
+    float cell_m;
+};
+
+/* The cell along an axis, the nearest where it is outside. */
+static uint32_t cell_of(const struct grid *grid, int axis, float at_m)
+{
+    float cell = floorf((at_m - grid->octant->cube_min_m[axis]) / grid->cell_m);
+    return (uint32_t)fminf(fmaxf(cell, 0.0f), (float)(grid->size - 1));
+}
+
+static struct box *box_of(const struct grid *grid, const uint32_t at[3])
+{
+    return &grid->boxes[(at[2] * grid->size + at[1]) * grid->size + at[0]];
+}
+
+static bool meets(const struct grid *grid, const float min_m[3], const float max_m[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        float low = grid->octant->cube_min_m[axis];
+        if (min_m[axis] >= low + grid->octant->cube_size_m || max_m[axis] <= low)
+            return false;
+    }
+    return true;
+}
+
+static void add_tree(struct grid *grid, const struct box *tree)
+{
+    uint32_t first[3], last[3], at[3];
+    if (!meets(grid, tree->min_m, tree->max_m))
+        return;
+    for (int axis = 0; axis < 3; axis++) {
+        first[axis] = cell_of(grid, axis, tree->min_m[axis]);
+        last[axis] = cell_of(grid, axis, tree->max_m[axis]);
+    }
+    for (at[2] = first[2]; at[2] <= last[2]; at[2]++)
+        for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
+            for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
+                add_box(box_of(grid, at), tree->min_m, tree->max_m);
+}
+
+/* All trees that reach into the grid: of its octant's subtree, and larger ones above it. */
+static void add_trees(struct grid *grid, const struct wd_forest_device *forest, uint32_t index)
+{
+    const struct wd_octree *octree = &forest->world->octree;
+    const struct wd_octant *octant = &octree->octants[index];
+    float max_m[3];
+    for (int axis = 0; axis < 3; axis++)
+        max_m[axis] = octant->cube_min_m[axis] + octant->cube_size_m;
+    if (!meets(grid, octant->cube_min_m, max_m))
+        return;
+    for (uint32_t k = octant->tight_begin; k < octant->tight_end; k++) {
+        struct box tree = whole_tree(forest, octree->tight_trees[k]);
+        add_tree(grid, &tree);
+    }
+    uint32_t child = octant->first_child;
+    for (uint32_t k = 0; k < octant->child_count; k++) {
+        add_trees(grid, forest, child);
+        child = octree->octants[child].next_sibling;
+    }
+}
+
 /* `cells` of one cluster become impostors. */
-static void fill_cluster(struct wd_impostor *table, const struct wd_octant *octant, float size_m,
+static void fill_cluster(struct wd_impostor *table, const struct grid *grid,
                          const struct wd_cluster_cell *cells, uint32_t count,
                          const struct wd_cells *trees, const struct wd_world *world)
 {
     for (uint32_t i = 0; i < count; i++) {
-        struct wd_impostor *impostor = &table[i];
-        *impostor = (struct wd_impostor){
-            .size_m = {size_m, size_m, size_m}, .tree_count = 1, .look = cells[i].look};
+        const uint32_t at[3] = {cells[i].at & 0xffu, cells[i].at >> 8 & 0xffu,
+                                cells[i].at >> 16 & 0xffu};
+        float corner_m[3];
         for (int axis = 0; axis < 3; axis++)
-            impostor->min_m[axis] =
-                octant->cube_min_m[axis] + size_m * (float)((cells[i].at >> 8 * axis) & 0xffu);
-        impostor->first_tree = nearest_tree(trees, world, octant,
-                                            impostor->min_m[0] + 0.5 * size_m,
-                                            impostor->min_m[1] + 0.5 * size_m);
+            corner_m[axis] = grid->octant->cube_min_m[axis] + grid->cell_m * (float)at[axis];
+        struct box box = within_cube(box_of(grid, at), corner_m, grid->cell_m);
+        table[i] = (struct wd_impostor){.tree_count = 1, .look = cells[i].look};
+        fit_box(&table[i], &box, grid->cell_m);
+        table[i].first_tree = nearest_tree(trees, world, grid->octant,
+                                           corner_m[0] + 0.5 * grid->cell_m,
+                                           corner_m[1] + 0.5 * grid->cell_m);
     }
     qsort(table, count, sizeof *table, by_tree);
 }
 
+static struct grid grid_of(const struct wd_forest_device *forest, uint32_t octant, uint32_t size)
+{
+    struct grid grid = {.octant = &forest->world->octree.octants[octant], .size = size};
+    uint32_t count = size * size * size;
+    grid.cell_m = grid.octant->cube_size_m / (float)size;
+    grid.boxes = wd_alloc_array(count, sizeof *grid.boxes);
+    for (uint32_t i = 0; i < count; i++)
+        grid.boxes[i] = NO_BOX;
+    add_trees(&grid, forest, 0);
+    return grid;
+}
+
 static void fill_clusters(struct impostors *impostors, struct wd_impostor *table, uint32_t first,
-                          const struct wd_world *world, const uint32_t *chosen,
+                          const struct wd_forest_device *forest, const uint32_t *chosen,
                           const struct wd_octant_clusters *clusters)
 {
+    const struct wd_world *world = forest->world;
     struct wd_cells trees;
     wd_cells_init(&trees, world, wd_cells_size(world, 1.0));
     impostors->cells_first = first;
     impostors->clusters = wd_alloc_array(clusters->octant_count, sizeof *impostors->clusters);
     impostors->cell_trees = wd_alloc_array(clusters->cell_count, sizeof *impostors->cell_trees);
     for (uint32_t i = 0; i < clusters->octant_count; i++) {
-        const struct wd_octant *octant = &world->octree.octants[chosen[i]];
-        float size_m = octant->cube_size_m / (float)clusters->cluster_size;
+        struct grid grid = grid_of(forest, chosen[i], clusters->cluster_size);
         uint32_t begin = clusters->first_cell[i], end = clusters->first_cell[i + 1];
-        impostors->clusters[i] = (struct cluster){begin, end - begin, size_m};
-        fill_cluster(table + first + begin, octant, size_m, clusters->cells + begin, end - begin,
-                     &trees, world);
+        impostors->clusters[i] = (struct cluster){begin, end - begin, grid.cell_m};
+        fill_cluster(table + first + begin, &grid, clusters->cells + begin, end - begin, &trees,
+                     world);
+        free(grid.boxes);
     }
     for (uint32_t i = 0; i < clusters->cell_count; i++)
         impostors->cell_trees[i] = table[first + i].first_tree;
@@ -331,7 +428,7 @@ static bool impostor_use_forest(void *state, struct wd_gpu *gpu, struct wd_fores
         struct wd_impostor *table = wd_alloc_array(total, sizeof *table);
         fill_octants(table, forest, &colors);
         if (count)
-            fill_clusters(impostors, table, octree->count, forest->world, chosen, &clusters);
+            fill_clusters(impostors, table, octree->count, forest, chosen, &clusters);
         ok = upload_table(impostors, gpu, table, total);
         free(table);
     }
