@@ -42,14 +42,16 @@ enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
     film->budget = wd_budget_of(session->options->budget_ms);
     if (!settle_frames(film))
         return WD_ERROR_INPUT;
+    enum wd_result result = check_output(film);
+    if (result != WD_OK)
+        return result;
     struct wd_film_params params = {
         .path = session->options->output,
         .width = plan->params.width,
         .height = plan->params.height,
         .frames_per_second = film->frames_per_second,
     };
-    enum wd_result result = wd_film_open(&film->output, &params, &session->log);
-    return result == WD_OK ? check_output(film) : result;
+    return wd_film_open(&film->output, &params, &session->log);
 }
 
 /* Frames asked for by number are spread over the whole path; without a number, it is flown at its

@@ -17,17 +17,12 @@ struct card_flat {
     float base;    /* of its height down to the lowest living branch */
 };
 
-/* Of what an eye on a ring sees of the crown. */
-float wood_on_ring(wd_model model, uint ring)
-{
-    return float(model.wood_seen[ring / 4u] >> 8u * (ring % 4u) & 255u) * (1.0 / 255.0);
-}
-
-/* From an elevation of this sine. */
+/* Of what an eye at an elevation of this sine sees of the crown. */
 float wood_seen(wd_model model, float sine)
 {
     uint at = wd_sunlit_ring(sine), ring = at & 255u;
-    return mix(wood_on_ring(model, ring), wood_on_ring(model, ring + 1u), float(at >> 8) * (1.0 / 65535.0));
+    return mix(WD_RING_SHARE(model.wood_seen, ring), WD_RING_SHARE(model.wood_seen, ring + 1u),
+               float(at >> 8) * (1.0 / 65535.0));
 }
 
 /* Eyes from above see fewer boughs than one of the same height, whose picture a card shows, and more than one right

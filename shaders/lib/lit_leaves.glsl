@@ -106,12 +106,10 @@ vec4 skylit_of(int model, wd_sunlit_mix at, uint first)
 /* How far a level eye is on the way from the lowest ring to the next. */
 const float LEVEL_ON = -WD_EYE_RING_SINE(0u) / (WD_EYE_RING_SINE(1u) - WD_EYE_RING_SINE(0u));
 
-/* Of what the model's table has in bytes for rings of the eye, this one's; rings 0 to 3 are in the first word. */
+/* Of what the model's table has in bytes for rings of the eye, this one's and of the next one's. */
 float of_rings(uvec2 packed, uint ring, float on)
 {
-    float here = float(packed[ring >> 2u] >> 8u * (ring & 3u) & 255u);
-    float above = float(packed[ring + 1u >> 2u] >> 8u * (ring + 1u & 3u) & 255u);
-    return mix(here, above, on) * (1.0 / 255.0);
+    return mix(WD_RING_SHARE(packed, ring), WD_RING_SHARE(packed, ring + 1u), on);
 }
 
 /* Share of upper sides among the leaves that an eye sees, among those that reflect and that transmit the sun to it, and that

@@ -105,6 +105,10 @@ WD_FUNC float wd_sunlit_hot(float angle)
 #define WD_EYE_RINGS 5u
 #define WD_EYE_RING_SINE(ring) ((ring) == 0u ? -0.25882f : WD_SUN_RING_SINE((ring) - 1u))
 
+/* Of bytes for rings of the eye, four a word, one's share. */
+#define WD_RING_SHARE(packed, ring) \
+    (WD_FLOAT((packed)[(ring) >> 2u] >> 8u * ((ring) & 3u) & 255u) * (1.0f / 255.0f))
+
 /* Index of the eye's ring below a sine (bits 0..7) and how near the next one is, in 1/65535 above. */
 WD_FUNC uint32_t wd_sunlit_ring(float sine_of)
 {

@@ -50,6 +50,17 @@ char *wd_format(const char *format, ...)
     return text;
 }
 
+char *wd_join(const char *const *texts, size_t count, const char *between)
+{
+    char *joined = wd_strdup("");
+    for (size_t i = 0; i < count; i++) {
+        char *longer = wd_format("%s%s%s", joined, i ? between : "", texts[i]);
+        free(joined);
+        joined = longer;
+    }
+    return joined;
+}
+
 void *wd_grow(void *items, size_t count, size_t *capacity, size_t element_size)
 {
     if (count == *capacity) {

@@ -14,6 +14,9 @@ char *wd_strdup(const char *text);
 /* free() it */
 char *wd_format(const char *format, ...) __attribute__((format(printf, 1, 2), nonnull(1)));
 
+/* The texts one after another with `between` them; free() it. */
+char *wd_join(const char *const *texts, size_t count, const char *between);
+
 /* Grows `*items` so that one more element fits: doubles `*capacity` when count == capacity. */
 void *wd_grow(void *items, size_t count, size_t *capacity, size_t element_size);
 

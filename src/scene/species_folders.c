@@ -82,11 +82,5 @@ char *wd_species_folders_find(const struct wd_species_folders *folders, const ch
 
 char *wd_species_folders_text(const struct wd_species_folders *folders)
 {
-    char *text = wd_strdup("");
-    for (size_t i = 0; i < folders->count; i++) {
-        char *longer = wd_format("%s%s%s", text, i ? ", " : "", folders->paths[i]);
-        free(text);
-        text = longer;
-    }
-    return text;
+    return wd_join((const char *const *)folders->paths, folders->count, ", ");
 }

@@ -232,13 +232,7 @@ int wd_csv_find(const struct wd_csv *csv, const char *name)
 
 char *wd_csv_names(const struct wd_csv *csv)
 {
-    char *names = wd_strdup("");
-    for (size_t i = 0; i < csv->column_count; i++) {
-        char *longer = wd_format("%s%s%s", names, i ? ", " : "", csv->header[i]);
-        free(names);
-        names = longer;
-    }
-    return names;
+    return wd_join(csv->header, csv->column_count, ", ");
 }
 
 static double power_of_ten(int exponent)
