@@ -13,6 +13,7 @@
 #include "reference/checkpoint.h"
 #include "reference/display.h"
 #include "shared/air.h"
+#include "shared/wind.h"
 #include "world/on_demand.h"
 #include "world/surroundings.h"
 
@@ -162,7 +163,7 @@ static bool prepare(struct work *work)
     const struct wd_reference_picture_params *params = work->params;
     const struct wd_forest *forest = reference->forest;
     double begin_s = wd_clock_s();
-    work->frame.time_s = (float)params->time_s;
+    work->frame.time_s = (float)(params->time_s - wd_wind_begin_s(params->time_s));
     work->frame.width = params->width;
     work->frame.height = params->height;
     wd_surroundings_set_camera(&work->frame, params->camera.position_m);
