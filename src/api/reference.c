@@ -6,6 +6,7 @@
 #include <xxhash.h>
 
 #include "api/forest.h"
+#include "api/shown.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -291,6 +292,7 @@ static void fill_picture(struct work *work, struct wd_picture *picture)
         free(picture->color);
         picture->color = NULL;
     }
+    wd_picture_settle(picture, work->reference->forest, &work->params->camera, work->params->time_s);
 }
 
 enum wd_result wd_reference_render(struct wd_reference *reference,
