@@ -122,7 +122,26 @@ double wd_species_crown_of_height_m(const struct wd_species *species, double hei
     if (species->clip_box_m[2] > 0 || species->model.file)
         return wd_species_crown_m(species, stem_cm) * height_m / sure_m;
     crown_m = wd_species_crown_m(species, stem_cm * wd_species_open_stem(species, height_m, open));
-    return crown_m * wd_species_open_crown(species, open) * height_m / sure_m;
+    crown_m = crown_m * wd_species_open_crown(species, open) * height_m / sure_m;
+    return wd_species_young_crown_m(species, height_m, open, crown_m);
+}
+
+float wd_species_youth(const struct wd_species *species, double height_m)
+{
+    bool tree = species->form == WD_FORM_BROADLEAF || species->form == WD_FORM_CONIFER;
+    double share = height_m / (double)species->typical_height_m;
+    double grown = fmin(fmax((share - 0.17) / (0.45 - 0.17), 0), 1);
+    if (!tree || species->model.file || species->clip_box_m[2] > 0)
+        return 0;
+    return (float)(1 - grown * grown * (3 - 2 * grown));
+}
+
+double wd_species_young_crown_m(const struct wd_species *species, double height_m, double openness,
+                                double crown_m)
+{
+    double youth = (double)wd_species_youth(species, height_m);
+    double least_m = height_m * (0.3 + 0.15 * openness), most_m = height_m * (0.5 + 0.4 * openness);
+    return crown_m + (fmin(fmax(crown_m, least_m), most_m) - crown_m) * youth;
 }
 
 float wd_hedge_reach_m(float width_m, float depth_m)

@@ -35,7 +35,7 @@ void wd_foliage_finish(struct wd_foliage *foliage)
 }
 
 /* Leaves stand on the last order all along and on the outer ends of the one before. */
-static float leafy_from(const struct wd_tree_form *form, const struct wd_branch *branch)
+static float grown_leafy_from(const struct wd_tree_form *form, const struct wd_branch *branch)
 {
     int last = (int)form->species->order_count - 1;
     bool tuft = form->species->leaf.shape == WD_LEAF_NEEDLES &&
@@ -51,6 +51,13 @@ static float leafy_from(const struct wd_tree_form *form, const struct wd_branch 
     if (branch->order == WD_TRUNK && form->species->form == WD_FORM_SHRUB)
         return 0.8f;
     return branch->order == WD_TRUNK ? 0.975f : 0.9f;
+}
+
+/* A young tree's limbs are twigs, and so is the end of its leader. */
+static float leafy_from(const struct wd_tree_form *form, const struct wd_branch *branch)
+{
+    float grown = grown_leafy_from(form, branch), young = branch->order == WD_TRUNK ? 0.86f : 0.3f;
+    return wd_mixf(grown, wd_minf(grown, young), form->youth);
 }
 
 static void gather_carriers(struct carriers *carriers, const struct wd_skeleton *skeleton,
@@ -252,7 +259,8 @@ static void order_leaves(struct wd_foliage *foliage, uint32_t key)
 }
 
 /* Leaf area of the whole tree from the leaf area index over the crown's projection. Crowns in the
- * open are lit from the side as well: they carry as much more as they are longer than wide. */
+ * open are lit from the side as well: they carry as much more as they are longer than wide. So are
+ * those of young trees, down to the ground. */
 static float leaf_area_m2(const struct wd_tree_form *form)
 {
     float projection = (float)WD_PI * form->crown_radius_m * form->crown_radius_m;
@@ -260,6 +268,7 @@ static float leaf_area_m2(const struct wd_tree_form *form)
         return HEDGE_SHARE * form->clip->shell_m2 * form->species->leaf.area_index;
     float slender = (form->height_m - form->crown_base_m) / (2 * form->crown_radius_m);
     float lit = wd_mixf(1, wd_clampf(slender, 1, 1.3f), form->openness);
+    lit = wd_mixf(lit, wd_clampf(slender, 1, 2), form->youth);
     return 1.1f * lit * projection * form->species->leaf.area_index;
 }
 

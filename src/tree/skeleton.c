@@ -203,6 +203,8 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     stem.start = wd_branch_point(skeleton, parent, joint->share, &axis, &stem.parent_node);
     stem.along_m = skeleton->nodes[stem.parent_node].along_m;
     float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], joint->height);
+    if (order == 0) /* no limb of a young tree rises beside its leader */
+        angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(68, 46, joint->height)), form->youth);
     if (form->clip && order == 0) /* cut limbs are level down to the ground */
         angle = wd_mixf(100, 20, joint->height);
     angle *= (float)(WD_PI / 180) * wd_random_range(&random, 0.88f, 1.12f);
@@ -264,7 +266,9 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
             if (still_there(form, joint.key))
                 grow_joint(skeleton, form, 0, &joint);
         }
-        float dense = end < crown ? 0.7f + 0.7f * t : 1 - 0.4f * t;
+        float dense = 1 - 0.4f * t;
+        if (end < crown)
+            dense = wd_mixf(0.7f + 0.7f * t, dense, form->youth);
         z += spacing * wd_random_range(&random, 0.8f, 1.2f) * dense;
     }
     return true;

@@ -8,7 +8,7 @@ float wd_tree_trunk_end(const struct wd_tree_form *form)
     float leader = form->species->apical_dominance;
     if (form->clip) /* what is cut fills up to the cut */
         return 1;
-    return leader > 0.85f ? 1 : 0.22f + 0.8f * leader;
+    return leader > 0.85f ? 1 : wd_mixf(0.22f + 0.8f * leader, 1, form->youth);
 }
 
 /* The trunk keeps upright as far as it goes. */
@@ -20,7 +20,7 @@ static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *
     struct wd_branch *branch = wd_skeleton_add_branch(skeleton, &stem);
     float crown = form->height_m - form->crown_base_m;
     float step = (form->crown_base_m + crown * wd_tree_trunk_end(form)) / TRUNK_STEPS;
-    float loose = 1 - species->apical_dominance;
+    float loose = 1 - form->leader;
     struct wd_vec3 p = WD_V3(0, 0, 0), drift = WD_V3(0, 0, 0);
     struct wd_vec3 d = wd_v3_unit(WD_V3(0.06f * loose * wd_random_signed(&random),
                                         0.06f * loose * wd_random_signed(&random), 1));
