@@ -170,6 +170,7 @@ struct wd_species {
         float crown_share;    /* crown diameter over height where allometry.crown_b is 0 */
     } model;
     float openness;           /* in scenes: 0 grown among neighbours .. 1 in the open */
+    float planted_m[2];       /* in scenes: lowest and greatest height of its trees; 0, 0: any */
     float clip_box_m[3];      /* width, depth, height of the box that a hedge is cut to; 0: none */
     const char *clip_file;    /* or the closed mesh that it is cut to: clip_box_m is then its size, */
     struct wd_clip_mesh *clip; /* once it is read: wd_species_import_models */
@@ -229,8 +230,9 @@ double wd_species_young_crown_m(const struct wd_species *species, double height_
 /* Radius of the circle as large as a rectangle: how far a hedge reaches. */
 float wd_hedge_reach_m(float width_m, float depth_m);
 
-/* Heights that a species' variants stand for, in equal parts: from half grown to tall, so that
- * young trees are not scaled down old ones. The range is empty where the species' own is. */
+/* Heights that a species' variants stand for, in equal parts: from half grown to tall. Where a scene has but
+ * saplings of it, from less than a quarter of the typical height on and none half grown, those planted: they would
+ * be scaled down old trees. The range is empty where the species' own is. */
 void wd_species_variant_range_m(const struct wd_species *species, float range_m[2]);
 
 double wd_species_height_at_age_m(const struct wd_species *species, double age_years);
