@@ -413,10 +413,11 @@ static void place_leaves(struct wd_foliage *foliage, const struct wd_skeleton *s
 }
 
 /* The thinnest twigs grow with the leaves that hide them; where these have fallen they are what is
- * seen of a crown. */
+ * seen of a crown. A bramble's leaves stand on its canes. */
 static size_t twig_count(const struct wd_tree_form *form)
 {
-    if (form->species->order_count == 0 || form->species->form == WD_FORM_SNAG)
+    if (form->species->order_count == 0 || form->species->form == WD_FORM_SNAG ||
+        form->species->form == WD_FORM_BRAMBLE)
         return 0;
     double spread = wd_dpow((double)form->spread, form->spread < 1 ? 0.9 : 1.1);
     return (size_t)(BARE_TWIGS * (double)form->detail * fmin(spread, 1.5));
