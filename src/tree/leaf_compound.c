@@ -141,7 +141,8 @@ void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species 
     float width = species->leaf.leaflet_width_cm / whole;
     int count = (int)species->leaf.leaflets;
     bool frond = count > OUTLINED_LEAFLETS;
-    add_axis(leaf, &axis, frond ? 0.012f : 0.02f);
+    bool fern = species->leaf.compound == WD_COMPOUND_BIPINNATE;
+    add_axis(leaf, &axis, fern ? 0.007f : frond ? 0.012f : 0.02f);
     for (int i = 0; i < count; i++) {
         bool last = i == count - 1 && count % 2;
         float t = ((float)(i / 2) + 0.5f + 0.25f * (float)(i & 1)) / (0.5f * (float)count + 0.25f);

@@ -84,13 +84,14 @@ static void set_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     }
 }
 
-/* Stems of a stool are thinner the shorter they are; a palm's stem hardly tapers. */
+/* Stems of a stool are thinner the shorter they are; a palm's stem hardly tapers; a rootstock is a low dome. */
 static void set_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *form, size_t index)
 {
     const struct wd_branch *stem = &skeleton->branches[index];
     struct wd_skeleton_node *nodes = &skeleton->nodes[stem->first_node];
     bool stool = form->species->form == WD_FORM_SHRUB || form->species->form == WD_FORM_BRAMBLE;
-    float base = 0.5f * form->dbh_m, tip = 0.75f, highest = 0;
+    float base = 0.5f * form->dbh_m, highest = 0;
+    float tip = form->species->form == WD_FORM_FERN ? 0.15f : 0.75f;
     for (size_t i = 0; i < stem->node_count; i++)
         highest = wd_maxf(highest, nodes[i].position_m.z);
     if (stool) {
