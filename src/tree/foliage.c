@@ -56,7 +56,7 @@ static float grown_leafy_from(const struct wd_tree_form *form, const struct wd_b
 /* A young tree's limbs are twigs, and so is the end of its leader. */
 static float leafy_from(const struct wd_tree_form *form, const struct wd_branch *branch)
 {
-    float grown = grown_leafy_from(form, branch), young = branch->order == WD_TRUNK ? 0.86f : 0.3f;
+    float grown = grown_leafy_from(form, branch), young = branch->order == WD_TRUNK ? 0.86f : 0.15f;
     return wd_mixf(grown, wd_minf(grown, young), form->youth);
 }
 
@@ -258,6 +258,12 @@ static void order_leaves(struct wd_foliage *foliage, uint32_t key)
     free(order);
 }
 
+/* What a sapling has had the years to grow, by its height. */
+static float young_area_m2(const struct wd_tree_form *form)
+{
+    return 0.11f * form->species->leaf.area_index * form->height_m * form->height_m;
+}
+
 /* Leaf area of the whole tree from the leaf area index over the crown's projection. Crowns in the
  * open are lit from the side as well: they carry as much more as they are longer than wide. So are
  * those of young trees, down to the ground. */
@@ -269,7 +275,10 @@ static float leaf_area_m2(const struct wd_tree_form *form)
     float slender = (form->height_m - form->crown_base_m) / (2 * form->crown_radius_m);
     float lit = wd_mixf(1, wd_clampf(slender, 1, 1.3f), form->openness);
     lit = wd_mixf(lit, wd_clampf(slender, 1, 2), form->youth);
-    return 1.1f * lit * projection * form->species->leaf.area_index;
+    float area = 1.1f * lit * projection * form->species->leaf.area_index;
+    if (form->species->form == WD_FORM_BROADLEAF) /* an oak of 2 m has some 500 leaves, however wide it is */
+        area = wd_mixf(area, wd_minf(area, young_area_m2(form)), form->youth);
+    return area;
 }
 
 /* Small trees draw fewer leaves, and never smaller ones than real. Large ones draw larger leaves,

@@ -224,12 +224,16 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
         mark_crowd(skeleton, &skeleton->branches[skeleton->branch_count - 1]);
 }
 
+#define YOUNG_SPACING 0.65f
+
 static float spacing_m(const struct wd_tree_form *form, int order)
 {
     /* a year's growth is long in young trees too: they have fewer branches, not smaller gaps */
     double power = form->spread < 1 ? 0.5 : order == 0 ? 0.6 : 0.9;
     double squeeze = wd_dpow((double)form->spread, power);
     float spacing = form->species->orders[order].spacing_m * (float)squeeze;
+    if (order == 0) /* buds all along the leader have shot, and none has died in the shade */
+        spacing *= wd_mixf(1, YOUNG_SPACING, form->youth);
     if (form->clip) /* cut shoots branch again: a hedge is as dense as its light allows */
         spacing = wd_minf(spacing, (order == 0 ? 0.03f : 0.05f) * form->crown_radius_m + 0.02f);
     return spacing;
