@@ -221,8 +221,8 @@ double wd_species_crown_of_height_m(const struct wd_species *species, double hei
 
 /* How much of its youth a tree of this height still has: 1 a seedling .. 0 from just below half of the typical
  * height on, and always for plants that are no trees. Until neighbours close over them young trees keep a single
- * leader and branches down to the ground: live crowns of 0.6 to 0.9 of the height below a quarter of a grown
- * tree's (Oliver and Larson, Forest Stand Dynamics, 1996). */
+ * leader and branches down to the ground, live crowns of 0.6 to 0.9 of the height; then these recede (Oliver and
+ * Larson, Forest Stand Dynamics, 1996). */
 float wd_species_youth(const struct wd_species *species, double height_m);
 /* Crown diameter of a tree of this height whose allometry says `crown_m`: power curves of stems of 15 to 52 cm
  * tell nothing of rods, whose crowns are 0.3 to 0.5 times as wide as they are tall, in the open more. */
