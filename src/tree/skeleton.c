@@ -85,6 +85,10 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     float step = stem->length_m / (float)stem->steps;
     float ground = wd_minf(0.35f, 0.06f * form->height_m);
     bool hanging = hangs(&form->species->orders[stem->order]);
+    /* crowns down to the ground have many twigs just above it: they level out before they would turn in a hairpin */
+    float ahead_m = (form->youth > 0 ? 2 : 1) * step;
+    if (form->youth > 0 && d.z < 0 && p.z + ahead_m * d.z < ground)
+        d = wd_v3_unit_or(WD_V3(d.x, d.y, 0), WD_V3(0, 0, 1));
     wd_skeleton_add_node(skeleton, p, d, stem->along_m);
     for (int i = 1; i <= stem->steps; i++) {
         float t = ((float)i - 0.5f) / (float)stem->steps;
@@ -93,7 +97,7 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
         d = wd_v3_unit(wd_v3_mad(d, drift, wd_minf(stem->wander * step, 0.35f)));
         d = bend_up(d, wd_clampf(bend * step / form->spread, -0.8f, 0.8f));
         struct wd_vec3 next = wd_v3_mad(p, d, step);
-        if (next.z < ground && d.z < 0) {
+        if (d.z < 0 && (next.z < ground || p.z + ahead_m * d.z < ground)) {
             if (hanging && i > 1)
                 break;
             d = wd_v3_unit(WD_V3(d.x, d.y, 0.1f));
