@@ -18,8 +18,8 @@ enum wd_phyllotaxis { WD_PHYLLOTAXIS_ALTERNATE, WD_PHYLLOTAXIS_OPPOSITE, WD_PHYL
 enum wd_leaf_shape {
     WD_LEAF_OVATE, WD_LEAF_LOBED, WD_LEAF_TRIANGULAR, WD_LEAF_PALMATE, WD_LEAF_LANCEOLATE,
     WD_LEAF_HEART, WD_LEAF_ELLIPTIC,
-    WD_LEAF_SERRATE, /* ovate with teeth */
     WD_LEAF_BLADE, WD_LEAF_NEEDLES,
+    WD_LEAF_SERRATE, /* ovate with teeth */
 };
 enum wd_leaf_compound {
     WD_COMPOUND_SIMPLE,

@@ -18,11 +18,11 @@ static const struct wd_leaf_outline shapes[] = {
                        0.12f, WD_VEINS_PALMATE, 4, 0},
     [WD_LEAF_ELLIPTIC] = {0, {{0.72f, 0.16f}, {1, 0.48f}, {0.70f, 0.82f}}, 3, 0.16f, 0.08f,
                           WD_VEINS_PINNATE, 6, 0.16f},
-    [WD_LEAF_SERRATE] = {0, {{0.72f, 0.13f}, {1, 0.40f}, {0.66f, 0.76f}}, 3, 0.12f, 0.10f,
-                         WD_VEINS_PINNATE, 8, 0.22f},
     [WD_LEAF_BLADE] = {0, {{0.8f, 0.02f}, {1, 0.35f}, {0.62f, 0.75f}}, 3, 0.3f, 0.12f,
                        WD_VEINS_PARALLEL, 5, 0},
     [WD_LEAF_NEEDLES] = {0, {{1, 0.08f}, {0.9f, 0.75f}}, 2, 0.1f, 0.05f, WD_VEINS_PARALLEL, 1, 0},
+    [WD_LEAF_SERRATE] = {0, {{0.72f, 0.13f}, {1, 0.40f}, {0.66f, 0.76f}}, 3, 0.12f, 0.10f,
+                         WD_VEINS_PINNATE, 8, 0.22f},
 };
 
 /* Drawn after the figures in Stace, New Flora of the British Isles (2019): four or five lobes a side

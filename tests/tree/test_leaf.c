@@ -55,7 +55,7 @@ static void every_shape_is_sound(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    for (int shape = 0; shape <= WD_LEAF_NEEDLES; shape++)
+    for (int shape = 0; shape <= WD_LEAF_SERRATE; shape++)
         for (int compound = 0; compound <= WD_COMPOUND_BIPINNATE; compound++) {
             struct wd_species species = leafy(&arena, shape, compound);
             struct wd_leaf_template leaf, near;
@@ -63,7 +63,7 @@ static void every_shape_is_sound(void **state)
             wd_leaf_template_init(&near, &species, WD_LEAF_AS_NEAR, 0);
             check_template(&leaf);
             check_template(&near);
-            if (compound == WD_COMPOUND_SIMPLE && shape < WD_LEAF_BLADE) {
+            if (compound == WD_COMPOUND_SIMPLE && (shape < WD_LEAF_BLADE || shape == WD_LEAF_SERRATE)) {
                 assert_in_range(leaf.index_count / 3, 4, 15);
                 assert_in_range(near.index_count / 3, 12, 29);
                 check_winding(&leaf);
@@ -171,7 +171,9 @@ static void both_forms_have_one_area(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    for (int shape = 0; shape < WD_LEAF_NEEDLES; shape++) {
+    for (int shape = 0; shape <= WD_LEAF_SERRATE; shape++) {
+        if (shape == WD_LEAF_NEEDLES)
+            continue;
         struct wd_species species = leafy(&arena, shape, WD_COMPOUND_SIMPLE);
         struct wd_leaf_template blade, kite;
         wd_leaf_template_init(&blade, &species, WD_LEAF_AS_BLADE, 0);
