@@ -182,6 +182,27 @@ static void a_shore_runs_as_on_the_map(void **state)
     wd_terrain_finish(&terrain);
 }
 
+/* Water that rises or falls a metre in twenty away from an eye 3 m over it, half a metre deep; the eye looks so far down. */
+static void check_fall(double rise, double down)
+{
+    double bed_m = 3.5 / (down + rise), at_m = 3 / (down + rise);
+    float end_m = (float)(-down * bed_m), surface_m = (float)(-3 + rise * bed_m);
+    double nearer_m = bed_m * (double)wd_river_share(end_m, surface_m);
+    float share = wd_river_share_between(end_m, surface_m, (float)(-3 + rise * nearer_m));
+    assert_float_equal(share * bed_m, at_m, 0.1 * (bed_m - at_m));
+}
+
+/* By the height over the place before, rays to water that falls toward the eye met it as far off as its bed: traced
+ * pictures showed dry beds. */
+static void rays_meet_water_that_falls_toward_the_eye(void **state)
+{
+    (void)state;
+    check_fall(0.05, 0.03);
+    check_fall(0.05, 0.3);
+    check_fall(0, 0.03);
+    check_fall(-0.005, 0.1);
+}
+
 static void trees_keep_out_of_the_water(void **state)
 {
     (void)state;
@@ -230,6 +251,7 @@ int main(void)
         cmocka_unit_test(a_river_falls_with_its_valley_between_its_banks),
         cmocka_unit_test(no_water_stands_above_its_shore),
         cmocka_unit_test(a_pond_is_nearly_level),
+        cmocka_unit_test(rays_meet_water_that_falls_toward_the_eye),
         cmocka_unit_test(a_shore_runs_as_on_the_map),
         cmocka_unit_test(trees_keep_out_of_the_water),
         cmocka_unit_test(useless_maps_are_refused),
