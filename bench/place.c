@@ -52,7 +52,7 @@ bool bench_place_million(const char *gpu)
 {
     (void)gpu;
     struct wd_terrain terrain;
-    if (!wd_terrain_init(&terrain, &scene, 1, 0, NULL, NULL))
+    if (!wd_terrain_init(&terrain, &scene, 1, 0, 0, NULL, NULL))
         return false;
     const struct wd_placement_params params = {.scene = &scene, .terrain = &terrain, .seed = 1,
                                                .threads = 1, .max_trees = UINT64_C(1) << 30};

@@ -76,7 +76,7 @@ static bool check_ground(const struct wd_scene *scene, const struct wd_log *log)
 {
     enum { COARSE_SAMPLES = 65536 };
     struct wd_terrain terrain;
-    if (!wd_terrain_init(&terrain, scene, 0, COARSE_SAMPLES, NULL, log))
+    if (!wd_terrain_init(&terrain, scene, 0, COARSE_SAMPLES, 0, NULL, log))
         return false;
     wd_terrain_finish(&terrain);
     return true;

@@ -29,6 +29,7 @@ static enum wd_result create(struct wd_renderer **result, const struct wd_gpu_pa
         wd_renderer_destroy(&renderer);
         return WD_ERROR_DEVICE;
     }
+    renderer->gpu.threads = params->threads;
     *result = renderer;
     return WD_OK;
 }

@@ -339,7 +339,7 @@ bool wd_baker_run(struct wd_baker *baker, const struct wd_bake_job *job,
         ok = run_batch(&batch) &&
              wd_buffer_read(baker->gpu, &baker->texels, 0, planes, bytes);
         struct taking taking = {take, user, planes, shot_bytes, leaf_sums, batch.first};
-        wd_jobs_run(0, ok ? batch.count : 0, take_shot, &taking);
+        wd_jobs_run(baker->gpu->threads, ok ? batch.count : 0, take_shot, &taking);
     }
     free(planes);
     return ok;

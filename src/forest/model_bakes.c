@@ -188,7 +188,7 @@ static bool make_cards(struct wd_forest_device *forest, struct wd_gpu *gpu, stru
 {
     struct made_cards made = {forest, form, &forest->log.log, first, {{.found = false}}};
     bool ok = true;
-    wd_jobs_run(0, count, prepare_cards, &made);
+    wd_jobs_run(gpu->threads, count, prepare_cards, &made);
     for (uint32_t i = 0; i < count && ok; i++) {
         ok = made.models[i].ready && wd_progress_report(&forest->progress, "baking trees",
                                                         first + i, forest->model_count);
@@ -196,7 +196,7 @@ static bool make_cards(struct wd_forest_device *forest, struct wd_gpu *gpu, stru
             bake_cards(&made, gpu, baker, i);
         ok = ok && (made.models[i].found || made.models[i].baked);
     }
-    wd_jobs_run(0, count, store_cards, &made); /* also of one that was stopped half-way */
+    wd_jobs_run(gpu->threads, count, store_cards, &made); /* also of one that was stopped half-way */
     for (uint32_t i = 0; i < count; i++) {
         if (form->parts == WD_BAKE_ALL)
             forest->host_models[first + i].mixed = made.models[i].cards.mixed;

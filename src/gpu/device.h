@@ -66,6 +66,7 @@ struct wd_gpu {
     VkPhysicalDeviceMemoryProperties memory;
     uint32_t features; /* wd_gpu_feature bits */
     bool software;     /* a CPU implementation (lavapipe) */
+    unsigned threads;  /* of the processor that make what it is given; 0: one a processor */
     uint32_t runs;     /* of workgroups that it deals to its threads at once; 1: none */
     bool owned;        /* instance and device are ours to destroy */
     bool lost;         /* VK_ERROR_DEVICE_LOST was seen; every later call fails fast */

@@ -282,9 +282,9 @@ static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
         .splats = wd_alloc_array(forest->model_count, sizeof *work.splats),
         .looks = wd_alloc_array(species, WD_LOOK_BYTES),
     };
-    wd_jobs_run(0, forest->model_count, load_splats, &work);
-    wd_jobs_run(0, species, make_look, &work);
-    bool ok = wd_jobs_run_told(0, forest->model_count, sample_model, &work, &forest->progress,
+    wd_jobs_run(gpu->threads, forest->model_count, load_splats, &work);
+    wd_jobs_run(gpu->threads, species, make_look, &work);
+    bool ok = wd_jobs_run_told(gpu->threads, forest->model_count, sample_model, &work, &forest->progress,
                                "making discs") &&
               !atomic_load(&work.failed);
     if (ok)

@@ -221,7 +221,7 @@ static void resample(struct load *load)
     struct wd_raster *raster = load->raster;
     size_t count = (size_t)raster->width * raster->height, known = 0;
     raster->values = wd_alloc_array(count, sizeof(float));
-    wd_jobs_run(0, raster->height, resample_row, load);
+    wd_jobs_run(load->terrain->threads, raster->height, resample_row, load);
     for (size_t i = 0; i < count; i++)
         known += !isnan(raster->values[i]);
     if (known == 0)

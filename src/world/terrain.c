@@ -81,10 +81,10 @@ static bool make(struct wd_terrain *terrain, const struct wd_scene *scene, uint3
 }
 
 bool wd_terrain_init(struct wd_terrain *terrain, const struct wd_scene *scene, uint32_t seed,
-                     uint64_t max_samples, const struct wd_progress *progress,
+                     uint64_t max_samples, unsigned threads, const struct wd_progress *progress,
                      const struct wd_log *log)
 {
-    *terrain = (struct wd_terrain){0};
+    *terrain = (struct wd_terrain){.threads = threads};
     if (max_samples == 0)
         max_samples = WD_TERRAIN_DEFAULT_MAX_SAMPLES;
     if (max_samples < 4)

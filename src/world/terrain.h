@@ -19,12 +19,14 @@ struct wd_terrain {
     float min_m, max_m;
     char *crs;               /* WKT of the projected coordinates, or NULL */
     uint64_t filled_samples; /* samples without data that were filled */
+    unsigned threads;       /* that it was made by; what is read over it is by as many */
 };
 
 /* Makes or reads the terrain that the scene asks for. Large rasters are read by window and
- * decimated: never more than `max_samples` (0: 2^25) samples are kept. */
+ * decimated: never more than `max_samples` (0: 2^25) samples are kept. The same for any number of threads
+ * (0: one a processor). */
 bool wd_terrain_init(struct wd_terrain *terrain, const struct wd_scene *scene, uint32_t seed,
-                     uint64_t max_samples, const struct wd_progress *progress,
+                     uint64_t max_samples, unsigned threads, const struct wd_progress *progress,
                      const struct wd_log *log);
 void wd_terrain_finish(struct wd_terrain *terrain);
 

@@ -130,7 +130,7 @@ static struct lattice subdivide(const struct wd_terrain *terrain, double offset_
         step /= 2;
         offset_m *= fall;
         struct pass pass = {coarse, lattice_new(terrain, step), seed, number, (float)offset_m};
-        wd_jobs_run(0, (size_t)pass.fine.cells_y + 1 + 2 * MARGIN, pass_row, &pass);
+        wd_jobs_run(terrain->threads, (size_t)pass.fine.cells_y + 1 + 2 * MARGIN, pass_row, &pass);
         free(coarse.values);
         coarse = pass.fine;
     }
@@ -169,7 +169,7 @@ static void creep(struct wd_terrain *terrain, double roughness)
     float *spare = wd_alloc_array((size_t)terrain->width * terrain->height, sizeof(float));
     for (uint32_t reach = 1; reach * terrain->cell_m <= reach_m; reach *= 2) {
         struct smoothing pass = {terrain->height_m, spare, terrain->width, terrain->height, reach};
-        wd_jobs_run(0, terrain->height, smooth_row, &pass);
+        wd_jobs_run(terrain->threads, terrain->height, smooth_row, &pass);
         spare = terrain->height_m;
         terrain->height_m = pass.to;
     }

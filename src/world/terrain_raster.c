@@ -339,7 +339,7 @@ static void resample(const struct dem *dem, struct wd_terrain *terrain)
     size_t count = (size_t)terrain->width * terrain->height;
     struct resampling work = {dem, terrain, dem->step > 1 ? 1.0 : 0.51, wd_alloc_array(count, 1)};
     terrain->height_m = wd_alloc_array(count, sizeof(float));
-    wd_jobs_run(0, terrain->height, resample_row, &work);
+    wd_jobs_run(terrain->threads, terrain->height, resample_row, &work);
     bool outside = false;
     for (size_t i = 0; i < count; i++) {
         terrain->filled_samples += work.missing[i] != 0;

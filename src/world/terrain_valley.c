@@ -78,5 +78,5 @@ void wd_terrain_carve_valley(struct wd_terrain *terrain, double strength, uint32
                                         .strength = strength}};
     for (uint32_t i = 0; i < 2; i++)
         carving.valley.phase[i] = 2 * WD_PI * wd_hash_unit(wd_hash3(seed, 0x76616c6cu, i));
-    wd_jobs_run(0, terrain->height, carve_row, &carving);
+    wd_jobs_run(terrain->threads, terrain->height, carve_row, &carving);
 }

@@ -107,7 +107,7 @@ static bool make_up(struct wd_terrain *terrain, const struct wd_inventory *inven
     scene.terrain.target_crs = crs;
     if (fit)
         fit_flat(&scene, window_m, &bounds, params->log);
-    if (!wd_terrain_init(terrain, &scene, params->seed, 0, params->progress, params->log))
+    if (!wd_terrain_init(terrain, &scene, params->seed, 0, params->threads, params->progress, params->log))
         return false;
     if (!fit && placed)
         lay_under(terrain, &bounds);
@@ -124,7 +124,7 @@ bool wd_world_make_terrain(struct wd_terrain *terrain, const struct wd_inventory
                !(wanted->size_m[1] > 0.0) && count > 0;
     *fitted = fit && !has_place(inventories, count);
     if (!made_up || (!fit && !has_place(inventories, count)))
-        return wd_terrain_init(terrain, params->scene, params->seed, 0, params->progress,
+        return wd_terrain_init(terrain, params->scene, params->seed, 0, params->threads, params->progress,
                                params->log);
     char *chosen = NULL;
     bool ok = wanted->target_crs || choose_crs(&chosen, inventories, count, params->log);

@@ -101,7 +101,7 @@ bool picture_init(struct picture_test *test, uint32_t width, uint32_t height, ui
     test->scene.terrain.roughness = 0.9;
     test->scene.terrain.valley = 0.6;
     test->scene.terrain.vertical_scale = 1;
-    if (!wd_terrain_init(&test->world.terrain, &test->scene, 7, 0, NULL, &test->log))
+    if (!wd_terrain_init(&test->world.terrain, &test->scene, 7, 0, 0, NULL, &test->log))
         return false;
     make_cover(&test->world);
     return wd_gpu_init(&test->gpu, &gpu, &test->log) && wd_frames_init(&test->frames, &test->gpu) &&

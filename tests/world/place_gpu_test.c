@@ -40,7 +40,7 @@ static void stage_init(struct stage *stage)
 /* A probability map of odd cells and some holes, so that every rule has its say. */
 static void stage_open(struct stage *stage, uint32_t map_kind)
 {
-    assert_true(wd_terrain_init(&stage->terrain, &stage->small.scene, 7, 0, NULL, NULL));
+    assert_true(wd_terrain_init(&stage->terrain, &stage->small.scene, 7, 0, 0, NULL, NULL));
     size_t samples = (size_t)stage->terrain.width * stage->terrain.height;
     stage->terrain.hole = wd_alloc(samples);
     for (uint32_t i = 0; i < samples; i++)

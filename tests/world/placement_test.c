@@ -25,7 +25,7 @@ struct stage {
 static void stage_open(struct stage *stage)
 {
     struct wd_scene *scene = &stage->small.scene;
-    assert_true(wd_terrain_init(&stage->terrain, scene, 7, 0, NULL, NULL));
+    assert_true(wd_terrain_init(&stage->terrain, scene, 7, 0, 0, NULL, NULL));
     stage->params = (struct wd_placement_params){
         .scene = scene, .terrain = &stage->terrain, .seed = 7, .threads = 1, .max_trees = 100000000};
     assert_true(wd_placement_init(&stage->placement, &stage->params, 0));
@@ -233,7 +233,7 @@ static void test_too_dense(void **state)
     struct wd_scene_layer *layer = small_scene_layer(&stage.small);
     layer->placement = WD_PLACE_POISSON;
     layer->density = 65.0;
-    assert_true(wd_terrain_init(&stage.terrain, &stage.small.scene, 7, 0, NULL, NULL));
+    assert_true(wd_terrain_init(&stage.terrain, &stage.small.scene, 7, 0, 0, NULL, NULL));
     stage.params = (struct wd_placement_params){.scene = &stage.small.scene,
                                                 .terrain = &stage.terrain};
     assert_false(wd_placement_init(&stage.placement, &stage.params, 0));
@@ -353,7 +353,7 @@ static void test_not_in_holes(void **state)
     small_scene_init(&stage.small);
     small_scene_hills(&stage.small);
     small_scene_layer(&stage.small);
-    assert_true(wd_terrain_init(&stage.terrain, &stage.small.scene, 7, 0, NULL, NULL));
+    assert_true(wd_terrain_init(&stage.terrain, &stage.small.scene, 7, 0, 0, NULL, NULL));
     stage.terrain.hole = wd_alloc((size_t)stage.terrain.width * stage.terrain.height);
     for (uint32_t i = 0; i < stage.terrain.width * stage.terrain.height; i++)
         stage.terrain.hole[i] = wd_hash1(i) % 4 == 0;

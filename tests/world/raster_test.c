@@ -35,7 +35,7 @@ static struct wd_terrain ground(const char *crs, double x_m, double y_m, double 
     flat.terrain.window_count = 4;
     flat.terrain.target_crs = crs;
     struct wd_terrain terrain;
-    assert_true(wd_terrain_init(&terrain, &flat, 1, 0, NULL, &log_kept));
+    assert_true(wd_terrain_init(&terrain, &flat, 1, 0, 0, NULL, &log_kept));
     return terrain;
 }
 

@@ -82,7 +82,7 @@ static void make(struct wd_terrain *terrain, double value(double x_m, double y_m
 {
     struct small_scene small;
     scene_of(&small, value);
-    assert_true(wd_terrain_init(terrain, &small.scene, 7, 0, NULL, NULL));
+    assert_true(wd_terrain_init(terrain, &small.scene, 7, 0, 0, NULL, NULL));
     assert_true(wd_rivers_init(terrain, &small.scene, &log_kept));
 }
 
@@ -137,7 +137,7 @@ static void a_pond_is_nearly_level(void **state)
     struct small_scene small;
     scene_of(&small, pond);
     small.scene.terrain.relief_m = 12;
-    assert_true(wd_terrain_init(&terrain, &small.scene, 7, 0, NULL, NULL));
+    assert_true(wd_terrain_init(&terrain, &small.scene, 7, 0, 0, NULL, NULL));
     assert_true(wd_rivers_init(&terrain, &small.scene, &log_kept));
     float middle_m = wd_river_level(&terrain, 600, 1400);
     for (int k = 0; k < 16; k++) {
@@ -225,7 +225,7 @@ static void refuse(double value(double x_m, double y_m), const char *part)
     struct wd_terrain terrain;
     scene_of(&small, value);
     memset(&logged, 0, sizeof logged);
-    assert_true(wd_terrain_init(&terrain, &small.scene, 7, 0, NULL, NULL));
+    assert_true(wd_terrain_init(&terrain, &small.scene, 7, 0, 0, NULL, NULL));
     assert_false(wd_rivers_init(&terrain, &small.scene, &log_kept));
     assert_int_equal(logged.errors, 1);
     assert_non_null(strstr(logged.text, part));

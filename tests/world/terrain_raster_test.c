@@ -34,7 +34,7 @@ static struct wd_scene scene_of(const char *file)
 static struct wd_terrain read_scene(const struct wd_scene *scene)
 {
     struct wd_terrain terrain;
-    bool ok = wd_terrain_init(&terrain, scene, 1, 0, NULL, &log_kept);
+    bool ok = wd_terrain_init(&terrain, scene, 1, 0, 0, NULL, &log_kept);
     if (!ok)
         print_message("%s", logged.text);
     assert_true(ok);
@@ -51,7 +51,7 @@ static void assert_refused(const struct wd_scene *scene, const char *part)
 {
     struct wd_terrain terrain;
     forget_log(NULL);
-    assert_false(wd_terrain_init(&terrain, scene, 1, 0, NULL, &log_kept));
+    assert_false(wd_terrain_init(&terrain, scene, 1, 0, 0, NULL, &log_kept));
     assert_null(terrain.height_m);
     assert_int_equal(logged.errors, 1);
     if (!strstr(logged.text, part))
@@ -453,11 +453,11 @@ static void coarse_ground_is_refined_smoothly(void **state)
     wd_terrain_finish(&terrain);
     /* Not beyond the samples allowed: 41 x 21 is, 81 x 41 is not. */
     struct wd_scene scene = scene_of("/vsimem/coarse.tif");
-    assert_true(wd_terrain_init(&terrain, &scene, 1, 1000, NULL, &log_kept));
+    assert_true(wd_terrain_init(&terrain, &scene, 1, 1000, 0, NULL, &log_kept));
     assert_float_equal(terrain.cell_m, 16, 1e-12);
     wd_terrain_finish(&terrain);
     /* Fewer samples than pixels: blocks. */
-    assert_true(wd_terrain_init(&terrain, &scene, 1, 60, NULL, &log_kept));
+    assert_true(wd_terrain_init(&terrain, &scene, 1, 60, 0, NULL, &log_kept));
     assert_float_equal(terrain.cell_m, 64, 1e-12);
     assert_int_equal(terrain.width, 10);
     assert_int_equal(terrain.height, 5);
@@ -547,7 +547,7 @@ static void huge_files_are_read_by_window(void **state)
     wd_terrain_finish(&terrain);
     scene.terrain.window_count = 0;
     start_s = wd_clock_s();
-    assert_true(wd_terrain_init(&terrain, &scene, 1, 1 << 22, NULL, &log_kept));
+    assert_true(wd_terrain_init(&terrain, &scene, 1, 1 << 22, 0, NULL, &log_kept));
     assert_true(wd_clock_s() - start_s < 60);
     assert_true((uint64_t)terrain.width * terrain.height <= 1 << 22);
     assert_non_null(strstr(logged.text, "decimated: one sample for 98 x 98 pixels"));
@@ -573,7 +573,7 @@ static void can_be_stopped(void **state)
     const struct wd_progress progress = {stop_soon, &calls};
     struct wd_scene scene = scene_of("/vsimem/huge.tif");
     struct wd_terrain terrain;
-    assert_false(wd_terrain_init(&terrain, &scene, 1, 1 << 22, &progress, &log_kept));
+    assert_false(wd_terrain_init(&terrain, &scene, 1, 1 << 22, 0, &progress, &log_kept));
     assert_int_equal(calls, 2);
     VSIUnlink("/vsimem/huge.tif");
 }

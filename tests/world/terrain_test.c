@@ -37,7 +37,7 @@ static struct wd_scene hills(double x_m, double y_m, double cell_m, double rough
 static struct wd_terrain made(const struct wd_scene *scene, uint32_t seed)
 {
     struct wd_terrain terrain;
-    assert_true(wd_terrain_init(&terrain, scene, seed, 0, NULL, &log_kept));
+    assert_true(wd_terrain_init(&terrain, scene, seed, 0, 0, NULL, &log_kept));
     return terrain;
 }
 
@@ -263,7 +263,7 @@ static void too_many_samples_become_fewer(void **state)
     (void)state;
     struct wd_scene scene = hills(1e6, 2e6, 0.5, 0.9);
     struct wd_terrain terrain;
-    assert_true(wd_terrain_init(&terrain, &scene, 1, 10000, NULL, &log_kept));
+    assert_true(wd_terrain_init(&terrain, &scene, 1, 10000, 0, NULL, &log_kept));
     assert_true((uint64_t)terrain.width * terrain.height <= 10000);
     assert_true((uint64_t)terrain.width * terrain.height > 9000);
     assert_int_equal(logged.warnings, 1);
@@ -274,7 +274,7 @@ static void assert_refused(const struct wd_scene *scene, const char *key)
 {
     struct wd_terrain terrain;
     forget_log(NULL);
-    assert_false(wd_terrain_init(&terrain, scene, 1, 0, NULL, &log_kept));
+    assert_false(wd_terrain_init(&terrain, scene, 1, 0, 0, NULL, &log_kept));
     assert_null(terrain.height_m);
     assert_int_equal(logged.errors, 1);
     assert_non_null(strstr(logged.text, key));
@@ -327,7 +327,7 @@ static void can_be_stopped(void **state)
     struct wd_scene scene = hills(100, 100, 1, 0.9);
     const struct wd_progress progress = {stop, NULL};
     struct wd_terrain terrain;
-    assert_false(wd_terrain_init(&terrain, &scene, 1, 0, &progress, &log_kept));
+    assert_false(wd_terrain_init(&terrain, &scene, 1, 0, 0, &progress, &log_kept));
     assert_null(terrain.height_m);
 }
 

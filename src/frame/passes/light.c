@@ -153,7 +153,7 @@ bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
         missing += pipeline && !pipeline->pipeline;
     }
     if (missing)
-        wd_jobs_run(0, WD_TILE_LISTS + 1, prepare_list, &work);
+        wd_jobs_run(gpu->threads, WD_TILE_LISTS + 1, prepare_list, &work);
     return !atomic_load(&work.failed);
 }
 
