@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "api/arguments.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "output/exr.h"
@@ -97,6 +98,8 @@ static void compare_radiance(struct wd_comparison *comparison, const struct wd_p
 static bool check(const struct wd_picture *reference, const struct wd_picture *picture,
                   const struct wd_log *log)
 {
+    if (!wd_given(reference, log) || !wd_given(picture, log))
+        return false;
     if (reference->width != picture->width || reference->height != picture->height)
         return wd_error(log, "the reference has %u x %u pixels, the picture %u x %u: both must have "
                              "the same size",
@@ -191,6 +194,8 @@ enum wd_result wd_picture_read_exr(struct wd_picture *picture, const char *path,
 {
     struct wd_exr_image image;
     *picture = (struct wd_picture){0};
+    if (!wd_given(path, log))
+        return WD_ERROR_INPUT;
     if (!wd_exr_read(&image, path, log))
         return WD_ERROR_INPUT;
     *picture = (struct wd_picture){

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "api/arguments.h"
 #include "api/sky_file.h"
 #include "base/memory.h"
 #include "tree/import.h"
@@ -36,6 +37,8 @@ static bool watch_report(void *user, const char *stage, uint64_t done, uint64_t 
 enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_forest_params *params)
 {
     *result = NULL;
+    if (!wd_given(params, NULL) || !wd_given(params->scene_path, &params->log))
+        return WD_ERROR_INPUT;
     struct wd_forest *forest = wd_alloc(sizeof *forest);
     forest->log = params->log;
     const struct wd_scene_params scene = {.data_dir = params->data_dir,

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "api/arguments.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "output/cryptomatte.h"
@@ -127,6 +128,8 @@ static enum wd_result write_exr(const struct wd_picture *picture, const char *pa
 enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
                                 const struct wd_log *log)
 {
+    if (!wd_given(picture, log) || !wd_given(path, log))
+        return WD_ERROR_INPUT;
     if (wd_has_ending(path, ".png"))
         return write_png(picture, path, log);
     if (wd_has_ending(path, ".exr"))

@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "api/arguments.h"
 #include "api/forest.h"
 #include "base/clock.h"
 #include "base/file.h"
@@ -16,7 +17,7 @@
 #include "world/on_demand.h"
 #include "world/surroundings.h"
 
-enum { MAX_SIZE = 16384, MAX_SAMPLES = 1 << 20, DEFAULT_SAMPLES = 64, DEFAULT_BOUNCES = 8 };
+enum { MAX_SAMPLES = 1 << 20, DEFAULT_SAMPLES = 64, DEFAULT_BOUNCES = 8 };
 static const double CHECKPOINT_S = 30.0;
 
 struct wd_reference {
@@ -53,8 +54,10 @@ static RTCDevice open_device(struct wd_reference *reference)
 enum wd_result wd_reference_create(struct wd_reference **result, const struct wd_forest *forest,
                                    const struct wd_reference_params *params)
 {
-    struct wd_reference *reference = wd_alloc(sizeof *reference);
     *result = NULL;
+    if (!wd_given(params, NULL) || !wd_given(forest, &params->log))
+        return WD_ERROR_INPUT;
+    struct wd_reference *reference = wd_alloc(sizeof *reference);
     *reference = (struct wd_reference){.forest = forest,
                                        .threads = params->threads,
                                        .progress = params->progress,
@@ -105,25 +108,31 @@ struct work {
     uint64_t key;
 };
 
+/* Layers that no path tells of. */
+static const uint32_t MISSING_LAYERS = WD_LAYER_VELOCITY | WD_LAYER_CRYPTOMATTE;
+
+static bool check_layers(uint32_t layers, const struct wd_log *log)
+{
+    uint32_t missing = layers == WD_LAYER_ALL ? 0 : layers & MISSING_LAYERS;
+    if (missing)
+        return wd_error(log,
+                        "layers asks for %s, which the path tracer lacks: all others are possible",
+                        missing == WD_LAYER_VELOCITY      ? "velocity"
+                        : missing == WD_LAYER_CRYPTOMATTE ? "cryptomatte"
+                                                          : "velocity and cryptomatte");
+    return wd_check_layers(layers, log);
+}
+
 static bool check(const struct wd_reference *reference,
                   const struct wd_reference_picture_params *params)
 {
     const struct wd_log *log = &reference->log;
-    if (params->width < 1 || params->width > MAX_SIZE || params->height < 1 ||
-        params->height > MAX_SIZE)
-        return wd_error(log, "picture of %u x %u pixels: 1 to %d each way are possible",
-                        params->width, params->height, MAX_SIZE);
-    if (params->samples > MAX_SAMPLES)
-        return wd_error(log, "%u samples: at most %d are possible", params->samples, MAX_SAMPLES);
-    if (!(params->camera.fov_rad > 0.0 && params->camera.fov_rad < 3.14159))
-        return wd_error(log, "field of view of %g radians: between 0 and pi is possible",
-                        params->camera.fov_rad);
-    for (int k = 0; k < 3; k++) {
-        if (!(fabs(params->camera.position_m[k]) < 2.0e6))
-            return wd_error(log, "camera at %g m: within 2,000 km of the origin is possible",
-                            params->camera.position_m[k]);
-    }
-    return true;
+    return wd_check_size(params->width, params->height, log) &&
+           wd_check_samples(params->samples, MAX_SAMPLES, log) &&
+           wd_check_camera(&params->camera, "camera", log) &&
+           wd_check_time(params->time_s, "time_s", log) &&
+           wd_check_choice(params->places, WD_REFERENCE_MIDDLES + 1, "places", log) &&
+           check_layers(params->layers, log);
 }
 
 /* All that the picture depends on but the number of samples. */
@@ -297,7 +306,7 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
                                    struct wd_picture *picture)
 {
     *picture = (struct wd_picture){0};
-    if (!check(reference, params) ||
+    if (!wd_given(params, &reference->log) || !check(reference, params) ||
         !wd_demand_is_none(&reference->forest->world.demand, "the path tracer", &reference->log))
         return WD_ERROR_INPUT;
     reference->stats = (struct wd_reference_stats){0};
@@ -305,7 +314,7 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
         .reference = reference,
         .params = params,
         .samples = params->samples ? params->samples : DEFAULT_SAMPLES,
-        .layers = params->layers ? params->layers : WD_LAYER_DISPLAY,
+        .layers = params->layers ? params->layers & ~MISSING_LAYERS : WD_LAYER_DISPLAY,
     };
     enum wd_result result = prepare(&work) ? trace_paths(&work) : WD_ERROR_MEMORY;
     if (result == WD_OK) {

@@ -5,19 +5,19 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "api/arguments.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "weald/vulkan.h"
 
-enum { MAX_SIZE = 16384, MAX_SAMPLES = 65536 };
+enum { MAX_SAMPLES = 65536 };
 
 /* --- making ------------------------------------------------------------------------------ */
 
 static enum wd_result create(struct wd_renderer **result, const struct wd_gpu_params *gpu,
                              const struct wd_renderer_params *params)
 {
-    *result = NULL;
     struct wd_renderer *renderer = wd_alloc(sizeof *renderer);
     renderer->log = params->log;
     renderer->progress = params->progress;
@@ -32,6 +32,13 @@ static enum wd_result create(struct wd_renderer **result, const struct wd_gpu_pa
     return WD_OK;
 }
 
+static bool check_create(struct wd_renderer **renderer, const struct wd_renderer_params *params)
+{
+    *renderer = NULL;
+    return wd_given(params, NULL) &&
+           wd_check_choice(params->validation, WD_VALIDATION_ON + 1, "validation", &params->log);
+}
+
 static struct wd_gpu_params gpu_params(const struct wd_renderer_params *params)
 {
     return (struct wd_gpu_params){
@@ -44,6 +51,8 @@ static struct wd_gpu_params gpu_params(const struct wd_renderer_params *params)
 enum wd_result wd_renderer_create(struct wd_renderer **renderer,
                                   const struct wd_renderer_params *params)
 {
+    if (!check_create(renderer, params))
+        return WD_ERROR_INPUT;
     const struct wd_gpu_params gpu = gpu_params(params);
     return create(renderer, &gpu, params);
 }
@@ -53,6 +62,9 @@ enum wd_result wd_renderer_create_presenting(struct wd_renderer **renderer,
                                              uint32_t instance_extension_count,
                                              const struct wd_renderer_params *params)
 {
+    if (!check_create(renderer, params) ||
+        (instance_extension_count && !wd_given(instance_extensions, &params->log)))
+        return WD_ERROR_INPUT;
     struct wd_gpu_params gpu = gpu_params(params);
     gpu.instance_extensions = instance_extensions;
     gpu.instance_extension_count = instance_extension_count;
@@ -64,6 +76,8 @@ enum wd_result wd_renderer_create_vulkan(struct wd_renderer **renderer,
                                          const struct wd_vulkan_handles *handles,
                                          const struct wd_renderer_params *params)
 {
+    if (!check_create(renderer, params) || !wd_given(handles, &params->log))
+        return WD_ERROR_INPUT;
     const struct wd_gpu_external external = {handles->instance, handles->physical_device,
                                              handles->device, handles->queue,
                                              handles->queue_family};
@@ -126,32 +140,30 @@ enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct
 
 /* --- pictures ---------------------------------------------------------------------------- */
 
+static bool check_motion(const struct wd_render_params *params, const struct wd_log *log)
+{
+    return wd_check_time(params->previous_time_s, "previous_time_s", log) &&
+           (!params->previous_camera ||
+            wd_check_camera(params->previous_camera, "previous_camera", log));
+}
+
 static bool check(const struct wd_renderer *renderer, const struct wd_render_params *params)
 {
     const struct wd_log *log = &renderer->log;
     if (!renderer->forest)
         return wd_error(log, "no forest is set to be drawn: call wd_renderer_set_forest first");
-    if (params->width < 1 || params->width > MAX_SIZE || params->height < 1 ||
-        params->height > MAX_SIZE)
-        return wd_error(log, "picture of %u x %u pixels: 1 to %d each way are possible",
-                        params->width, params->height, MAX_SIZE);
-    if (params->samples > MAX_SAMPLES)
-        return wd_error(log, "%u samples: at most %d are possible", params->samples, MAX_SAMPLES);
-    double fov = params->camera.fov_rad;
-    if (!(fov > 0.0 && fov < 3.14159))
-        return wd_error(log, "field of view of %g radians: between 0 and pi is possible", fov);
     double error_px = params->max_error_px;
     if (error_px != 0.0 && !(error_px >= WD_LEAST_ERROR_PX && error_px <= WD_MOST_ERROR_PX))
         return wd_error(log, "an error of %g pixels: %g to %g are possible", error_px,
                         WD_LEAST_ERROR_PX, WD_MOST_ERROR_PX);
-    for (int k = 0; k < 3; k++) {
-        if (!(fabs(params->camera.position_m[k]) < 2.0e6))
-            return wd_error(log,
-                            "camera at %g, %g, %g m: within 2,000 km of the origin is possible",
-                            params->camera.position_m[0], params->camera.position_m[1],
-                            params->camera.position_m[2]);
-    }
-    return true;
+    return wd_check_size(params->width, params->height, log) &&
+           wd_check_samples(params->samples, MAX_SAMPLES, log) &&
+           wd_check_choice(params->view, WD_VIEW_SHADOW + 1, "view", log) &&
+           wd_check_choice(params->accumulation, WD_ACCUMULATE + 1, "accumulation", log) &&
+           wd_check_choice(params->timing, WD_TIME_PASSES + 1, "timing", log) &&
+           wd_check_camera(&params->camera, "camera", log) &&
+           wd_check_time(params->time_s, "time_s", log) &&
+           (params->accumulation == WD_ACCUMULATE || check_motion(params, log));
 }
 
 enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
@@ -275,6 +287,8 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
                                   const struct wd_render_params *params, struct wd_picture *picture)
 {
     *picture = (struct wd_picture){0};
+    if (!wd_given(params, &renderer->log) || !wd_check_layers(params->layers, &renderer->log))
+        return WD_ERROR_INPUT;
     uint32_t layers = params->layers ? params->layers : WD_LAYER_DISPLAY;
     bool lit = layers & (WD_LAYER_DISPLAY | WD_LAYER_COLOR) || params->accumulation == WD_ACCUMULATE;
     enum wd_result result = wd_renderer_prepare(renderer, params, UINT32_MAX, lit ? WD_FRAME_LIT : WD_FRAME_UNLIT);

@@ -1,5 +1,6 @@
 #include "weald/vulkan.h"
 
+#include "api/arguments.h"
 #include "api/renderer.h"
 #include "base/clock.h"
 
@@ -51,7 +52,8 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
                                 const struct wd_vulkan_target *target)
 {
     enum { LIVE_SAMPLES = 1, LIVE_PAGES = 256 };
-    if (!check_target(renderer, params, target))
+    if (!wd_given(params, &renderer->log) || !wd_given(target, &renderer->log) ||
+        !check_target(renderer, params, target))
         return WD_ERROR_INPUT;
     enum wd_result result = wd_renderer_prepare(renderer, params, LIVE_SAMPLES, WD_FRAME_LIT);
     if (result != WD_OK)

@@ -185,6 +185,63 @@ static void test_bad_input(void **state)
     wd_reference_destroy(&reference);
 }
 
+static void assert_refused(struct suite *suite, struct wd_reference *reference,
+                           const struct wd_reference_picture_params *params, const char *part)
+{
+    struct wd_picture picture;
+    suite_clear(suite);
+    assert_int_equal(wd_reference_render(reference, params, &picture), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, part));
+    assert_true(picture.width == 0);
+}
+
+/* Refused as by the renderer. */
+static void numbers_are_finite(void **state)
+{
+    struct suite *suite = suite_of(state);
+    struct wd_reference *reference = open_reference(suite, NULL);
+    const struct wd_reference_picture_params good = picture_params(suite);
+    struct wd_reference_picture_params params = good;
+    params.camera.yaw_rad = NAN;
+    assert_refused(suite, reference, &params, "camera.yaw_rad is nan");
+    params = good;
+    params.camera.fov_rad = 1e-4;
+    assert_refused(suite, reference, &params, "camera.fov_rad is 0.0001");
+    params = good;
+    params.time_s = INFINITY;
+    assert_refused(suite, reference, &params, "time_s is inf");
+    params = good;
+    params.places = (enum wd_reference_places)9;
+    assert_refused(suite, reference, &params, "places is 9");
+    assert_refused(suite, reference, NULL, "params is NULL");
+    wd_reference_destroy(&reference);
+}
+
+/* Layers that it lacks are refused by name; of all it makes those that it has. */
+static void missing_layers_are_refused(void **state)
+{
+    struct suite *suite = suite_of(state);
+    struct wd_reference *reference = open_reference(suite, NULL);
+    struct wd_reference_picture_params params = picture_params(suite);
+    struct wd_picture picture;
+    params.layers = WD_LAYER_VELOCITY | WD_LAYER_DEPTH;
+    assert_refused(suite, reference, &params, "layers asks for velocity, which");
+    params.layers = WD_LAYER_CRYPTOMATTE;
+    assert_refused(suite, reference, &params, "layers asks for cryptomatte, which");
+    params.layers = WD_LAYER_ALL | WD_LAYER_CRYPTOMATTE;
+    assert_refused(suite, reference, &params, "layers asks for velocity and cryptomatte, which");
+    params.layers = WD_LAYER_COLOR | 1u << 9;
+    assert_refused(suite, reference, &params, "layers has the unknown bits 0x200");
+    params.layers = WD_LAYER_ALL;
+    params.width = params.height = 4;
+    params.samples = 1;
+    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_OK);
+    assert_true(picture.display && picture.color && picture.depth_m && picture.normal && picture.albedo);
+    assert_true(picture.species && picture.tree_id && !picture.velocity_px && !picture.rank_tree);
+    wd_picture_finish(&picture);
+    wd_reference_destroy(&reference);
+}
+
 int main(int argc, char **argv)
 {
     static struct suite suite;
@@ -197,6 +254,8 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(test_fewer_samples, &suite),
         cmocka_unit_test_prestate(test_other_leaves, &suite),
         cmocka_unit_test_prestate(test_bad_input, &suite),
+        cmocka_unit_test_prestate(numbers_are_finite, &suite),
+        cmocka_unit_test_prestate(missing_layers_are_refused, &suite),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     suite_finish(&suite);
