@@ -5,5 +5,6 @@
 #include "suite.h"
 
 int argument_tests(struct suite *suite);
+int film_tests(struct suite *suite);
 
 #endif
