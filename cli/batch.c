@@ -83,6 +83,14 @@ static bool add_line(struct batch *batch, const char *text, uint32_t number)
     return line->text ? read_line(batch, line) : complain(batch, number, "out of memory", "");
 }
 
+/* Some editors put a byte order mark before UTF-8. */
+static size_t mark_length(const char *text)
+{
+    static const char mark[] = "\xef\xbb\xbf";
+    size_t length = sizeof mark - 1;
+    return strncmp(text, mark, length) == 0 ? length : 0;
+}
+
 static bool read_lines(struct batch *batch)
 {
     FILE *file = strcmp(batch->path, "-") ? fopen(batch->path, "r") : stdin;
@@ -92,7 +100,7 @@ static bool read_lines(struct batch *batch)
     if (!file)
         return cli_fail(batch->session, "%s: no such file can be read", batch->path);
     for (uint32_t number = 1; ok && getline(&text, &size, file) >= 0; number++)
-        ok = add_line(batch, text, number);
+        ok = add_line(batch, text + (number == 1 ? mark_length(text) : 0), number);
     if (ok && ferror(file))
         ok = cli_fail(batch->session, "%s: reading it failed", batch->path);
     free(text);

@@ -8,11 +8,15 @@
 #define DEFAULT_FRAMES_PER_SECOND 24.0
 #define STANDING_SECONDS 4.0
 
+double cli_frames_per_second(const struct cli_options *options)
+{
+    return options->frames_per_second > 0 ? options->frames_per_second : DEFAULT_FRAMES_PER_SECOND;
+}
+
 static bool settle_frames(struct cli_film *film)
 {
     const struct cli_options *options = film->session->options;
-    film->frames_per_second =
-        options->frames_per_second > 0 ? options->frames_per_second : DEFAULT_FRAMES_PER_SECOND;
+    film->frames_per_second = cli_frames_per_second(options);
     film->path = options->path;
     if (!film->path && !options->camera)
         film->path = wd_forest_path_name(film->forest, 0);
@@ -69,6 +73,27 @@ static enum wd_result frame_camera(const struct cli_film *film, uint64_t frame,
     return wd_forest_get_path_camera(film->forest, film->path, time_s, camera, NULL);
 }
 
+void cli_camera_before(struct wd_camera *before, const struct wd_camera *here, const struct wd_camera *next)
+{
+    *before = *here;
+    for (int k = 0; k < 3; k++)
+        before->position_m[k] -= next->position_m[k] - here->position_m[k];
+    before->yaw_rad -= next->yaw_rad - here->yaw_rad;
+    before->pitch_rad -= next->pitch_rad - here->pitch_rad;
+}
+
+/* The first frame moves as it does to the second. */
+static enum wd_result previous_camera(const struct cli_film *film, uint64_t frame, const struct wd_camera *here,
+                                      struct wd_camera *previous)
+{
+    struct wd_camera next = *here;
+    if (frame)
+        return frame_camera(film, frame - 1, previous);
+    enum wd_result result = film->frame_count > 1 ? frame_camera(film, 1, &next) : WD_OK;
+    cli_camera_before(previous, here, &next);
+    return result;
+}
+
 /* The next frame's error bound follows from this one's time. */
 static void note_time(struct cli_film *film, const struct cli_painter *painter)
 {
@@ -88,13 +113,13 @@ static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *pai
     struct wd_camera previous;
     struct wd_picture picture = {0};
     enum wd_result result = frame_camera(film, frame, &params.camera);
-    if (result == WD_OK && frame)
-        result = frame_camera(film, frame - 1, &previous);
+    if (result == WD_OK)
+        result = previous_camera(film, frame, &params.camera, &previous);
     if (film->session->options->budget_ms > 0)
         params.max_error_px = film->budget.error_px;
     params.time_s += (double)frame / film->frames_per_second;
-    params.previous_time_s = frame ? params.time_s - 1 / film->frames_per_second : params.time_s;
-    params.previous_camera = frame ? &previous : NULL;
+    params.previous_time_s = params.time_s - 1 / film->frames_per_second;
+    params.previous_camera = &previous;
     if (result == WD_OK)
         result = cli_painter_paint(painter, &params, &picture);
     if (result == WD_OK)

@@ -17,6 +17,11 @@ struct cli_film {
     uint64_t over_budget;    /* frames that took longer */
 };
 
+/* As asked for, or as usual. */
+double cli_frames_per_second(const struct cli_options *options);
+/* Where a camera was that goes on to `next` as it came `here`. */
+void cli_camera_before(struct wd_camera *before, const struct wd_camera *here, const struct wd_camera *next);
+
 /* Settles the frames and opens the output, before the long work. `*film` is ready for
  * cli_film_close whatever the result. */
 enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,

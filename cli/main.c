@@ -59,9 +59,9 @@ static const struct cli_command commands[] = {
      cli_info},
     {"check", CLI_CHECK, "FILE...", 1, 1 << 20,
      "look for faults in scene, species, CSV and raster files",
-     "Checks files without building anything: scenes and species (.json), inventories (.csv),\n"
-     "rasters (anything else). Files that a scene names must be there and readable. Every fault is\n"
-     "named with file, line and key. Exits with 1 if any file has one.",
+     "Checks files without planting anything: scenes and species (.json), inventories (.csv), rasters\n"
+     "(anything else). A scene's inventories and ground are read as it would, other files that it names\n"
+     "must be there and readable. Faults are named with file, line and key. Exits with 1 if any file has one.",
      "  weald check scenes/*.json species/*.json\n"
      "  weald check my-plot.csv --data ~/plots\n",
      cli_check},

@@ -94,6 +94,12 @@ static bool make_plan(struct cli_session *session, struct cli_plan *plan)
     return cli_method_check(session);
 }
 
+/* Motion is that of a film's frame. */
+static double step_s(const struct cli_options *options)
+{
+    return 1 / cli_frames_per_second(options);
+}
+
 static void choose_picture(const struct cli_session *session, const struct wd_forest *forest,
                            struct cli_plan *plan)
 {
@@ -109,7 +115,8 @@ static void choose_picture(const struct cli_session *session, const struct wd_fo
     params->method = options->method;
     params->view = options->view;
     params->max_error_px = options->max_error_px;
-    params->time_s = params->previous_time_s = options->time_s;
+    params->time_s = options->time_s;
+    params->previous_time_s = options->time_s - step_s(options);
     params->timing = options->times ? WD_TIME_PASSES : WD_TIME_OFF;
 }
 
@@ -124,13 +131,24 @@ void cli_say_written(struct cli_session *session, const struct cli_plan *plan, c
             plan->params.samples == 1 ? "" : "s", size, cli_seconds() - session->meter.begin_s);
 }
 
+/* Where it was a frame before, as in a film. */
 static enum wd_result choose_camera(struct cli_session *session, const struct wd_forest *forest,
-                                    struct wd_camera *camera)
+                                    struct wd_camera *camera, struct wd_camera *previous)
 {
     const struct cli_options *options = session->options;
-    if (options->path)
-        return wd_forest_get_path_camera(forest, options->path, options->time_s, camera, NULL);
-    return wd_forest_get_camera(forest, options->camera, camera);
+    double before_s = options->time_s - step_s(options);
+    if (!options->path) {
+        enum wd_result result = wd_forest_get_camera(forest, options->camera, camera);
+        *previous = *camera;
+        return result;
+    }
+    enum wd_result result = wd_forest_get_path_camera(forest, options->path, options->time_s, camera, NULL);
+    if (result != WD_OK || before_s >= 0)
+        return result == WD_OK ? wd_forest_get_path_camera(forest, options->path, before_s, previous, NULL) : result;
+    struct wd_camera next;
+    result = wd_forest_get_path_camera(forest, options->path, options->time_s + step_s(options), &next, NULL);
+    cli_camera_before(previous, camera, &next);
+    return result;
 }
 
 static enum wd_result render_picture(struct cli_session *session, const struct wd_forest *forest,
@@ -138,7 +156,9 @@ static enum wd_result render_picture(struct cli_session *session, const struct w
 {
     struct cli_painter painter = {0};
     struct wd_picture picture = {0};
-    enum wd_result result = choose_camera(session, forest, &plan->params.camera);
+    struct wd_camera previous;
+    enum wd_result result = choose_camera(session, forest, &plan->params.camera, &previous);
+    plan->params.previous_camera = &previous;
     if (result == WD_OK)
         result = cli_painter_open(&painter, session, forest, plan);
     if (result == WD_OK)

@@ -120,7 +120,7 @@ struct wd_picture {
     uint8_t *display;  /* 4 a pixel: R, G, B, 255 */
     float *color;      /* 3 a pixel */
     float *depth_m;    /* distance along the view axis, metres; +infinity for sky */
-    float *normal;     /* 3 a pixel, local frame, unit length; 0 for sky */
+    float *normal;     /* 3 a pixel, local frame, unit length, of the side that is seen; 0 for sky */
     float *albedo;     /* 3 a pixel, linear */
     uint32_t *species; /* index + 1; 0: no tree */
     uint32_t *tree_id; /* 0: no tree */
@@ -128,6 +128,12 @@ struct wd_picture {
                            x right, y down */
     uint32_t *rank_tree; /* WD_RANKS a pixel: ids of trees by falling coverage; 0: no more */
     float *rank_share;   /* and the share of the pixel's samples that show each */
+    struct wd_camera camera; /* that took it, */
+    double time_s;           /* at this time of the wind */
+    char *about;         /* both, and what ids and places refer to, as JSON: scene, seed, time_s, camera (as in struct
+                            wd_camera), origin_m and crs (as in struct wd_forest_info), species (names; the species layer
+                            holds index + 1). Files (.exr) have it as the attribute "weald", and worldToCamera: from
+                            the local frame to x right, y up, -z ahead, rows times matrix */
 };
 
 /* Draws one picture. Deterministic for the same device.

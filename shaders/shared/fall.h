@@ -22,7 +22,8 @@ WD_FUNC WD_STRUCT wd_leaf_fall wd_leaf_fall_of(WD_VECTOR foot_m, WD_STRUCT wd_mo
 {
     WD_STRUCT wd_leaf_fall fall;
     float own = wd_hash_unit(random), speed_mps = model.fall_mps * (0.7f + 0.6f * own);
-    float left_m = wd_fract((foot_m.z - speed_mps * time_s) / model.height_m) * model.height_m;
+    float falls = time_s * wd_wind_rate(speed_mps / model.height_m);
+    float left_m = wd_fract(foot_m.z / model.height_m - falls) * model.height_m;
     float way_m = model.height_m - left_m, turn = (2.0f + 3.0f * own) * way_m + 40.0f * own;
     float drift_m = 0.35f * wind.speed_mps / speed_mps * (way_m - 0.5f * model.height_m);
     float east_m = wind.toward_x * drift_m, north_m = wind.toward_y * drift_m;

@@ -29,6 +29,24 @@ struct wd_wind_shift {
     float x_m, y_m, z_m;
 };
 
+/* All that sways does so a whole number of times in this, so times may be taken modulo it: as 32-bit floats
+ * those of a day would be off by eighths of a frame. */
+#define WD_WIND_PERIOD_S 4000.0f
+
+/* The nearest rate, a second, at which that is so. */
+WD_FUNC float wd_wind_rate(float hertz)
+{
+    return WD_FLOOR(hertz * WD_WIND_PERIOD_S + 0.5f) * (1.0f / WD_WIND_PERIOD_S);
+}
+
+#ifdef __STDC_VERSION__
+/* Of a time (and of others of about that time) what shaders take for it, once this is taken off. */
+static inline double wd_wind_begin_s(double time_s)
+{
+    return floor(time_s / (double)WD_WIND_PERIOD_S) * (double)WD_WIND_PERIOD_S;
+}
+#endif
+
 /* A wave of period 1 between -1 and 1 with continuous slope: a smoothed triangle (Sousa 2007). */
 WD_FUNC float wd_wind_wave(float x)
 {
@@ -41,9 +59,10 @@ WD_FUNC float wd_wind_gust(WD_STRUCT wd_wind wind, float x_m, float y_m, float t
 {
     float along = x_m * wind.toward_x + y_m * wind.toward_y;
     float across = y_m * wind.toward_x - x_m * wind.toward_y;
-    float carried = along - wind.speed_mps * time_s;
-    float slow = wd_wind_wave(carried * (1.0f / 61.0f) + 0.3f * wd_wind_wave(across * 0.013f));
-    float fast = wd_wind_wave(carried * (1.0f / 23.0f) - across * 0.017f);
+    float slowly = along * (1.0f / 61.0f) - wd_wind_rate(wind.speed_mps * (1.0f / 61.0f)) * time_s;
+    float quickly = along * (1.0f / 23.0f) - wd_wind_rate(wind.speed_mps * (1.0f / 23.0f)) * time_s;
+    float slow = wd_wind_wave(slowly + 0.3f * wd_wind_wave(across * 0.013f));
+    float fast = wd_wind_wave(quickly - across * 0.017f);
     return wind.gust * (0.65f * slow + 0.35f * fast);
 }
 
@@ -56,8 +75,8 @@ WD_FUNC WD_STRUCT wd_wind_shift wd_wind_offset(WD_STRUCT wd_wind wind,
     float phase = tree.random & 0xffffu, pitch = (tree.random >> 16) & 0xffu;
     float hertz = 6.0f / (tree.height_m + 1.0f) * (0.85f + pitch * (0.3f / 255.0f));
     float gust = wd_wind_gust(wind, tree.x_m, tree.y_m, time_s);
-    float ringing = wd_wind_wave(time_s * hertz + phase * (1.0f / 65536.0f));
-    float sideways = wd_wind_wave(time_s * hertz * 0.83f + phase * (7.0f / 65536.0f));
+    float ringing = wd_wind_wave(time_s * wd_wind_rate(hertz) + phase * (1.0f / 65536.0f));
+    float sideways = wd_wind_wave(time_s * wd_wind_rate(hertz * 0.83f) + phase * (7.0f / 65536.0f));
     float share = height_m > 0.0f ? height_m / tree.height_m : 0.0f;
     float bend = tree.flexibility * wind.speed_mps * 0.1f * tree.height_m * share * share;
     float push = bend * (0.6f + 0.6f * gust + 0.4f * wind.gust * ringing);

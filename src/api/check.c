@@ -18,6 +18,84 @@ static bool has_ending(const char *path, const char *ending)
     return length > tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
+/* --- inventories ------------------------------------------------------------------------- */
+
+static bool check_size(const struct wd_csv *csv, const struct wd_inventory_columns *columns,
+                       enum wd_inventory_size which)
+{
+    float size;
+    return wd_inventory_read_size(csv, columns, which, &size) != WD_CSV_BAD;
+}
+
+static bool check_place(const struct wd_csv *csv, int column)
+{
+    double place;
+    return wd_csv_number(csv, column, &place) != WD_CSV_BAD;
+}
+
+static bool check_rows(struct wd_csv *csv)
+{
+    enum { MAX_FAULTS = 20 };
+    const struct wd_scene_inventory wanted = {0};
+    struct wd_inventory_columns columns;
+    if (!wd_inventory_find_columns(&columns, csv, &wanted, csv->log))
+        return false;
+    int faults = 0;
+    uint64_t rows = 0;
+    for (;;) {
+        enum wd_csv_row row = wd_csv_next(csv);
+        if (row == WD_CSV_END)
+            break;
+        if (row == WD_CSV_ERROR)
+            return false;
+        rows++;
+        bool ok = check_place(csv, columns.x) & check_place(csv, columns.y) &
+                  check_size(csv, &columns, WD_SIZE_DBH) & check_size(csv, &columns, WD_SIZE_HEIGHT) &
+                  check_size(csv, &columns, WD_SIZE_CROWN);
+        if (!ok && ++faults == MAX_FAULTS)
+            return wd_error(csv->log, "%s: more faults are not listed", csv->path);
+    }
+    if (rows == 0)
+        return wd_error(csv->log, "%s: there is no tree after the header row", csv->path);
+    return faults == 0;
+}
+
+static bool check_csv(const char *path, const struct wd_log *log)
+{
+    struct wd_csv csv;
+    if (!wd_csv_open(&csv, path, NULL, log))
+        return false;
+    bool ok = check_rows(&csv);
+    wd_csv_close(&csv);
+    return ok;
+}
+
+/* --- rasters ----------------------------------------------------------------------------- */
+
+/* Reads a scene's raster as its ground, coarsely. */
+static bool check_ground(const struct wd_scene *scene, const struct wd_log *log)
+{
+    enum { COARSE_SAMPLES = 65536 };
+    struct wd_terrain terrain;
+    if (!wd_terrain_init(&terrain, scene, 0, COARSE_SAMPLES, NULL, log))
+        return false;
+    wd_terrain_finish(&terrain);
+    return true;
+}
+
+static bool check_raster(const char *path, const struct wd_log *log)
+{
+    const struct wd_scene scene = {
+        .path = "",
+        .terrain = {.kind = WD_TERRAIN_RASTER,
+                    .file = path,
+                    .band = 1,
+                    .nodata = NAN,
+                    .vertical_scale = 1.0},
+    };
+    return check_ground(&scene, log);
+}
+
 /* --- scenes and species ------------------------------------------------------------------ */
 
 /* All end in .json. */
@@ -46,6 +124,20 @@ static bool check_species(const char *path, const struct wd_log *log)
     return ok;
 }
 
+/* All inventories and the ground, as the scene reads them. */
+static bool check_data(const struct wd_scene *scene, const struct wd_log *log)
+{
+    bool ok = scene->terrain.kind != WD_TERRAIN_RASTER || check_ground(scene, log);
+    for (size_t i = 0; i < scene->inventory_count; i++) {
+        struct wd_inventory inventory;
+        bool loaded = wd_inventory_load(&inventory, scene, i, log);
+        if (loaded)
+            wd_inventory_finish(&inventory);
+        ok = ok && loaded;
+    }
+    return ok;
+}
+
 static bool check_json(const char *path, const char *data_dir, const struct wd_log *log)
 {
     bool species_file;
@@ -57,80 +149,9 @@ static bool check_json(const char *path, const char *data_dir, const struct wd_l
     struct wd_scene scene;
     if (!wd_scene_load_with(&scene, path, &params, log))
         return false;
+    bool ok = check_data(&scene, log);
     wd_scene_finish(&scene);
-    return true;
-}
-
-/* --- inventories ------------------------------------------------------------------------- */
-
-static bool check_number(const struct wd_csv *csv, int column, bool positive)
-{
-    double value = 0.0;
-    if (column < 0)
-        return true;
-    enum wd_csv_value kind = wd_csv_number(csv, column, &value);
-    if (kind == WD_CSV_NUMBER && positive && value < 0.0)
-        return wd_error(csv->log, "%s:%llu: %s is %g: a size is never negative", csv->path,
-                        (unsigned long long)csv->line, csv->header[column], value);
-    return kind != WD_CSV_BAD;
-}
-
-static bool check_rows(struct wd_csv *csv)
-{
-    enum { MAX_FAULTS = 20 };
-    const struct wd_scene_inventory wanted = {0};
-    struct wd_inventory_columns columns;
-    if (!wd_inventory_find_columns(&columns, csv, &wanted, csv->log))
-        return false;
-    int faults = 0;
-    uint64_t rows = 0;
-    for (;;) {
-        enum wd_csv_row row = wd_csv_next(csv);
-        if (row == WD_CSV_END)
-            break;
-        if (row == WD_CSV_ERROR)
-            return false;
-        rows++;
-        bool ok = check_number(csv, columns.x, false) & check_number(csv, columns.y, false) &
-                  check_number(csv, columns.dbh, true) & check_number(csv, columns.height, true) &
-                  check_number(csv, columns.crown, true);
-        if (!ok && ++faults == MAX_FAULTS)
-            return wd_error(csv->log, "%s: more faults are not listed", csv->path);
-    }
-    if (rows == 0)
-        return wd_error(csv->log, "%s: there is no tree after the header row", csv->path);
-    return faults == 0;
-}
-
-static bool check_csv(const char *path, const struct wd_log *log)
-{
-    struct wd_csv csv;
-    if (!wd_csv_open(&csv, path, NULL, log))
-        return false;
-    bool ok = check_rows(&csv);
-    wd_csv_close(&csv);
     return ok;
-}
-
-/* --- rasters ----------------------------------------------------------------------------- */
-
-/* Reads the raster as ground would be, coarsely. */
-static bool check_raster(const char *path, const struct wd_log *log)
-{
-    enum { COARSE_SAMPLES = 65536 };
-    struct wd_scene scene = {
-        .path = "",
-        .terrain = {.kind = WD_TERRAIN_RASTER,
-                    .file = path,
-                    .band = 1,
-                    .nodata = NAN,
-                    .vertical_scale = 1.0},
-    };
-    struct wd_terrain terrain;
-    if (!wd_terrain_init(&terrain, &scene, 0, COARSE_SAMPLES, NULL, log))
-        return false;
-    wd_terrain_finish(&terrain);
-    return true;
 }
 
 enum wd_result wd_file_check(const char *path, const char *data_dir, const struct wd_log *log)

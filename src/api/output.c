@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "api/arguments.h"
+#include "api/shown.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "output/cryptomatte.h"
@@ -49,12 +50,12 @@ static void add_channels(struct wd_exr_channel *channels, size_t *count, const c
 }
 
 /* Ids as floats and their coverage, two ranks of a pixel in each RGBA layer, and what readers need to
- * know of them. All of it lives until finish_ranks. */
+ * know of them, beside what the picture tells of itself. All of it lives until finish_ranks. */
 struct ranks {
     struct wd_cryptomatte matte;
     float *values; /* 2 * WD_RANKS a pixel */
     char *manifest;
-    struct wd_exr_text texts[4];
+    struct wd_exr_text texts[5];
 };
 
 /* The keys hold the first seven digits of the hash of "weald_tree". */
@@ -77,13 +78,12 @@ static void add_ranks(struct ranks *ranks, const struct wd_picture *picture,
         ranks->values[2 * i + 1] = picture->rank_share[i];
     }
     ranks->manifest = wd_cryptomatte_manifest(&ranks->matte);
-    const struct wd_exr_text texts[4] = {{MATTE_KEY "name", "weald_tree"},
+    const struct wd_exr_text texts[] = {{MATTE_KEY "name", "weald_tree"},
                                          {MATTE_KEY "hash", "MurmurHash3_32"},
                                          {MATTE_KEY "conversion", "uint32_to_float32"},
                                          {MATTE_KEY "manifest", ranks->manifest}};
-    memcpy(ranks->texts, texts, sizeof texts);
-    params->texts = ranks->texts;
-    params->text_count = 4;
+    memcpy(ranks->texts + params->text_count, texts, sizeof texts);
+    params->text_count += sizeof texts / sizeof *texts;
     add_channels(channels, &params->channel_count, names, ranks->values, 2 * WD_RANKS);
 }
 
@@ -102,7 +102,15 @@ static enum wd_result write_exr(const struct wd_picture *picture, const char *pa
     static const char *const albedo[] = {"albedo.R", "albedo.G", "albedo.B"};
     static const char *const velocity[] = {"velocity.X", "velocity.Y"};
     struct wd_exr_channel channels[MAX_CHANNELS];
-    struct wd_exr_params params = {picture->width, picture->height, channels, 0, NULL, 0};
+    struct ranks ranks = {0};
+    struct wd_exr_params params = {picture->width, picture->height, channels, 0, ranks.texts, 0, NULL};
+    float camera[4][4];
+    if (picture->about)
+        ranks.texts[params.text_count++] = (struct wd_exr_text){"weald", picture->about};
+    if (picture->camera.fov_rad > 0) {
+        wd_picture_camera_matrix(camera, &picture->camera);
+        params.world_to_camera = &camera[0][0];
+    }
     add_channels(channels, &params.channel_count, color, picture->color, 3);
     add_channels(channels, &params.channel_count, depth, picture->depth_m, 1);
     add_channels(channels, &params.channel_count, normal, picture->normal, 3);
@@ -118,7 +126,6 @@ static enum wd_result write_exr(const struct wd_picture *picture, const char *pa
         wd_error(log, "%s: the picture has no layer that an EXR file could hold", path);
         return WD_ERROR_INPUT;
     }
-    struct ranks ranks = {0};
     add_ranks(&ranks, picture, channels, &params);
     bool ok = wd_exr_write(path, &params, log);
     finish_ranks(&ranks);

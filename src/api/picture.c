@@ -18,6 +18,7 @@ void wd_picture_finish(struct wd_picture *picture)
     free(picture->velocity_px);
     free(picture->rank_tree);
     free(picture->rank_share);
+    free(picture->about);
     *picture = (struct wd_picture){0};
 }
 

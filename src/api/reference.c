@@ -7,6 +7,7 @@
 
 #include "api/arguments.h"
 #include "api/forest.h"
+#include "api/shown.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -14,6 +15,7 @@
 #include "reference/checkpoint.h"
 #include "reference/display.h"
 #include "shared/air.h"
+#include "shared/wind.h"
 #include "world/on_demand.h"
 #include "world/surroundings.h"
 
@@ -171,7 +173,7 @@ static bool prepare(struct work *work)
     const struct wd_reference_picture_params *params = work->params;
     const struct wd_forest *forest = reference->forest;
     double begin_s = wd_clock_s();
-    work->frame.time_s = (float)params->time_s;
+    work->frame.time_s = (float)(params->time_s - wd_wind_begin_s(params->time_s));
     work->frame.width = params->width;
     work->frame.height = params->height;
     wd_surroundings_set_camera(&work->frame, params->camera.position_m);
@@ -299,6 +301,7 @@ static void fill_picture(struct work *work, struct wd_picture *picture)
         free(picture->color);
         picture->color = NULL;
     }
+    wd_picture_settle(picture, work->reference->forest, &work->params->camera, work->params->time_s);
 }
 
 enum wd_result wd_reference_render(struct wd_reference *reference,

@@ -6,6 +6,7 @@
 #include <xxhash.h>
 
 #include "api/arguments.h"
+#include "api/shown.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
@@ -300,7 +301,9 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
     if (result == WD_OK && !wd_picture_read(picture, renderer, layers))
         result = WD_ERROR_DEVICE;
     wd_coverage_finish(&renderer->coverage);
-    if (result != WD_OK)
+    if (result == WD_OK)
+        wd_picture_settle(picture, renderer->forest, &params->camera, params->time_s);
+    else
         wd_picture_finish(picture);
     return result;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "frame/nearest.h"
+#include "shared/wind.h"
 #include "world/surroundings.h"
 
 static const float NEAR_M = 0.1f;
@@ -109,8 +110,9 @@ static void fill_camera(struct wd_frame_uniforms *uniforms, struct wd_view *view
     uniforms->width = params->width;
     uniforms->height = params->height;
     double span_s = params->time_s - params->previous_time_s;
-    uniforms->time_s = (float)(params->time_s + span_s * scene->lens.shutter * exposure.time);
-    uniforms->previous_time_s = (float)params->previous_time_s;
+    double begin_s = wd_wind_begin_s(params->time_s);
+    uniforms->time_s = (float)(params->time_s - begin_s + span_s * scene->lens.shutter * exposure.time);
+    uniforms->previous_time_s = (float)(params->previous_time_s - begin_s);
 }
 
 /* The previous camera's matrix for places relative to the present one. */

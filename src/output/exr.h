@@ -23,6 +23,7 @@ struct wd_exr_params {
     size_t channel_count;
     const struct wd_exr_text *texts; /* attributes */
     size_t text_count;
+    const float *world_to_camera; /* 4 x 4 by rows, the standard attribute of that name; NULL: none */
 };
 
 /* ZIP-compressed scan lines; colours are noted to be linear with the primaries of sRGB; the file

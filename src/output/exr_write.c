@@ -89,6 +89,11 @@ static exr_result_t write_header(struct writer *writer)
         result = note_colours(context, part);
     for (size_t i = 0; i < params->text_count && !result; i++)
         result = exr_attr_set_string(context, part, params->texts[i].name, params->texts[i].value);
+    if (params->world_to_camera && !result) {
+        exr_attr_m44f_t matrix;
+        memcpy(matrix.m, params->world_to_camera, sizeof matrix.m);
+        result = exr_attr_set_m44f(context, part, "worldToCamera", &matrix);
+    }
     return result ? result : exr_write_header(context);
 }
 

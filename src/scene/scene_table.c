@@ -171,8 +171,8 @@ static const struct wd_key lens_keys[] = {
     {"focus_m", WD_KEY_DOUBLE, IN(lens, focus_m), 0, 1e6, "20",
      "Distance along the view axis that is sharp, in metres.", .flags = WD_KEY_EXCLUSIVE_MIN},
     {"shutter", WD_KEY_DOUBLE, IN(lens, shutter), 0, 1, "0",
-     "Share of the time between a film's frames for which the shutter is open: motion blur, drawn "
-     "by the picture's samples; 0.5 is usual."},
+     "Share of the time between a film's frames (of a still, before it) for which the shutter is open: motion "
+     "blur, drawn by the picture's samples; 0.5 is usual."},
     {"bloom", WD_KEY_DOUBLE, IN(lens, bloom), 0, 0.5, "0",
      "Share of the light that the lens spreads about bright places."},
     {0},

@@ -36,25 +36,38 @@ static bool is_dead(const struct reader *reader)
     return false;
 }
 
-/* A size of the row in the wanted unit; 0 where it is missing or written as 0. */
-static bool read_size(struct reader *reader, int column, double factor, double most,
-                      const char *unit, float *size)
+enum wd_csv_value wd_inventory_read_size(const struct wd_csv *csv, const struct wd_inventory_columns *columns,
+                                         enum wd_inventory_size which, float *size)
 {
-    double value;
+    const struct {
+        int column;
+        double factor, most;
+        const char *unit;
+    } sizes[] = {{columns->dbh, columns->dbh_cm, most_dbh_cm, "cm"},
+                 {columns->height, columns->height_m, most_height_m, "m"},
+                 {columns->crown, columns->crown_m, most_crown_m, "m"}};
+    int column = sizes[which].column;
+    double value, most = sizes[which].most;
     *size = 0.0f;
     if (column < 0)
-        return true;
-    enum wd_csv_value kind = wd_csv_number(&reader->csv, column, &value);
+        return WD_CSV_MISSING;
+    enum wd_csv_value kind = wd_csv_number(csv, column, &value);
     if (kind != WD_CSV_NUMBER)
-        return kind == WD_CSV_MISSING;
-    reader->zero_sizes += value == 0.0;
-    *size = (float)(value * factor);
-    if (value >= 0.0 && value * factor <= most)
-        return true;
-    return wd_error(reader->log, "%s:%" PRIu64 ": column %s: %s is %s; above 0 and up to %g %s is "
-                    "a tree (is the unit right?)", reader->csv.path, reader->csv.line,
-                    reader->csv.header[column], reader->csv.fields[column],
-                    value < 0.0 ? "negative" : "too much", most, unit);
+        return kind;
+    *size = (float)(value * sizes[which].factor);
+    if (value >= 0.0 && value * sizes[which].factor <= most)
+        return kind;
+    wd_error(csv->log, "%s:%" PRIu64 ": column %s: %s is %s; above 0 and up to %g %s is "
+             "a tree (is the unit right?)", csv->path, csv->line, csv->header[column], csv->fields[column],
+             value < 0.0 ? "negative" : "too much", most, sizes[which].unit);
+    return WD_CSV_BAD;
+}
+
+static bool read_size(struct reader *reader, enum wd_inventory_size which, float *size)
+{
+    enum wd_csv_value kind = wd_inventory_read_size(&reader->csv, &reader->columns, which, size);
+    reader->zero_sizes += kind == WD_CSV_NUMBER && *size == 0.0f;
+    return kind != WD_CSV_BAD;
 }
 
 /* A row without a position cannot be planted, but is no reason to stop. */
@@ -84,13 +97,11 @@ static bool read_tree(struct reader *reader)
         return true;
     }
     if (!read_position(reader, &tree, &present) ||
-        !read_size(reader, columns->dbh, columns->dbh_cm, most_dbh_cm, "cm", &tree.dbh_cm) ||
-        !read_size(reader, columns->height, columns->height_m, most_height_m, "m",
-                   &tree.height_m) ||
-        !read_size(reader, columns->crown, columns->crown_m, most_crown_m, "m", &tree.crown_m))
+        !read_size(reader, WD_SIZE_DBH, &tree.dbh_cm) || !read_size(reader, WD_SIZE_HEIGHT, &tree.height_m) ||
+        !read_size(reader, WD_SIZE_CROWN, &tree.crown_m))
         return false;
     const char *name = columns->species >= 0 ? reader->csv.fields[columns->species] : "";
-    tree.name = (uint32_t)wd_species_names_find(&reader->names, name);
+    tree.name = (uint32_t)wd_species_names_find(&reader->names, name, reader->csv.line);
     int species = reader->names.names[tree.name].species;
     if (!present || species < 0)
         return true; /* names that are not found are reported together */
@@ -111,10 +122,10 @@ static bool check_species_column(struct reader *reader, const struct wd_scene *s
     if (scene->species_file_count == 1) {
         struct wd_species_name *only = wd_push(reader->names.names, reader->names.count,
                                                reader->names.capacity);
-        *only = (struct wd_species_name){wd_strdup(""), 0, 0};
+        *only = (struct wd_species_name){.name = wd_strdup("")};
         return true;
     }
-    size_t any = wd_species_names_find(&reader->names, "");
+    size_t any = wd_species_names_find(&reader->names, "", 1);
     if (reader->names.names[any].species >= 0)
         return true;
     char *names = wd_csv_names(&reader->csv);
@@ -136,7 +147,8 @@ static bool read_rows(struct reader *reader)
     const struct wd_inventory_report *report = &reader->inventory->report;
     if (report->rows == 0)
         return wd_error(reader->log, "%s: has a header but no trees", reader->csv.path);
-    if (!wd_species_names_check(&reader->names, reader->csv.path, reader->log))
+    const char *column = reader->columns.species >= 0 ? reader->csv.header[reader->columns.species] : "";
+    if (!wd_species_names_check(&reader->names, reader->csv.path, column, reader->log))
         return false;
     if (report->invalid > 0)
         wd_warn(reader->log, "%s:%" PRIu64 ": %" PRIu64 " rows have no position and are left out; "

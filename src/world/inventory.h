@@ -55,6 +55,12 @@ struct wd_inventory_columns {
 };
 bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struct wd_csv *csv,
                                const struct wd_scene_inventory *wanted, const struct wd_log *log);
+/* Sizes of trees. */
+enum wd_inventory_size { WD_SIZE_DBH, WD_SIZE_HEIGHT, WD_SIZE_CROWN };
+/* The row's, in cm (dbh) or m: WD_CSV_NUMBER, or WD_CSV_MISSING and 0. WD_CSV_BAD, logged, where it is no number,
+ * negative or more than any tree's. */
+enum wd_csv_value wd_inventory_read_size(const struct wd_csv *csv, const struct wd_inventory_columns *columns,
+                                         enum wd_inventory_size which, float *size);
 /* False, logged, where columns called longitude or latitude would count as metres. */
 bool wd_inventory_check_frame(const struct wd_inventory_columns *columns, const struct wd_csv *csv,
                               const struct wd_scene_inventory *wanted, const struct wd_log *log);
@@ -66,14 +72,14 @@ struct wd_species_names {
     struct wd_species_name {
         char *name;
         int species; /* -1: not found */
-        uint64_t count;
+        uint64_t count, line; /* rows that have it, and the first of them */
     } *names;
     size_t count, capacity;
 };
-/* Its index in names->names, where it is added when it is new. */
-size_t wd_species_names_find(struct wd_species_names *names, const char *name);
-/* False, with an error that lists them, when any name was not found. */
-bool wd_species_names_check(const struct wd_species_names *names, const char *path,
+/* Its index in names->names, where it is added when it is new. `line`: of the row that has it. */
+size_t wd_species_names_find(struct wd_species_names *names, const char *name, uint64_t line);
+/* False, with an error that lists them, when any name was not found. `column`: their column's name. */
+bool wd_species_names_check(const struct wd_species_names *names, const char *path, const char *column,
                             const struct wd_log *log);
 void wd_species_names_finish(struct wd_species_names *names);
 

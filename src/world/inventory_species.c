@@ -42,7 +42,7 @@ static int look_up(const struct wd_species_names *names, const char *name)
     return mapped ? wd_scene_find_species(names->scene, mapped) : -1;
 }
 
-size_t wd_species_names_find(struct wd_species_names *names, const char *name)
+size_t wd_species_names_find(struct wd_species_names *names, const char *name, uint64_t line)
 {
     for (size_t i = 0; i < names->count; i++)
         if (strcmp(names->names[i].name, name) == 0) {
@@ -51,7 +51,7 @@ size_t wd_species_names_find(struct wd_species_names *names, const char *name)
         }
     int species = look_up(names, name);
     struct wd_species_name *added = wd_push(names->names, names->count, names->capacity);
-    *added = (struct wd_species_name){wd_strdup(name), species, 1};
+    *added = (struct wd_species_name){wd_strdup(name), species, 1, line};
     return names->count - 1;
 }
 
@@ -63,7 +63,7 @@ static int most_frequent_first(const void *first, const void *second)
     return strcmp(a->name, b->name);
 }
 
-bool wd_species_names_check(const struct wd_species_names *names, const char *path,
+bool wd_species_names_check(const struct wd_species_names *names, const char *path, const char *column,
                             const struct wd_log *log)
 {
     enum { MOST_LISTED = 20 };
@@ -75,14 +75,16 @@ bool wd_species_names_check(const struct wd_species_names *names, const char *pa
     qsort(missing, count, sizeof *missing, most_frequent_first);
     char *list = wd_strdup("");
     for (size_t i = 0; i < count && i < MOST_LISTED; i++) {
-        char *longer = wd_format("%s%s\"%s\" (%" PRIu64 ")", list, i ? ", " : "",
-                                 *missing[i].name ? missing[i].name : "(empty)", missing[i].count);
+        char *longer = wd_format("%s%s\"%s\" (%" PRIu64 ", from line %" PRIu64 ")", list, i ? ", " : "",
+                                 *missing[i].name ? missing[i].name : "(empty)", missing[i].count,
+                                 missing[i].line);
         free(list);
         list = longer;
     }
     if (count > 0)
-        wd_error(log, "%s: %zu species names are not mapped to a species of the scene: %s%s; name "
-                 "each in \"species\", or \"*\" for any other", path, count, list,
+        wd_error(log, "%s:%" PRIu64 ": column %s: %zu species names are not mapped to a species of the scene: "
+                 "%s%s; name each in \"species\", or \"*\" for any other", path, missing[0].line, column,
+                 count, list,
                  count > MOST_LISTED ? ", ..." : "");
     free(list);
     free(missing);

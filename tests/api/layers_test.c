@@ -1,6 +1,9 @@
 /* Layers without colour: as those of lit pictures, by less work. */
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "suite.h"
 
@@ -93,12 +96,59 @@ static void mattes_are_of_all_samples(void **state)
     wd_picture_finish(&matte);
 }
 
+static void expect_toward_eye(const struct wd_picture *p)
+{
+    const struct wd_camera *c = &p->camera;
+    double cy = cos(c->yaw_rad), sy = sin(c->yaw_rad), cp = cos(c->pitch_rad), sp = sin(c->pitch_rad);
+    const double forward[3] = {sy * cp, cy * cp, sp}, right[3] = {cy, -sy, 0}, up[3] = {-sy * sp, -cy * sp, cp};
+    double tall = tan(0.5 * c->fov_rad), wide = tall * p->width / p->height;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        double x = wide * (2 * (i % p->width + 0.5) / p->width - 1), away = 0;
+        double y = tall * (1 - 2 * (i / p->width + 0.5) / p->height);
+        for (int k = 0; k < 3; k++)
+            away += p->normal[3 * i + k] * (forward[k] + x * right[k] + y * up[k]);
+        assert_true(away < 1e-5);
+    }
+}
+
+static bool holds(const char *path, const char *text)
+{
+    static char bytes[1 << 16];
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    return memmem(bytes, size, text, strlen(text));
+}
+
+/* Whoever reads a file knows where its pixels are; sheets are seen from the side that the normal says. */
+static void pictures_tell_what_they_show(void **state)
+{
+    (void)state;
+    const char *const methods[] = {"octree", "lod", "continuum"};
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+        struct wd_render_params params = params_of(methods[m], WD_LAYER_NORMAL);
+        params.time_s = 90000.5;
+        struct wd_picture picture = draw(&params, 1, false);
+        assert_memory_equal(&picture.camera, &params.camera, sizeof params.camera);
+        expect_toward_eye(&picture);
+        assert_non_null(strstr(picture.about, "\"time_s\":90000.5,\"camera\":{\"position_m\":["));
+        char path[] = "/tmp/weald-layers-XXXXXX.exr";
+        close(mkstemps(path, 4));
+        assert_int_equal(wd_picture_write(&picture, path, NULL), WD_OK);
+        assert_true(holds(path, picture.about) && holds(path, "worldToCamera"));
+        unlink(path);
+        wd_picture_finish(&picture);
+    }
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_lit_has_to_be_before),
         cmocka_unit_test(layers_need_no_light),
         cmocka_unit_test(mattes_are_of_all_samples),
+        cmocka_unit_test(pictures_tell_what_they_show),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]) || wd_renderer_set_forest(suite.renderer, suite.forest) != WD_OK)
         return 1;

@@ -31,6 +31,9 @@ cp "$scratch/output" "$scratch/all"
 check 'another for another number of threads' [ "$(grep -c 'Vulkan device:' "$scratch/all")" -eq 3 ]
 check 'lines of standard input' sh -c "echo info '$tiny' --json | '$weald' batch - | grep -q tree_count"
 
+printf '\357\273\277info %s --json\n' "$tiny" >"$scratch/marked"
+expect 0 tree_count batch "$scratch/marked"
+
 # A line that fails is named and stops no other; one that cannot be run stops all.
 cat >"$scratch/failing" <<EOF
 render $tiny -o "$out/none.png" --gpu software --camera wset

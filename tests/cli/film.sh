@@ -20,6 +20,9 @@ complete_png() { # a PNG ends with an IEND chunk
     expect 0 '8 frames' render "$tiny" -o "$out/speed.mp4" --path fly --fps 2 $size
     expect 0 '3 frames' render "$tiny" -o "$out/f-%05d.png" --path fly --frames 3 $size
     expect 0 '2 frames' render "$tiny" -o "$out/e-%d.exr" --path fly --frames 2 $size
+    expect 0 '8 frames' render "$tiny" -o "$out/m-%d.exr" --path fly --fps 2 $size
+    expect 0 . render "$tiny" -o "$out/still.exr" --path fly --time 1 --fps 2 $size
+    expect 0 . render "$tiny" -o "$out/first.exr" --path fly --fps 2 $size
     expect 0 'budget 1 ms: 6 frames took longer; error at the end 1[0-9]' render "$tiny" \
         -o "$out/held.mp4" --method continuum --budget-ms 1 --frames 6 $size
     expect 2 'exclude each other' render "$tiny" -o "$out/p.mp4" --budget-ms 9 --max-error 2 $size
@@ -36,6 +39,8 @@ check 'fly.mp4 has 5 frames' test "$(frames "$out/fly.mp4")" = 5
 check 'speed.mp4 has 4 s at 2 a second' test "$(frames "$out/speed.mp4")" = 8
 check 'the camera moves' sh -c "! cmp -s '$out'/f-00000.png '$out'/f-00001.png"
 check 'numbered pictures' complete_png "$out/f-00002.png"
+check 'a still is as a frame, its motion too' cmp "$out/still.exr" "$out/m-2.exr"
+check 'the first as well' cmp "$out/first.exr" "$out/m-0.exr"
 check 'numbered layers' test -s "$out/e-1.exr"
 rm -f "$out"/*
 

@@ -75,6 +75,16 @@ for key in 'sky.file' 'water.map.file' 'layers\[0\].map.file' 'layers\[0\].canop
     expect 1 "named.json:[0-9]+:[0-9]+: $key: there is no file .*/no" check "$scratch/named.json"
 done
 expect 1 'inventories\[1\].file: .*is a directory' check "$scratch/named.json"
+# Inventories and ground are read as the scene says.
+printf 'x,y,species,dbh\n1,1,oak,30\n2,2,elm,30\n' >"$scratch/elm.csv"
+change rows '.inventories = [{"file": "elm.csv", "species": {"oak": "oak"}}]'
+expect 1 'elm.csv:3: column species: .*"elm" \(1, from line 3\)' check "$scratch/rows.json"
+change rows '.inventories = [{"file": "elm.csv", "dbh_unit": "m", "species": {"*": "oak"}}]'
+expect 1 'elm.csv:2: column dbh: 30 is too much' check "$scratch/rows.json"
+expect 0 'elm.csv: ok' check "$scratch/elm.csv"
+echo 'no raster' >"$scratch/ground.tif"
+change rows '.terrain = {"kind": "raster", "file": "ground.tif"}'
+expect 1 'ground.tif.* not a raster' check "$scratch/rows.json"
 change layer '.layers[0].name = "model" | .name = "allometry"'
 echo '// a "model" with "allometry"' >>"$scratch/layer.json"
 expect 0 'layer.json: ok' check "$scratch/layer.json"

@@ -208,9 +208,12 @@ static void test_wind(void **state)
         float shift = hypotf(top.x_m, top.y_m);
         assert_true(shift < 2 * 20 * 0.04f && top.z_m <= 0 && top.z_m > -shift);
         assert_true(hypotf(next.x_m - top.x_m, next.y_m - top.y_m) < 0.01f);
+        struct wd_wind_shift later = wd_wind_offset(wind, tree, 20, i * 0.37f + WD_WIND_PERIOD_S);
+        assert_true(hypotf(later.x_m - top.x_m, later.y_m - top.y_m) < 0.01f);
         along += top.x_m * wind.toward_x + top.y_m * wind.toward_y;
     }
     assert_float_equal(along / 500, 0.6 * 0.04 * 0.8 * 20, 0.08); /* the mean tilt, downwind */
+    assert_true(wd_wind_begin_s(3999.99) == 0 && wd_wind_begin_s(86400.5) == 84000 && wd_wind_begin_s(-1) == -4000);
 }
 
 /* --- cascades --------------------------------------------------------------------------------- */

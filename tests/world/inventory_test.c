@@ -506,8 +506,8 @@ static void test_unmapped_species(void **state)
     small_scene_inventory(&small, path)->species_count = 0;
     write_file("x,y,species\n1,2,elm\n2,2,oak\n3,2,ash\n4,2,elm\n5,2,\n");
     assert_false(make(&small, &world));
-    assert_said(captured.errors, "3 species names are not mapped to a species of the scene: "
-                                 "\"elm\" (2), \"(empty)\" (1), \"ash\" (1)");
+    assert_said(captured.errors, ":2: column species: 3 species names are not mapped to a species of the scene: "
+                                 "\"elm\" (2, from line 2), \"(empty)\" (1, from line 6), \"ash\" (1, from line 4)");
     write_file("x,y\n1,2\n");
     assert_false(make(&small, &world));
     assert_said(captured.errors, "no column for the species");

@@ -1,0 +1,81 @@
+/* shown.c: what a picture tells of itself, and what all that make pictures do alike with its layers. */
+#include "api/shown.h"
+
+#include <jansson.h>
+#include <math.h>
+
+#include "world/surroundings.h"
+
+static json_t *vector(const double *v, size_t count)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < count; i++)
+        json_array_append_new(array, json_real(v[i]));
+    return array;
+}
+
+static char *about(const struct wd_picture *picture, const struct wd_forest *forest)
+{
+    const struct wd_camera *camera = &picture->camera;
+    const struct wd_terrain *terrain = &forest->world.terrain;
+    json_t *species = json_array();
+    for (size_t i = 0; i < forest->scene.species_file_count; i++)
+        json_array_append_new(species, json_string(forest->scene.species_files[i].name));
+    json_t *root = json_pack("{s:s*, s:I, s:f, s:{s:o, s:f, s:f, s:f}, s:o, s:s*, s:o}",
+                             "scene", forest->scene.name, "seed", (json_int_t)forest->world.seed,
+                             "time_s", picture->time_s, "camera",
+                             "position_m", vector(camera->position_m, 3), "yaw_rad", camera->yaw_rad,
+                             "pitch_rad", camera->pitch_rad, "fov_rad", camera->fov_rad,
+                             "origin_m", vector(terrain->origin_m, 2), "crs", terrain->crs,
+                             "species", species);
+    char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
+    json_decref(root);
+    return text;
+}
+
+/* Sheets are seen from both sides: their normals are those of the side that is seen. */
+static void turn_normals(struct wd_picture *picture)
+{
+    double right[3], forward[3], up[3];
+    wd_camera_axes(&picture->camera, right, forward, up);
+    double tall = tan(0.5 * picture->camera.fov_rad), wide = tall * picture->width / picture->height;
+    for (uint32_t y = 0; y < picture->height; y++)
+        for (uint32_t x = 0; x < picture->width; x++) {
+            float *n = picture->normal + 3 * ((size_t)y * picture->width + x);
+            double aside = wide * (2 * (x + 0.5) / picture->width - 1);
+            double above = tall * (1 - 2 * (y + 0.5) / picture->height), away = 0;
+            for (int k = 0; k < 3; k++)
+                away += (double)n[k] * (forward[k] + aside * right[k] + above * up[k]);
+            for (int k = 0; away > 0 && k < 3; k++)
+                n[k] = -n[k];
+        }
+}
+
+void wd_picture_settle(struct wd_picture *picture, const struct wd_forest *forest,
+                       const struct wd_camera *camera, double time_s)
+{
+    picture->camera = *camera;
+    picture->time_s = time_s;
+    picture->about = about(picture, forest);
+    if (picture->normal)
+        turn_normals(picture);
+}
+
+void wd_picture_camera_matrix(float m[4][4], const struct wd_camera *camera)
+{
+    double axes[3][3]; /* right, up, back */
+    double forward[3];
+    wd_camera_axes(camera, axes[0], forward, axes[1]);
+    for (int k = 0; k < 3; k++)
+        axes[2][k] = -forward[k];
+    for (int column = 0; column < 3; column++) {
+        double moved = 0;
+        for (int row = 0; row < 3; row++) {
+            m[row][column] = (float)axes[column][row];
+            moved -= axes[column][row] * camera->position_m[row];
+        }
+        m[3][column] = (float)moved;
+        m[column][3] = 0;
+    }
+    m[3][3] = 1;
+}
