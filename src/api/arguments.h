@@ -19,7 +19,7 @@ bool wd_check_samples(uint32_t samples, uint32_t most, const struct wd_log *log)
 /* Position, angles and field of view. `name`: as in "previous_camera". */
 bool wd_check_camera(const struct wd_camera *camera, const char *name, const struct wd_log *log);
 
-/* A time of the wind: within 1e9 seconds of 0, so that it is finite as a float, too. */
+/* A time of the wind: within 1e9 seconds of 0, where doubles still tell frames apart. */
 bool wd_check_time(double time_s, const char *name, const struct wd_log *log);
 
 /* One of the values 0 .. count - 1 of an enum. */

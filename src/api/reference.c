@@ -195,7 +195,10 @@ static bool prepare(struct work *work)
     work->job.stream = params->stream;
     work->job.middles = params->places == WD_REFERENCE_MIDDLES;
     work->job.progress = &work->progress;
-    wd_trace_sums_init(&work->sums, params->width, params->height);
+    if (!wd_trace_sums_init(&work->sums, params->width, params->height))
+        return wd_error(&reference->log,
+                        "out of memory: there is no room for the paths of %u x %u pixels",
+                        params->width, params->height);
     bool ok = wd_trace_scene_init(&work->scene, &reference->models, &forest->scene, &forest->world,
                                   &work->frame, &reference->log);
     reference->stats.build_s = wd_clock_s() - begin_s;
@@ -258,9 +261,8 @@ static enum wd_result trace_paths(struct work *work)
     return resume(work) ? trace(work) : WD_ERROR_INPUT;
 }
 
-static float *mean_radiance(const struct wd_trace_sums *sums)
+static void mean_radiance(const struct wd_trace_sums *sums, float *color)
 {
-    float *color = wd_alloc_array((size_t)sums->width * sums->height, 3 * sizeof *color);
     for (uint32_t y = 0; y < sums->height; y++) {
         for (uint32_t x = 0; x < sums->width; x++) {
             size_t pixel = (size_t)y * sums->width + x;
@@ -270,38 +272,30 @@ static float *mean_radiance(const struct wd_trace_sums *sums)
                     sums->radiance[3 * pixel + k] / (float)sums->tile_samples[tile];
         }
     }
-    return color;
+}
+
+/* What is shown follows from colour, wanted or not. */
+static bool make_room(const struct work *work, struct wd_picture *picture)
+{
+    uint32_t shown = is_lit(work) ? WD_LAYER_COLOR : 0;
+    return wd_picture_make_room(picture, work->params->width, work->params->height,
+                                work->layers | shown, &work->reference->log);
 }
 
 static void fill_picture(struct work *work, struct wd_picture *picture)
 {
-    uint32_t width = work->sums.width, height = work->sums.height;
-    size_t pixels = (size_t)width * height;
-    picture->width = width;
-    picture->height = height;
+    const struct wd_forest *forest = work->reference->forest;
     if (is_lit(work))
-        picture->color = mean_radiance(&work->sums);
-    if (work->layers & WD_LAYER_DEPTH)
-        picture->depth_m = wd_alloc_array(pixels, sizeof(float));
-    if (work->layers & WD_LAYER_NORMAL)
-        picture->normal = wd_alloc_array(pixels, 3 * sizeof(float));
-    if (work->layers & WD_LAYER_ALBEDO)
-        picture->albedo = wd_alloc_array(pixels, 3 * sizeof(float));
-    if (work->layers & WD_LAYER_SPECIES)
-        picture->species = wd_alloc_array(pixels, sizeof(uint32_t));
-    if (work->layers & WD_LAYER_TREE_ID)
-        picture->tree_id = wd_alloc_array(pixels, sizeof(uint32_t));
+        mean_radiance(&work->sums, picture->color);
     wd_trace_layers(&work->job, picture);
-    if (work->layers & WD_LAYER_DISPLAY) {
-        picture->display = wd_alloc_array(pixels, 4);
-        wd_display_map(picture->color, width, height,
-                       (float)work->reference->forest->scene.quality.exposure_ev, picture->display);
-    }
+    if (work->layers & WD_LAYER_DISPLAY)
+        wd_display_map(picture->color, picture->width, picture->height,
+                       (float)forest->scene.quality.exposure_ev, picture->display);
     if (!(work->layers & WD_LAYER_COLOR)) {
         free(picture->color);
         picture->color = NULL;
     }
-    wd_picture_settle(picture, work->reference->forest, &work->params->camera, work->params->time_s);
+    wd_picture_settle(picture, forest, &work->params->camera, work->params->time_s);
 }
 
 enum wd_result wd_reference_render(struct wd_reference *reference,
@@ -319,8 +313,11 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
         .samples = params->samples ? params->samples : DEFAULT_SAMPLES,
         .layers = params->layers ? params->layers & ~MISSING_LAYERS : WD_LAYER_DISPLAY,
     };
-    enum wd_result result = prepare(&work) ? trace_paths(&work) : WD_ERROR_MEMORY;
-    if (result == WD_OK) {
+    bool ready = make_room(&work, picture) && prepare(&work);
+    enum wd_result result = ready ? trace_paths(&work) : WD_ERROR_MEMORY;
+    if (result != WD_OK) {
+        wd_picture_finish(picture);
+    } else {
         fill_picture(&work, picture);
         if (is_lit(&work) && params->checkpoint && wd_file_exists(params->checkpoint))
             unlink(params->checkpoint);

@@ -14,6 +14,12 @@
 
 enum { MAX_SAMPLES = 65536 };
 
+enum wd_result wd_renderer_failure(const struct wd_renderer *renderer)
+{
+    bool no_memory = renderer->no_memory || renderer->gpu.no_memory;
+    return no_memory && !renderer->gpu.lost ? WD_ERROR_MEMORY : WD_ERROR_DEVICE;
+}
+
 /* --- making ------------------------------------------------------------------------------ */
 
 static enum wd_result create(struct wd_renderer **result, const struct wd_gpu_params *gpu,
@@ -26,8 +32,9 @@ static enum wd_result create(struct wd_renderer **result, const struct wd_gpu_pa
     renderer->cache_dir = params->cache_dir ? wd_strdup(params->cache_dir) : wd_cache_directory();
     if (!wd_gpu_init(&renderer->gpu, gpu, &renderer->log) ||
         !wd_frame_init(&renderer->frame, &renderer->gpu)) {
+        enum wd_result failure = wd_renderer_failure(renderer);
         wd_renderer_destroy(&renderer);
-        return WD_ERROR_DEVICE;
+        return failure;
     }
     *result = renderer;
     return WD_OK;
@@ -112,8 +119,9 @@ static bool stopped_report(void *user, const char *stage, uint64_t done, uint64_
 
 enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct wd_forest *forest)
 {
+    renderer->no_memory = renderer->gpu.no_memory = false;
     if (!wd_frames_wait(&renderer->frame.ring))
-        return WD_ERROR_DEVICE;
+        return wd_renderer_failure(renderer);
     if (renderer->forest) {
         wd_frame_drop_forest(&renderer->frame);
         wd_forest_device_finish(&renderer->device, &renderer->gpu);
@@ -133,7 +141,7 @@ enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct
     };
     renderer->stopped = false;
     if (!wd_forest_device_init(&renderer->device, &renderer->gpu, &params))
-        return renderer->stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_DEVICE;
+        return renderer->stopped ? WD_ERROR_INTERRUPTED : wd_renderer_failure(renderer);
     renderer->device.progress = progress;
     renderer->forest = forest;
     return WD_OK;
@@ -167,9 +175,27 @@ static bool check(const struct wd_renderer *renderer, const struct wd_render_par
            (params->accumulation == WD_ACCUMULATE || check_motion(params, log));
 }
 
+static uint32_t layers_of(const struct wd_render_params *params)
+{
+    return params->layers ? params->layers : WD_LAYER_DISPLAY;
+}
+
+/* Before anything is drawn, so that the largest blocks are the first to be refused. */
+static bool make_room(struct wd_renderer *renderer, const struct wd_render_params *params,
+                      struct wd_picture *picture)
+{
+    uint32_t layers = layers_of(params);
+    if (!wd_picture_make_room(picture, params->width, params->height, layers, &renderer->log))
+        return false;
+    size_t pixels = (size_t)params->width * params->height;
+    return !(layers & WD_LAYER_CRYPTOMATTE) || wd_coverage_init(&renderer->coverage, pixels) ||
+           wd_error(&renderer->log, "out of memory: there is no room to count the trees of %zu pixels",
+                    pixels);
+}
+
 enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
                                    const struct wd_render_params *params, uint32_t max_samples,
-                                   enum wd_frame_light light)
+                                   enum wd_frame_light light, struct wd_picture *picture)
 {
     if (renderer->gpu.lost) {
         wd_error(&renderer->log, "the device was lost: make a new renderer");
@@ -185,6 +211,9 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
     }
     if (!wd_method_can_draw(method, &renderer->forest->world, &renderer->log))
         return WD_ERROR_INPUT;
+    renderer->no_memory = renderer->gpu.no_memory = false;
+    if (picture && !make_room(renderer, params, picture))
+        return WD_ERROR_MEMORY;
     uint32_t samples = params->samples ? params->samples : 1;
     const struct wd_frame_params frame = {
         .forest = &renderer->device,
@@ -210,7 +239,7 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
     renderer->stopped = false; /* a method may bake first */
     if (wd_frame_prepare(&renderer->frame, &frame))
         return WD_OK;
-    return renderer->stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_DEVICE;
+    return renderer->stopped ? WD_ERROR_INTERRUPTED : wd_renderer_failure(renderer);
 }
 
 /* The pass to count a scope in: one of the same name within the same scope, or a new one. */
@@ -259,21 +288,21 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
         if (samples - first > 1 && !wd_progress_report(&renderer->progress, "samples", i, samples))
             return WD_ERROR_INTERRUPTED;
         if (!wd_frame_begin(&frame->ring, &cmd))
-            return WD_ERROR_DEVICE;
+            return wd_renderer_failure(renderer);
         wd_frame_record(frame, &cmd, i);
         if (!wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE)) {
             wd_frame_abandoned(frame);
-            return WD_ERROR_DEVICE;
+            return wd_renderer_failure(renderer);
         }
         if (i == first && !wd_frames_wait(&frame->ring))
-            return WD_ERROR_DEVICE;
+            return wd_renderer_failure(renderer);
         if (i == first)
             wd_renderer_keep_times(renderer);
         if (renderer->coverage.first && !wd_picture_count_trees(renderer))
-            return WD_ERROR_DEVICE;
+            return wd_renderer_failure(renderer);
     }
     if (!wd_frames_wait(&frame->ring))
-        return WD_ERROR_DEVICE;
+        return wd_renderer_failure(renderer);
     renderer->samples = samples - first;
     renderer->frame_ms = (wd_clock_s() - start) * 1e3 / renderer->samples;
     if (frame->params.method->check)
@@ -290,16 +319,14 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
     *picture = (struct wd_picture){0};
     if (!wd_given(params, &renderer->log) || !wd_check_layers(params->layers, &renderer->log))
         return WD_ERROR_INPUT;
-    uint32_t layers = params->layers ? params->layers : WD_LAYER_DISPLAY;
+    uint32_t layers = layers_of(params);
     bool lit = layers & (WD_LAYER_DISPLAY | WD_LAYER_COLOR) || params->accumulation == WD_ACCUMULATE;
-    enum wd_result result = wd_renderer_prepare(renderer, params, UINT32_MAX, lit ? WD_FRAME_LIT : WD_FRAME_UNLIT);
-    if (result != WD_OK)
-        return result;
-    if (layers & WD_LAYER_CRYPTOMATTE)
-        wd_coverage_init(&renderer->coverage, (size_t)params->width * params->height);
-    result = render_samples(renderer);
+    enum wd_result result = wd_renderer_prepare(renderer, params, UINT32_MAX,
+                                                lit ? WD_FRAME_LIT : WD_FRAME_UNLIT, picture);
+    if (result == WD_OK)
+        result = render_samples(renderer);
     if (result == WD_OK && !wd_picture_read(picture, renderer, layers))
-        result = WD_ERROR_DEVICE;
+        result = wd_renderer_failure(renderer);
     wd_coverage_finish(&renderer->coverage);
     if (result == WD_OK)
         wd_picture_settle(picture, renderer->forest, &params->camera, params->time_s);

@@ -55,7 +55,7 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
     if (!wd_given(params, &renderer->log) || !wd_given(target, &renderer->log) ||
         !check_target(renderer, params, target))
         return WD_ERROR_INPUT;
-    enum wd_result result = wd_renderer_prepare(renderer, params, LIVE_SAMPLES, WD_FRAME_LIT);
+    enum wd_result result = wd_renderer_prepare(renderer, params, LIVE_SAMPLES, WD_FRAME_LIT, NULL);
     if (result != WD_OK)
         return result;
     renderer->frame.params.page_budget = LIVE_PAGES;
@@ -65,13 +65,13 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
     struct wd_cmd cmd;
     double start = wd_clock_s();
     if (!wd_frame_begin(&renderer->frame.ring, &cmd))
-        return WD_ERROR_DEVICE;
+        return wd_renderer_failure(renderer);
     wd_frame_record(&renderer->frame, &cmd, 0);
     const struct wd_frame_target copy = {target->image, target->format, target->layout_after};
     wd_frame_copy(&renderer->frame, &cmd, &copy);
     if (!wd_frame_submit(&cmd, target->wait, target->signal)) {
         wd_frame_abandoned(&renderer->frame);
-        return WD_ERROR_DEVICE;
+        return wd_renderer_failure(renderer);
     }
     renderer->samples = 1;
     renderer->frame_ms = (wd_clock_s() - start) * 1e3;
@@ -82,5 +82,6 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
 
 enum wd_result wd_renderer_wait(struct wd_renderer *renderer)
 {
-    return wd_frames_wait(&renderer->frame.ring) ? WD_OK : WD_ERROR_DEVICE;
+    renderer->no_memory = renderer->gpu.no_memory = false;
+    return wd_frames_wait(&renderer->frame.ring) ? WD_OK : wd_renderer_failure(renderer);
 }

@@ -781,7 +781,8 @@ int main(int argc, char **argv)
     }
     int failed = 1;
     if (suite_init(&suite, argv[1]))
-        failed = cmocka_run_group_tests(tests, NULL, NULL) + argument_tests(&suite) + film_tests(&suite);
+        failed = cmocka_run_group_tests(tests, NULL, NULL) + argument_tests(&suite) + film_tests(&suite) +
+                 memory_tests(&suite);
     suite_finish(&suite);
     return failed;
 }

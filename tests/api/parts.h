@@ -6,5 +6,6 @@
 
 int argument_tests(struct suite *suite);
 int film_tests(struct suite *suite);
+int memory_tests(struct suite *suite);
 
 #endif
