@@ -32,7 +32,7 @@ struct wd_forest_params {
  * forest on any machine, compiler and number of threads. Takes about a second for a million trees.
  *   forest  receives the new object, NULL on failure; destroy with wd_forest_destroy
  *   params  read during the call only
- * Errors: WD_ERROR_INPUT (the log names file, line and key), WD_ERROR_MEMORY,
+ * Errors: WD_ERROR_INPUT (the log names file, line and key), WD_ERROR_MEMORY (for a sky's picture),
  * WD_ERROR_INTERRUPTED. Thread-safe for different forests. */
 enum wd_result wd_forest_create(struct wd_forest **forest, const struct wd_forest_params *params);
 

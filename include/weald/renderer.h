@@ -25,14 +25,15 @@ struct wd_renderer_params {
 };
 
 /* Opens a device and builds the pipelines.
- * Errors: WD_ERROR_DEVICE (no Vulkan, no such device, a feature is missing), WD_ERROR_MEMORY.
+ * Errors: WD_ERROR_DEVICE (no Vulkan, no such device, a feature is missing), WD_ERROR_MEMORY, WD_ERROR_INPUT.
  * A renderer may be used by one thread at a time. */
 enum wd_result wd_renderer_create(struct wd_renderer **renderer,
                                   const struct wd_renderer_params *params);
 void wd_renderer_destroy(struct wd_renderer **renderer);
 
 /* Grows (or takes from the cache) the trees of `forest` and puts it all on the device, in place of
- * the forest before. `forest` must outlive its use here. NULL: none. */
+ * the forest before. `forest` must outlive its use here. NULL: none.
+ * Errors: WD_ERROR_DEVICE, WD_ERROR_MEMORY (the device's), WD_ERROR_INTERRUPTED. */
 enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct wd_forest *forest);
 
 /* Names of the methods, ended by NULL; the pointer stays valid for ever. */
@@ -201,7 +202,7 @@ char *wd_device_list(void);
 /* Writes `picture` whole or not at all. ".png" takes the display layer, ".exr" every layer there
  * is (R G B, Z in metres, N.X N.Y N.Z, albedo.R .G .B, species, tree_id, velocity.X .Y; ranks as
  * Cryptomatte 1.2: weald_tree00.R .G .B .A to weald_tree02, trees named "tree_ID" in the manifest).
- * Errors: WD_ERROR_INPUT for another ending or a missing layer, WD_ERROR_OUTPUT. */
+ * Errors: WD_ERROR_INPUT for another ending or a missing layer, WD_ERROR_OUTPUT, WD_ERROR_MEMORY. */
 enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
                                 const struct wd_log *log);
 
@@ -219,8 +220,8 @@ struct wd_film_params {
 enum wd_result wd_film_open(struct wd_film **film, const struct wd_film_params *params,
                             const struct wd_log *log);
 /* Adds the next frame.
- * Errors: WD_ERROR_INPUT (another size, no display layer, of .exr no layer at all), after which the film goes
- * on; WD_ERROR_OUTPUT, after which it cannot: frames to come are refused with the same, and so is
+ * Errors: WD_ERROR_INPUT (another size, no display layer, of .exr no layer at all) and WD_ERROR_MEMORY, after
+ * which the film goes on; WD_ERROR_OUTPUT, after which it cannot: frames to come are refused with the same, and so is
  * wd_film_commit. What wd_film_keep has kept by then stays. */
 enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture);
 /* Keeps finished frames, or for numbered pictures their checksums, in PATH.partial until the film has

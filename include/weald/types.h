@@ -16,9 +16,16 @@ enum wd_result {
     WD_ERROR_INPUT,       /* a file, option or argument is wrong; the message names it */
     WD_ERROR_OUTPUT,      /* an output could not be written; nothing half-written remains */
     WD_ERROR_DEVICE,      /* no usable Vulkan device, or the device was lost */
-    WD_ERROR_MEMORY,      /* host or device memory ran out */
+    WD_ERROR_MEMORY,      /* the device's memory ran out, or the host's for what a picture or its file holds;
+                             see below */
     WD_ERROR_INTERRUPTED, /* the caller's progress callback asked to stop */
 };
+
+/* Host memory. The blocks that a caller or a file can make as large as it likes, the layers of pictures, are
+ * had before work begins, or the call returns WD_ERROR_MEMORY. All else is taken to be there: where memory for a
+ * forest's trees (which max_trees bounds), ground and meshes, for comparing pictures or for small things cannot be
+ * had, the process ends by abort() after a message on standard error. Systems that promise more memory than
+ * they have may end it at any time. */
 
 /* Short English name of a result ("input", "output", ...); never NULL. Thread-safe. */
 const char *wd_result_name(enum wd_result result);

@@ -174,7 +174,9 @@ static enum wd_result add_picture(struct wd_film *film, const struct wd_picture 
                  film->path);
         return WD_ERROR_INPUT;
     }
-    uint8_t *rgb = wd_picture_rgb(picture);
+    uint8_t *rgb = wd_picture_rgb(picture, &film->log);
+    if (!rgb)
+        return WD_ERROR_MEMORY;
     bool ok = (film->pattern || !film->store.stream ||
                wd_film_store_add(&film->store, rgb, film->frame_bytes, &film->log)) &&
               wd_film_writer_add(&film->writer, rgb, &film->log);
