@@ -78,7 +78,7 @@ static const struct cli_option option_table[] = {
      "how often light is scattered with --reference (default: 8)"},
     {"layers", 0, "A,B,...", CLI_KIND_TEXT, AT(layers), 0, 0, CLI_RENDER,
      "layers of an .exr: color, depth, normal, albedo, species, tree_id, velocity; cryptomatte (trees by "
-     "coverage); all: all but the last (default)"},
+     "coverage); all: all but the last (default); --reference lacks velocity and cryptomatte"},
     {"max-error", 0, "PX", CLI_KIND_REAL, AT(max_error_px), WD_LEAST_ERROR_PX, WD_MOST_ERROR_PX,
      PICTURE_COMMANDS,
      "error bound of continuum: mean distance of a crown's discs on screen, in pixels (default: 1.41, of "

@@ -21,11 +21,11 @@ enum wd_result {
     WD_ERROR_INTERRUPTED, /* the caller's progress callback asked to stop */
 };
 
-/* Host memory. The blocks that a caller or a file can make as large as it likes, the layers of pictures, are
- * had before work begins, or the call returns WD_ERROR_MEMORY. All else is taken to be there: where memory for a
- * forest's trees (which max_trees bounds), ground and meshes, for comparing pictures or for small things cannot be
- * had, the process ends by abort() after a message on standard error. Systems that promise more memory than
- * they have may end it at any time. */
+/* Host memory. Room for the layers of pictures, which a caller or a file can make as large as it likes, is had
+ * before they are drawn, traced, read or written, or the call returns WD_ERROR_MEMORY. Other memory is taken to be
+ * there: where it cannot be had for a forest's trees (which max_trees bounds), tables, ground or meshes, for
+ * comparing pictures or for small things, the process ends by abort() after a message on standard error. Systems
+ * that promise more memory than they have may end it at any time. */
 
 /* Short English name of a result ("input", "output", ...); never NULL. Thread-safe. */
 const char *wd_result_name(enum wd_result result);
