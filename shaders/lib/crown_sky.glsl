@@ -5,6 +5,7 @@
 struct wd_past_neighbours {
     float share;    /* how far that is known */
     vec4 high, low; /* as in wd_alone */
+    vec4 high_here, low_here; /* the same, whatever the tree's own leaves leave */
 };
 
 #ifdef CROWN_SKY
@@ -23,7 +24,7 @@ wd_past_neighbours past_neighbours_at(int first, vec3 at)
         high += share * mix(unpackUnorm4x8(texel.x), unpackUnorm4x8(texel.z), next.z);
         low += share * mix(unpackUnorm4x8(texel.y), unpackUnorm4x8(texel.w), next.z);
     }
-    return wd_past_neighbours(1.0, high * high, low * low);
+    return wd_past_neighbours(1.0, high * high, low * low, high * high, low * low);
 }
 
 /* Metres of the crown's own leaves along the ways to the quarters of the sky, so far up. */
@@ -51,7 +52,7 @@ const float CLOSE_BY_SHARE = 0.5;
  * eye_side. */
 wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec4 side, float openness)
 {
-    wd_past_neighbours past = wd_past_neighbours(0.0, vec4(0.0), vec4(0.0));
+    wd_past_neighbours past = wd_past_neighbours(0.0, vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
 #ifdef CROWN_SKY
     int set = int(wd_crown_sky_set(tree));
     bvec4 is = equal(texelFetch(CROWN_SKY, set), uvec4(tree + 1u));
@@ -80,6 +81,10 @@ wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec4 sid
 /* A tree that stands free is lit as its model's table and the canopy's field say. */
 void know_neighbours(inout wd_alone alone, wd_past_neighbours past, float told, float herbs)
 {
+    float free = past.share * told * alone.share;
+    alone.high = mix(alone.high, min(alone.high, past.high_here * herbs), free);
+    alone.low = mix(alone.low, min(alone.low, past.low_here * herbs), free);
+    alone.sides = mix(alone.sides, min(alone.sides, 0.75 * alone.high + 0.25 * alone.low), free);
     alone.by_crown = past.share * told * (1.0 - alone.share);
     alone.high = mix(alone.high, past.high * herbs, alone.by_crown);
     alone.low = mix(alone.low, past.low * herbs, alone.by_crown);

@@ -17,13 +17,13 @@ vec3 curtain_normal(int side)
                                    : vec3(-1.0, 0.0, 0.0);
 }
 
-/* Size of the pixel on the ground: a mean of its length away from the eye and its width. Taken from
+/* Size of the pixel's sample on the ground: a mean of its length away from the eye and its width. Taken from
  * distance and slope, as differences between pixels are wrong where triangles end. */
 float footprint_of(vec3 rel, float distance_m, vec2 slope)
 {
     vec3 normal = normalize(vec3(-slope, 1.0));
     float facing = abs(dot(normal, rel)) / distance_m;
-    return distance_m * view.pixel_rad / sqrt(max(facing, 0.02));
+    return distance_m * view.sample_rad / sqrt(max(facing, 0.02));
 }
 
 /* Share of the sky's light that a sward leaves to the ground that is seen between its blades; where it

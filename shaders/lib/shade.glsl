@@ -6,6 +6,7 @@
 const float PER_PI = 0.318309886;
 
 #include "lib/wax.glsl"
+#include "shared/turn.h"
 #include "shared/wax.h"
 #include "lib/skylight.glsl"
 #include "lib/crown_sky.glsl"
@@ -750,7 +751,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     place.gloss *= 1.0 - pixel.snow;
     ground_share = ground_shadow(place.rel);
     vec3 ahead = place.rel + frame.sun_direction * place.ahead_m;
-    float past_trees = tree_shadow(ahead, place.normal, place.sheet, place.bulges, cascade, noise);
+    float circles = wd_pixel_turn(at.x, at.y, frame.sample_index);
+    float past_trees = tree_shadow(ahead, place.normal, place.sheet, place.bulges, cascade, circles);
     /* No maps so far out: the canopy's cover stands for its shadow. Cards' own shade holds it. */
     if (pixel.surface == 0u || pixel.lit >= 0.0) {
         float far_m = frame.cascades[WD_CASCADES - 1][WD_CASCADE_FAR_M];

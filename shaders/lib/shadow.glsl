@@ -108,10 +108,10 @@ float map_lit(vec2 at, uint cascade, float depth)
     return texture(shadow_map, vec4(at, float(cascade), depth));
 }
 
-/* Share of the sun that trees let through to `rel`. The disc of taps (Vogel 1979) is as wide as
+/* Share of the sun that trees let through to `rel`. The disc of taps (Vogel 1979), turned by `circles`, is as wide as
  * the penumbra of what casts the shadow, at least a texel and a half. `sheet`: normal of the flat thing
  * that the place is on, toward the sun, or none. `bulges`: 1 of what has its normal for one, but bends away. */
-float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, float bulges, uint cascade, float noise)
+float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, float bulges, uint cascade, float circles)
 {
     if (cascade >= WD_CASCADES || frame.shadow_taps == 0u)
         return 1.0;
@@ -127,7 +127,7 @@ float tree_shadow(vec3 rel, vec3 normal, vec3 sheet, float bulges, uint cascade,
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0))))
         return 1.0;
     float texel = 1.0 / float(textureSize(shadow_map, 0).x);
-    float turn = noise * 6.2831853;
+    float turn = circles * 6.2831853;
     vec2 spin = vec2(cos(turn), sin(turn));
     vec2 slope = sheet_slope(mix(sheet, normal, bulges), m);
     float penumbra_m = 0.05; /* of a caster some 10 m off */

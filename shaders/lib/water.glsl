@@ -27,7 +27,7 @@ float water_ahead_m(vec3 direction, float distance_m)
     float share = wd_river_share(end.z, surface_m);
     float nearer_m = river_level(end.xy * share + push.camera_m);
     if (nearer_m > 0.5 * WD_NO_WATER_M)
-        share = wd_river_share(end.z, nearer_m - zero_m);
+        share = wd_river_share_between(end.z, surface_m, nearer_m - zero_m);
     return at_m > 0.0 ? min(at_m, distance_m * share) : distance_m * share;
 }
 
@@ -122,6 +122,25 @@ vec3 mirrored_unseen(vec3 rel, vec3 mirrored, vec3 sky)
 /* A shore lies so many times as far off as the water that mirrors it; what stands nearer is slender. */
 const float FAR_SHORE = 2.0;
 
+/* How far to the left and right of a slender thing what it hides is looked for, in halves of the picture's width. */
+const float BESIDE = 0.08;
+const int BESIDE_PLACES = 5;
+
+/* Where the ray comes to in the end, or as near beside that as nothing stands before a far shore; `w`: 0 where all of it is
+ * hidden, or shows water. */
+vec4 mirrored_far(wd_screen_ray ray, vec3 rel, float first_m, vec3 sky)
+{
+    vec3 end = ray.from + ray.along;
+    for (int i = 0; i < BESIDE_PLACES; i++) {
+        vec2 beside = vec2(end.x + BESIDE * float((i + 1) / 2) * ((i & 1) == 0 ? 1.0 : -1.0), end.y);
+        ivec2 at = screen_texel(vec3(beside, 0.0));
+        float shown = texelFetch(gbuffer_depth, at, 0).x;
+        if (abs(beside.x) < 1.0 && shown * FAR_SHORE * first_m < frame.near_m)
+            return pixel_is_sky(shown) ? vec4(sky, 1.0) : mirrored_pixel(at, normalize(rel), length(rel));
+    }
+    return vec4(0.0);
+}
+
 /* Light that comes to the water at `rel` from `mirrored`; steps through the picture. A ray that has been
  * behind something near all the way has not met it; where it comes out behind a shore that lies beyond the
  * last place at which it was seen to be free, it has met that on the way. */
@@ -150,7 +169,10 @@ vec3 mirrored_light(vec3 rel, vec3 mirrored, float noise)
         free_m = behind_m <= 0.0 ? at_m : free_m;
         before_m = at_m;
     }
-    return told ? sky : mirrored_unseen(rel, mirrored, sky);
+    if (told)
+        return sky;
+    vec4 far = ray.whole ? mirrored_far(ray, rel, first_m, sky) : vec4(0.0);
+    return mix(mirrored_unseen(rel, mirrored, sky), far.rgb, far.w);
 }
 
 /* --- all together --------------------------------------------------------------------------- */

@@ -17,9 +17,12 @@
                                    above 30 degrees and from below */
 #define WD_CROWN_SKY_LOW_M 0.5f /* of the lowest places over the ground */
 
-/* Trees of fewer pixels have none; of more than the second all that a pixel shows is known so. */
+/* Trees of fewer pixels have none; of more than the second all that a pixel shows is known so. Of plants of a
+ * few metres, which stand closer than the canopy's field tells, each metre less counts as so many more. */
 #define WD_CROWN_SKY_LEAST_PX 80.0f
 #define WD_CROWN_SKY_WHOLE_PX 120.0f
+#define WD_CROWN_SKY_LOW_AS_M 30.0f
+#define WD_CROWN_SKY_LOW_FALL 6.0f
 /* The same of the distance. */
 #define WD_CROWN_SKY_WHOLE_M 120.0f
 #define WD_CROWN_SKY_FAR_M 160.0f
@@ -35,7 +38,8 @@ WD_FUNC uint32_t wd_crown_sky_set(uint32_t record)
 /* How far a tree's table tells what it has, `away_m` from the eye. `px`: pixels a radian. */
 WD_FUNC float wd_crown_sky_share(float height_m, float away_m, float px)
 {
-    float tall_px = height_m * px / WD_MAX(away_m, 0.1f);
+    float as_m = WD_MAX(height_m, WD_CROWN_SKY_LOW_AS_M - WD_CROWN_SKY_LOW_FALL * height_m);
+    float tall_px = as_m * px / WD_MAX(away_m, 0.1f);
     float large = (tall_px - WD_CROWN_SKY_LEAST_PX) / (WD_CROWN_SKY_WHOLE_PX - WD_CROWN_SKY_LEAST_PX);
     float near = (WD_CROWN_SKY_FAR_M - away_m) / (WD_CROWN_SKY_FAR_M - WD_CROWN_SKY_WHOLE_M);
     return WD_CLAMP(WD_MIN(large, near), 0.0f, 1.0f);

@@ -63,6 +63,13 @@ struct wd_ground_strewn {
     float plain;
 };
 
+/* Of a pixel's footprint that of each of its samples, over so many of which the picture is a mean: they show what the
+ * pixel alone would not, as far as four. Ground without plants is smooth where its leaves and clods are gone. */
+WD_FUNC float wd_sample_footprint(uint32_t samples)
+{
+    return 1.0f / WD_SQRT(WD_MIN(WD_MAX(WD_FLOAT(samples), 1.0f), 4.0f));
+}
+
 /* From this footprint on, in metres, leaves on the ground are no more than its mean colour. */
 #define WD_STREWN_NONE_M 0.045f
 
@@ -101,6 +108,11 @@ WD_FUNC WD_VECTOR wd_rock_albedo(WD_FRAME_IN float height_m, WD_STRUCT wd_ground
     return wd_v3_mul(wd_v3_scale(WD_FRAME_V3(rock), WD_MAX(stain, 0.3f)), hue);
 }
 
+/* Leaves and blades lie aslant and take less light than level ground, and their earth is another. With these factors on
+ * them ground is on the whole as bright and of the same colour, however much of them a pixel shows. */
+#define WD_LEAVES_EVEN WD_V3(1.056f, 1.082f, 1.081f)
+#define WD_BLADES_EVEN WD_V3(0.994f, 1.042f, 1.015f)
+
 /* Meadow: dry on shoulders and knolls, lush in hollows; blades and the thatch between them near the
  * eye. */
 WD_FUNC WD_VECTOR wd_grass_albedo(WD_FRAME_IN float height_m, float steep,
@@ -114,7 +126,8 @@ WD_FUNC WD_VECTOR wd_grass_albedo(WD_FRAME_IN float height_m, float steep,
     WD_VECTOR straw = wd_v3_mul(WD_FRAME_V3(grass), WD_V3(1.55f, 1.14f, 1.30f));
     WD_VECTOR lush = wd_v3_mul(WD_FRAME_V3(grass), WD_V3(0.80f, 0.86f, 0.80f));
     float bright = blade ? 1.35f - 0.35f * strewn.hit.depth : 0.82f;
-    return wd_v3_scale(wd_v3_mix(lush, straw, WD_CLAMP(dry, 0.0f, 1.0f)),
+    WD_VECTOR even = wd_v3_mix(WD_V3(1.0f, 1.0f, 1.0f), WD_BLADES_EVEN, strewn.plain);
+    return wd_v3_scale(wd_v3_mul(wd_v3_mix(lush, straw, WD_CLAMP(dry, 0.0f, 1.0f)), even),
                        WD_MIX(1.0f, bright, strewn.plain)
                            * WD_MAX(1.0f + 0.75f * n.fine + 0.4f * n.small_ + 0.15f * n.middle,
                                     0.2f));
@@ -144,7 +157,7 @@ WD_FUNC WD_VECTOR wd_floor_albedo(WD_FRAME_IN WD_STRUCT wd_ground_noise n,
     float earth = WD_SMOOTH(0.1f, 0.5f, n.small_ - 0.5f * n.middle + 0.3f * n.fine);
     WD_VECTOR bare = wd_v3_mix(WD_FRAME_V3(litter), WD_FRAME_V3(soil), 0.6f * earth);
     bare = wd_v3_scale(bare, WD_MAX(1.0f + 0.55f * n.fine + 0.3f * n.small_, 0.2f));
-    WD_VECTOR leaves = wd_v3_scale(wd_leaf_litter(WD_FRAME_PASS strewn.hit),
+    WD_VECTOR leaves = wd_v3_scale(wd_v3_mul(wd_leaf_litter(WD_FRAME_PASS strewn.hit), WD_LEAVES_EVEN),
                                    WD_MAX(1.0f + 0.3f * n.fine + 0.3f * n.small_, 0.2f));
     bare = wd_v3_mix(bare, leaves, strewn.plain);
     green = wd_v3_scale(green, WD_MAX(1.0f + 0.8f * n.fine, 0.2f));

@@ -17,10 +17,19 @@ WD_FUNC float wd_river_between(float south_west, float south_east, float north_w
 }
 
 /* Part of the way along a ray that ends under water at which it meets the surface. Heights are over
- * the ray's beginning: where it ends, and the surface over that end or over the last guess. */
+ * the ray's beginning: where it ends, and the surface over that end. */
 WD_FUNC float wd_river_share(float end_m, float surface_m)
 {
     return WD_CLAMP(surface_m / WD_MIN(end_m, -1e-6f), 0.0f, 1.0f);
+}
+
+/* The same by the surface over that place, too. Where that lies lower, as water does that falls toward the eye, the ray is
+ * still above it there and meets it farther on: by that height alone such water would be as far off as its bed. */
+WD_FUNC float wd_river_share_between(float end_m, float surface_m, float nearer_m)
+{
+    float share = wd_river_share(end_m, surface_m);
+    float above_m = surface_m - nearer_m, below_m = WD_MAX(surface_m - end_m, 1e-6f);
+    return above_m > 0.0f ? WD_MIX(share, 1.0f, above_m / (above_m + below_m)) : wd_river_share(end_m, nearer_m);
 }
 
 #endif

@@ -136,26 +136,29 @@ static float level_water_m(const struct path *path)
     return within ? at_m : INFINITY;
 }
 
-/* The same of a map's waters: a ray that ends `hit_m` off under one has come through its surface. */
-static float river_m(const struct path *path, float hit_m)
+/* Height over the ray's beginning of a map's water about a place on the ray. */
+static float river_over_m(const struct path *path, float at_m)
 {
     const struct wd_trace_ground *ground = &path->tracer->scene->ground;
     struct wd_vec3 from = path->ray.from, direction = path->ray.direction;
+    double x_m = (double)(from.x + direction.x * at_m) + ground->origin_m[0];
+    double y_m = (double)(from.y + direction.y * at_m) + ground->origin_m[1];
     double zero_m = (double)from.z + ground->origin_m[2];
-    float share = 1, end_m = direction.z * hit_m;
-    if (!ground->terrain->water_m || path->under_water || hit_m >= INFINITY || end_m >= -1e-6f)
+    return (float)((double)wd_river_level(ground->terrain, x_m, y_m) - zero_m);
+}
+
+/* The same of a map's waters: a ray that ends `hit_m` off under one has come through its surface. */
+static float river_m(const struct path *path, float hit_m)
+{
+    float end_m = path->ray.direction.z * hit_m;
+    if (!path->tracer->scene->ground.terrain->water_m || path->under_water || hit_m >= INFINITY || end_m >= -1e-6f)
         return INFINITY;
-    for (int guess = 0; guess < 2; guess++) {
-        float at_m = hit_m * share;
-        double x_m = (double)(from.x + direction.x * at_m) + ground->origin_m[0];
-        double y_m = (double)(from.y + direction.y * at_m) + ground->origin_m[1];
-        float level_m = wd_river_level(ground->terrain, x_m, y_m);
-        float surface_m = (float)((double)level_m - zero_m);
-        if (guess == 0 && (surface_m <= end_m || surface_m >= 0))
-            return INFINITY;
-        if (level_m > 0.5f * WD_NO_WATER_M)
-            share = wd_river_share(end_m, surface_m);
-    }
+    float surface_m = river_over_m(path, hit_m);
+    if (surface_m <= end_m || surface_m >= 0)
+        return INFINITY;
+    float share = wd_river_share(end_m, surface_m), nearer_m = river_over_m(path, hit_m * share);
+    if (nearer_m > 0.5f * WD_NO_WATER_M)
+        share = wd_river_share_between(end_m, surface_m, nearer_m);
     return hit_m * share;
 }
 

@@ -9,6 +9,8 @@
 #include "world/river.h"
 
 static const float COARSE_FOOTPRINT_M = 0.4f;
+/* A pixel has more paths than tell in its footprint. */
+enum { PATHS = 64 };
 
 /* --- trees ----------------------------------------------------------------------------------- */
 
@@ -203,10 +205,10 @@ static void ground_surface(struct wd_surface *surface, const struct wd_trace_sce
     float slope[2], footprint_m = COARSE_FOOTPRINT_M;
     smooth_slope(&scene->world->terrain, x_m, y_m, slope);
     if (pixel_rad > 0) {
-        /* a mean of the pixel's length away from the eye and its width */
+        /* a mean of the sample's length away from the eye and its width */
         struct wd_vec3 level = wd_v3_normalize(WD_V3(-slope[0], -slope[1], 1));
         float facing = fabsf(wd_v3_dot(level, direction));
-        footprint_m = hit->at_m * pixel_rad / sqrtf(fmaxf(facing, 0.02f));
+        footprint_m = hit->at_m * pixel_rad * wd_sample_footprint(PATHS) / sqrtf(fmaxf(facing, 0.02f));
     }
     struct wd_ground_look look =
         wd_ground_cover(scene->frame, surface->place, slope[0], slope[1],

@@ -1,4 +1,5 @@
 #include <dirent.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -263,6 +264,30 @@ static bool set_openness(const struct loader *loader, struct wd_scene *scene)
     return ok;
 }
 
+/* Canopies and inventories may hold any height. */
+static void note_heights(struct wd_species *species, const struct wd_scene_layer *layer)
+{
+    bool any = layer->placement == WD_PLACE_CANOPY, first = !(species->planted_m[0] > 0);
+    float high = any ? species->height_range_m[1] : layer->height_m[1];
+    float low = fmaxf(layer->height_m[0], species->height_range_m[0]);
+    if (!any && (first || low < species->planted_m[0]))
+        species->planted_m[0] = low;
+    species->planted_m[1] = fmaxf(species->planted_m[1], high);
+}
+
+static void note_planted(struct wd_scene *scene)
+{
+    for (size_t i = 0; i < scene->layer_count; i++)
+        for (size_t j = 0; j < scene->layers[i].species_count; j++) {
+            int index = wd_scene_find_species(scene, scene->layers[i].species[j].name);
+            if (index >= 0)
+                note_heights(&scene->species[index], &scene->layers[i]);
+        }
+    for (size_t i = 0; scene->inventory_count > 0 && i < scene->species_file_count; i++)
+        if (scene->species[i].planted_m[1] > 0)
+            scene->species[i].planted_m[1] = scene->species[i].height_range_m[1];
+}
+
 bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *place)
 {
     struct loader loader = {.root = place};
@@ -273,6 +298,8 @@ bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *p
     ok = load_all(&loader, scene) && ok;
     ok = ok && cut_hedges(&loader, scene);
     ok = ok && set_openness(&loader, scene);
+    if (ok)
+        note_planted(scene);
     wd_species_folders_finish(&loader.folders);
     free(loader.files);
     return ok;

@@ -238,7 +238,9 @@ static const struct wd_key scene_keys[] = {
      .doc = "How openly a species' trees have grown: {\"oak\": 1} is as wide and low crowned as in a "
             "meadow, 0 as among close neighbours; without it 0.2, as in a stand. A name of its own in "
             "\"species\" keeps the same species' other trees apart."},
-    {"variants", WD_KEY_INTEGER, SCENE(variants), 1, 64, "5", "Individuals grown a species."},
+    {"variants", WD_KEY_INTEGER, SCENE(variants), 1, 64, "5",
+     "Individuals grown a species, from half grown to tall; or as low as they are planted where the scene has "
+     "saplings of it alone, as under a name of their own in \"species\"."},
     {"layers", WD_KEY_LIST, SCENE(layers), .table = &wd_scene_layer_keys,
      .count_offset = SCENE(layer_count), .doc = "Trees placed by rule."},
     {"inventories", WD_KEY_LIST, SCENE(inventories), .table = &wd_scene_inventory_keys,

@@ -8,6 +8,8 @@
 #include "scene/species_parts.h"
 
 enum { MAX_SPECIES_BYTES = 1 << 20 };
+/* By typical height: of the lowest variants, and of the lowest trees of a sapling layer. */
+static const float HALF_GROWN = 0.45f, SAPLING = 0.25f;
 
 bool wd_species_load(struct wd_species *species, const char *path, struct wd_arena *arena,
                      const struct wd_log *log)
@@ -122,12 +124,40 @@ double wd_species_crown_of_height_m(const struct wd_species *species, double hei
     if (species->clip_box_m[2] > 0 || species->model.file)
         return wd_species_crown_m(species, stem_cm) * height_m / sure_m;
     crown_m = wd_species_crown_m(species, stem_cm * wd_species_open_stem(species, height_m, open));
-    return crown_m * wd_species_open_crown(species, open) * height_m / sure_m;
+    crown_m = crown_m * wd_species_open_crown(species, open) * height_m / sure_m;
+    return wd_species_young_crown_m(species, height_m, open, crown_m);
+}
+
+float wd_species_youth(const struct wd_species *species, double height_m)
+{
+    bool tree = species->form == WD_FORM_BROADLEAF || species->form == WD_FORM_CONIFER;
+    double share = height_m / (double)species->typical_height_m;
+    double grown = fmin(fmax((share - 0.17) / (0.45 - 0.17), 0), 1);
+    if (!tree || species->model.file || species->clip_box_m[2] > 0)
+        return 0;
+    return (float)(1 - grown * grown * (3 - 2 * grown));
+}
+
+double wd_species_young_crown_m(const struct wd_species *species, double height_m, double openness,
+                                double crown_m)
+{
+    double youth = (double)wd_species_youth(species, height_m);
+    double least_m = height_m * (0.3 + 0.15 * openness), most_m = height_m * (0.5 + 0.4 * openness);
+    return crown_m + (fmin(fmax(crown_m, least_m), most_m) - crown_m) * youth;
 }
 
 float wd_hedge_reach_m(float width_m, float depth_m)
 {
     return sqrtf(width_m * depth_m / 3.14159265f);
+}
+
+/* No variant of usual height fits any of the scene's trees. */
+static bool are_saplings(const struct wd_species *species)
+{
+    const float *planted_m = species->planted_m;
+    return planted_m[0] > 0 && planted_m[0] < SAPLING * species->typical_height_m &&
+           planted_m[1] < HALF_GROWN * species->typical_height_m &&
+           wd_species_youth(species, (double)planted_m[0]) > 0;
 }
 
 void wd_species_variant_range_m(const struct wd_species *species, float range_m[2])
@@ -136,7 +166,11 @@ void wd_species_variant_range_m(const struct wd_species *species, float range_m[
         range_m[0] = range_m[1] = species->clip_box_m[2];
         return;
     }
-    float low = 0.45f * species->typical_height_m, high = 1.1f * species->typical_height_m;
+    float low = HALF_GROWN * species->typical_height_m, high = 1.1f * species->typical_height_m;
+    if (are_saplings(species)) {
+        low = species->planted_m[0];
+        high = species->planted_m[1];
+    }
     range_m[0] = low > species->height_range_m[0] ? low : species->height_range_m[0];
     range_m[1] = high < species->height_range_m[1] ? high : species->height_range_m[1];
     if (range_m[1] < range_m[0])

@@ -17,7 +17,9 @@ enum wd_species_form {
 enum wd_phyllotaxis { WD_PHYLLOTAXIS_ALTERNATE, WD_PHYLLOTAXIS_OPPOSITE, WD_PHYLLOTAXIS_WHORLED };
 enum wd_leaf_shape {
     WD_LEAF_OVATE, WD_LEAF_LOBED, WD_LEAF_TRIANGULAR, WD_LEAF_PALMATE, WD_LEAF_LANCEOLATE,
-    WD_LEAF_HEART, WD_LEAF_ELLIPTIC, WD_LEAF_BLADE, WD_LEAF_NEEDLES,
+    WD_LEAF_HEART, WD_LEAF_ELLIPTIC,
+    WD_LEAF_BLADE, WD_LEAF_NEEDLES,
+    WD_LEAF_SERRATE, /* ovate with teeth */
 };
 enum wd_leaf_compound {
     WD_COMPOUND_SIMPLE,
@@ -170,6 +172,7 @@ struct wd_species {
         float crown_share;    /* crown diameter over height where allometry.crown_b is 0 */
     } model;
     float openness;           /* in scenes: 0 grown among neighbours .. 1 in the open */
+    float planted_m[2];       /* in scenes: lowest and greatest height of its trees; 0, 0: any */
     float clip_box_m[3];      /* width, depth, height of the box that a hedge is cut to; 0: none */
     const char *clip_file;    /* or the closed mesh that it is cut to: clip_box_m is then its size, */
     struct wd_clip_mesh *clip; /* once it is read: wd_species_import_models */
@@ -216,11 +219,22 @@ double wd_species_open_crown(const struct wd_species *species, double openness);
  * height. */
 double wd_species_crown_of_height_m(const struct wd_species *species, double height_m);
 
+/* How much of its youth a tree of this height still has: 1 a seedling .. 0 from just below half of the typical
+ * height on, and always for plants that are no trees. Until neighbours close over them young trees keep a single
+ * leader and branches down to the ground, live crowns of 0.6 to 0.9 of the height; then these recede (Oliver and
+ * Larson, Forest Stand Dynamics, 1996). */
+float wd_species_youth(const struct wd_species *species, double height_m);
+/* Crown diameter of a tree of this height whose allometry says `crown_m`: power curves of stems of 15 to 52 cm
+ * tell nothing of rods, whose crowns are 0.3 to 0.5 times as wide as they are tall, in the open more. */
+double wd_species_young_crown_m(const struct wd_species *species, double height_m, double openness,
+                                double crown_m);
+
 /* Radius of the circle as large as a rectangle: how far a hedge reaches. */
 float wd_hedge_reach_m(float width_m, float depth_m);
 
-/* Heights that a species' variants stand for, in equal parts: from half grown to tall, so that
- * young trees are not scaled down old ones. The range is empty where the species' own is. */
+/* Heights that a species' variants stand for, in equal parts: from half grown to tall. Where a scene has but
+ * saplings of it, from less than a quarter of the typical height on and none half grown, those planted: they would
+ * be scaled down old trees. The range is empty where the species' own is. */
 void wd_species_variant_range_m(const struct wd_species *species, float range_m[2]);
 
 double wd_species_height_at_age_m(const struct wd_species *species, double age_years);

@@ -8,7 +8,8 @@ static const char *const forms[] = {"broadleaf", "conifer", "palm", "shrub", "fe
                                     "bramble", "snag", "falling", NULL};
 static const char *const phyllotaxes[] = {"alternate", "opposite", "whorled", NULL};
 static const char *const leaf_shapes[] = {"ovate", "lobed", "triangular", "palmate", "lanceolate",
-                                          "heart", "elliptic", "blade", "needles", NULL};
+                                          "heart", "elliptic", "blade", "needles", "serrate",
+                                          NULL};
 static const char *const compounds[] = {"simple", "pinnate", "palmate", "bipinnate", NULL};
 static const char *const needle_sets[] = {"around", "fascicles", "tufts", NULL};
 static const char *const bark_patterns[] = {"fissured", "scaly", "smooth", "birch", "ringed",

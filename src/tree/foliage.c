@@ -35,7 +35,7 @@ void wd_foliage_finish(struct wd_foliage *foliage)
 }
 
 /* Leaves stand on the last order all along and on the outer ends of the one before. */
-static float leafy_from(const struct wd_tree_form *form, const struct wd_branch *branch)
+static float grown_leafy_from(const struct wd_tree_form *form, const struct wd_branch *branch)
 {
     int last = (int)form->species->order_count - 1;
     bool tuft = form->species->leaf.shape == WD_LEAF_NEEDLES &&
@@ -51,6 +51,13 @@ static float leafy_from(const struct wd_tree_form *form, const struct wd_branch 
     if (branch->order == WD_TRUNK && form->species->form == WD_FORM_SHRUB)
         return 0.8f;
     return branch->order == WD_TRUNK ? 0.975f : 0.9f;
+}
+
+/* A young tree's limbs are twigs, and so is the end of its leader. */
+static float leafy_from(const struct wd_tree_form *form, const struct wd_branch *branch)
+{
+    float grown = grown_leafy_from(form, branch), young = branch->order == WD_TRUNK ? 0.86f : 0.15f;
+    return wd_mixf(grown, wd_minf(grown, young), form->youth);
 }
 
 static void gather_carriers(struct carriers *carriers, const struct wd_skeleton *skeleton,
@@ -251,8 +258,15 @@ static void order_leaves(struct wd_foliage *foliage, uint32_t key)
     free(order);
 }
 
+/* What a sapling has had the years to grow, by its height. */
+static float young_area_m2(const struct wd_tree_form *form)
+{
+    return 0.11f * form->species->leaf.area_index * form->height_m * form->height_m;
+}
+
 /* Leaf area of the whole tree from the leaf area index over the crown's projection. Crowns in the
- * open are lit from the side as well: they carry as much more as they are longer than wide. */
+ * open are lit from the side as well: they carry as much more as they are longer than wide. So are
+ * those of young trees, down to the ground. */
 static float leaf_area_m2(const struct wd_tree_form *form)
 {
     float projection = (float)WD_PI * form->crown_radius_m * form->crown_radius_m;
@@ -260,7 +274,11 @@ static float leaf_area_m2(const struct wd_tree_form *form)
         return HEDGE_SHARE * form->clip->shell_m2 * form->species->leaf.area_index;
     float slender = (form->height_m - form->crown_base_m) / (2 * form->crown_radius_m);
     float lit = wd_mixf(1, wd_clampf(slender, 1, 1.3f), form->openness);
-    return 1.1f * lit * projection * form->species->leaf.area_index;
+    lit = wd_mixf(lit, wd_clampf(slender, 1, 2), form->youth);
+    float area = 1.1f * lit * projection * form->species->leaf.area_index;
+    if (form->species->form == WD_FORM_BROADLEAF) /* an oak of 2 m has some 500 leaves, however wide it is */
+        area = wd_mixf(area, wd_minf(area, young_area_m2(form)), form->youth);
+    return area;
 }
 
 /* Small trees draw fewer leaves, and never smaller ones than real. Large ones draw larger leaves,
@@ -404,10 +422,11 @@ static void place_leaves(struct wd_foliage *foliage, const struct wd_skeleton *s
 }
 
 /* The thinnest twigs grow with the leaves that hide them; where these have fallen they are what is
- * seen of a crown. */
+ * seen of a crown. A bramble's leaves stand on its canes. */
 static size_t twig_count(const struct wd_tree_form *form)
 {
-    if (form->species->order_count == 0 || form->species->form == WD_FORM_SNAG)
+    if (form->species->order_count == 0 || form->species->form == WD_FORM_SNAG ||
+        form->species->form == WD_FORM_BRAMBLE)
         return 0;
     double spread = wd_dpow((double)form->spread, form->spread < 1 ? 0.9 : 1.1);
     return (size_t)(BARE_TWIGS * (double)form->detail * fmin(spread, 1.5));

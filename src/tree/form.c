@@ -4,10 +4,22 @@
  * envelope, which is so many times as wide. */
 static const float LIVING_CROWN = 2.4f;
 
+/* Clear stem of a seedling in a forest, over that of a grown tree. */
+static const float YOUNG_CLEAR = 0.12f;
+
 /* Of the envelope. */
 static float crown_m(const struct wd_species *species, double dbh_cm)
 {
     return (species->form == WD_FORM_SNAG ? LIVING_CROWN : 1) * (float)wd_species_crown_m(species, dbh_cm);
+}
+
+/* Crowns that no neighbour has touched: cones of conifers, eggs of broadleaves. */
+static void shape_crown(struct wd_tree_form *form)
+{
+    static const float cone[4] = {1, 0.8f, 0.45f, 0.03f}, egg[4] = {0.8f, 1, 0.66f, 0.06f};
+    const float *young = form->species->form == WD_FORM_CONIFER ? cone : egg;
+    for (int i = 0; i < 4; i++)
+        form->crown_shape[i] = wd_mixf(form->species->crown_shape[i], young[i], form->youth);
 }
 
 struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
@@ -18,17 +30,23 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
     struct wd_random random = wd_random_of(params->seed, 0x7ee5);
     float crown = crown_m(species, dbh_cm);
     crown *= (float)wd_species_open_crown(species, (double)open);
+    float youth = params->clip ? 0 : wd_species_youth(species, (double)height);
+    if (youth > 0)
+        crown = (float)wd_species_young_crown_m(species, (double)height, (double)open, (double)crown);
     crown *= wd_random_range(&random, 0.92f, 1.08f);
     float typical_crown = crown_m(species, wd_species_dbh_cm(species, (double)species->typical_height_m));
-    float young = wd_minf(height / species->typical_height_m, 1); /* in the open: clear later */
-    float clear = wd_mixf(species->crown_base_forest, young * species->crown_base_open, open);
+    float grown = wd_minf(height / species->typical_height_m, 1); /* in the open: clear later */
+    float shaded = species->crown_base_forest * wd_mixf(1, YOUNG_CLEAR, youth);
+    float clear = wd_mixf(shaded, grown * species->crown_base_open, open);
     float length = height * (1 - clear) /
                    (species->typical_height_m * (1 - species->crown_base_forest));
-    return (struct wd_tree_form){
+    struct wd_tree_form form = {
         .species = species,
         .key = wd_hash2(params->seed, 0x600d),
         .height_m = height,
         .scale = height / species->typical_height_m,
+        .youth = youth,
+        .leader = wd_mixf(species->apical_dominance, 1, youth),
         .openness = open,
         .detail = params->detail,
         .dbh_m = params->dbh_m,
@@ -37,6 +55,8 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
         .spread = 0.5f * (crown / typical_crown + length),
         .lobe_m = wd_clampf(0.3f * crown, 0.5f, 3.0f),
     };
+    shape_crown(&form);
+    return form;
 }
 
 void wd_tree_form_clip(struct wd_tree_form *form, const struct wd_clip_grid *clip)
@@ -60,13 +80,12 @@ bool wd_tree_is_cut(const struct wd_tree_form *form, struct wd_vec3 p)
  * which rounds the top like a dome. In a forest neighbours shade the crown's foot, which tapers. */
 static float profile(const struct wd_tree_form *form, float t)
 {
-    const struct wd_species *species = form->species;
     float place = wd_clampf(t, 0, 1) * 3;
     int i = place >= 2 ? 2 : (int)place;
-    float a = species->crown_shape[i], b = species->crown_shape[i + 1], f = place - (float)i;
+    float a = form->crown_shape[i], b = form->crown_shape[i + 1], f = place - (float)i;
     if (i == 0)
-        a *= wd_mixf(FOREST_FOOT, 1, form->openness);
-    if (species->form == WD_FORM_CONIFER)
+        a *= wd_mixf(FOREST_FOOT, 1, wd_maxf(form->openness, form->youth));
+    if (form->species->form == WD_FORM_CONIFER)
         return wd_mixf(a, b, f);
     return sqrtf(wd_mixf(a * a, b * b, f));
 }

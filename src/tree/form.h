@@ -12,6 +12,9 @@ struct wd_tree_form {
     uint32_t key;         /* of every random number of this individual */
     float height_m;
     float scale;          /* height over the species' typical height */
+    float youth;          /* 1 a seedling .. 0 grown: wd_species_youth */
+    float leader;         /* the species' apical dominance; young trees all have one leader */
+    float crown_shape[4]; /* as the species' own */
     float openness;       /* 0 forest-grown .. 1 open-grown */
     float detail;
     float dbh_m;

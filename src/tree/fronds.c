@@ -124,7 +124,7 @@ static void place_frond(struct wd_leaf *leaf, const struct wd_skeleton *skeleton
     float share = palm ? 1 - 0.35f * age / (float)stem->node_count : 1;
     size_t node;
     struct wd_vec3 foot = wd_branch_point(skeleton, stem, share, &top, &node);
-    if (form->species->form == WD_FORM_GRASS)
+    if (!palm)
         foot.z = 0;
     leaf->position_m = wd_v3_mad(foot, out, frond.out_m);
     out = level(frond.azimuth_rad + frond.aside_rad);

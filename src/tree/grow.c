@@ -39,6 +39,7 @@ static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton 
                       (size_t)(FULL_WOOD_TRIANGLES * form->detail) + LEAST_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     wd_twigs_mesh(mesh, foliage, form, &full_twigs);
+    wd_stipes_mesh(mesh, foliage, form);
     mesh->wood_index_count = mesh->index_count;
 }
 
@@ -52,6 +53,7 @@ static void build_reduced_wood(struct wd_tree_mesh *mesh, const struct wd_skelet
     wd_wood_style_fit(&style, skeleton, form->species, REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     wd_twigs_mesh(mesh, foliage, form, &reduced_twigs);
+    wd_stipes_mesh(mesh, foliage, form);
     mesh->wood_index_count = mesh->index_count;
 }
 

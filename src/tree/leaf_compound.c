@@ -141,7 +141,8 @@ void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species 
     float width = species->leaf.leaflet_width_cm / whole;
     int count = (int)species->leaf.leaflets;
     bool frond = count > OUTLINED_LEAFLETS;
-    add_axis(leaf, &axis, frond ? 0.012f : 0.02f);
+    bool fern = species->leaf.compound == WD_COMPOUND_BIPINNATE;
+    add_axis(leaf, &axis, fern ? 0.007f : frond ? 0.012f : 0.02f);
     for (int i = 0; i < count; i++) {
         bool last = i == count - 1 && count % 2;
         float t = ((float)(i / 2) + 0.5f + 0.25f * (float)(i & 1)) / (0.5f * (float)count + 0.25f);
@@ -162,6 +163,19 @@ void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species 
     }
 }
 
+/* How far from the hub a leaflet's blade begins that is to stay within `half_rad` to either side of its axis. */
+static float petiolule(const struct wd_leaf_outline *outline, float length, float width, float half_rad)
+{
+    float slope = (float)(wd_dcos((double)half_rad) / wd_dsin((double)half_rad)), from = 0;
+    for (int i = 0; i < outline->count; i++) {
+        struct wd_vec3 p = wd_leaf_outline_corner(outline, i + 1);
+        from = wd_maxf(from, 0.5f * width * p.x * slope - length * p.y);
+    }
+    return from;
+}
+
+/* A hand of leaflets on stalks of their own as long as keeps them apart, the middle one's the longest:
+ * a bramble's is a third of its blade. */
 void wd_leaf_add_palmate(struct wd_leaf_template *leaf, const struct wd_species *species,
                          const struct wd_leaf_outline *outline)
 {
@@ -170,15 +184,19 @@ void wd_leaf_add_palmate(struct wd_leaf_template *leaf, const struct wd_species 
     float width = species->leaf.leaflet_width_cm / whole;
     int count = (int)species->leaf.leaflets;
     struct wd_vec3 hub = WD_V3(0, from, 0);
-    wd_leaf_add_stalk(leaf, WD_V3(0, 0, 0), hub, WD_V3(1, 0, 0), 0.03f);
-    float spread = (float)WD_PI * (count > 5 ? 0.72f : 0.55f);
+    wd_leaf_add_stalk(leaf, WD_V3(0, 0, 0), hub, WD_V3(1, 0, 0), 0.02f);
+    float step = wd_minf(1.2f, 4.7f / (float)count);
     for (int i = 0; i < count; i++) {
         float t = count > 1 ? 2 * (float)i / (float)(count - 1) - 1 : 0;
-        struct wd_vec3 out = wd_v3_turn(WD_V3(0, 1, 0), WD_V3(1, 0, 0), spread * t);
+        float angle = step * ((float)i - 0.5f * (float)(count - 1));
+        struct wd_vec3 out = wd_v3_turn(WD_V3(0, 1, 0), WD_V3(1, 0, 0), angle);
         out = wd_v3_unit(wd_v3_mad(out, WD_V3(0, 0, -1), 0.2f));
         float size = 1 - 0.32f * t * t;
-        struct wd_blade_place place = wd_blade_place(wd_v3_mad(hub, out, 0.06f), out,
-                                                     WD_V3(0, 0, 1), size * length, size * width);
+        float clear = petiolule(outline, size * length, size * width, 0.48f * step);
+        struct wd_vec3 foot = wd_v3_mad(hub, out, wd_maxf(t == 0 ? 1.4f * clear : clear, 0.02f));
+        struct wd_blade_place place = wd_blade_place(foot, out, WD_V3(0, 0, 1), size * length,
+                                                     size * width);
+        wd_leaf_add_stalk(leaf, hub, foot, place.across, 0.012f);
         place.stiff = 0.3f;
         wd_leaf_add_blade(leaf, outline, &place);
     }

@@ -21,10 +21,12 @@ static const struct wd_leaf_outline shapes[] = {
     [WD_LEAF_BLADE] = {0, {{0.8f, 0.02f}, {1, 0.35f}, {0.62f, 0.75f}}, 3, 0.3f, 0.12f,
                        WD_VEINS_PARALLEL, 5, 0},
     [WD_LEAF_NEEDLES] = {0, {{1, 0.08f}, {0.9f, 0.75f}}, 2, 0.1f, 0.05f, WD_VEINS_PARALLEL, 1, 0},
+    [WD_LEAF_SERRATE] = {0, {{0.72f, 0.13f}, {1, 0.40f}, {0.66f, 0.76f}}, 3, 0.12f, 0.10f,
+                         WD_VEINS_PINNATE, 8, 0.22f},
 };
 
 /* Drawn after the figures in Stace, New Flora of the British Isles (2019): four or five lobes a side
- * of oak, birch's double teeth as single ones, Norway maple's lobes with one tooth a side. */
+ * of oak, birch's and brambles' double teeth as single ones, Norway maple's lobes with one tooth a side. */
 static const struct wd_leaf_outline near_shapes[] = {
     [WD_LEAF_OVATE] = {0, {{0.40f, 0.05f}, {0.74f, 0.14f}, {0.95f, 0.28f}, {1, 0.42f},
                            {0.91f, 0.58f}, {0.66f, 0.76f}, {0.34f, 0.90f}, {0.10f, 0.97f}}, 8,
@@ -51,6 +53,10 @@ static const struct wd_leaf_outline near_shapes[] = {
     [WD_LEAF_ELLIPTIC] = {0, {{0.40f, 0.06f}, {0.75f, 0.18f}, {0.95f, 0.33f}, {1, 0.48f},
                               {0.93f, 0.64f}, {0.68f, 0.80f}, {0.36f, 0.91f}, {0.11f, 0.97f}}, 8,
                           0.16f, 0.08f, WD_VEINS_PINNATE, 6, 0.16f},
+    [WD_LEAF_SERRATE] = {0, {{0.50f, 0.04f}, {0.82f, 0.14f}, {0.74f, 0.16f}, {1, 0.29f},
+                             {0.88f, 0.31f}, {1, 0.45f}, {0.86f, 0.47f}, {0.86f, 0.60f},
+                             {0.69f, 0.61f}, {0.64f, 0.74f}, {0.47f, 0.75f}, {0.37f, 0.87f},
+                             {0.20f, 0.88f}}, 13, 0.12f, 0.10f, WD_VEINS_PINNATE, 8, 0.22f},
 };
 
 const struct wd_leaf_outline *wd_leaf_outline_near(const struct wd_species *species)

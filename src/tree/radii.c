@@ -3,7 +3,18 @@
 /* Leonardo's rule: the cross-section of the wood above a joint equals that below it, so the radius
  * goes with the square root of the length of twigs carried. */
 
+/* Of a grown tree's thinnest branches that are drawn, and of a seedling's shoots. */
 #define TIP_RADIUS_M 0.0035f
+#define SHOOT_RADIUS_M 0.0013f
+
+/* Radius of a young tree's side branches at their joint over that of its leader, at most: it would not lead
+ * otherwise. */
+#define YOUNG_RATIO 0.45f
+
+static float tip_radius_m(const struct wd_tree_form *form)
+{
+    return wd_mixf(TIP_RADIUS_M, SHOOT_RADIUS_M, form->youth);
+}
 
 static void set_loads(struct wd_skeleton *skeleton)
 {
@@ -47,16 +58,18 @@ static void fit_diameter(struct wd_skeleton *skeleton, const struct wd_tree_form
     if (at <= 0 || form->height_m < 1.2f * at)
         return;
     float found = radius_at_m(skeleton, stem, at) * (1 + wd_root_flare(form, form->dbh_m, at));
-    float factor = 0.5f * form->dbh_m / wd_maxf(found, TIP_RADIUS_M);
+    float factor = 0.5f * form->dbh_m / wd_maxf(found, tip_radius_m(form));
     for (size_t i = 0; i < stem->node_count; i++)
         skeleton->nodes[stem->first_node + i].radius_m *= factor;
 }
 
-/* A stem with one leader tapers by height alone; one that dissolves, by what it carries. */
+/* A stem with one leader tapers by height alone; one that dissolves, by what it carries, the more the less young
+ * it is. */
 static void set_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
     const struct wd_branch *trunk = &skeleton->branches[0];
-    float leader = form->species->apical_dominance, all = skeleton->nodes[0].load;
+    bool leads = form->species->apical_dominance > 0.85f;
+    float all = skeleton->nodes[0].load, least = tip_radius_m(form);
     float whole = form->height_m / form->species->decay.broken_at; /* before it broke */
     float clear_m = wd_maxf(form->crown_base_m, 1e-3f); /* a crown may begin at the ground */
     float base = 0.5f * form->dbh_m, above = wd_maxf(whole - 1.3f, 0.3f * whole);
@@ -66,17 +79,19 @@ static void set_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *f
         float clear = 1 - 0.16f * wd_clampf(node->position_m.z / clear_m, 0, 1);
         float carried = clear * sqrtf(node->load / all);
         float taper = (float)wd_dpow((double)height, 0.85);
-        node->radius_m = wd_maxf(base * (leader > 0.85f ? taper : carried), TIP_RADIUS_M);
+        float thick = leads ? taper : wd_mixf(carried, taper, form->youth);
+        node->radius_m = wd_maxf(base * thick, least);
     }
 }
 
-/* Stems of a stool are thinner the shorter they are; a palm's stem hardly tapers. */
+/* Stems of a stool are thinner the shorter they are; a palm's stem hardly tapers; a rootstock is a low dome. */
 static void set_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *form, size_t index)
 {
     const struct wd_branch *stem = &skeleton->branches[index];
     struct wd_skeleton_node *nodes = &skeleton->nodes[stem->first_node];
     bool stool = form->species->form == WD_FORM_SHRUB || form->species->form == WD_FORM_BRAMBLE;
-    float base = 0.5f * form->dbh_m, tip = 0.75f, highest = 0;
+    float base = 0.5f * form->dbh_m, highest = 0;
+    float tip = form->species->form == WD_FORM_FERN ? 0.15f : 0.75f;
     for (size_t i = 0; i < stem->node_count; i++)
         highest = wd_maxf(highest, nodes[i].position_m.z);
     if (stool) {
@@ -119,7 +134,8 @@ static void set_branch(struct wd_skeleton *skeleton, const struct wd_tree_form *
         &skeleton->nodes[skeleton->branches[branch->stem].first_node];
     float base = skeleton->stem_count > 1 ? foot->radius_m : 0.5f * form->dbh_m;
     float joint = skeleton->nodes[branch->parent_node].radius_m;
-    float most = form->species->orders[branch->order].radius_ratio * joint;
+    float ratio = form->species->orders[branch->order].radius_ratio, tip_m = tip_radius_m(form);
+    float most = wd_mixf(ratio, wd_minf(ratio, YOUNG_RATIO), form->youth) * joint;
     float wanted = base * sqrtf(nodes[0].load / foot->load), shrink = 1;
     if (wanted > most)
         shrink = most / wanted;
@@ -130,7 +146,7 @@ static void set_branch(struct wd_skeleton *skeleton, const struct wd_tree_form *
         float radius = base * sqrtf(nodes[i].load / foot->load) * shrink * tip;
         if (form->species->form == WD_FORM_SNAG) /* broken off where it was still thick */
             radius = wanted * shrink * (1 - 0.45f * share);
-        nodes[i].radius_m = wd_clampf(radius, wd_minf(TIP_RADIUS_M, 0.9f * joint), joint);
+        nodes[i].radius_m = wd_clampf(radius, wd_minf(tip_m, 0.9f * joint), joint);
     }
 }
 

@@ -85,6 +85,10 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     float step = stem->length_m / (float)stem->steps;
     float ground = wd_minf(0.35f, 0.06f * form->height_m);
     bool hanging = hangs(&form->species->orders[stem->order]);
+    /* crowns down to the ground have many twigs just above it: they level out before they would turn in a hairpin */
+    float ahead_m = (form->youth > 0 ? 2 : 1) * step;
+    if (form->youth > 0 && d.z < 0 && p.z + ahead_m * d.z < ground)
+        d = wd_v3_unit_or(WD_V3(d.x, d.y, 0), WD_V3(0, 0, 1));
     wd_skeleton_add_node(skeleton, p, d, stem->along_m);
     for (int i = 1; i <= stem->steps; i++) {
         float t = ((float)i - 0.5f) / (float)stem->steps;
@@ -93,7 +97,7 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
         d = wd_v3_unit(wd_v3_mad(d, drift, wd_minf(stem->wander * step, 0.35f)));
         d = bend_up(d, wd_clampf(bend * step / form->spread, -0.8f, 0.8f));
         struct wd_vec3 next = wd_v3_mad(p, d, step);
-        if (next.z < ground && d.z < 0) {
+        if (d.z < 0 && (next.z < ground || p.z + ahead_m * d.z < ground)) {
             if (hanging && i > 1)
                 break;
             d = wd_v3_unit(WD_V3(d.x, d.y, 0.1f));
@@ -203,6 +207,8 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     stem.start = wd_branch_point(skeleton, parent, joint->share, &axis, &stem.parent_node);
     stem.along_m = skeleton->nodes[stem.parent_node].along_m;
     float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], joint->height);
+    if (order == 0) /* no limb of a young tree rises beside its leader */
+        angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(68, 46, joint->height)), form->youth);
     if (form->clip && order == 0) /* cut limbs are level down to the ground */
         angle = wd_mixf(100, 20, joint->height);
     angle *= (float)(WD_PI / 180) * wd_random_range(&random, 0.88f, 1.12f);
@@ -222,12 +228,16 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
         mark_crowd(skeleton, &skeleton->branches[skeleton->branch_count - 1]);
 }
 
+#define YOUNG_SPACING 0.65f
+
 static float spacing_m(const struct wd_tree_form *form, int order)
 {
     /* a year's growth is long in young trees too: they have fewer branches, not smaller gaps */
     double power = form->spread < 1 ? 0.5 : order == 0 ? 0.6 : 0.9;
     double squeeze = wd_dpow((double)form->spread, power);
     float spacing = form->species->orders[order].spacing_m * (float)squeeze;
+    if (order == 0) /* buds all along the leader have shot, and none has died in the shade */
+        spacing *= wd_mixf(1, YOUNG_SPACING, form->youth);
     if (form->clip) /* cut shoots branch again: a hedge is as dense as its light allows */
         spacing = wd_minf(spacing, (order == 0 ? 0.03f : 0.05f) * form->crown_radius_m + 0.02f);
     return spacing;
@@ -264,7 +274,9 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
             if (still_there(form, joint.key))
                 grow_joint(skeleton, form, 0, &joint);
         }
-        float dense = end < crown ? 0.7f + 0.7f * t : 1 - 0.4f * t;
+        float dense = 1 - 0.4f * t;
+        if (end < crown)
+            dense = wd_mixf(0.7f + 0.7f * t, dense, form->youth);
         z += spacing * wd_random_range(&random, 0.8f, 1.2f) * dense;
     }
     return true;

@@ -2,13 +2,14 @@
 
 enum { TRUNK_STEPS = 30, STEM_STEPS = 14, PALM_STEPS = 36 };
 #define MAX_REACH 1.9f
+#define LYING_M 0.03f
 
 float wd_tree_trunk_end(const struct wd_tree_form *form)
 {
     float leader = form->species->apical_dominance;
     if (form->clip) /* what is cut fills up to the cut */
         return 1;
-    return leader > 0.85f ? 1 : 0.22f + 0.8f * leader;
+    return leader > 0.85f ? 1 : wd_mixf(0.22f + 0.8f * leader, 1, form->youth);
 }
 
 /* The trunk keeps upright as far as it goes. */
@@ -20,7 +21,7 @@ static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *
     struct wd_branch *branch = wd_skeleton_add_branch(skeleton, &stem);
     float crown = form->height_m - form->crown_base_m;
     float step = (form->crown_base_m + crown * wd_tree_trunk_end(form)) / TRUNK_STEPS;
-    float loose = 1 - species->apical_dominance;
+    float loose = 1 - form->leader;
     struct wd_vec3 p = WD_V3(0, 0, 0), drift = WD_V3(0, 0, 0);
     struct wd_vec3 d = wd_v3_unit(WD_V3(0.06f * loose * wd_random_signed(&random),
                                         0.06f * loose * wd_random_signed(&random), 1));
@@ -47,6 +48,7 @@ struct lean {
     float azimuth_rad, lean_rad;
     float upturn[2]; /* radians over its lower and upper half; positive: up */
     float top_m;     /* its highest point */
+    float least_m;   /* what would dip into the ground lies this high */
     int steps;
 };
 
@@ -99,8 +101,8 @@ static void grow_leaning(struct wd_skeleton *skeleton, const struct wd_tree_form
         if (i > 2 && wd_tree_is_cut(form, p))
             break;
         last = i;
-        if (i > 1 && p.z < 0.03f) {
-            p.z = 0.03f;
+        if (i > 1 && p.z < lean->least_m) {
+            p.z = lean->least_m;
             d = wd_v3_unit(WD_V3(d.x, d.y, 0));
         }
         wd_skeleton_add_node(skeleton, p, d, scale * (float)i);
@@ -119,7 +121,7 @@ static void grow_stool(struct wd_skeleton *skeleton, const struct wd_tree_form *
     for (int i = 0; i < count; i++) {
         float share = ((float)i + wd_random_unit(&random)) / (float)count;
         float out = form->spread * species->stems.spread_m * sqrtf(share);
-        struct lean lean = {.steps = STEM_STEPS};
+        struct lean lean = {.steps = STEM_STEPS, .least_m = LYING_M};
         lean.azimuth_rad = turn + 2.3999632f * (float)i + 0.5f * wd_random_signed(&random);
         lean.foot = wd_v3_scale(lean_direction((float)WD_PI / 2, lean.azimuth_rad), out);
         lean.lean_rad = (float)(WD_PI / 180) * wd_mixf(species->stems.lean_deg[0],
@@ -138,7 +140,7 @@ static void grow_palm(struct wd_skeleton *skeleton, const struct wd_tree_form *f
 {
     const struct wd_species *species = form->species;
     struct wd_random random = wd_random_of(form->key, 0xa1f);
-    struct lean lean = {.steps = PALM_STEPS, .top_m = form->crown_base_m};
+    struct lean lean = {.steps = PALM_STEPS, .top_m = form->crown_base_m, .least_m = LYING_M};
     float share = wd_random_unit(&random);
     lean.azimuth_rad = 2 * (float)WD_PI * wd_random_unit(&random);
     lean.lean_rad = (float)(WD_PI / 180) *
@@ -149,11 +151,13 @@ static void grow_palm(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     grow_leaning(skeleton, form, &lean, wd_hash2(form->key, 0xa1f));
 }
 
-/* The rootstock of a fern, the foot of a tuft of grass. */
+/* The rootstock of a fern, which hardly shows above the ground, the foot of a tuft of grass. */
 static void grow_rootstock(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
     bool air = form->species->form == WD_FORM_FALLING; /* a straw on the ground */
-    struct lean lean = {.steps = 2, .top_m = air ? 0.02f : 0.03f * form->height_m};
+    bool fern = form->species->form == WD_FORM_FERN;
+    struct lean lean = {.steps = 2, .top_m = air ? 0.02f : (fern ? 0.015f : 0.03f) * form->height_m};
+    lean.least_m = fern ? 0 : LYING_M;
     grow_leaning(skeleton, form, &lean, wd_hash2(form->key, 0x5700));
 }
 

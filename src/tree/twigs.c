@@ -4,6 +4,7 @@
 
 #define TWIG_M 0.42f    /* with the year's shoot */
 #define CUT_TWIG_M 0.1f /* of a hedge */
+#define YOUNG_WIDTH 0.4f
 
 /* A shoot from `foot` to its point: a spike of three sides. */
 struct shoot {
@@ -64,6 +65,8 @@ void wd_twigs_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
     struct wd_bark_tint bark = wd_bark_tint_of(form->species);
     size_t count = style->count < foliage->twig_count ? style->count : foliage->twig_count;
     float length_m = form->clip ? CUT_TWIG_M : TWIG_M * wd_minf(0.3f + 0.7f * form->scale, 1);
+    struct wd_twig_style thin = *style; /* shoots of young trees are as slender as they are short */
+    thin.width_m *= wd_mixf(1, YOUNG_WIDTH, form->youth);
     for (size_t i = 0; i < count; i++) {
         const struct wd_leaf *place = &foliage->leaves[i];
         float height = wd_clampf(place->position_m.z / form->height_m, 0, 1);
@@ -71,6 +74,32 @@ void wd_twigs_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
             .tint = wd_bark_tint_at(&bark, height, 0, place->sky),
             .kind = (uint32_t)wd_clampf(place->flexibility, 0, 255),
         };
-        add_twig(mesh, place, length_m, style, &like);
+        add_twig(mesh, place, length_m, &thin, &like);
+    }
+}
+
+/* Share of the stalk that is scaly, and its width at the foot over the frond's length. */
+#define SCALY 0.8f
+#define STIPE_WIDTH 0.01f
+
+void wd_stipes_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
+                    const struct wd_tree_form *form)
+{
+    const struct wd_species *species = form->species;
+    struct wd_bark_tint bark = wd_bark_tint_of(species);
+    float share = SCALY * species->leaf.stalk_cm / species->leaf.length_cm;
+    for (size_t i = 0; species->form == WD_FORM_FERN && i < foliage->count; i++) {
+        const struct wd_leaf *frond = &foliage->leaves[i];
+        const struct wd_tree_vertex like = {
+            .tint = wd_bark_tint_at(&bark, 0, 0, frond->sky),
+            .kind = (uint32_t)wd_clampf(frond->flexibility, 0, 255),
+        };
+        /* the chord of the bent stalk */
+        struct wd_vec3 down = wd_v3_scale(frond->normal, -1);
+        struct wd_vec3 axis = wd_v3_turn(frond->axis, down, 0.5f * species->leaf.arch * share);
+        struct wd_vec3 sunk = wd_v3_mad(frond->position_m, axis, -STIPE_WIDTH * frond->size_m);
+        const struct shoot stipe = {sunk, axis, wd_v3_cross(axis, frond->normal),
+                                    share * frond->size_m, STIPE_WIDTH * frond->size_m};
+        add_shoot(mesh, &stipe, &like);
     }
 }

@@ -1,4 +1,4 @@
-/* twigs.h: the thinnest twigs of a crown without leaves. */
+/* twigs.h: the thinnest twigs of a crown without leaves, and the feet of a fern's fronds. */
 #ifndef WD_TREE_TWIGS_H
 #define WD_TREE_TWIGS_H
 
@@ -14,5 +14,10 @@ struct wd_twig_style {
 /* Appends them as wood, three triangles a shoot. */
 void wd_twigs_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
                    const struct wd_tree_form *form, const struct wd_twig_style *style);
+
+/* Appends the stipes of a fern's fronds as far up as brown scales hide their green: wood, three
+ * triangles each. Other plants have none. */
+void wd_stipes_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
+                    const struct wd_tree_form *form);
 
 #endif

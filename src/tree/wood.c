@@ -113,11 +113,13 @@ struct tube {
     float circle[MAX_SIDES][2];
 };
 
+/* A trunk has bark, however thin its top is; a sapling's is as smooth and dark as a twig. */
 static uint32_t ring_tint(const struct tube *tube, const struct ring *ring)
 {
+    float barked = tube->trunk ? 0.06f * (1 - tube->form->youth) : 0;
     float sky = wd_tree_density_sky(tube->crown, ring->center_m);
     float height = ring->center_m.z / tube->form->height_m;
-    return wd_bark_tint_at(tube->bark, height, tube->trunk ? 1 : ring->radius_m, sky);
+    return wd_bark_tint_at(tube->bark, height, ring->radius_m + barked, sky);
 }
 
 /* Root buttresses: the flare is stronger in some directions. */

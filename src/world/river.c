@@ -6,15 +6,20 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "shared/river.h"
-#include "world/placement.h"
+#include "world/shoreline.h"
 
 /* Least samples a reach is long; how far the surface goes on under the shore; passes that even it out. */
 enum { REACH = 4, MARGIN = 3, SMOOTHINGS = 12 };
 static const uint32_t NOWHERE = UINT32_MAX;
 static const float BELOW_SHORE_M = 0.25f;
+/* A sample beside the shore is no farther from it than so many cells. Both sides of it rise as steeply as gravel lies,
+ * on wide cells less: over one by twice what any bank stands over the water, so that few banks are too low for it. */
+static const double SHORE_CELLS = 1.5;
+static const float BED_SLOPE = 0.35f, SHORE_RISE_M = 0.5f;
 
 struct rivers {
     struct wd_terrain *terrain;
+    struct wd_shoreline shoreline;
     size_t count;
     uint8_t *wet;
     uint32_t *gone;   /* samples, then reaches, from the water's lowest place; NOWHERE: not known yet */
@@ -38,38 +43,19 @@ static size_t beside(const struct wd_terrain *terrain, size_t at, int k)
 
 /* --- the map ------------------------------------------------------------------------------- */
 
-/* The mean of the four cells that meet nearest to a place. */
-static float map_about(const struct wd_scene_map *map, const struct wd_raster *raster, double x_m,
-                       double y_m)
-{
-    float sum = 0;
-    for (int corner = 0; corner < 4; corner++) {
-        double x = x_m + (corner & 1 ? 0.5 : -0.5) * raster->cell_x_m;
-        double y = y_m + (corner & 2 ? 0.5 : -0.5) * raster->cell_y_m;
-        x = fmin(fmax(x, 0), raster->width * raster->cell_x_m);
-        y = fmin(fmax(y, 0), raster->height * raster->cell_y_m);
-        sum += wd_map_probability(map, wd_raster_at(raster, x, y));
-    }
-    return 0.25f * sum;
-}
-
 static bool read_map(struct rivers *rivers, const struct wd_scene *scene, const struct wd_log *log)
 {
     const struct wd_scene_map *map = &scene->water.map;
     const struct wd_terrain *terrain = rivers->terrain;
-    struct wd_raster raster;
     size_t wet = 0;
-    if (!wd_raster_load(&raster, scene, map, terrain,
-                        map->class_count ? WD_RESAMPLE_NEAREST : WD_RESAMPLE_LINEAR,
-                        UINT64_C(1) << 24, log))
+    if (!wd_shoreline_init(&rivers->shoreline, scene, terrain, log))
         return false;
     for (size_t i = 0; i < rivers->count; i++) {
         double x_m = (double)(i % terrain->width) * terrain->cell_m;
         double y_m = (double)(i / terrain->width) * terrain->cell_m;
-        rivers->wet[i] = map_about(map, &raster, x_m, y_m) >= 0.5f;
+        rivers->wet[i] = wd_shoreline_share(&rivers->shoreline, x_m, y_m) >= 0.5f;
         wet += rivers->wet[i];
     }
-    wd_raster_finish(&raster);
     if (wet == 0)
         return wd_error(log, "%s: shows no water on the terrain: none of its samples, %g m apart, has "
                         "one of the classes or half of the value range", map->file,
@@ -264,15 +250,39 @@ static void make_surface(struct rivers *rivers)
     free(other_m);
 }
 
-/* A bed that falls away from the shore as steeply as gravel lies, down to the wanted depth. */
+/* Whether the shore runs between the sample and one beside it. */
+static bool at_shore(const struct rivers *rivers, size_t at)
+{
+    bool apart = false;
+    for (int k = 0; k < 8 && !apart; k++)
+        apart = rivers->wet[beside(rivers->terrain, at, k)] != rivers->wet[at];
+    return apart;
+}
+
+/* The surface meets the ground where the map's shore runs: on both sides of it heights go by the way there, alike steep.
+ * By samples that are wet or dry, whose banks are of any height, shores followed the terrain's cells. */
+static void meet_shore(struct rivers *rivers, size_t at)
+{
+    struct wd_terrain *terrain = rivers->terrain;
+    double cell_m = terrain->cell_m;
+    double x_m = (double)(at % terrain->width) * cell_m, y_m = (double)(at / terrain->width) * cell_m;
+    float way_m = wd_shoreline_way_m(&rivers->shoreline, x_m, y_m, SHORE_CELLS * cell_m);
+    float rise_m = fminf(BED_SLOPE, SHORE_RISE_M / (float)cell_m) * way_m;
+    terrain->height_m[at] = rivers->wet[at] ? terrain->water_m[at] - rise_m
+                                            : fminf(terrain->height_m[at], terrain->water_m[at] + rise_m);
+}
+
+/* A bed that falls away from the shore down to the wanted depth. */
 static void dig(struct rivers *rivers, float depth_m)
 {
     struct wd_terrain *terrain = rivers->terrain;
     for (size_t i = 0; i < rivers->count; i++) {
-        if (!rivers->wet[i])
-            continue;
-        float deep_m = fminf(depth_m, 0.1f + 0.35f * rivers->shore_m[i]);
-        terrain->height_m[i] = fminf(terrain->height_m[i], terrain->water_m[i] - deep_m);
+        if (at_shore(rivers, i)) {
+            meet_shore(rivers, i);
+        } else if (rivers->wet[i]) {
+            float deep_m = fminf(depth_m, 0.1f + BED_SLOPE * rivers->shore_m[i]);
+            terrain->height_m[i] = fminf(terrain->height_m[i], terrain->water_m[i] - deep_m);
+        }
         terrain->min_m = fminf(terrain->min_m, terrain->height_m[i]);
     }
 }
@@ -298,6 +308,7 @@ bool wd_rivers_init(struct wd_terrain *terrain, const struct wd_scene *scene,
         make_surface(&rivers);
         dig(&rivers, (float)scene->water.depth_m);
     }
+    wd_shoreline_finish(&rivers.shoreline);
     free(rivers.wet);
     free(rivers.shore_m);
     free(rivers.level_m);

@@ -14,6 +14,7 @@
 #include "frame/sun_field.h"
 #include "frame/view.h"
 #include "shared/hash.h"
+#include "shared/turn.h"
 #include "shared/wind.h"
 
 static struct wd_frame_uniforms sun_at(double azimuth_deg, double elevation_deg)
@@ -289,6 +290,47 @@ static void test_cascades_that_end_in_steps(void **state)
     assert_true(changes <= 4 * WD_CASCADES);
 }
 
+static int by_size(const void *a, const void *b)
+{
+    return (*(const float *)a > *(const float *)b) - (*(const float *)a < *(const float *)b);
+}
+
+/* The widest gap between turns on a circle, over what it would be if all lay evenly. */
+static float widest_gap(float *turns, int count)
+{
+    qsort(turns, (size_t)count, sizeof *turns, by_size);
+    float widest = turns[0] + 1 - turns[count - 1];
+    for (int i = 1; i < count; i++)
+        widest = fmaxf(widest, turns[i] - turns[i - 1]);
+    return widest * (float)count;
+}
+
+/* Five look-ups of a disc, each the golden angle on, in as many samples: by a golden turn of each sample too there would be
+ * eight directions instead of twenty. */
+static void test_look_ups_turn(void **state)
+{
+    (void)state;
+    enum { TAPS = 5, SAMPLES = 4, WIDE = 2 };
+    double means[4] = {0};
+    for (uint32_t y = 0; y < 64; y += WIDE)
+        for (uint32_t x = 0; x < 64; x += WIDE) {
+            float ring[WIDE * WIDE * SAMPLES], disc[TAPS * SAMPLES];
+            for (uint32_t i = 0; i < WIDE * WIDE * SAMPLES; i++) {
+                float turn = wd_pixel_turn(x + i % 2, y + i / 2 % 2, i / 4);
+                ring[i] = turn - floorf(turn);
+                means[(int)(4 * ring[i])]++;
+            }
+            for (uint32_t i = 0; i < TAPS * SAMPLES; i++) {
+                float turn = wd_pixel_turn(x, y, i / TAPS) + 0.381966f * (float)(i % TAPS);
+                disc[i] = turn - floorf(turn);
+            }
+            assert_true(widest_gap(ring, WIDE * WIDE * SAMPLES) < 1.01f);
+            assert_true(widest_gap(disc, TAPS * SAMPLES) < 2.5f);
+        }
+    for (int quarter = 0; quarter < 4; quarter++)
+        assert_float_equal(means[quarter], 64 * 64, 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -298,6 +340,7 @@ int main(void)
         cmocka_unit_test(test_wind), cmocka_unit_test(test_walls),
         cmocka_unit_test(test_cascades_of_moved_eyes),
         cmocka_unit_test(test_cascades_that_end_in_steps),
+        cmocka_unit_test(test_look_ups_turn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,7 +34,7 @@ static const char *species_path;
 
 static void fixture_init(struct fixture *f)
 {
-    const struct wd_grow_params params = {.seed = 2, .height_m = 10};
+    const struct wd_grow_params params = {.seed = 2, .height_m = 14};
     *f = (struct fixture){0};
     assert_true(wd_species_load(&f->species, species_path, &f->arena, NULL));
     assert_true(wd_tree_grow(&f->grown, &f->species, &params, NULL));

@@ -256,6 +256,30 @@ static void stems_of_stands_are_slender(void **state)
 
 /* Chlorophyll leaves more red beside green than one would paint: PROSPECT-D's leaves of 35 to 65 ug/cm2 have 0.57 to
  * 0.63 in what they reflect and 0.39 to 0.63 in what they let through. */
+static void assert_variants(const struct fixture *f, const char *name, float low_m, float high_m)
+{
+    float range_m[2];
+    wd_species_variant_range_m(&f->scene.species[wd_scene_find_species(&f->scene, name)], range_m);
+    if (fabsf(range_m[0] - low_m) > 0.01f || fabsf(range_m[1] - high_m) > 0.01f)
+        fail_msg("%s stands for %g to %g m", name, (double)range_m[0], (double)range_m[1]);
+}
+
+/* Saplings under a name of their own are grown as saplings; one low layer changes no tree of the others. */
+static void saplings_have_variants_of_their_own(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"species\": {\"young oak\": \"../species/oak.json\"}, \"layers\": ["
+                        "{\"name\": \"a\", \"species\": {\"oak\": 1, \"beech\": 1}, \"height_m\": [16, 30]},"
+                        "{\"name\": \"b\", \"species\": {\"young oak\": 1}, \"height_m\": [2, 5]},"
+                        "{\"name\": \"c\", \"species\": {\"young oak\": 1}, \"height_m\": [4, 9]},"
+                        "{\"name\": \"d\", \"species\": {\"beech\": 1, \"hazel\": 1}, \"height_m\": [1, 2]}]}"));
+    assert_variants(f, "oak", 12.6f, 30.8f);
+    assert_variants(f, "beech", 14.4f, 35.2f);
+    assert_variants(f, "young oak", 2, 9);
+    const struct wd_species *hazel = &f->scene.species[wd_scene_find_species(&f->scene, "hazel")];
+    assert_variants(f, "hazel", 0.45f * hazel->typical_height_m, 1.1f * hazel->typical_height_m);
+}
+
 static void green_leaves_are_not_too_green(void **state)
 {
     struct fixture *f = *state;
@@ -374,6 +398,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(own_scenes_load),
         cmocka_unit_test_setup_teardown(allometry_inverts, setup, teardown),
         cmocka_unit_test_setup_teardown(stems_of_stands_are_slender, setup, teardown),
+        cmocka_unit_test_setup_teardown(saplings_have_variants_of_their_own, setup, teardown),
         cmocka_unit_test_setup_teardown(green_leaves_are_not_too_green, setup, teardown),
         cmocka_unit_test_setup_teardown(months_change_leaves, setup, teardown),
         cmocka_unit_test_setup_teardown(dates_leave_models_as_they_are, setup, teardown),

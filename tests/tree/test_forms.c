@@ -1,6 +1,7 @@
 #include "tree_test.h"
 
 #include "raster.h"
+#include "tree/leaf_set.h"
 
 enum { VARIANTS = 20, SIDE = 56 };
 
@@ -85,11 +86,37 @@ static void crowns_follow_the_allometry(void **state)
     wd_arena_finish(&arena);
 }
 
+/* A fern's fronds rise from the ground itself: its rootstock hardly shows. Their stipes are brown and scaly up to
+ * where the first pinnae stand. */
+static void ferns_rise_from_the_ground(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    struct wd_species species = test_species(&arena, "fern");
+    const float heights[] = {0.3f, 0.8f, 1.3f};
+    for (uint32_t seed = 0; seed < 6; seed++) {
+        float height = heights[seed % 3], stipes = 0;
+        struct wd_tree_model model = test_grow_tree(&species, seed, height, 0);
+        for (uint32_t i = 0; i < model.leaf_count; i++)
+            assert_true(wd_leaf_foot(model.leaves[i], model.leaf_box).z < 0.01f * height);
+        for (uint32_t i = 0; i < model.full.wood_index_count; i++) {
+            const float *p = model.full.vertices[model.full.indices[i]].position_m;
+            if (p[0] * p[0] + p[1] * p[1] < 0.03f * model.dbh_m * model.dbh_m)
+                assert_true(p[2] < 0.025f * height);
+            stipes = fmaxf(stipes, p[2]);
+        }
+        assert_true(stipes > 0.08f * height && stipes < 0.3f * height);
+        wd_tree_model_finish(&model);
+    }
+    wd_arena_finish(&arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(variants_look_different),
         cmocka_unit_test(crowns_follow_the_allometry),
+        cmocka_unit_test(ferns_rise_from_the_ground),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,7 +55,7 @@ static void every_shape_is_sound(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    for (int shape = 0; shape <= WD_LEAF_NEEDLES; shape++)
+    for (int shape = 0; shape <= WD_LEAF_SERRATE; shape++)
         for (int compound = 0; compound <= WD_COMPOUND_BIPINNATE; compound++) {
             struct wd_species species = leafy(&arena, shape, compound);
             struct wd_leaf_template leaf, near;
@@ -63,7 +63,7 @@ static void every_shape_is_sound(void **state)
             wd_leaf_template_init(&near, &species, WD_LEAF_AS_NEAR, 0);
             check_template(&leaf);
             check_template(&near);
-            if (compound == WD_COMPOUND_SIMPLE && shape < WD_LEAF_BLADE) {
+            if (compound == WD_COMPOUND_SIMPLE && (shape < WD_LEAF_BLADE || shape == WD_LEAF_SERRATE)) {
                 assert_in_range(leaf.index_count / 3, 4, 15);
                 assert_in_range(near.index_count / 3, 12, 29);
                 check_winding(&leaf);
@@ -75,11 +75,105 @@ static void every_shape_is_sound(void **state)
     wd_arena_finish(&arena);
 }
 
+/* parts[corner]: the least corner that it hangs together with. */
+static void find_leaflets(const struct wd_leaf_template *leaf, size_t *parts)
+{
+    for (size_t i = 0; i < leaf->corner_count; i++)
+        parts[i] = i;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (size_t i = 0; i < leaf->index_count; i++) {
+            size_t *a = &parts[leaf->indices[i]], *b = &parts[leaf->indices[i / 3 * 3 + (i + 1) % 3]];
+            size_t least = *a < *b ? *a : *b;
+            changed = changed || *a != *b;
+            *a = *b = least;
+        }
+    }
+}
+
+static float turn_of(struct wd_vec3 a, struct wd_vec3 b, struct wd_vec3 c)
+{
+    return wd_v3_cross(wd_v3_sub(b, a), wd_v3_sub(c, a)).z;
+}
+
+/* Whether p, seen from above, lies well inside a triangle. */
+static bool covers(const struct wd_vec3 t[3], struct wd_vec3 p)
+{
+    float least = 1e-3f * turn_of(t[0], t[1], t[2]);
+    return turn_of(t[0], t[1], p) > least && turn_of(t[1], t[2], p) > least && turn_of(t[2], t[0], p) > least;
+}
+
+static void get_triangle(const struct wd_leaf_template *leaf, size_t first, struct wd_vec3 t[3])
+{
+    for (size_t k = 0; k < 3; k++)
+        t[k] = leaf->corners[leaf->indices[first + k]].p;
+}
+
+/* Stalks and midribs have no width in the leaf's map. */
+static bool is_blade(const struct wd_leaf_template *leaf, size_t first)
+{
+    bool wide = false;
+    for (size_t k = 0; k < 3; k++)
+        wide = wide || fabsf(leaf->corners[leaf->indices[first + k]].u - 0.5f) > 0.01f;
+    return wide;
+}
+
+static void check_leaflets_apart(const struct wd_leaf_template *leaf, size_t wanted)
+{
+    size_t *parts = calloc(leaf->corner_count, sizeof *parts), found = 0;
+    bool *seen = calloc(leaf->corner_count, sizeof *seen);
+    find_leaflets(leaf, parts);
+    for (size_t i = 0; i < leaf->index_count; i += 3) {
+        struct wd_vec3 t[3], middle;
+        if (!is_blade(leaf, i))
+            continue;
+        get_triangle(leaf, i, t);
+        middle = wd_v3_scale(wd_v3_add(wd_v3_add(t[0], t[1]), t[2]), 1.0f / 3);
+        found += !seen[parts[leaf->indices[i]]];
+        seen[parts[leaf->indices[i]]] = true;
+        for (size_t other = 0; other < leaf->index_count; other += 3) {
+            struct wd_vec3 u[3];
+            if (!is_blade(leaf, other) || parts[leaf->indices[other]] == parts[leaf->indices[i]])
+                continue;
+            get_triangle(leaf, other, u);
+            assert_false(covers(u, middle));
+            for (int k = 0; k < 3; k++)
+                assert_false(covers(u, t[k]) || covers(u, wd_v3_mix(t[k], t[(k + 1) % 3], 0.5f)));
+        }
+    }
+    assert_int_equal(found, wanted);
+    free(parts);
+    free(seen);
+}
+
+/* Leaflets from one point stand apart, near and far. */
+static void leaflets_of_a_hand_do_not_overlap(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    static const int64_t counts[] = {3, 5, 7, 9};
+    for (int i = 0; i < 4; i++)
+        for (int form = 0; form < 2; form++) {
+            struct wd_species species = test_species(&arena, "bramble");
+            struct wd_leaf_template leaf;
+            if (counts[i] > 5) /* slender ones of a kapok */
+                species.leaf.leaflet_width_cm = 2.2f;
+            species.leaf.leaflets = counts[i];
+            wd_leaf_template_init(&leaf, &species, form ? WD_LEAF_AS_NEAR : WD_LEAF_AS_BLADE, 0);
+            check_template(&leaf);
+            check_leaflets_apart(&leaf, (size_t)counts[i]);
+            wd_leaf_template_finish(&leaf);
+        }
+    wd_arena_finish(&arena);
+}
+
 static void both_forms_have_one_area(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    for (int shape = 0; shape < WD_LEAF_NEEDLES; shape++) {
+    for (int shape = 0; shape <= WD_LEAF_SERRATE; shape++) {
+        if (shape == WD_LEAF_NEEDLES)
+            continue;
         struct wd_species species = leafy(&arena, shape, WD_COMPOUND_SIMPLE);
         struct wd_leaf_template blade, kite;
         wd_leaf_template_init(&blade, &species, WD_LEAF_AS_BLADE, 0);
@@ -334,6 +428,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shape_is_sound),
+        cmocka_unit_test(leaflets_of_a_hand_do_not_overlap),
         cmocka_unit_test(both_forms_have_one_area),
         cmocka_unit_test(sprigs_have_the_area_of_a_leaf),
         cmocka_unit_test(leaves_of_large_trees_stay_small),

@@ -72,7 +72,8 @@ static void add_patch(struct selection *s, bool detailed, struct wd_terrain_patc
 static void add_with_curtains(struct selection *s, double distance_m, uint32_t level,
                               uint32_t column, uint32_t row)
 {
-    bool detailed = distance_m < WD_STREWN_NONE_M * s->view->pixels_per_radian;
+    float sample_rad = wd_sample_footprint(s->view->samples) / s->view->pixels_per_radian;
+    bool detailed = distance_m < (double)(WD_STREWN_NONE_M / sample_rad);
     const struct wd_terrain *terrain = s->ground->terrain;
     uint32_t size = WD_PATCH_CELLS << level;
     bool edges[5] = {[WD_EDGE_NONE] = true,
@@ -164,6 +165,7 @@ void wd_terrain_view_init(struct wd_terrain_view *out, const struct wd_patch_ran
         .slopes_texel_m = (float)texel_m,
         .cover_texel_m = (float)ground->cover_cell_m,
         .pixel_rad = 1 / view->pixels_per_radian,
+        .sample_rad = wd_sample_footprint(view->samples) / view->pixels_per_radian,
         .sward_fade_m = {ground->sward_fade_m[0], ground->sward_fade_m[1]},
     };
     for (int k = 0; k < 2; k++) {
