@@ -161,7 +161,7 @@ struct wd_picture suite_render(struct suite *suite, const struct wd_render_param
 
 bool suite_shrink_memory(struct rlimit *before, uint64_t spare_bytes)
 {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SUITE_SANITIZED
     (void)before, (void)spare_bytes;
     return false;
 #else
