@@ -59,7 +59,8 @@ static const struct cli_option option_table[] = {
      "pictures averaged into one (default: the scene's; of single trees 16)"},
     {"frames", 0, "N", CLI_KIND_WHOLE, AT(frames), 1, 10000000, CLI_RENDER,
      "frames of a film, spread evenly over the path (default: the path at its own speed)"},
-    {"fps", 0, "N", CLI_KIND_REAL, AT(frames_per_second), 0.01, 1000, CLI_RENDER,
+    {"fps", 0, "N", CLI_KIND_REAL, AT(frames_per_second),
+     WD_LEAST_FRAMES_PER_SECOND, WD_MOST_FRAMES_PER_SECOND, CLI_RENDER,
      "frames a second of a film (default: 24)"},
     {"method", 0, "NAME", CLI_KIND_TEXT, AT(method), 0, 0, SCENE_COMMANDS | CLI_GROW,
      "how trees are drawn (default: the scene's)"},
@@ -77,7 +78,7 @@ static const struct cli_option option_table[] = {
      "how often light is scattered with --reference (default: 8)"},
     {"layers", 0, "A,B,...", CLI_KIND_TEXT, AT(layers), 0, 0, CLI_RENDER,
      "layers of an .exr: color, depth, normal, albedo, species, tree_id, velocity; cryptomatte (trees by "
-     "coverage); all: all but the last (default)"},
+     "coverage); all: all but the last (default); --reference lacks velocity and cryptomatte"},
     {"max-error", 0, "PX", CLI_KIND_REAL, AT(max_error_px), WD_LEAST_ERROR_PX, WD_MOST_ERROR_PX,
      PICTURE_COMMANDS,
      "error bound of continuum: mean distance of a crown's discs on screen, in pixels (default: 1.41, of "

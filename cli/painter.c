@@ -44,7 +44,7 @@ enum wd_result cli_painter_paint(struct cli_painter *painter, const struct wd_re
         .height = params->height,
         .samples = params->samples,
         .bounces = painter->session->options->bounces,
-        .layers = params->layers & ~(uint32_t)WD_LAYER_VELOCITY,
+        .layers = params->layers,
         .checkpoint = painter->checkpoint,
     };
     enum wd_result result = wd_reference_render(painter->reference, &reference, picture);

@@ -11,6 +11,9 @@
 /* Paths a pixel of --reference, unless asked for otherwise. */
 enum { REFERENCE_SAMPLES = 64 };
 
+/* Those that --reference lacks: of "all" it has the rest. */
+static const uint32_t RENDERED_LAYERS = WD_LAYER_VELOCITY | WD_LAYER_CRYPTOMATTE;
+
 /* The layers that a list such as "color,cryptomatte" names; 0 after a complaint. */
 static uint32_t parse_layers(struct cli_session *session, const char *text)
 {
@@ -35,6 +38,10 @@ static uint32_t parse_layers(struct cli_session *session, const char *text)
                      (int)length, at);
             return 0;
         }
+        if (session->options->reference && !(layers[i].bits & ~RENDERED_LAYERS)) {
+            cli_fail(session, "--layers: --reference has no layer %s", layers[i].name);
+            return 0;
+        }
         found |= layers[i].bits;
     }
     return found;
@@ -50,8 +57,6 @@ static bool settle_layers(struct cli_session *session, struct cli_plan *plan)
     if (!layers)
         return cli_fail(session, "--layers is for .exr files");
     plan->params.layers = parse_layers(session, options->layers);
-    if (options->reference && plan->params.layers & WD_LAYER_CRYPTOMATTE)
-        return cli_fail(session, "--reference has no layer cryptomatte");
     return plan->params.layers != 0;
 }
 

@@ -50,7 +50,7 @@ static bool read_camera(const json_t *item, struct viewer_saved_camera *saved)
                     &position_m[0], &position_m[1], &position_m[2], "yaw_deg", &yaw_deg,
                     "pitch_deg", &pitch_deg, "fov_deg", &fov_deg))
         return false;
-    if (!(fov_deg > 0 && fov_deg < 180))
+    if (!(fov_deg >= WD_LEAST_FOV_DEG && fov_deg <= WD_MOST_FOV_DEG))
         return false;
     saved->camera.yaw_rad = yaw_deg / DEGREES;
     saved->camera.pitch_rad = pitch_deg / DEGREES;
@@ -78,8 +78,8 @@ static bool read_cameras(struct viewer_cameras *cameras)
         if (!ok)
             viewer_error(cameras->log,
                          "%s: cameras[%zu] needs name, position_m of three numbers, yaw_deg, "
-                         "pitch_deg and fov_deg within 0 to 180",
-                         cameras->path, i);
+                         "pitch_deg and fov_deg within %g to %g",
+                         cameras->path, i, WD_LEAST_FOV_DEG, WD_MOST_FOV_DEG);
     }
     if (!json_is_array(list))
         viewer_error(cameras->log, "%s: a list \"cameras\" is missing", cameras->path);

@@ -52,11 +52,11 @@ static void print_times(const struct viewer_state *viewer, char *text, size_t si
                              stats.passes[i].name, stats.passes[i].gpu_ms, stats.passes[i].cpu_ms);
     if (used < size)
         snprintf(text + used, size - used,
-                 "whole frame %.1f ms\n"
+                 "submitted in %.1f ms, drawn in %.1f ms\n"
                  "trees: %llu mesh, %llu reduced, %llu billboard\n"
                  "%llu draw calls, %llu triangles\n"
                  "device memory %.1f MB, at most %.1f MB",
-                 stats.frame_ms, (unsigned long long)stats.trees_mesh,
+                 stats.frame_ms, stats.gpu_ms, (unsigned long long)stats.trees_mesh,
                  (unsigned long long)stats.trees_reduced, (unsigned long long)stats.trees_billboard,
                  (unsigned long long)stats.draw_calls, (unsigned long long)stats.triangles,
                  (double)stats.device_bytes / 1e6, (double)stats.device_bytes_peak / 1e6);

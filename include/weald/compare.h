@@ -38,7 +38,7 @@ enum wd_result wd_picture_expose_alike(struct wd_picture *reference, struct wd_p
                                        const struct wd_log *log);
 
 /* Reads colour, depth, species and tree ids, as far as there are, from an .exr that
- * wd_picture_write made. Errors: WD_ERROR_INPUT. Free with wd_picture_finish. */
+ * wd_picture_write made. Errors: WD_ERROR_INPUT, WD_ERROR_MEMORY. Free with wd_picture_finish. */
 enum wd_result wd_picture_read_exr(struct wd_picture *picture, const char *path,
                                    const struct wd_log *log);
 

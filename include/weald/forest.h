@@ -32,7 +32,7 @@ struct wd_forest_params {
  * forest on any machine, compiler and number of threads. Takes about a second for a million trees.
  *   forest  receives the new object, NULL on failure; destroy with wd_forest_destroy
  *   params  read during the call only
- * Errors: WD_ERROR_INPUT (the log names file, line and key), WD_ERROR_MEMORY,
+ * Errors: WD_ERROR_INPUT (the log names file, line and key), WD_ERROR_MEMORY (for a sky's picture),
  * WD_ERROR_INTERRUPTED. Thread-safe for different forests. */
 enum wd_result wd_forest_create(struct wd_forest **forest, const struct wd_forest_params *params);
 
@@ -91,12 +91,17 @@ bool wd_forest_get_tree(const struct wd_forest *forest, uint32_t id, struct wd_t
 /* Height of the ground at a local place, metres; outside, that of the nearest edge. Thread-safe. */
 double wd_forest_ground_m(const struct wd_forest *forest, double x_m, double y_m);
 
-/* A pinhole camera. */
+/* Least and greatest vertical field of view, in scene files as in struct wd_camera: 0.001746 to 3.124139
+ * radians. Narrower views take ever longer to draw (minutes, below 0.005 degrees). */
+#define WD_LEAST_FOV_DEG 0.1
+#define WD_MOST_FOV_DEG 179.0
+
+/* A pinhole camera. All of it is finite. */
 struct wd_camera {
-    double position_m[3]; /* local frame; z above the datum */
+    double position_m[3]; /* local frame, within 2,000 km of its origin; z above the datum */
     double yaw_rad;       /* clockwise from north */
     double pitch_rad;     /* up from the horizon */
-    double fov_rad;       /* vertical field of view, (0, pi) */
+    double fov_rad;       /* vertical field of view, WD_LEAST_FOV_DEG..WD_MOST_FOV_DEG as radians */
 };
 
 /* Names of the scene's cameras and paths, in file order; NULL beyond the last. Every scene has at
@@ -104,13 +109,15 @@ struct wd_camera {
 const char *wd_forest_camera_name(const struct wd_forest *forest, uint32_t index);
 const char *wd_forest_path_name(const struct wd_forest *forest, uint32_t index);
 
-/* The camera called `name` (NULL: the first). WD_ERROR_INPUT, with the names there are, if none. */
+/* The camera called `name` (NULL: the first). WD_ERROR_INPUT if there is none; the log then lists the names
+ * there are. */
 enum wd_result wd_forest_get_camera(const struct wd_forest *forest, const char *name,
                                     struct wd_camera *camera);
 
 /* The camera on path `name` (NULL: the first) at `time_s`, clamped to the path's duration;
- * `*duration_s` may be NULL. Catmull-Rom through the path's keys, field of view within those of the keys
- * before and after. */
+ * `duration_s` may be NULL. Catmull-Rom through the path's keys, field of view within those of the keys
+ * before and after. Errors: WD_ERROR_INPUT (a time that is not finite; no such path: the log lists the
+ * names there are). */
 enum wd_result wd_forest_get_path_camera(const struct wd_forest *forest, const char *name,
                                          double time_s, struct wd_camera *camera,
                                          double *duration_s);

@@ -31,11 +31,13 @@ enum wd_reference_places { WD_REFERENCE_WHOLE_PIXELS, WD_REFERENCE_MIDDLES };
 
 struct wd_reference_picture_params {
     struct wd_camera camera;
-    double time_s;          /* of the wind */
+    double time_s;          /* of the wind; within 1e9 of 0 */
     uint32_t width, height; /* 1..16384 each */
     uint32_t samples;       /* paths a pixel; 0: 64 */
     uint32_t bounces;       /* times that light is scattered; 0: 8 */
-    uint32_t layers;        /* wd_layer_bits wanted, all but velocity; 0: display. Paths are for color and display */
+    uint32_t layers;        /* wd_layer_bits wanted; 0: display; WD_LAYER_ALL: all that there are, which leaves out
+                               velocity. Velocity and cryptomatte by name are refused. Paths are for color and
+                               display */
     uint32_t stream;        /* pictures of other streams, else alike, have noise of their own */
     enum wd_reference_places places;
     const char *checkpoint; /* a file that holds an unfinished picture: taken up if it is there,

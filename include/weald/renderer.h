@@ -25,14 +25,15 @@ struct wd_renderer_params {
 };
 
 /* Opens a device and builds the pipelines.
- * Errors: WD_ERROR_DEVICE (no Vulkan, no such device, a feature is missing), WD_ERROR_MEMORY.
+ * Errors: WD_ERROR_DEVICE (no Vulkan, no such device, a feature is missing), WD_ERROR_MEMORY, WD_ERROR_INPUT.
  * A renderer may be used by one thread at a time. */
 enum wd_result wd_renderer_create(struct wd_renderer **renderer,
                                   const struct wd_renderer_params *params);
 void wd_renderer_destroy(struct wd_renderer **renderer);
 
 /* Grows (or takes from the cache) the trees of `forest` and puts it all on the device, in place of
- * the forest before. `forest` must outlive its use here. NULL: none. */
+ * the forest before. `forest` must outlive its use here. NULL: none.
+ * Errors: WD_ERROR_DEVICE, WD_ERROR_MEMORY (the device's), WD_ERROR_INTERRUPTED. */
 enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct wd_forest *forest);
 
 /* Names of the methods, ended by NULL; the pointer stays valid for ever. */
@@ -91,7 +92,7 @@ enum { WD_RANKS = 6 };
 struct wd_render_params {
     struct wd_camera camera;
     const struct wd_camera *previous_camera; /* for velocity; NULL: the camera stood still */
-    double time_s;          /* of the wind */
+    double time_s;          /* of the wind; within 1e9 of 0, as the next */
     double previous_time_s; /* for velocity */
     uint32_t width, height; /* 1..16384 each */
     uint32_t samples;       /* pictures averaged with sub-pixel offsets; 0: 1 */
@@ -138,8 +139,8 @@ struct wd_picture {
 
 /* Draws one picture. Deterministic for the same device.
  *   picture  overwritten; free with wd_picture_finish
- * Errors: WD_ERROR_INPUT (size, no forest, a method that is not there or cannot draw trees on demand),
- * WD_ERROR_DEVICE, WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED (through the renderer's progress, stage "samples"). */
+ * Errors: WD_ERROR_INPUT (no forest; a value out of its range, an unknown enum or layer; a method that is not
+ * there or cannot draw trees on demand), WD_ERROR_DEVICE, WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED (through the renderer's progress, stage "samples"). */
 enum wd_result wd_renderer_render(struct wd_renderer *renderer,
                                   const struct wd_render_params *params,
                                   struct wd_picture *picture);
@@ -155,9 +156,11 @@ struct wd_pass_time {
     uint32_t depth;   /* 0: a pass; more: a part of the pass before it, whose time holds its own */
 };
 struct wd_frame_stats {
-    double frame_ms; /* wall clock of one sample from begin to finished */
+    double frame_ms; /* wall clock of one sample. After wd_renderer_render: from begin to finished, the mean of the
+                        picture's samples. After wd_renderer_draw: until it is submitted, not until it is
+                        drawn: that takes gpu_ms, and the caller's clock from frame to frame tells both */
     uint32_t samples; /* drawn for the newest picture */
-    double gpu_ms;   /* device time of the newest frame finished by wd_renderer_draw; 0 where the device
+    double gpu_ms;   /* device time of the newest frame of wd_renderer_draw that is finished; 0 where the device
                         has no true clock */
     uint32_t pass_count;
     const struct wd_pass_time *passes; /* valid until the next call on the renderer */
@@ -199,19 +202,27 @@ char *wd_device_list(void);
 /* Writes `picture` whole or not at all. ".png" takes the display layer, ".exr" every layer there
  * is (R G B, Z in metres, N.X N.Y N.Z, albedo.R .G .B, species, tree_id, velocity.X .Y; ranks as
  * Cryptomatte 1.2: weald_tree00.R .G .B .A to weald_tree02, trees named "tree_ID" in the manifest).
- * Errors: WD_ERROR_INPUT for another ending or a missing layer, WD_ERROR_OUTPUT. */
+ * Errors: WD_ERROR_INPUT for another ending or a missing layer, WD_ERROR_OUTPUT, WD_ERROR_MEMORY. */
 enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
                                 const struct wd_log *log);
 
 /* A film (".mp4", through ffmpeg) or numbered pictures (a name with %d or %05d, .png or .exr). */
 struct wd_film;
+#define WD_LEAST_FRAMES_PER_SECOND 0.01
+#define WD_MOST_FRAMES_PER_SECOND 1000.0
 struct wd_film_params {
-    const char *path;
-    uint32_t width, height; /* even for .mp4 */
-    double frames_per_second;
+    const char *path;         /* required */
+    uint32_t width, height;   /* of every frame; even for .mp4 */
+    double frames_per_second; /* WD_LEAST_FRAMES_PER_SECOND..WD_MOST_FRAMES_PER_SECOND; 0: 30. Numbered
+                                 pictures do not tell of it */
 };
+/* Errors: WD_ERROR_INPUT (name, size or rate), WD_ERROR_OUTPUT (a folder that is not there, no ffmpeg). */
 enum wd_result wd_film_open(struct wd_film **film, const struct wd_film_params *params,
                             const struct wd_log *log);
+/* Adds the next frame.
+ * Errors: WD_ERROR_INPUT (another size, no display layer, of .exr no layer at all) and WD_ERROR_MEMORY, after
+ * which the film goes on; WD_ERROR_OUTPUT, after which it cannot: frames to come are refused with the same, and so is
+ * wd_film_commit. What wd_film_keep has kept by then stays. */
 enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture);
 /* Keeps finished frames, or for numbered pictures their checksums, in PATH.partial until the film has
  * `frame_count` of them: a film that was stopped or killed can be gone on with. `key` is a hash of all
@@ -222,8 +233,8 @@ enum wd_result wd_film_keep(struct wd_film *film, uint64_t key, uint64_t frame_c
 /* Adds the next of the frames that were kept by an earlier film, if it is there and whole; else it is
  * to be drawn, like all after it. `*frames`: how many the film now has. */
 enum wd_result wd_film_add_kept(struct wd_film *film, uint64_t *frames);
-/* Finishes the film under its name, with the frames that it has, and frees it. With no frame added
- * nothing is written. */
+/* Finishes the film under its name, with the frames that it has, and frees it whatever comes back. With no
+ * frame added nothing is written. Errors: WD_ERROR_OUTPUT; also where a frame could not be written. */
 enum wd_result wd_film_commit(struct wd_film **film);
 /* Drops the film (numbered pictures already written stay). Accepts a pointer to NULL. */
 void wd_film_discard(struct wd_film **film);

@@ -14,7 +14,7 @@ struct wd_specimen;
 /* Zeroes are a typical tree of the species in summer. Models take height_m (scaling them) only, any
  * other value is refused. */
 struct wd_specimen_params {
-    const char *source; /* a species ("oak": looked for in species/, ../species/, the tree that
+    const char *source; /* required: a species ("oak": looked for in species/, ../species/, the tree that
                            the program and the library lie in, and among the installed
                            ones), a species file (.json) or a model (.obj, .gltf, .glb,
                            .fbx, .dae) */
@@ -61,19 +61,20 @@ bool wd_specimen_get_level(const struct wd_specimen *specimen, uint32_t level,
 enum wd_result wd_specimens_check_output(const struct wd_specimen *const *specimens, uint32_t count,
                                          const char *path);
 
-/* Writes specimens, side by side in a row, as a whole or not at all.
+/* Writes specimens (one at least), side by side in a row, as a whole or not at all.
  *   path  ".glb": every level of detail (MSFT_lod), textures within, metres, y up; ".obj": the full
  *         meshes, with NAME.mtl and NAME-*.png beside it
  * Errors: WD_ERROR_INPUT (another ending, more than a GLB can hold, a file that the specimens were read
- * from), WD_ERROR_OUTPUT. */
+ * from, no specimen), WD_ERROR_OUTPUT. */
 enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, uint32_t count,
                                   const char *path, const struct wd_log *log);
 
-/* A forest of nothing but these specimens, in a row on plain level ground under a clear sky, with
+/* A forest of nothing but these specimens (one at least), in a row on plain level ground under a clear sky, with
  * cameras "fit" (all of it in a frame of the given shape) and "eye" (a person's eye at the given
  * distance). The specimens must outlive the forest.
- *   aspect      width over height of the pictures to come
- *   distance_m  of "eye"; 0: that of "fit" */
+ *   aspect      width over height of the pictures to come, 1/16384 to 16384
+ *   distance_m  of "eye", to 1e6; 0: that of "fit"
+ * Errors: WD_ERROR_INPUT. */
 enum wd_result wd_forest_create_specimens(struct wd_forest **forest,
                                           const struct wd_specimen *const *specimens,
                                           uint32_t count, double aspect, double distance_m,
@@ -94,7 +95,7 @@ void wd_forest_set_specimen_form(struct wd_forest *forest, enum wd_specimen_form
  * layer, and as tag what an inventory's column for "id" calls it. As ".glb": each individual's
  * meshes once (MSFT_lod), its trees as instances (EXT_mesh_gpu_instancing, with tree ids), the
  * ground as a mesh; metres, y up, about the middle of the ground, whose true coordinates are in the
- * root's extras.
+ * scene's extras.
  *   max_trees  a forest with more is refused; 0: a million in a .glb, any number in a .csv
  * Errors: as wd_specimens_write; WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED (nothing is written). */
 enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path, uint64_t max_trees,

@@ -16,9 +16,16 @@ enum wd_result {
     WD_ERROR_INPUT,       /* a file, option or argument is wrong; the message names it */
     WD_ERROR_OUTPUT,      /* an output could not be written; nothing half-written remains */
     WD_ERROR_DEVICE,      /* no usable Vulkan device, or the device was lost */
-    WD_ERROR_MEMORY,      /* host or device memory ran out */
+    WD_ERROR_MEMORY,      /* the device's memory ran out, or the host's for what a picture or its file holds;
+                             see below */
     WD_ERROR_INTERRUPTED, /* the caller's progress callback asked to stop */
 };
+
+/* Host memory. Room for the layers of pictures, which a caller or a file can make as large as it likes, is had
+ * before they are drawn, traced, read or written, or the call returns WD_ERROR_MEMORY. Other memory is taken to be
+ * there: where it cannot be had for a forest's trees (which max_trees bounds), tables, ground or meshes, for
+ * comparing pictures or for small things, the process ends by abort() after a message on standard error. Systems
+ * that promise more memory than they have may end it at any time. */
 
 /* Short English name of a result ("input", "output", ...); never NULL. Thread-safe. */
 const char *wd_result_name(enum wd_result result);

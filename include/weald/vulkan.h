@@ -51,7 +51,7 @@ struct wd_vulkan_target {
 };
 
 /* Draws one frame into `target` and returns once it is submitted: up to two frames are in flight.
- * Only the display is made (params->layers is not used). */
+ * Only the display is made (params->layers is not used). Errors: as wd_renderer_render. */
 enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_render_params *params,
                                 const struct wd_vulkan_target *target);
 

@@ -1,7 +1,10 @@
 #include "api/forest.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -70,20 +73,31 @@ static void resolve(const struct wd_forest *forest, const struct wd_scene_camera
     }
 }
 
+/* Cameras or paths: their names as a complaint about `name` lists them. */
+static enum wd_result no_such(const struct wd_forest *forest, const char *kind, const char *name,
+                              const char *(*name_of)(const struct wd_forest *, uint32_t),
+                              size_t count)
+{
+    const char **names = wd_alloc_array(count, sizeof *names);
+    for (size_t i = 0; i < count; i++)
+        names[i] = name_of(forest, (uint32_t)i);
+    const char *nearest = wd_nearest_name(name, names, count);
+    char *list = wd_join(names, count, ", ");
+    wd_error(&forest->log, "%s: no %s \"%s\"%s%s%s; there are: %s", forest->scene.path, kind, name,
+             nearest ? ", did you mean \"" : "", nearest ? nearest : "", nearest ? "\"" : "",
+             list);
+    free(list);
+    free(names);
+    return WD_ERROR_INPUT;
+}
+
 enum wd_result wd_forest_get_camera(const struct wd_forest *forest, const char *name,
                                     struct wd_camera *camera)
 {
     const struct wd_scene_camera *found =
         name ? wd_scene_find_camera(&forest->scene, name) : &forest->scene.cameras[0];
-    if (!found) {
-        const char *nearest = NULL;
-        for (size_t i = 0; i < forest->scene.camera_count && !nearest; i++)
-            nearest = wd_nearest_name(name, &forest->scene.cameras[i].name, 1);
-        wd_error(&forest->log, "%s: no camera \"%s\"%s%s%s; the first is \"%s\"",
-                 forest->scene.path, name, nearest ? ", did you mean \"" : "",
-                 nearest ? nearest : "", nearest ? "\"" : "", forest->scene.cameras[0].name);
-        return WD_ERROR_INPUT;
-    }
+    if (!found)
+        return no_such(forest, "camera", name, wd_forest_camera_name, forest->scene.camera_count);
     resolve(forest, found, camera);
     return WD_OK;
 }
@@ -136,12 +150,14 @@ enum wd_result wd_forest_get_path_camera(const struct wd_forest *forest, const c
                                          double *duration_s)
 {
     const struct wd_scene_path *path = find_path(forest, name);
-    if (!path) {
-        if (!forest->scene.path_count)
-            wd_error(&forest->log, "%s: the scene has no paths", forest->scene.path);
-        else
-            wd_error(&forest->log, "%s: no path \"%s\"; the first is \"%s\"", forest->scene.path,
-                     name, forest->scene.paths[0].name);
+    if (!forest->scene.path_count) {
+        wd_error(&forest->log, "%s: the scene has no paths", forest->scene.path);
+        return WD_ERROR_INPUT;
+    }
+    if (!path)
+        return no_such(forest, "path", name, wd_forest_path_name, forest->scene.path_count);
+    if (!isfinite(time_s)) {
+        wd_error(&forest->log, "wd_forest_get_path_camera: time_s is %g: it must be finite", time_s);
         return WD_ERROR_INPUT;
     }
     if (duration_s)

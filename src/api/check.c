@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "api/arguments.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "tree/import.h"
@@ -155,6 +156,8 @@ static bool check_json(const char *path, const char *data_dir, const struct wd_l
 
 enum wd_result wd_file_check(const char *path, const char *data_dir, const struct wd_log *log)
 {
+    if (!wd_given(path, log))
+        return WD_ERROR_INPUT;
     if (!wd_file_exists(path)) {
         wd_error(log, "%s: there is no such file", path);
         return WD_ERROR_INPUT;
@@ -174,7 +177,7 @@ char *wd_schema_text(const char *kind)
     } kinds[] = {
         {"scene", &wd_scene_keys}, {"species", &wd_species_keys}, {"model", &wd_species_model_keys}};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        if (strcmp(kind, kinds[i].name) == 0)
+        if (kind && strcmp(kind, kinds[i].name) == 0)
             return wd_keys_schema(kinds[i].table, kind);
     return NULL;
 }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "api/arguments.h"
+#include "api/shown.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "output/exr.h"
@@ -97,6 +99,8 @@ static void compare_radiance(struct wd_comparison *comparison, const struct wd_p
 static bool check(const struct wd_picture *reference, const struct wd_picture *picture,
                   const struct wd_log *log)
 {
+    if (!wd_given(reference, log) || !wd_given(picture, log))
+        return false;
     if (reference->width != picture->width || reference->height != picture->height)
         return wd_error(log, "the reference has %u x %u pixels, the picture %u x %u: both must have "
                              "the same size",
@@ -155,21 +159,23 @@ enum wd_result wd_picture_expose_alike(struct wd_picture *reference, struct wd_p
 
 /* --- reading --------------------------------------------------------------------------------- */
 
-static float *take_color(const struct wd_exr_image *image)
+/* NULL where there is none. False, logged, where there is not so much memory. */
+static bool take_color(float **color, const struct wd_exr_image *image, const struct wd_log *log)
 {
     static const char *const names[] = {"R", "G", "B"};
     const struct wd_exr_plane *planes[3];
+    *color = NULL;
     for (int k = 0; k < 3; k++) {
         planes[k] = wd_exr_find(image, names[k]);
         if (!planes[k] || planes[k]->type == WD_EXR_UINT)
-            return NULL;
+            return true;
     }
     size_t pixels = (size_t)image->width * image->height;
-    float *color = wd_alloc_array(pixels, 3 * sizeof *color);
-    for (size_t i = 0; i < pixels; i++)
+    *color = wd_picture_try_scratch(image->width, image->height, 3 * sizeof **color, log);
+    for (size_t i = 0; *color && i < pixels; i++)
         for (size_t k = 0; k < 3; k++)
-            color[3 * i + k] = ((const float *)planes[k]->data)[i];
-    return color;
+            (*color)[3 * i + k] = ((const float *)planes[k]->data)[i];
+    return *color != NULL;
 }
 
 /* Takes the plane's memory over, if there is one of the right type. */
@@ -190,13 +196,20 @@ enum wd_result wd_picture_read_exr(struct wd_picture *picture, const char *path,
                                    const struct wd_log *log)
 {
     struct wd_exr_image image;
+    float *color;
     *picture = (struct wd_picture){0};
-    if (!wd_exr_read(&image, path, log))
+    if (!wd_given(path, log))
         return WD_ERROR_INPUT;
+    if (!wd_exr_read(&image, path, log))
+        return image.no_memory ? WD_ERROR_MEMORY : WD_ERROR_INPUT;
+    if (!take_color(&color, &image, log)) {
+        wd_exr_image_finish(&image);
+        return WD_ERROR_MEMORY;
+    }
     *picture = (struct wd_picture){
         .width = image.width,
         .height = image.height,
-        .color = take_color(&image),
+        .color = color,
         .depth_m = take_plane(&image, "Z", false),
         .species = take_plane(&image, "species", true),
         .tree_id = take_plane(&image, "tree_id", true),

@@ -4,10 +4,12 @@
 
 #include "base/memory.h"
 
-void wd_coverage_init(struct wd_coverage *coverage, size_t pixels)
+bool wd_coverage_init(struct wd_coverage *coverage, size_t pixels)
 {
-    *coverage = (struct wd_coverage){
-        .pixels = pixels, .first = wd_alloc_array(pixels, sizeof *coverage->first)};
+    uint32_t *first = wd_try_array(pixels, sizeof *first);
+    *coverage = first ? (struct wd_coverage){.pixels = pixels, .first = first}
+                      : (struct wd_coverage){0};
+    return first != NULL;
 }
 
 void wd_coverage_finish(struct wd_coverage *coverage)
@@ -60,8 +62,6 @@ static size_t best_of(const struct wd_coverage *coverage, size_t pixel,
 void wd_coverage_rank(const struct wd_coverage *coverage, uint32_t samples,
                       struct wd_picture *picture)
 {
-    picture->rank_tree = wd_alloc_array(coverage->pixels * WD_RANKS, sizeof *picture->rank_tree);
-    picture->rank_share = wd_alloc_array(coverage->pixels * WD_RANKS, sizeof *picture->rank_share);
     for (size_t i = 0; i < coverage->pixels; i++) {
         const struct wd_coverage_entry *best[WD_RANKS];
         size_t count = best_of(coverage, i, best);

@@ -13,13 +13,14 @@ struct wd_coverage {
     size_t count, capacity;
 };
 
-void wd_coverage_init(struct wd_coverage *coverage, size_t pixels);
+/* False where there is no memory for so many pixels: then it is {0}. */
+bool wd_coverage_init(struct wd_coverage *coverage, size_t pixels);
 void wd_coverage_finish(struct wd_coverage *coverage); /* accepts {0} */
 
 /* One sample of a pixel shows this tree; 0: none. */
 void wd_coverage_add(struct wd_coverage *coverage, size_t pixel, uint32_t tree);
 
-/* Fills picture->rank_tree and rank_share from `samples` samples. */
+/* Fills picture->rank_tree and rank_share, which are there and zero, from `samples` samples. */
 void wd_coverage_rank(const struct wd_coverage *coverage, uint32_t samples,
                       struct wd_picture *picture);
 

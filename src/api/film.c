@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <xxhash.h>
 
+#include "api/arguments.h"
 #include "api/output.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -14,26 +15,27 @@ struct wd_film {
     char *path;
     char *pattern;                /* of numbered pictures: their name with %d; NULL: a film file */
     bool layers;                  /* they are .exr */
+    bool failed;                  /* a frame could not be written: the film has a gap there */
+    uint32_t width, height;
     size_t frame_bytes;
     uint64_t frames, frame_count;
     struct wd_film_store store;   /* once wd_film_keep was called */
     struct wd_log log;
 };
 
-static bool open_output(struct wd_film *film, const struct wd_film_params *params)
+static bool check_params(const struct wd_film_writer_params *params, const struct wd_log *log)
 {
-    const struct wd_film_writer_params writer = {.path = params->path,
-                                                 .width = params->width,
-                                                 .height = params->height,
-                                                 .frame_rate = params->frames_per_second};
-    return film->layers ? wd_film_sequence_check(params->path, &film->log)
-                        : wd_film_writer_open(&film->writer, &writer, &film->log);
+    if (wd_has_ending(params->path, ".exr"))
+        return wd_film_shape_check(params, log) && wd_film_sequence_check(params->path, log);
+    return wd_film_writer_check(params, log);
 }
 
 enum wd_result wd_film_open(struct wd_film **result, const struct wd_film_params *params,
                             const struct wd_log *log)
 {
     *result = NULL;
+    if (!wd_given(params, log) || !wd_given(params->path, log))
+        return WD_ERROR_INPUT;
     if (!wd_film_path(params->path)) {
         wd_error(log,
                  "%s: films end in .mp4, .mov or .mkv, numbered pictures have %%d or %%05d in "
@@ -41,20 +43,41 @@ enum wd_result wd_film_open(struct wd_film **result, const struct wd_film_params
                  params->path);
         return WD_ERROR_INPUT;
     }
+    const struct wd_film_writer_params writer = {.path = params->path,
+                                                 .width = params->width,
+                                                 .height = params->height,
+                                                 .frame_rate = params->frames_per_second};
+    if (!check_params(&writer, log))
+        return WD_ERROR_INPUT;
     struct wd_film *film = wd_alloc(sizeof *film);
     film->log = log ? *log : (struct wd_log){0};
     film->layers = wd_has_ending(params->path, ".exr");
-    if (!open_output(film, params)) {
-        enum wd_result failed = film->layers ? WD_ERROR_INPUT : WD_ERROR_OUTPUT;
+    if (!film->layers && !wd_film_writer_open(&film->writer, &writer, &film->log)) {
         free(film);
-        return failed;
+        return WD_ERROR_OUTPUT;
     }
     film->path = wd_strdup(params->path);
     if (film->layers || film->writer.pattern)
         film->pattern = film->path;
+    film->width = params->width;
+    film->height = params->height;
     film->frame_bytes = (size_t)params->width * params->height * 3;
     *result = film;
     return WD_OK;
+}
+
+/* Takes note of a frame that could not be written: nothing may follow a gap. */
+static enum wd_result noted(struct wd_film *film, enum wd_result result)
+{
+    film->failed |= result == WD_ERROR_OUTPUT;
+    return result;
+}
+
+static bool check_whole(const struct wd_film *film)
+{
+    return !film->failed ||
+           wd_error(&film->log, "%s: frame %llu could not be written: the film cannot go on",
+                    film->path, (unsigned long long)film->frames);
 }
 
 /* --- frames kept for another time ------------------------------------------------------------ */
@@ -120,12 +143,12 @@ static void count_kept_picture(struct wd_film *film)
 
 enum wd_result wd_film_add_kept(struct wd_film *film, uint64_t *frames)
 {
-    enum wd_result result = WD_OK;
-    if (film->store.stream && film->frames < film->frame_count) {
+    enum wd_result result = check_whole(film) ? WD_OK : WD_ERROR_OUTPUT;
+    if (result == WD_OK && film->store.stream && film->frames < film->frame_count) {
         if (film->pattern)
             count_kept_picture(film);
         else
-            result = add_kept_pixels(film);
+            result = noted(film, add_kept_pixels(film));
     }
     *frames = film->frames;
     return result;
@@ -135,6 +158,11 @@ enum wd_result wd_film_add_kept(struct wd_film *film, uint64_t *frames)
 
 static enum wd_result add_picture(struct wd_film *film, const struct wd_picture *picture)
 {
+    if (picture->width != film->width || picture->height != film->height) {
+        wd_error(&film->log, "%s: found a picture of %u x %u pixels; the film's have %u x %u",
+                 film->path, picture->width, picture->height, film->width, film->height);
+        return WD_ERROR_INPUT;
+    }
     if (film->layers) {
         char *path = wd_film_frame_name(film->pattern, film->frames);
         enum wd_result result = wd_picture_write(picture, path, &film->log);
@@ -142,10 +170,13 @@ static enum wd_result add_picture(struct wd_film *film, const struct wd_picture 
         return result;
     }
     if (!picture->display) {
-        wd_error(&film->log, "a film shows the display layer, which the picture lacks");
+        wd_error(&film->log, "%s: a film shows the display layer, which the picture lacks",
+                 film->path);
         return WD_ERROR_INPUT;
     }
-    uint8_t *rgb = wd_picture_rgb(picture);
+    uint8_t *rgb = wd_picture_rgb(picture, &film->log);
+    if (!rgb)
+        return WD_ERROR_MEMORY;
     bool ok = (film->pattern || !film->store.stream ||
                wd_film_store_add(&film->store, rgb, film->frame_bytes, &film->log)) &&
               wd_film_writer_add(&film->writer, rgb, &film->log);
@@ -156,19 +187,29 @@ static enum wd_result add_picture(struct wd_film *film, const struct wd_picture 
 enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture)
 {
     struct file_mark mark;
+    if (!wd_given(picture, &film->log))
+        return WD_ERROR_INPUT;
+    if (!check_whole(film))
+        return WD_ERROR_OUTPUT;
     enum wd_result result = add_picture(film, picture);
     if (result == WD_OK && film->pattern && film->store.stream &&
         !(mark_of(&mark, film, film->frames) &&
           wd_film_store_add(&film->store, &mark, sizeof mark, &film->log)))
         result = WD_ERROR_OUTPUT;
     film->frames += result == WD_OK;
-    return result;
+    return noted(film, result);
+}
+
+static bool commit(struct wd_film *film)
+{
+    return check_whole(film) && (film->layers || film->frames == 0 ||
+                                 wd_film_writer_commit(&film->writer, &film->log));
 }
 
 enum wd_result wd_film_commit(struct wd_film **film)
 {
     struct wd_film *f = *film;
-    bool ok = f->layers || f->frames == 0 || wd_film_writer_commit(&f->writer, &f->log);
+    bool ok = commit(f);
     if (ok && f->frames == f->frame_count)
         wd_film_store_remove(&f->store);
     wd_film_discard(film);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "api/arguments.h"
 #include "api/sky_file.h"
 #include "base/memory.h"
 #include "tree/import.h"
@@ -36,6 +37,8 @@ static bool watch_report(void *user, const char *stage, uint64_t done, uint64_t 
 enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_forest_params *params)
 {
     *result = NULL;
+    if (!wd_given(params, NULL) || !wd_given(params->scene_path, &params->log))
+        return WD_ERROR_INPUT;
     struct wd_forest *forest = wd_alloc(sizeof *forest);
     forest->log = params->log;
     const struct wd_scene_params scene = {.data_dir = params->data_dir,
@@ -49,15 +52,16 @@ enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_fores
         .progress = &progress,
         .log = &forest->log,
     };
+    enum wd_result failure = WD_ERROR_INPUT;
     if ((params->seed && !parse_seed(params->seed, &world.seed, &forest->log)) ||
         !wd_scene_load_with(&forest->scene, params->scene_path, &scene, &forest->log) ||
         !wd_forest_key_files(forest, params) ||
         !wd_species_import_models(forest->scene.species, forest->scene.species_file_count,
                                   &progress, &forest->log) ||
         !wd_world_init(&forest->world, &forest->scene, &world) ||
-        !wd_sky_file_load(&forest->world.sky, &forest->scene, &forest->log)) {
+        (failure = wd_sky_file_load(&forest->world.sky, &forest->scene, &forest->log)) != WD_OK) {
         wd_forest_destroy(&forest);
-        return watch.stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_INPUT;
+        return watch.stopped ? WD_ERROR_INTERRUPTED : failure;
     }
     *result = forest;
     return WD_OK;

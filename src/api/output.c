@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "api/arguments.h"
 #include "api/shown.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -17,11 +18,11 @@ bool wd_has_ending(const char *path, const char *ending)
     return length > tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
-uint8_t *wd_picture_rgb(const struct wd_picture *picture)
+uint8_t *wd_picture_rgb(const struct wd_picture *picture, const struct wd_log *log)
 {
     size_t pixels = (size_t)picture->width * picture->height;
-    uint8_t *rgb = wd_alloc_array(pixels, 3);
-    for (size_t i = 0; i < pixels; i++)
+    uint8_t *rgb = wd_picture_try_scratch(picture->width, picture->height, 3, log);
+    for (size_t i = 0; rgb && i < pixels; i++)
         memcpy(rgb + 3 * i, picture->display + 4 * i, 3);
     return rgb;
 }
@@ -33,7 +34,9 @@ static enum wd_result write_png(const struct wd_picture *picture, const char *pa
         wd_error(log, "%s: a PNG file shows the display layer, which the picture lacks", path);
         return WD_ERROR_INPUT;
     }
-    uint8_t *rgb = wd_picture_rgb(picture);
+    uint8_t *rgb = wd_picture_rgb(picture, log);
+    if (!rgb)
+        return WD_ERROR_MEMORY;
     bool ok = wd_png_write(path, rgb, picture->width, picture->height, log);
     free(rgb);
     return ok ? WD_OK : WD_ERROR_OUTPUT;
@@ -60,8 +63,9 @@ struct ranks {
 /* The keys hold the first seven digits of the hash of "weald_tree". */
 #define MATTE_KEY "cryptomatte/9f4781b/"
 
-static void add_ranks(struct ranks *ranks, const struct wd_picture *picture,
-                      struct wd_exr_channel *channels, struct wd_exr_params *params)
+static bool add_ranks(struct ranks *ranks, const struct wd_picture *picture,
+                      struct wd_exr_channel *channels, struct wd_exr_params *params,
+                      const struct wd_log *log)
 {
     static const char *const names[2 * WD_RANKS] = {
         "weald_tree00.R", "weald_tree00.G", "weald_tree00.B", "weald_tree00.A",
@@ -69,9 +73,12 @@ static void add_ranks(struct ranks *ranks, const struct wd_picture *picture,
         "weald_tree02.R", "weald_tree02.G", "weald_tree02.B", "weald_tree02.A"};
     size_t count = (size_t)picture->width * picture->height * WD_RANKS;
     if (!picture->rank_tree)
-        return;
+        return true;
+    ranks->values = wd_picture_try_scratch(picture->width, picture->height,
+                                           2 * WD_RANKS * sizeof *ranks->values, log);
+    if (!ranks->values)
+        return false;
     wd_cryptomatte_init(&ranks->matte, picture->rank_tree, count);
-    ranks->values = wd_alloc_array(count * 2, sizeof *ranks->values);
     for (size_t i = 0; i < count; i++) {
         ranks->values[2 * i] = wd_cryptomatte_find(&ranks->matte, picture->rank_tree[i]);
         ranks->values[2 * i + 1] = picture->rank_share[i];
@@ -84,6 +91,7 @@ static void add_ranks(struct ranks *ranks, const struct wd_picture *picture,
     memcpy(ranks->texts + params->text_count, texts, sizeof texts);
     params->text_count += sizeof texts / sizeof *texts;
     add_channels(channels, &params->channel_count, names, ranks->values, 2 * WD_RANKS);
+    return true;
 }
 
 static void finish_ranks(struct ranks *ranks)
@@ -125,15 +133,18 @@ static enum wd_result write_exr(const struct wd_picture *picture, const char *pa
         wd_error(log, "%s: the picture has no layer that an EXR file could hold", path);
         return WD_ERROR_INPUT;
     }
-    add_ranks(&ranks, picture, channels, &params);
-    bool ok = wd_exr_write(path, &params, log);
+    enum wd_result result = WD_ERROR_MEMORY;
+    if (add_ranks(&ranks, picture, channels, &params, log))
+        result = wd_exr_write(path, &params, log) ? WD_OK : WD_ERROR_OUTPUT;
     finish_ranks(&ranks);
-    return ok ? WD_OK : WD_ERROR_OUTPUT;
+    return result;
 }
 
 enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
                                 const struct wd_log *log)
 {
+    if (!wd_given(picture, log) || !wd_given(path, log))
+        return WD_ERROR_INPUT;
     if (wd_has_ending(path, ".png"))
         return write_png(picture, path, log);
     if (wd_has_ending(path, ".exr"))

@@ -6,7 +6,7 @@
 
 bool wd_has_ending(const char *path, const char *ending);
 
-/* The display layer as three bytes a pixel; free() it. */
-uint8_t *wd_picture_rgb(const struct wd_picture *picture);
+/* The display layer as three bytes a pixel; free() it. NULL, logged, where there is not so much memory. */
+uint8_t *wd_picture_rgb(const struct wd_picture *picture, const struct wd_log *log);
 
 #endif

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "api/shown.h"
 #include "base/color.h"
-#include "base/memory.h"
 
 void wd_picture_finish(struct wd_picture *picture)
 {
@@ -22,12 +22,19 @@ void wd_picture_finish(struct wd_picture *picture)
     *picture = (struct wd_picture){0};
 }
 
-/* Reads a target of `texel` bytes a pixel into fresh memory; NULL on failure. */
-static void *read_target(struct wd_renderer *renderer, struct wd_image *image, size_t texel)
+/* Reads a target of `texel` bytes a pixel. */
+static bool read_into(struct wd_renderer *renderer, struct wd_image *image, size_t texel, void *data)
 {
     size_t size = (size_t)image->width * image->height * texel;
-    void *data = wd_alloc(size);
-    if (wd_image_read(&renderer->gpu, image, 0, 0, data, size))
+    return wd_image_read(&renderer->gpu, image, 0, 0, data, size);
+}
+
+/* The same into memory of its own, to be freed; NULL on failure. */
+static void *read_target(struct wd_renderer *renderer, struct wd_image *image, size_t texel)
+{
+    void *data = wd_picture_try_scratch(image->width, image->height, texel, &renderer->log);
+    renderer->no_memory |= !data;
+    if (data && read_into(renderer, image, texel, data))
         return data;
     free(data);
     return NULL;
@@ -39,7 +46,6 @@ static bool read_color(struct wd_picture *picture, struct wd_renderer *renderer,
     if (!sum)
         return false;
     float share = 1.0f / (float)renderer->frame.params.samples;
-    picture->color = wd_alloc_array(pixels * 3, sizeof(float));
     for (size_t i = 0; i < pixels; i++) {
         for (int k = 0; k < 3; k++)
             picture->color[3 * i + k] = sum[4 * i + k] * share;
@@ -50,8 +56,7 @@ static bool read_color(struct wd_picture *picture, struct wd_renderer *renderer,
 
 static bool read_depth(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
 {
-    picture->depth_m = read_target(renderer, &renderer->frame.targets.depth, 4);
-    if (!picture->depth_m)
+    if (!read_into(renderer, &renderer->frame.targets.depth, 4, picture->depth_m))
         return false;
     for (size_t i = 0; i < pixels; i++) {
         float reversed = picture->depth_m[i];
@@ -79,7 +84,6 @@ static bool read_normal(struct wd_picture *picture, struct wd_renderer *renderer
         free(surface);
         return false;
     }
-    picture->normal = wd_alloc_array(pixels * 3, sizeof(float));
     for (size_t i = 0; i < pixels; i++) {
         float normal[3], squared = 0.0f;
         for (int k = 0; k < 3; k++)
@@ -102,7 +106,6 @@ static bool read_albedo(struct wd_picture *picture, struct wd_renderer *renderer
     uint8_t *bytes = read_target(renderer, &renderer->frame.targets.albedo, 4);
     if (!bytes)
         return false;
-    picture->albedo = wd_alloc_array(pixels * 3, sizeof(float));
     for (size_t i = 0; i < pixels * 3; i++)
         picture->albedo[i] = wd_srgb_decode(bytes[i / 3 * 4 + i % 3]);
     free(bytes);
@@ -112,21 +115,15 @@ static bool read_albedo(struct wd_picture *picture, struct wd_renderer *renderer
 static bool read_velocity(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
 {
     size_t size = pixels * 2 * sizeof(float);
-    picture->velocity_px = wd_alloc(size);
     return wd_buffer_read(&renderer->gpu, &renderer->frame.velocity_px, 0, picture->velocity_px,
                           size);
 }
 
-static bool read_trees(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers,
-                       size_t pixels)
+static bool read_trees(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
 {
     uint32_t *surface = read_target(renderer, &renderer->frame.targets.surface, 4);
     if (!surface)
         return false;
-    if (layers & WD_LAYER_SPECIES)
-        picture->species = wd_alloc_array(pixels, sizeof(uint32_t));
-    if (layers & WD_LAYER_TREE_ID)
-        picture->tree_id = wd_alloc_array(pixels, sizeof(uint32_t));
     struct wd_tree tree;
     uint32_t before = 0;
     for (size_t i = 0; i < pixels; i++) {
@@ -168,12 +165,9 @@ bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, u
 {
     struct wd_targets *targets = &renderer->frame.targets;
     size_t pixels = (size_t)targets->width * targets->height;
-    picture->width = targets->width;
-    picture->height = targets->height;
     if (layers & WD_LAYER_CRYPTOMATTE)
         wd_coverage_rank(&renderer->coverage, renderer->frame.params.samples, picture);
-    if (layers & WD_LAYER_DISPLAY &&
-        !(picture->display = read_target(renderer, &targets->display, 4)))
+    if (layers & WD_LAYER_DISPLAY && !read_into(renderer, &targets->display, 4, picture->display))
         return false;
     return (!(layers & WD_LAYER_VELOCITY) || read_velocity(picture, renderer, pixels)) &&
            (!(layers & WD_LAYER_COLOR) || read_color(picture, renderer, pixels)) &&
@@ -181,5 +175,5 @@ bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, u
            (!(layers & WD_LAYER_NORMAL) || read_normal(picture, renderer, pixels)) &&
            (!(layers & WD_LAYER_ALBEDO) || read_albedo(picture, renderer, pixels)) &&
            (!(layers & (WD_LAYER_SPECIES | WD_LAYER_TREE_ID)) ||
-            read_trees(picture, renderer, layers, pixels));
+            read_trees(picture, renderer, pixels));
 }

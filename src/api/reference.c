@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "api/arguments.h"
 #include "api/forest.h"
 #include "api/shown.h"
 #include "base/clock.h"
@@ -18,7 +19,7 @@
 #include "world/on_demand.h"
 #include "world/surroundings.h"
 
-enum { MAX_SIZE = 16384, MAX_SAMPLES = 1 << 20, DEFAULT_SAMPLES = 64, DEFAULT_BOUNCES = 8 };
+enum { MAX_SAMPLES = 1 << 20, DEFAULT_SAMPLES = 64, DEFAULT_BOUNCES = 8 };
 static const double CHECKPOINT_S = 30.0;
 
 struct wd_reference {
@@ -55,8 +56,10 @@ static RTCDevice open_device(struct wd_reference *reference)
 enum wd_result wd_reference_create(struct wd_reference **result, const struct wd_forest *forest,
                                    const struct wd_reference_params *params)
 {
-    struct wd_reference *reference = wd_alloc(sizeof *reference);
     *result = NULL;
+    if (!wd_given(params, NULL) || !wd_given(forest, &params->log))
+        return WD_ERROR_INPUT;
+    struct wd_reference *reference = wd_alloc(sizeof *reference);
     *reference = (struct wd_reference){.forest = forest,
                                        .threads = params->threads,
                                        .progress = params->progress,
@@ -107,25 +110,31 @@ struct work {
     uint64_t key;
 };
 
+/* Layers that no path tells of. */
+static const uint32_t MISSING_LAYERS = WD_LAYER_VELOCITY | WD_LAYER_CRYPTOMATTE;
+
+static bool check_layers(uint32_t layers, const struct wd_log *log)
+{
+    uint32_t missing = layers == WD_LAYER_ALL ? 0 : layers & MISSING_LAYERS;
+    if (missing)
+        return wd_error(log,
+                        "layers asks for %s, which the path tracer lacks: all others are possible",
+                        missing == WD_LAYER_VELOCITY      ? "velocity"
+                        : missing == WD_LAYER_CRYPTOMATTE ? "cryptomatte"
+                                                          : "velocity and cryptomatte");
+    return wd_check_layers(layers, log);
+}
+
 static bool check(const struct wd_reference *reference,
                   const struct wd_reference_picture_params *params)
 {
     const struct wd_log *log = &reference->log;
-    if (params->width < 1 || params->width > MAX_SIZE || params->height < 1 ||
-        params->height > MAX_SIZE)
-        return wd_error(log, "picture of %u x %u pixels: 1 to %d each way are possible",
-                        params->width, params->height, MAX_SIZE);
-    if (params->samples > MAX_SAMPLES)
-        return wd_error(log, "%u samples: at most %d are possible", params->samples, MAX_SAMPLES);
-    if (!(params->camera.fov_rad > 0.0 && params->camera.fov_rad < 3.14159))
-        return wd_error(log, "field of view of %g radians: between 0 and pi is possible",
-                        params->camera.fov_rad);
-    for (int k = 0; k < 3; k++) {
-        if (!(fabs(params->camera.position_m[k]) < 2.0e6))
-            return wd_error(log, "camera at %g m: within 2,000 km of the origin is possible",
-                            params->camera.position_m[k]);
-    }
-    return true;
+    return wd_check_size(params->width, params->height, log) &&
+           wd_check_samples(params->samples, MAX_SAMPLES, log) &&
+           wd_check_camera(&params->camera, "camera", log) &&
+           wd_check_time(params->time_s, "time_s", log) &&
+           wd_check_choice(params->places, WD_REFERENCE_MIDDLES + 1, "places", log) &&
+           check_layers(params->layers, log);
 }
 
 /* All that the picture depends on but the number of samples. */
@@ -186,7 +195,10 @@ static bool prepare(struct work *work)
     work->job.stream = params->stream;
     work->job.middles = params->places == WD_REFERENCE_MIDDLES;
     work->job.progress = &work->progress;
-    wd_trace_sums_init(&work->sums, params->width, params->height);
+    if (!wd_trace_sums_init(&work->sums, params->width, params->height))
+        return wd_error(&reference->log,
+                        "out of memory: there is no room for the paths of %u x %u pixels",
+                        params->width, params->height);
     bool ok = wd_trace_scene_init(&work->scene, &reference->models, &forest->scene, &forest->world,
                                   &work->frame, &reference->log);
     reference->stats.build_s = wd_clock_s() - begin_s;
@@ -249,9 +261,8 @@ static enum wd_result trace_paths(struct work *work)
     return resume(work) ? trace(work) : WD_ERROR_INPUT;
 }
 
-static float *mean_radiance(const struct wd_trace_sums *sums)
+static void mean_radiance(const struct wd_trace_sums *sums, float *color)
 {
-    float *color = wd_alloc_array((size_t)sums->width * sums->height, 3 * sizeof *color);
     for (uint32_t y = 0; y < sums->height; y++) {
         for (uint32_t x = 0; x < sums->width; x++) {
             size_t pixel = (size_t)y * sums->width + x;
@@ -261,38 +272,30 @@ static float *mean_radiance(const struct wd_trace_sums *sums)
                     sums->radiance[3 * pixel + k] / (float)sums->tile_samples[tile];
         }
     }
-    return color;
+}
+
+/* What is shown follows from colour, wanted or not. */
+static bool make_room(const struct work *work, struct wd_picture *picture)
+{
+    uint32_t shown = is_lit(work) ? WD_LAYER_COLOR : 0;
+    return wd_picture_make_room(picture, work->params->width, work->params->height,
+                                work->layers | shown, &work->reference->log);
 }
 
 static void fill_picture(struct work *work, struct wd_picture *picture)
 {
-    uint32_t width = work->sums.width, height = work->sums.height;
-    size_t pixels = (size_t)width * height;
-    picture->width = width;
-    picture->height = height;
+    const struct wd_forest *forest = work->reference->forest;
     if (is_lit(work))
-        picture->color = mean_radiance(&work->sums);
-    if (work->layers & WD_LAYER_DEPTH)
-        picture->depth_m = wd_alloc_array(pixels, sizeof(float));
-    if (work->layers & WD_LAYER_NORMAL)
-        picture->normal = wd_alloc_array(pixels, 3 * sizeof(float));
-    if (work->layers & WD_LAYER_ALBEDO)
-        picture->albedo = wd_alloc_array(pixels, 3 * sizeof(float));
-    if (work->layers & WD_LAYER_SPECIES)
-        picture->species = wd_alloc_array(pixels, sizeof(uint32_t));
-    if (work->layers & WD_LAYER_TREE_ID)
-        picture->tree_id = wd_alloc_array(pixels, sizeof(uint32_t));
+        mean_radiance(&work->sums, picture->color);
     wd_trace_layers(&work->job, picture);
-    if (work->layers & WD_LAYER_DISPLAY) {
-        picture->display = wd_alloc_array(pixels, 4);
-        wd_display_map(picture->color, width, height,
-                       (float)work->reference->forest->scene.quality.exposure_ev, picture->display);
-    }
+    if (work->layers & WD_LAYER_DISPLAY)
+        wd_display_map(picture->color, picture->width, picture->height,
+                       (float)forest->scene.quality.exposure_ev, picture->display);
     if (!(work->layers & WD_LAYER_COLOR)) {
         free(picture->color);
         picture->color = NULL;
     }
-    wd_picture_settle(picture, work->reference->forest, &work->params->camera, work->params->time_s);
+    wd_picture_settle(picture, forest, &work->params->camera, work->params->time_s);
 }
 
 enum wd_result wd_reference_render(struct wd_reference *reference,
@@ -300,7 +303,7 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
                                    struct wd_picture *picture)
 {
     *picture = (struct wd_picture){0};
-    if (!check(reference, params) ||
+    if (!wd_given(params, &reference->log) || !check(reference, params) ||
         !wd_demand_is_none(&reference->forest->world.demand, "the path tracer", &reference->log))
         return WD_ERROR_INPUT;
     reference->stats = (struct wd_reference_stats){0};
@@ -308,10 +311,13 @@ enum wd_result wd_reference_render(struct wd_reference *reference,
         .reference = reference,
         .params = params,
         .samples = params->samples ? params->samples : DEFAULT_SAMPLES,
-        .layers = params->layers ? params->layers : WD_LAYER_DISPLAY,
+        .layers = params->layers ? params->layers & ~MISSING_LAYERS : WD_LAYER_DISPLAY,
     };
-    enum wd_result result = prepare(&work) ? trace_paths(&work) : WD_ERROR_MEMORY;
-    if (result == WD_OK) {
+    bool ready = make_room(&work, picture) && prepare(&work);
+    enum wd_result result = ready ? trace_paths(&work) : WD_ERROR_MEMORY;
+    if (result != WD_OK) {
+        wd_picture_finish(picture);
+    } else {
         fill_picture(&work, picture);
         if (is_lit(&work) && params->checkpoint && wd_file_exists(params->checkpoint))
             unlink(params->checkpoint);

@@ -5,20 +5,26 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "api/arguments.h"
 #include "api/shown.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "weald/vulkan.h"
 
-enum { MAX_SIZE = 16384, MAX_SAMPLES = 65536 };
+enum { MAX_SAMPLES = 65536 };
+
+enum wd_result wd_renderer_failure(const struct wd_renderer *renderer)
+{
+    bool no_memory = renderer->no_memory || renderer->gpu.no_memory;
+    return no_memory && !renderer->gpu.lost ? WD_ERROR_MEMORY : WD_ERROR_DEVICE;
+}
 
 /* --- making ------------------------------------------------------------------------------ */
 
 static enum wd_result create(struct wd_renderer **result, const struct wd_gpu_params *gpu,
                              const struct wd_renderer_params *params)
 {
-    *result = NULL;
     struct wd_renderer *renderer = wd_alloc(sizeof *renderer);
     renderer->log = params->log;
     renderer->progress = params->progress;
@@ -26,12 +32,20 @@ static enum wd_result create(struct wd_renderer **result, const struct wd_gpu_pa
     renderer->cache_dir = params->cache_dir ? wd_strdup(params->cache_dir) : wd_cache_directory();
     if (!wd_gpu_init(&renderer->gpu, gpu, &renderer->log) ||
         !wd_frame_init(&renderer->frame, &renderer->gpu)) {
+        enum wd_result failure = wd_renderer_failure(renderer);
         wd_renderer_destroy(&renderer);
-        return WD_ERROR_DEVICE;
+        return failure;
     }
     renderer->gpu.threads = params->threads;
     *result = renderer;
     return WD_OK;
+}
+
+static bool check_create(struct wd_renderer **renderer, const struct wd_renderer_params *params)
+{
+    *renderer = NULL;
+    return wd_given(params, NULL) &&
+           wd_check_choice(params->validation, WD_VALIDATION_ON + 1, "validation", &params->log);
 }
 
 static struct wd_gpu_params gpu_params(const struct wd_renderer_params *params)
@@ -46,6 +60,8 @@ static struct wd_gpu_params gpu_params(const struct wd_renderer_params *params)
 enum wd_result wd_renderer_create(struct wd_renderer **renderer,
                                   const struct wd_renderer_params *params)
 {
+    if (!check_create(renderer, params))
+        return WD_ERROR_INPUT;
     const struct wd_gpu_params gpu = gpu_params(params);
     return create(renderer, &gpu, params);
 }
@@ -55,6 +71,9 @@ enum wd_result wd_renderer_create_presenting(struct wd_renderer **renderer,
                                              uint32_t instance_extension_count,
                                              const struct wd_renderer_params *params)
 {
+    if (!check_create(renderer, params) ||
+        (instance_extension_count && !wd_given(instance_extensions, &params->log)))
+        return WD_ERROR_INPUT;
     struct wd_gpu_params gpu = gpu_params(params);
     gpu.instance_extensions = instance_extensions;
     gpu.instance_extension_count = instance_extension_count;
@@ -66,6 +85,8 @@ enum wd_result wd_renderer_create_vulkan(struct wd_renderer **renderer,
                                          const struct wd_vulkan_handles *handles,
                                          const struct wd_renderer_params *params)
 {
+    if (!check_create(renderer, params) || !wd_given(handles, &params->log))
+        return WD_ERROR_INPUT;
     const struct wd_gpu_external external = {handles->instance, handles->physical_device,
                                              handles->device, handles->queue,
                                              handles->queue_family};
@@ -99,8 +120,9 @@ static bool stopped_report(void *user, const char *stage, uint64_t done, uint64_
 
 enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct wd_forest *forest)
 {
+    renderer->no_memory = renderer->gpu.no_memory = false;
     if (!wd_frames_wait(&renderer->frame.ring))
-        return WD_ERROR_DEVICE;
+        return wd_renderer_failure(renderer);
     if (renderer->forest) {
         wd_frame_drop_forest(&renderer->frame);
         wd_forest_device_finish(&renderer->device, &renderer->gpu);
@@ -120,7 +142,7 @@ enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct
     };
     renderer->stopped = false;
     if (!wd_forest_device_init(&renderer->device, &renderer->gpu, &params))
-        return renderer->stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_DEVICE;
+        return renderer->stopped ? WD_ERROR_INTERRUPTED : wd_renderer_failure(renderer);
     renderer->device.progress = progress;
     renderer->forest = forest;
     return WD_OK;
@@ -128,37 +150,53 @@ enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct
 
 /* --- pictures ---------------------------------------------------------------------------- */
 
+static bool check_motion(const struct wd_render_params *params, const struct wd_log *log)
+{
+    return wd_check_time(params->previous_time_s, "previous_time_s", log) &&
+           (!params->previous_camera ||
+            wd_check_camera(params->previous_camera, "previous_camera", log));
+}
+
 static bool check(const struct wd_renderer *renderer, const struct wd_render_params *params)
 {
     const struct wd_log *log = &renderer->log;
     if (!renderer->forest)
         return wd_error(log, "no forest is set to be drawn: call wd_renderer_set_forest first");
-    if (params->width < 1 || params->width > MAX_SIZE || params->height < 1 ||
-        params->height > MAX_SIZE)
-        return wd_error(log, "picture of %u x %u pixels: 1 to %d each way are possible",
-                        params->width, params->height, MAX_SIZE);
-    if (params->samples > MAX_SAMPLES)
-        return wd_error(log, "%u samples: at most %d are possible", params->samples, MAX_SAMPLES);
-    double fov = params->camera.fov_rad;
-    if (!(fov > 0.0 && fov < 3.14159))
-        return wd_error(log, "field of view of %g radians: between 0 and pi is possible", fov);
     double error_px = params->max_error_px;
     if (error_px != 0.0 && !(error_px >= WD_LEAST_ERROR_PX && error_px <= WD_MOST_ERROR_PX))
         return wd_error(log, "an error of %g pixels: %g to %g are possible", error_px,
                         WD_LEAST_ERROR_PX, WD_MOST_ERROR_PX);
-    for (int k = 0; k < 3; k++) {
-        if (!(fabs(params->camera.position_m[k]) < 2.0e6))
-            return wd_error(log,
-                            "camera at %g, %g, %g m: within 2,000 km of the origin is possible",
-                            params->camera.position_m[0], params->camera.position_m[1],
-                            params->camera.position_m[2]);
-    }
-    return true;
+    return wd_check_size(params->width, params->height, log) &&
+           wd_check_samples(params->samples, MAX_SAMPLES, log) &&
+           wd_check_choice(params->view, WD_VIEW_SHADOW + 1, "view", log) &&
+           wd_check_choice(params->accumulation, WD_ACCUMULATE + 1, "accumulation", log) &&
+           wd_check_choice(params->timing, WD_TIME_PASSES + 1, "timing", log) &&
+           wd_check_camera(&params->camera, "camera", log) &&
+           wd_check_time(params->time_s, "time_s", log) &&
+           (params->accumulation == WD_ACCUMULATE || check_motion(params, log));
+}
+
+static uint32_t layers_of(const struct wd_render_params *params)
+{
+    return params->layers ? params->layers : WD_LAYER_DISPLAY;
+}
+
+/* Before anything is drawn, so that the largest blocks are the first to be refused. */
+static bool make_room(struct wd_renderer *renderer, const struct wd_render_params *params,
+                      struct wd_picture *picture)
+{
+    uint32_t layers = layers_of(params);
+    if (!wd_picture_make_room(picture, params->width, params->height, layers, &renderer->log))
+        return false;
+    size_t pixels = (size_t)params->width * params->height;
+    return !(layers & WD_LAYER_CRYPTOMATTE) || wd_coverage_init(&renderer->coverage, pixels) ||
+           wd_error(&renderer->log, "out of memory: there is no room to count the trees of %zu pixels",
+                    pixels);
 }
 
 enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
                                    const struct wd_render_params *params, uint32_t max_samples,
-                                   enum wd_frame_light light)
+                                   enum wd_frame_light light, struct wd_picture *picture)
 {
     if (renderer->gpu.lost) {
         wd_error(&renderer->log, "the device was lost: make a new renderer");
@@ -174,6 +212,9 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
     }
     if (!wd_method_can_draw(method, &renderer->forest->world, &renderer->log))
         return WD_ERROR_INPUT;
+    renderer->no_memory = renderer->gpu.no_memory = false;
+    if (picture && !make_room(renderer, params, picture))
+        return WD_ERROR_MEMORY;
     uint32_t samples = params->samples ? params->samples : 1;
     const struct wd_frame_params frame = {
         .forest = &renderer->device,
@@ -199,7 +240,7 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
     renderer->stopped = false; /* a method may bake first */
     if (wd_frame_prepare(&renderer->frame, &frame))
         return WD_OK;
-    return renderer->stopped ? WD_ERROR_INTERRUPTED : WD_ERROR_DEVICE;
+    return renderer->stopped ? WD_ERROR_INTERRUPTED : wd_renderer_failure(renderer);
 }
 
 /* The pass to count a scope in: one of the same name within the same scope, or a new one. */
@@ -248,21 +289,21 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
         if (samples - first > 1 && !wd_progress_report(&renderer->progress, "samples", i, samples))
             return WD_ERROR_INTERRUPTED;
         if (!wd_frame_begin(&frame->ring, &cmd))
-            return WD_ERROR_DEVICE;
+            return wd_renderer_failure(renderer);
         wd_frame_record(frame, &cmd, i);
         if (!wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE)) {
             wd_frame_abandoned(frame);
-            return WD_ERROR_DEVICE;
+            return wd_renderer_failure(renderer);
         }
         if (i == first && !wd_frames_wait(&frame->ring))
-            return WD_ERROR_DEVICE;
+            return wd_renderer_failure(renderer);
         if (i == first)
             wd_renderer_keep_times(renderer);
         if (renderer->coverage.first && !wd_picture_count_trees(renderer))
-            return WD_ERROR_DEVICE;
+            return wd_renderer_failure(renderer);
     }
     if (!wd_frames_wait(&frame->ring))
-        return WD_ERROR_DEVICE;
+        return wd_renderer_failure(renderer);
     renderer->samples = samples - first;
     renderer->frame_ms = (wd_clock_s() - start) * 1e3 / renderer->samples;
     if (frame->params.method->check)
@@ -277,16 +318,16 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
                                   const struct wd_render_params *params, struct wd_picture *picture)
 {
     *picture = (struct wd_picture){0};
-    uint32_t layers = params->layers ? params->layers : WD_LAYER_DISPLAY;
+    if (!wd_given(params, &renderer->log) || !wd_check_layers(params->layers, &renderer->log))
+        return WD_ERROR_INPUT;
+    uint32_t layers = layers_of(params);
     bool lit = layers & (WD_LAYER_DISPLAY | WD_LAYER_COLOR) || params->accumulation == WD_ACCUMULATE;
-    enum wd_result result = wd_renderer_prepare(renderer, params, UINT32_MAX, lit ? WD_FRAME_LIT : WD_FRAME_UNLIT);
-    if (result != WD_OK)
-        return result;
-    if (layers & WD_LAYER_CRYPTOMATTE)
-        wd_coverage_init(&renderer->coverage, (size_t)params->width * params->height);
-    result = render_samples(renderer);
+    enum wd_result result = wd_renderer_prepare(renderer, params, UINT32_MAX,
+                                                lit ? WD_FRAME_LIT : WD_FRAME_UNLIT, picture);
+    if (result == WD_OK)
+        result = render_samples(renderer);
     if (result == WD_OK && !wd_picture_read(picture, renderer, layers))
-        result = WD_ERROR_DEVICE;
+        result = wd_renderer_failure(renderer);
     wd_coverage_finish(&renderer->coverage);
     if (result == WD_OK)
         wd_picture_settle(picture, renderer->forest, &params->camera, params->time_s);

@@ -18,6 +18,7 @@ struct wd_renderer {
     unsigned threads;
     struct wd_progress progress;
     bool stopped; /* progress asked to stop */
+    bool no_memory; /* for a picture, on the host */
     struct wd_log log;
     struct wd_pass_time passes[WD_MAX_PASSES];
     char pass_names[WD_MAX_PASSES][sizeof((struct wd_scope_time){0}.name)]; /* the ring's are its newest frame's */
@@ -29,10 +30,14 @@ struct wd_renderer {
     uint64_t discs; /* of the newest picture; 0: not counted */
 };
 
-/* Checks the parameters of a picture and hands them to the frame. */
+/* What a call came to that failed, once its cause was logged. Each that may fail for want of memory clears
+ * no_memory, its own and the device's, first. */
+enum wd_result wd_renderer_failure(const struct wd_renderer *renderer);
+/* Checks the parameters of a picture, makes room for its layers (`picture` NULL: none is read), and hands them
+ * to the frame. */
 enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
                                    const struct wd_render_params *params, uint32_t max_samples,
-                                   enum wd_frame_light light);
+                                   enum wd_frame_light light, struct wd_picture *picture);
 /* Fetches the layers of the frame just finished. */
 bool wd_picture_read(struct wd_picture *picture, struct wd_renderer *renderer, uint32_t layers);
 /* Adds what the sample just finished shows to renderer->coverage. */

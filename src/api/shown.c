@@ -4,6 +4,7 @@
 #include <jansson.h>
 #include <math.h>
 
+#include "base/memory.h"
 #include "world/surroundings.h"
 
 static json_t *vector(const double *v, size_t count)
@@ -78,4 +79,55 @@ void wd_picture_camera_matrix(float m[4][4], const struct wd_camera *camera)
         m[column][3] = 0;
     }
     m[3][3] = 1;
+}
+
+/* --- its memory ---------------------------------------------------------------------------- */
+
+static bool no_memory(uint32_t width, uint32_t height, size_t bytes_a_pixel, const struct wd_log *log)
+{
+    return wd_error(log, "out of memory: a picture of %u x %u pixels wants %.1f MiB, which cannot be had",
+                    width, height, (double)width * height * (double)bytes_a_pixel / (1 << 20));
+}
+
+bool wd_picture_make_room(struct wd_picture *picture, uint32_t width, uint32_t height,
+                          uint32_t layers, const struct wd_log *log)
+{
+    *picture = (struct wd_picture){.width = width, .height = height};
+    const struct {
+        void **array;
+        size_t bytes; /* a pixel */
+        uint32_t layer;
+    } arrays[] = {
+        {(void **)&picture->display, 4, WD_LAYER_DISPLAY},
+        {(void **)&picture->color, 12, WD_LAYER_COLOR},
+        {(void **)&picture->depth_m, 4, WD_LAYER_DEPTH},
+        {(void **)&picture->normal, 12, WD_LAYER_NORMAL},
+        {(void **)&picture->albedo, 12, WD_LAYER_ALBEDO},
+        {(void **)&picture->species, 4, WD_LAYER_SPECIES},
+        {(void **)&picture->tree_id, 4, WD_LAYER_TREE_ID},
+        {(void **)&picture->velocity_px, 8, WD_LAYER_VELOCITY},
+        {(void **)&picture->rank_tree, 4 * WD_RANKS, WD_LAYER_CRYPTOMATTE},
+        {(void **)&picture->rank_share, 4 * WD_RANKS, WD_LAYER_CRYPTOMATTE},
+    };
+    size_t bytes = 0;
+    bool ok = true;
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        if (!(layers & arrays[i].layer))
+            continue;
+        bytes += arrays[i].bytes;
+        *arrays[i].array = ok ? wd_try_array((size_t)width * height, arrays[i].bytes) : NULL;
+        ok = ok && *arrays[i].array;
+    }
+    if (!ok)
+        wd_picture_finish(picture);
+    return ok || no_memory(width, height, bytes, log);
+}
+
+void *wd_picture_try_scratch(uint32_t width, uint32_t height, size_t bytes_a_pixel,
+                             const struct wd_log *log)
+{
+    void *scratch = wd_try_array((size_t)width * height, bytes_a_pixel);
+    if (!scratch)
+        no_memory(width, height, bytes_a_pixel, log);
+    return scratch;
 }

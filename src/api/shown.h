@@ -1,9 +1,17 @@
-/* shown.h: what a picture tells of itself. */
+/* shown.h: what a picture holds, and what it tells of itself. */
 #ifndef WD_API_SHOWN_H
 #define WD_API_SHOWN_H
 
 #include "api/forest.h"
 #include "weald/renderer.h"
+
+/* Makes room for `layers`, all zero. False, logged, where there is not so much memory: then it has none. */
+bool wd_picture_make_room(struct wd_picture *picture, uint32_t width, uint32_t height,
+                          uint32_t layers, const struct wd_log *log);
+
+/* What making a picture needs beside it, `bytes_a_pixel` in all; NULL, logged, where that cannot be had. */
+void *wd_picture_try_scratch(uint32_t width, uint32_t height, size_t bytes_a_pixel,
+                             const struct wd_log *log);
 
 /* Of a picture whose layers are there: camera, time and `about`, and normals turned toward the eye. */
 void wd_picture_settle(struct wd_picture *picture, const struct wd_forest *forest,

@@ -48,60 +48,68 @@ static bool check_size(const struct wd_exr_image *image, const char *path, const
     return true;
 }
 
-/* All three in one block, or NULL. */
-static float *take_pixels(const struct wd_exr_image *image, const float *const planes[3],
-                          const char *path, const struct wd_log *log)
+static bool copy_pixels(float *rgb, const struct wd_exr_image *image, const float *const planes[3],
+                        const char *path, const struct wd_log *log)
 {
     size_t count = (size_t)image->width * image->height;
-    float *rgb = wd_alloc_array(count, 3 * sizeof *rgb), most = 0;
+    float most = 0;
     for (size_t at = 0; at < count; at++) {
         for (size_t k = 0; k < 3; k++) {
             float value = planes[k][at];
-            if (!(value >= 0 && isfinite(value))) {
-                wd_error(log, "%s: found %g in channel %c at column %zu, row %zu; radiance is a "
-                         "finite number from 0", path, (double)value, "RGB"[k],
-                         at % image->width, at / image->width);
-                free(rgb);
-                return NULL;
-            }
+            if (!(value >= 0 && isfinite(value)))
+                return wd_error(log, "%s: found %g in channel %c at column %zu, row %zu; radiance is a "
+                                "finite number from 0", path, (double)value, "RGB"[k],
+                                at % image->width, at / image->width);
             rgb[3 * at + k] = value;
             most = fmaxf(most, value);
         }
     }
-    if (most <= 0) {
-        wd_error(log, "%s: all pixels are black; a sky gives light", path);
-        free(rgb);
-        return NULL;
-    }
-    return rgb;
+    return most > 0 || wd_error(log, "%s: all pixels are black; a sky gives light", path);
 }
 
-static bool load(struct wd_sky_map *map, const struct wd_scene *scene, const char *path,
-                 const struct wd_log *log)
+/* All three in one block, which the map takes over. */
+static enum wd_result take_pixels(struct wd_sky_map *map, const struct wd_scene *scene,
+                                  const struct wd_exr_image *image, const char *path,
+                                  const struct wd_log *log)
+{
+    const float *planes[3];
+    if (!check_size(image, path, log) || !find_planes(image, planes, path, log))
+        return WD_ERROR_INPUT;
+    float *rgb = wd_try_array((size_t)image->width * image->height, 3 * sizeof *rgb);
+    if (!rgb) {
+        wd_error(log, "%s: out of memory: a sky of %u x %u pixels cannot be held", path, image->width,
+                 image->height);
+        return WD_ERROR_MEMORY;
+    }
+    if (!copy_pixels(rgb, image, planes, path, log)) {
+        free(rgb);
+        return WD_ERROR_INPUT;
+    }
+    wd_sky_map_init(map, rgb, image->width, image->height, scene);
+    return WD_OK;
+}
+
+static enum wd_result load(struct wd_sky_map *map, const struct wd_scene *scene, const char *path,
+                           const struct wd_log *log)
 {
     struct wd_exr_image image;
-    const float *planes[3];
     if (!wd_exr_read(&image, path, log))
-        return false;
-    float *rgb = NULL;
-    if (check_size(&image, path, log) && find_planes(&image, planes, path, log))
-        rgb = take_pixels(&image, planes, path, log);
-    if (rgb)
-        wd_sky_map_init(map, rgb, image.width, image.height, scene);
+        return image.no_memory ? WD_ERROR_MEMORY : WD_ERROR_INPUT;
+    enum wd_result result = take_pixels(map, scene, &image, path, log);
     wd_exr_image_finish(&image);
-    return rgb != NULL;
+    return result;
 }
 
-bool wd_sky_file_load(struct wd_sky_map *map, const struct wd_scene *scene,
-                      const struct wd_log *log)
+enum wd_result wd_sky_file_load(struct wd_sky_map *map, const struct wd_scene *scene,
+                                const struct wd_log *log)
 {
     *map = (struct wd_sky_map){0};
     if (!scene->sky.file)
-        return true;
+        return WD_OK;
     struct keyed_log keyed = {log, scene->path};
     const struct wd_log with_key = {keyed_sink, &keyed};
     char *path = wd_path_beside(scene->path, scene->sky.file);
-    bool ok = load(map, scene, path, &with_key);
+    enum wd_result result = load(map, scene, path, &with_key);
     free(path);
-    return ok;
+    return result;
 }

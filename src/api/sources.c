@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include "api/arguments.h"
 #include "api/forest.h"
 #include "api/specimen.h"
 #include "base/file.h"
@@ -76,6 +77,8 @@ static bool check_specimens(const struct wd_specimen *const *specimens, uint32_t
 enum wd_result wd_specimens_check_output(const struct wd_specimen *const *specimens, uint32_t count,
                                          const char *path)
 {
+    if (!wd_given(path, NULL) || (count && !wd_specimens_check(specimens, count, NULL)))
+        return WD_ERROR_INPUT;
     bool ok = check_specimens(specimens, count, path);
     for (uint32_t i = 0; i < count && ok; i++) {
         char *beside;
@@ -124,7 +127,8 @@ bool wd_scene_check_output(const struct wd_scene *scene, const char *output,
 enum wd_result wd_forest_check_output(const struct wd_forest *forest, const char *path,
                                       uint64_t frames, const struct wd_log *log)
 {
-    bool ok = wd_scene_check_output(&forest->scene, path, log) &&
+    bool ok = wd_given(forest, log) && wd_given(path, log) &&
+              wd_scene_check_output(&forest->scene, path, log) &&
               (frames == 0 || wd_film_sequence_check(path, log));
     for (uint64_t i = 0; i < frames && ok; i++) {
         char *name = wd_film_frame_name(path, i);

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "api/arguments.h"
 #include "base/file.h"
 #include "base/memory.h"
 
@@ -75,6 +76,8 @@ enum wd_result wd_specimen_create(struct wd_specimen **result,
                                   const struct wd_specimen_params *params)
 {
     *result = NULL;
+    if (!wd_given(params, NULL) || !wd_given(params->source, &params->log))
+        return WD_ERROR_INPUT;
     struct wd_specimen *specimen = wd_alloc(sizeof *specimen);
     specimen->log = params->log;
     specimen->month = params->month;
@@ -154,4 +157,17 @@ double wd_specimen_place_m(const struct wd_specimen *const *specimens, uint32_t 
     for (uint32_t i = 1; i <= index; i++)
         at += half_width_m(specimens[i - 1]) + half_width_m(specimens[i]);
     return at;
+}
+
+bool wd_specimens_check(const struct wd_specimen *const *specimens, uint32_t count,
+                        const struct wd_log *log)
+{
+    if (count == 0)
+        return wd_error(log, "count is 0: at least one specimen is needed");
+    if (!specimens)
+        return wd_error(log, "specimens is NULL: a list of %u is needed", count);
+    for (uint32_t i = 0; i < count; i++)
+        if (!specimens[i])
+            return wd_error(log, "specimens[%u] is NULL: a specimen is needed", i);
+    return true;
 }

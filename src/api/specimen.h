@@ -29,4 +29,8 @@ const struct wd_tree_mesh *wd_specimen_mesh(const struct wd_specimen *specimen, 
 /* Where specimen `index` of a row stands, metres east of the first. */
 double wd_specimen_place_m(const struct wd_specimen *const *specimens, uint32_t index);
 
+/* Whether there is at least one, and each is there. */
+bool wd_specimens_check(const struct wd_specimen *const *specimens, uint32_t count,
+                        const struct wd_log *log);
+
 #endif

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "api/arguments.h"
 #include "api/forest.h"
 #include "api/specimen.h"
 #include "base/memory.h"
@@ -144,12 +145,25 @@ static struct wd_tree *make_trees(const struct wd_specimen *const *specimens, ui
     return trees;
 }
 
+static bool check_view(double aspect, double distance_m, const struct wd_log *log)
+{
+    const double most_aspect = WD_MOST_SIZE_PX, most_m = 1e6;
+    if (!(aspect >= 1 / most_aspect && aspect <= most_aspect))
+        return wd_error(log, "aspect is %g: 1/%g to %g, as of pictures, is possible", aspect,
+                        most_aspect, most_aspect);
+    return (distance_m >= 0 && distance_m <= most_m) ||
+           wd_error(log, "distance_m is %g: 0 (that of \"fit\") to %.0f is possible", distance_m,
+                    most_m);
+}
+
 enum wd_result wd_forest_create_specimens(struct wd_forest **result,
                                           const struct wd_specimen *const *specimens,
                                           uint32_t count, double aspect, double distance_m,
                                           const struct wd_log *log)
 {
     *result = NULL;
+    if (!wd_specimens_check(specimens, count, log) || !check_view(aspect, distance_m, log))
+        return WD_ERROR_INPUT;
     struct wd_forest *forest = wd_alloc(sizeof *forest);
     forest->log = log ? *log : (struct wd_log){0};
     bool ok = make_scene(&forest->scene, specimens, count, &forest->log);

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "api/arguments.h"
 #include "api/forest.h"
 #include "api/sources.h"
 #include "api/specimen.h"
@@ -23,6 +24,8 @@ static bool has_ending(const char *path, const char *ending)
 enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, uint32_t count,
                                   const char *path, const struct wd_log *log)
 {
+    if (!wd_given(path, log) || !wd_specimens_check(specimens, count, log))
+        return WD_ERROR_INPUT;
     bool glb = has_ending(path, ".glb");
     if (!glb && !has_ending(path, ".obj")) {
         wd_error(log, "%s: trees are written as .glb or .obj", path);
@@ -201,6 +204,8 @@ static void finish(struct scene_export *export)
 enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path, uint64_t max_trees,
                                const struct wd_progress *progress, const struct wd_log *log)
 {
+    if (!wd_given(forest, log) || !wd_given(path, log))
+        return WD_ERROR_INPUT;
     const struct wd_terrain *terrain = &forest->world.terrain;
     bool csv = has_ending(path, ".csv");
     uint64_t most = max_trees ? max_trees : csv ? UINT64_MAX : DEFAULT_MAX_TREES;

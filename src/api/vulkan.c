@@ -1,5 +1,6 @@
 #include "weald/vulkan.h"
 
+#include "api/arguments.h"
 #include "api/renderer.h"
 #include "base/clock.h"
 
@@ -51,9 +52,10 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
                                 const struct wd_vulkan_target *target)
 {
     enum { LIVE_SAMPLES = 1, LIVE_PAGES = 256 };
-    if (!check_target(renderer, params, target))
+    if (!wd_given(params, &renderer->log) || !wd_given(target, &renderer->log) ||
+        !check_target(renderer, params, target))
         return WD_ERROR_INPUT;
-    enum wd_result result = wd_renderer_prepare(renderer, params, LIVE_SAMPLES, WD_FRAME_LIT);
+    enum wd_result result = wd_renderer_prepare(renderer, params, LIVE_SAMPLES, WD_FRAME_LIT, NULL);
     if (result != WD_OK)
         return result;
     renderer->frame.params.page_budget = LIVE_PAGES;
@@ -63,13 +65,13 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
     struct wd_cmd cmd;
     double start = wd_clock_s();
     if (!wd_frame_begin(&renderer->frame.ring, &cmd))
-        return WD_ERROR_DEVICE;
+        return wd_renderer_failure(renderer);
     wd_frame_record(&renderer->frame, &cmd, 0);
     const struct wd_frame_target copy = {target->image, target->format, target->layout_after};
     wd_frame_copy(&renderer->frame, &cmd, &copy);
     if (!wd_frame_submit(&cmd, target->wait, target->signal)) {
         wd_frame_abandoned(&renderer->frame);
-        return WD_ERROR_DEVICE;
+        return wd_renderer_failure(renderer);
     }
     renderer->samples = 1;
     renderer->frame_ms = (wd_clock_s() - start) * 1e3;
@@ -80,5 +82,6 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
 
 enum wd_result wd_renderer_wait(struct wd_renderer *renderer)
 {
-    return wd_frames_wait(&renderer->frame.ring) ? WD_OK : WD_ERROR_DEVICE;
+    renderer->no_memory = renderer->gpu.no_memory = false;
+    return wd_frames_wait(&renderer->frame.ring) ? WD_OK : wd_renderer_failure(renderer);
 }

@@ -26,6 +26,11 @@ void *wd_alloc_array(size_t count, size_t element_size)
     return wd_alloc(count * element_size);
 }
 
+void *wd_try_array(size_t count, size_t element_size)
+{
+    return count && element_size ? calloc(count, element_size) : calloc(1, 1);
+}
+
 void *wd_realloc(void *block, size_t size)
 {
     return check(realloc(block, size ? size : 1), size);

@@ -1,7 +1,8 @@
 /* memory.h: allocation that never returns NULL, growable arrays, and an arena.
  *
  * Host memory of the sizes a scene needs is either there or the program cannot go on: these
- * abort with a message that names the size. Sizes that come from outside are checked before. */
+ * abort with a message that names the size. Sizes that come from outside are checked before, or had from
+ * wd_try_array. */
 #ifndef WD_BASE_MEMORY_H
 #define WD_BASE_MEMORY_H
 
@@ -9,6 +10,8 @@
 
 void *wd_alloc(size_t size);                 /* zeroed; free() it; size 0 gives a valid pointer */
 void *wd_alloc_array(size_t count, size_t element_size); /* zeroed, overflow-checked */
+/* As wd_alloc_array, but NULL where there is not so much: for blocks as large as a caller likes. */
+void *wd_try_array(size_t count, size_t element_size);
 void *wd_realloc(void *block, size_t size);
 char *wd_strdup(const char *text);
 /* free() it */

@@ -19,6 +19,7 @@ static uint64_t device_heap_bytes(const struct wd_gpu *gpu)
 
 bool wd_report_no_memory(struct wd_gpu *gpu, const char *name, uint64_t size)
 {
+    gpu->no_memory = true;
     return wd_error(gpu->log, "out of device memory: \"%s\" wants %.1f MiB, %.1f MiB are held "
                               "already, \"%s\" has %.1f MiB in all",
                     name, mebibytes(size), mebibytes(gpu->bytes_allocated),

@@ -224,6 +224,8 @@ bool wd_gpu_check(struct wd_gpu *gpu, VkResult result, const char *what)
                                   "stopped or reset it; nothing more can be drawn with it",
                         gpu->properties.deviceName, what);
     }
+    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
+        gpu->no_memory = true;
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) {
         return wd_error(gpu->log, "%s: out of device memory (%.1f MiB held now)", what,
                         (double)gpu->bytes_allocated / (1 << 20));

@@ -70,6 +70,7 @@ struct wd_gpu {
     uint32_t runs;     /* of workgroups that it deals to its threads at once; 1: none */
     bool owned;        /* instance and device are ours to destroy */
     bool lost;         /* VK_ERROR_DEVICE_LOST was seen; every later call fails fast */
+    bool no_memory;    /* memory ran out since whoever asks cleared it */
     uint64_t bytes_allocated;  /* device memory held now through memory.h */
     uint64_t bytes_peak;
     uint32_t allocation_count; /* VkDeviceMemory objects held now */
@@ -98,8 +99,8 @@ void wd_gpu_required_features(VkPhysicalDeviceFeatures2 *features,
 bool wd_gpu_init(struct wd_gpu *gpu, const struct wd_gpu_params *params, const struct wd_log *log);
 void wd_gpu_finish(struct wd_gpu *gpu); /* waits for idle; accepts {0} */
 
-/* Turns a VkResult into a log line that names `what`; true on VK_SUCCESS. Marks the device lost;
- * says how much memory was asked for and held where memory ran out. */
+/* Turns a VkResult into a log line that names `what`; true on VK_SUCCESS. Marks the device lost, or
+ * without memory; says how much memory was asked for and held where memory ran out. */
 bool wd_gpu_check(struct wd_gpu *gpu, VkResult result, const char *what);
 
 /* Names of all devices present, one a line; free() it. "" without Vulkan. */

@@ -41,9 +41,10 @@ struct wd_exr_image {
     uint32_t width, height;
     struct wd_exr_plane *planes; /* sorted by name */
     size_t plane_count;
+    bool no_memory; /* reading failed for want of memory */
 };
 
-/* Reads the first part, scan lines of any compression but DWAA and DWAB. */
+/* On failure, logged, it holds nothing but no_memory. Reads the first part, scan lines of any compression but DWAA and DWAB. */
 bool wd_exr_read(struct wd_exr_image *image, const char *path, const struct wd_log *log);
 void wd_exr_image_finish(struct wd_exr_image *image);
 const struct wd_exr_plane *wd_exr_find(const struct wd_exr_image *image, const char *name);

@@ -89,8 +89,14 @@ static bool make_planes(struct reader *reader)
         plane->type = from->pixel_type == EXR_PIXEL_HALF    ? WD_EXR_HALF
                       : from->pixel_type == EXR_PIXEL_FLOAT ? WD_EXR_FLOAT
                                                             : WD_EXR_UINT;
-        plane->data = wd_alloc_array((size_t)(width * height), 4);
+        plane->data = wd_try_array((size_t)(width * height), 4);
+        image->no_memory |= !plane->data;
     }
+    if (image->no_memory)
+        return wd_error(reader->log, "%s: out of memory: %lld x %lld pixels of %d channels want %.1f "
+                        "MiB, which cannot be had", reader->path, (long long)width,
+                        (long long)height, channels->num_channels,
+                        (double)(width * height * channels->num_channels) * 4 / (1 << 20));
     return true;
 }
 
@@ -159,8 +165,11 @@ bool wd_exr_read(struct wd_exr_image *image, const char *path, const struct wd_l
         exr_decoding_destroy(reader.context, &reader.decoder);
     if (reader.context)
         exr_finish(&reader.context);
-    if (!ok)
+    if (!ok) {
+        bool no_memory = image->no_memory;
         wd_exr_image_finish(image);
+        image->no_memory = no_memory;
+    }
     return ok;
 }
 

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "output/image.h"
+#include "weald/renderer.h"
 
 enum { MAX_SIDE_PX = 32768, MAX_FILM_SIDE_PX = 16384, MAX_DIGITS = 9 };
 
@@ -54,21 +55,34 @@ bool wd_film_sequence_check(const char *path, const struct wd_log *log)
     return true;
 }
 
-static bool open_sequence(struct wd_film_writer *film, const char *path, const struct wd_log *log)
+bool wd_film_shape_check(const struct wd_film_writer_params *params, const struct wd_log *log)
+{
+    double rate = params->frame_rate;
+    if (params->width < 1 || params->height < 1 || params->width > MAX_SIDE_PX ||
+        params->height > MAX_SIDE_PX)
+        return wd_error(log, "%s: found %u x %u pixels; allowed are 1 to %d a side", params->path,
+                        params->width, params->height, MAX_SIDE_PX);
+    if (rate != 0 && !(rate >= WD_LEAST_FRAMES_PER_SECOND && rate <= WD_MOST_FRAMES_PER_SECOND))
+        return wd_error(log, "%s: found %g frames a second; allowed are %g to %g", params->path, rate,
+                        WD_LEAST_FRAMES_PER_SECOND, WD_MOST_FRAMES_PER_SECOND);
+    if (params->crf < 0 || params->crf > 51)
+        return wd_error(log, "%s: found a crf of %d; allowed are 1 to 51", params->path,
+                        params->crf);
+    return true;
+}
+
+static bool check_sequence(const char *path, const struct wd_log *log)
 {
     if (!wd_film_sequence_check(path, log))
         return false;
     if (strcmp(extension(path), "png") != 0)
         return wd_error(log, "%s: frames of a film are .png files", path);
-    film->pattern = wd_strdup(path);
     return true;
 }
 
-static bool open_film(struct wd_film_writer *film, const struct wd_film_writer_params *params,
-                      const struct wd_log *log)
+static bool check_film(const struct wd_film_writer_params *params, const struct wd_log *log)
 {
-    const char *format = container(params->path);
-    if (!format)
+    if (!container(params->path))
         return wd_error(log,
                         "%s: films are .mp4, .mov or .mkv files, or frames like "
                         "frame-%%05d.png",
@@ -82,10 +96,22 @@ static bool open_film(struct wd_film_writer *film, const struct wd_film_writer_p
     if (params->width > MAX_FILM_SIDE_PX || params->height > MAX_FILM_SIDE_PX)
         return wd_error(log, "%s: found %u x %u pixels; a film has at most %d a side", params->path,
                         params->width, params->height, MAX_FILM_SIDE_PX);
+    return true;
+}
+
+bool wd_film_writer_check(const struct wd_film_writer_params *params, const struct wd_log *log)
+{
+    return wd_film_shape_check(params, log) &&
+           (strchr(params->path, '%') ? check_sequence(params->path, log) : check_film(params, log));
+}
+
+static bool open_encoder(struct wd_film_writer *film, const struct wd_film_writer_params *params,
+                         const struct wd_log *log)
+{
     struct wd_encoder_params encoder = {
         .ffmpeg = params->ffmpeg ? params->ffmpeg : "ffmpeg",
         .path = params->path,
-        .format = format,
+        .format = container(params->path),
         .width = params->width,
         .height = params->height,
         .frame_rate = params->frame_rate != 0 ? params->frame_rate : 30,
@@ -97,24 +123,16 @@ static bool open_film(struct wd_film_writer *film, const struct wd_film_writer_p
 bool wd_film_writer_open(struct wd_film_writer *film, const struct wd_film_writer_params *params,
                          const struct wd_log *log)
 {
-    *film = (struct wd_film_writer){.width = params->width, .height = params->height};
-    bool ok;
-    if (params->width < 1 || params->height < 1 || params->width > MAX_SIDE_PX ||
-        params->height > MAX_SIDE_PX)
-        ok = wd_error(log, "%s: found %u x %u pixels; allowed are 1 to %d a side", params->path,
-                      params->width, params->height, MAX_SIDE_PX);
-    else if (!(params->frame_rate == 0 ||
-               (params->frame_rate >= 0.1 && params->frame_rate <= 1000)))
-        ok = wd_error(log, "%s: found %g frames a second; allowed are 0.1 to 1000", params->path,
-                      params->frame_rate);
-    else if (params->crf < 0 || params->crf > 51)
-        ok = wd_error(log, "%s: found a crf of %d; allowed are 1 to 51", params->path, params->crf);
-    else
-        ok = strchr(params->path, '%') ? open_sequence(film, params->path, log)
-                                       : open_film(film, params, log);
-    if (!ok)
-        *film = (struct wd_film_writer){0};
-    return ok;
+    *film = (struct wd_film_writer){0};
+    if (!wd_film_writer_check(params, log))
+        return false;
+    if (strchr(params->path, '%'))
+        film->pattern = wd_strdup(params->path);
+    else if (!open_encoder(film, params, log))
+        return false;
+    film->width = params->width;
+    film->height = params->height;
+    return true;
 }
 
 /* The pattern is the user's: its number is put in by hand, never by printf of foreign text. */

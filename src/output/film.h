@@ -7,7 +7,7 @@
 struct wd_film_writer_params {
     const char *path;    /* .mp4, .mov or .mkv; or frame-%05d.png, one file a frame from 0 */
     uint32_t width, height; /* both even for a film file */
-    double frame_rate;   /* frames a second; 0: 30 */
+    double frame_rate;   /* frames a second, WD_LEAST_FRAMES_PER_SECOND..WD_MOST_FRAMES_PER_SECOND; 0: 30 */
     int crf;             /* quality of x264, 1 best .. 51; 0: 16 */
     const char *ffmpeg;  /* program; NULL: "ffmpeg" on the PATH */
 };
@@ -28,6 +28,11 @@ bool wd_film_path(const char *path);
 bool wd_film_sequence_check(const char *path, const struct wd_log *log);
 char *wd_film_frame_name(const char *pattern, uint64_t frame);
 
+/* Whether such a film or sequence can be at all: size, rate and quality; and its name, too. */
+bool wd_film_shape_check(const struct wd_film_writer_params *params, const struct wd_log *log);
+bool wd_film_writer_check(const struct wd_film_writer_params *params, const struct wd_log *log);
+
+/* Fails for what wd_film_writer_check refuses, and where the file cannot be written. */
 bool wd_film_writer_open(struct wd_film_writer *film, const struct wd_film_writer_params *params,
                   const struct wd_log *log);
 /* `rgb`: width * height sRGB pixels, rows from the top. On failure the film is discarded. */

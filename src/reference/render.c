@@ -13,17 +13,22 @@
 /* Samples a tile takes in one go: few enough that all tiles keep about the same number. */
 enum { SAMPLES_PER_PASS = 4 };
 
-void wd_trace_sums_init(struct wd_trace_sums *sums, uint32_t width, uint32_t height)
+bool wd_trace_sums_init(struct wd_trace_sums *sums, uint32_t width, uint32_t height)
 {
     *sums = (struct wd_trace_sums){
         .width = width,
         .height = height,
         .tile_columns = (width + WD_TRACE_TILE - 1) / WD_TRACE_TILE,
         .tile_rows = (height + WD_TRACE_TILE - 1) / WD_TRACE_TILE,
-        .radiance = wd_alloc_array((size_t)width * height, 3 * sizeof(float)),
+        .radiance = wd_try_array((size_t)width * height, 3 * sizeof(float)),
     };
+    if (!sums->radiance) {
+        *sums = (struct wd_trace_sums){0};
+        return false;
+    }
     sums->tile_samples =
         wd_alloc_array((size_t)sums->tile_columns * sums->tile_rows, sizeof *sums->tile_samples);
+    return true;
 }
 
 void wd_trace_sums_finish(struct wd_trace_sums *sums)

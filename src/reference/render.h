@@ -15,7 +15,8 @@ struct wd_trace_sums {
     float *radiance;        /* 3 a pixel, rows from the top */
     uint32_t *tile_samples; /* samples that each tile's sums hold */
 };
-void wd_trace_sums_init(struct wd_trace_sums *sums, uint32_t width, uint32_t height);
+/* False where there is no memory for so many pixels: then it is {0}. */
+bool wd_trace_sums_init(struct wd_trace_sums *sums, uint32_t width, uint32_t height);
 void wd_trace_sums_finish(struct wd_trace_sums *sums);
 
 struct wd_trace_view {

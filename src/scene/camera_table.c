@@ -1,4 +1,5 @@
 #include "scene/scene_parts.h"
+#include "weald/forest.h"
 
 static const char *const frames[] = {"local", "projected", NULL};
 
@@ -17,7 +18,7 @@ static const char *const frames[] = {"local", "projected", NULL};
      "Direction of view, clockwise from north, in degrees."},                                      \
     {"pitch_deg", WD_KEY_DOUBLE, CAMERA(pitch_deg), -90, 90, "0",                                  \
      "Upward tilt of the view in degrees."},                                                       \
-    {"fov_deg", WD_KEY_DOUBLE, CAMERA(fov_deg), 1, 150, "50",                                      \
+    {"fov_deg", WD_KEY_DOUBLE, CAMERA(fov_deg), WD_LEAST_FOV_DEG, WD_MOST_FOV_DEG, "50",           \
      "Vertical field of view in degrees."},                                                        \
     {"absolute", WD_KEY_BOOL, CAMERA(absolute), .fallback = "false",                               \
      .doc = "Up counts from the world's zero, not from the ground."},                              \

@@ -1,7 +1,7 @@
 /* The public interface, through a small scene on software Vulkan.
  *   test-api ROOT   (the folder of the sources) */
 #include "../base/comma_locale.h"
-#include "suite.h"
+#include "parts.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -779,7 +779,10 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: %s ROOT\n", argv[0]);
         return 2;
     }
-    int failed = suite_init(&suite, argv[1]) ? cmocka_run_group_tests(tests, NULL, NULL) : 1;
+    int failed = 1;
+    if (suite_init(&suite, argv[1]))
+        failed = cmocka_run_group_tests(tests, NULL, NULL) + argument_tests(&suite) + film_tests(&suite) +
+                 memory_tests(&suite);
     suite_finish(&suite);
     return failed;
 }

@@ -161,26 +161,93 @@ static void test_other_leaves(void **state)
     wd_forest_destroy(&autumn);
 }
 
+static void assert_refused(struct suite *suite, struct wd_reference *reference,
+                           const struct wd_reference_picture_params *params, const char *part)
+{
+    struct wd_picture picture;
+    suite_clear(suite);
+    assert_int_equal(wd_reference_render(reference, params, &picture), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, part));
+    assert_true(picture.width == 0 && !picture.color);
+}
+
+/* Refused as by the renderer. */
+static void refuse_numbers(struct suite *suite, struct wd_reference *reference)
+{
+    const struct wd_reference_picture_params good = picture_params(suite);
+    struct wd_reference_picture_params params = good;
+    params.width = 0;
+    assert_refused(suite, reference, &params, "0 x 36");
+    params = good;
+    params.camera.fov_rad = 4;
+    assert_refused(suite, reference, &params, "camera.fov_rad is 4");
+    params.camera.fov_rad = 1e-4;
+    assert_refused(suite, reference, &params, "camera.fov_rad is 0.0001");
+    params = good;
+    params.camera.position_m[1] = NAN;
+    assert_refused(suite, reference, &params, "camera.position_m is");
+    params = good;
+    params.camera.yaw_rad = NAN;
+    assert_refused(suite, reference, &params, "camera.yaw_rad is nan");
+    params = good;
+    params.samples = 1u << 30;
+    assert_refused(suite, reference, &params, "1073741824 samples");
+    params = good;
+    params.time_s = INFINITY;
+    assert_refused(suite, reference, &params, "time_s is inf");
+    params = good;
+    params.places = (enum wd_reference_places)9;
+    assert_refused(suite, reference, &params, "places is 9");
+    assert_refused(suite, reference, NULL, "params is NULL");
+}
+
+/* Layers that it lacks are refused by name; of all it makes those that it has. */
+static void refuse_layers(struct suite *suite, struct wd_reference *reference)
+{
+    struct wd_reference_picture_params params = picture_params(suite);
+    struct wd_picture picture;
+    params.layers = WD_LAYER_VELOCITY | WD_LAYER_DEPTH;
+    assert_refused(suite, reference, &params, "layers asks for velocity, which");
+    params.layers = WD_LAYER_CRYPTOMATTE;
+    assert_refused(suite, reference, &params, "layers asks for cryptomatte, which");
+    params.layers = WD_LAYER_ALL | WD_LAYER_CRYPTOMATTE;
+    assert_refused(suite, reference, &params, "layers asks for velocity and cryptomatte, which");
+    params.layers = WD_LAYER_COLOR | 1u << 9;
+    assert_refused(suite, reference, &params, "layers has the unknown bits 0x200");
+    params.layers = WD_LAYER_ALL;
+    params.width = params.height = 4;
+    params.samples = 1;
+    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_OK);
+    assert_true(picture.display && picture.color && picture.depth_m && picture.normal && picture.albedo);
+    assert_true(picture.species && picture.tree_id && !picture.velocity_px && !picture.rank_tree);
+    wd_picture_finish(&picture);
+}
+
+/* The largest picture there is, with all layers: 13 GiB. */
+static void refuse_what_no_memory_holds(struct suite *suite, struct wd_reference *reference)
+{
+    struct wd_reference_picture_params params = picture_params(suite);
+    struct wd_picture picture;
+    struct rlimit before;
+    params.width = params.height = 16384;
+    params.layers = WD_LAYER_ALL;
+    suite_clear(suite);
+    if (!suite_shrink_memory(&before, UINT64_C(2) << 30))
+        return;
+    enum wd_result result = wd_reference_render(reference, &params, &picture);
+    setrlimit(RLIMIT_AS, &before);
+    assert_int_equal(result, WD_ERROR_MEMORY);
+    assert_true(suite_logged(suite, "out of memory: a picture of 16384 x 16384 pixels wants"));
+    assert_true(picture.width == 0 && !picture.color);
+}
+
 static void test_bad_input(void **state)
 {
     struct suite *suite = suite_of(state);
     struct wd_reference *reference = open_reference(suite, NULL);
-    struct wd_picture picture;
-    struct wd_reference_picture_params params = picture_params(suite);
-    suite_clear(suite);
-    params.width = 0;
-    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
-    assert_true(suite_logged(suite, "0 x 36"));
-    params = picture_params(suite);
-    params.camera.fov_rad = 4;
-    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
-    params = picture_params(suite);
-    params.camera.position_m[1] = NAN;
-    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
-    params = picture_params(suite);
-    params.samples = 1u << 30;
-    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
-    assert_null(picture.color);
+    refuse_numbers(suite, reference);
+    refuse_layers(suite, reference);
+    refuse_what_no_memory_holds(suite, reference);
     wd_reference_destroy(&reference);
     wd_reference_destroy(&reference);
 }

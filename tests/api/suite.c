@@ -159,6 +159,23 @@ struct wd_picture suite_render(struct suite *suite, const struct wd_render_param
     return picture;
 }
 
+bool suite_shrink_memory(struct rlimit *before, uint64_t spare_bytes)
+{
+#ifdef SUITE_SANITIZED
+    (void)before, (void)spare_bytes;
+    return false;
+#else
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    assert_true(file && fscanf(file, "%lu", &pages) == 1);
+    fclose(file);
+    assert_int_equal(getrlimit(RLIMIT_AS, before), 0);
+    struct rlimit less = *before;
+    less.rlim_cur = pages * (rlim_t)sysconf(_SC_PAGESIZE) + spare_bytes;
+    return setrlimit(RLIMIT_AS, &less) == 0;
+#endif
+}
+
 void suite_trace(const struct suite *suite, const struct wd_forest *forest,
                  const struct wd_render_params *render, uint32_t paths, struct wd_picture *picture)
 {

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <sys/resource.h>
 
 #include "weald/renderer.h"
 
@@ -47,6 +48,10 @@ struct wd_render_params suite_params(const struct wd_forest *forest, const char 
 
 /* Draws it, or fails with the messages; free the picture with wd_picture_finish. */
 struct wd_picture suite_render(struct suite *suite, const struct wd_render_params *params);
+
+/* As if the machine had no more memory than this beyond what the process maps, until setrlimit(RLIMIT_AS, before).
+ * False, and nothing is changed, where a sanitizer's allocator would end the process. */
+bool suite_shrink_memory(struct rlimit *before, uint64_t spare_bytes);
 
 /* Path-traces what `render` says of camera, size and layers; free the picture with wd_picture_finish. */
 void suite_trace(const struct suite *suite, const struct wd_forest *forest,

@@ -51,6 +51,9 @@ expect 2 'must end in .png, .exr or .mp4' render "$tiny" -o a.gif
 expect 2 'must end in .png, .exr or .mp4' render "$tiny" -o .png
 expect 2 'holds one frame' render "$tiny" -o a.png --frames 5
 expect 2 'exclude each other' render "$tiny" -o a.png --camera a --path b
+for layer in velocity cryptomatte; do
+    expect 2 "reference has no layer $layer" render "$tiny" -o a.exr --reference --layers "depth,$layer"
+done
 expect 2 'there are: scene, species' schema tree
 
 expect 2 'there is no option --optoin, did you mean --option\?' render "$tiny" --optoin a=b

@@ -106,9 +106,9 @@ static void test_checkpoint(void **state)
     char path[] = "/tmp/weald-checkpoint-XXXXXX";
     close(mkstemp(path));
     struct wd_trace_sums sums, back, other;
-    wd_trace_sums_init(&sums, 40, 20);
-    wd_trace_sums_init(&back, 40, 20);
-    wd_trace_sums_init(&other, 20, 40);
+    assert_true(wd_trace_sums_init(&sums, 40, 20));
+    assert_true(wd_trace_sums_init(&back, 40, 20));
+    assert_true(wd_trace_sums_init(&other, 20, 40));
     for (size_t i = 0; i < (size_t)40 * 20 * 3; i++)
         sums.radiance[i] = (float)i * 0.25f;
     for (size_t i = 0; i < 6; i++)

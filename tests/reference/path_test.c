@@ -191,7 +191,7 @@ static void trace(struct made_scene *made, struct wd_trace_sums *sums, uint32_t 
                                .view = wd_trace_view_of(&camera, 48, 32),
                                .threads = threads};
     made->tracer.pixel_rad = wd_trace_pixel_rad(&job.view);
-    wd_trace_sums_init(sums, 48, 32);
+    assert_true(wd_trace_sums_init(sums, 48, 32));
     wd_trace_run(&job, sums, samples);
     assert_int_equal(job.counts.self_hits, 0);
 }
