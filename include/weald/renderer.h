@@ -140,7 +140,8 @@ struct wd_picture {
 /* Draws one picture. Deterministic for the same device.
  *   picture  overwritten; free with wd_picture_finish
  * Errors: WD_ERROR_INPUT (no forest; a value out of its range, an unknown enum or layer; a method that is not
- * there or cannot draw trees on demand), WD_ERROR_DEVICE, WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED (through the renderer's progress, stage "samples"). */
+ * there or cannot draw trees on demand), WD_ERROR_DEVICE, WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED (through the
+ * renderer's progress, stage "samples"). */
 enum wd_result wd_renderer_render(struct wd_renderer *renderer,
                                   const struct wd_render_params *params,
                                   struct wd_picture *picture);
