@@ -61,7 +61,7 @@ static const struct cli_option option_table[] = {
      "frames of a film, spread evenly over the path (default: the path at its own speed)"},
     {"fps", 0, "N", CLI_KIND_REAL, AT(frames_per_second),
      WD_LEAST_FRAMES_PER_SECOND, WD_MOST_FRAMES_PER_SECOND, CLI_RENDER,
-     "frames a second of a film (default: 24)"},
+     "frames a second of a film, and of a still's motion (default: 24)"},
     {"method", 0, "NAME", CLI_KIND_TEXT, AT(method), 0, 0, SCENE_COMMANDS | CLI_GROW,
      "how trees are drawn (default: the scene's)"},
     {"suite", 0, "NAME", CLI_KIND_TEXT, AT(suite), 0, 0, CLI_BENCH,

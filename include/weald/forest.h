@@ -138,9 +138,9 @@ struct wd_render_defaults {
 void wd_forest_get_render_defaults(const struct wd_forest *forest,
                                    struct wd_render_defaults *defaults);
 
-/* Checks a file without building anything: a scene or species (.json), an inventory (.csv) or a
- * raster. Files that a scene names must be there and readable. Every fault found is logged with file, line
- * and key. */
+/* Checks a file without planting anything: a scene or species (.json), an inventory (.csv) or a raster. A scene's
+ * inventories and ground are read as it would, other files that it names must be there and readable. Faults are
+ * logged with file, line and key. */
 enum wd_result wd_file_check(const char *path, const char *data_dir, const struct wd_log *log);
 
 /* JSON Schema of scene ("scene") files, or of species that are grown ("species") or an artist's

@@ -132,9 +132,9 @@ struct wd_picture {
     struct wd_camera camera; /* that took it, */
     double time_s;           /* at this time of the wind */
     char *about;         /* both, and what ids and places refer to, as JSON: scene, seed, time_s, camera (as in struct
-                            wd_camera), origin_m and crs (as in struct wd_forest_info), species (names; the species layer
-                            holds index + 1). Files (.exr) have it as the attribute "weald", and worldToCamera: from
-                            the local frame to x right, y up, -z ahead, rows times matrix */
+                            wd_camera), origin_m and crs (as in struct wd_forest_info; null: none), species (names; the
+                            species layer holds index + 1). Files (.exr) have it as the attribute "weald", and
+                            worldToCamera: from the local frame to x right, y up, -z ahead, rows times matrix */
 };
 
 /* Draws one picture. Deterministic for the same device.
@@ -217,7 +217,7 @@ struct wd_film_params {
     double frames_per_second; /* WD_LEAST_FRAMES_PER_SECOND..WD_MOST_FRAMES_PER_SECOND; 0: 30. Numbered
                                  pictures do not tell of it */
 };
-/* Errors: WD_ERROR_INPUT (name, size or rate), WD_ERROR_OUTPUT (a folder that is not there, no ffmpeg). */
+/* Errors: WD_ERROR_INPUT (name, size or rate), WD_ERROR_OUTPUT (of a film in one file a folder that is not there, no ffmpeg). */
 enum wd_result wd_film_open(struct wd_film **film, const struct wd_film_params *params,
                             const struct wd_log *log);
 /* Adds the next frame.

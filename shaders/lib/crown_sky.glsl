@@ -78,7 +78,7 @@ wd_past_neighbours past_neighbours(uint tree, wd_crown crown, vec3 rel, vec4 sid
     return past;
 }
 
-/* A tree that stands free is lit as its model's table and the canopy's field say. */
+/* Of a tree that stands free the canopy's field says it, or the table where that leaves less. */
 void know_neighbours(inout wd_alone alone, wd_past_neighbours past, float told, float herbs)
 {
     float free = past.share * told * alone.share;

@@ -94,6 +94,7 @@ struct wd_frame_uniforms {
     uint32_t adds;                   /* 1: radiance comes on top of the samples before */
     uint32_t view_mode;
     uint32_t shadow_taps;            /* 0: no shadows */
+    int32_t wind_period;             /* how many WD_WIND_PERIOD_S the times above are counted from */
 };
 
 /* Shared mathematics asks for these values through WD_FRAME(member), or WD_FRAME_V3(member) for

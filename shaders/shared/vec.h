@@ -134,4 +134,16 @@ WD_FUNC float wd_fract(float x)
     return x - WD_FLOOR(x);
 }
 
+/* The normal that a layer shows of what is seen along `direction`, which need not be a unit. A sheet's is that of the
+ * side that is seen; what is solid has smooth normals that may look a little past the eye: not that far. */
+WD_FUNC WD_VECTOR wd_normal_seen(WD_VECTOR normal, WD_VECTOR direction, bool sheet)
+{
+    float away = wd_v3_dot(normal, direction);
+    if (away <= 0.0f)
+        return normal;
+    if (sheet)
+        return wd_v3_scale(normal, -1.0f);
+    return wd_v3_normalize(wd_v3_sub(normal, wd_v3_scale(direction, away / wd_v3_dot(direction, direction))));
+}
+
 #endif

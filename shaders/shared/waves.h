@@ -4,6 +4,7 @@
 #define WD_SHARED_WAVES_H
 
 #include "shared/noise.h"
+#include "shared/wind.h"
 
 struct wd_waves {
     WD_VECTOR normal; /* of the waves that a pixel resolves */
@@ -30,12 +31,15 @@ WD_FUNC WD_STRUCT wd_waves wd_waves_at(WD_FRAME_IN float east_m, float north_m, 
         float share = wd_noise_share(footprint_m, bits);
         if (share <= 0.0f)
             break; /* shorter ones neither */
-        float way_m = 1.25f * WD_SQRT(WD_FLOAT(1 << bits) * 0.001f) * WD_FRAME(time_s);
+        float cell_m = WD_FLOAT(1 << bits) * 0.001f, hertz = 1.25f / WD_SQRT(cell_m);
         float aside = (bits & 1) != 0 ? 0.45f : -0.45f;
-        float east = (WD_FRAME(wind_toward[0]) - aside * WD_FRAME(wind_toward[1])) * way_m;
-        float north = (WD_FRAME(wind_toward[1]) + aside * WD_FRAME(wind_toward[0])) * way_m;
-        WD_VECTOR wave = wd_gradient_noise(
-            wd_lattice_at(WD_FRAME_PASS east_m - east, north_m - north, bits), 20u + WD_UINT(bits));
+        float east = wd_wind_rate((WD_FRAME(wind_toward[0]) - aside * WD_FRAME(wind_toward[1])) * hertz);
+        float north = wd_wind_rate((WD_FRAME(wind_toward[1]) + aside * WD_FRAME(wind_toward[0])) * hertz);
+        WD_STRUCT wd_lattice at = wd_lattice_at(WD_FRAME_PASS east_m - east * cell_m * WD_FRAME(time_s),
+                                                north_m - north * cell_m * WD_FRAME(time_s), bits);
+        at.column -= WD_FRAME(wind_period) * wd_wind_turns(east);
+        at.row -= WD_FRAME(wind_period) * wd_wind_turns(north);
+        WD_VECTOR wave = wd_gradient_noise(at, 20u + WD_UINT(bits));
         slope = wd_v3_add(slope, wd_v3_scale(wave, share));
         waves.hidden -= each * share * share;
     }

@@ -39,11 +39,22 @@ WD_FUNC float wd_wind_rate(float hertz)
     return WD_FLOOR(hertz * WD_WIND_PERIOD_S + 0.5f) * (1.0f / WD_WIND_PERIOD_S);
 }
 
+/* Times that something at such a rate comes round in it. */
+WD_FUNC int32_t wd_wind_turns(float rate)
+{
+    return WD_INT(WD_FLOOR(rate * WD_WIND_PERIOD_S + 0.5f));
+}
+
 #ifdef __STDC_VERSION__
-/* Of a time (and of others of about that time) what shaders take for it, once this is taken off. */
+/* How many periods are taken off a time, and others of about that time. */
+static inline int32_t wd_wind_period_of(double time_s)
+{
+    return (int32_t)floor(time_s / (double)WD_WIND_PERIOD_S);
+}
+
 static inline double wd_wind_begin_s(double time_s)
 {
-    return floor(time_s / (double)WD_WIND_PERIOD_S) * (double)WD_WIND_PERIOD_S;
+    return wd_wind_period_of(time_s) * (double)WD_WIND_PERIOD_S;
 }
 #endif
 

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "api/shown.h"
 #include "base/color.h"
@@ -77,6 +78,8 @@ static void unfold(float normal[3])
 /* A2B10G10R10: R in the low bits. Where nothing was drawn the target is 0 and so is the normal. */
 static bool read_normal(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
 {
+    struct wd_rays rays;
+    wd_rays_init(&rays, &renderer->frame.params.camera, picture->width, picture->height);
     uint32_t *packed = read_target(renderer, &renderer->frame.targets.normal, 4);
     uint32_t *surface = read_target(renderer, &renderer->frame.targets.surface, 4);
     if (!packed || !surface) {
@@ -93,8 +96,11 @@ static bool read_normal(struct wd_picture *picture, struct wd_renderer *renderer
         for (int k = 0; k < 3; k++)
             squared += normal[k] * normal[k];
         float scale = (packed[i] & 0x3fffffffu) && squared > 0.0f ? 1.0f / sqrtf(squared) : 0.0f;
-        for (int k = 0; k < 3; k++)
-            picture->normal[3 * i + k] = normal[k] * scale;
+        struct wd_vec3 seen = wd_normal_seen(wd_v3_scale(wd_v3_of(normal), scale),
+                                             wd_ray_through(&rays, (uint32_t)i % picture->width,
+                                                            (uint32_t)(i / picture->width)),
+                                             packed[i] >> 30 >= WD_MATERIAL_LEAF);
+        memcpy(picture->normal + 3 * i, &seen, sizeof seen);
     }
     free(packed);
     free(surface);

@@ -174,6 +174,7 @@ static bool prepare(struct work *work)
     const struct wd_forest *forest = reference->forest;
     double begin_s = wd_clock_s();
     work->frame.time_s = (float)(params->time_s - wd_wind_begin_s(params->time_s));
+    work->frame.wind_period = wd_wind_period_of(params->time_s);
     work->frame.width = params->width;
     work->frame.height = params->height;
     wd_surroundings_set_camera(&work->frame, params->camera.position_m);

@@ -22,7 +22,7 @@ static char *about(const struct wd_picture *picture, const struct wd_forest *for
     json_t *species = json_array();
     for (size_t i = 0; i < forest->scene.species_file_count; i++)
         json_array_append_new(species, json_string(forest->scene.species_files[i].name));
-    json_t *root = json_pack("{s:s*, s:I, s:f, s:{s:o, s:f, s:f, s:f}, s:o, s:s*, s:o}",
+    json_t *root = json_pack("{s:s?, s:I, s:f, s:{s:o, s:f, s:f, s:f}, s:o, s:s?, s:o}",
                              "scene", forest->scene.name, "seed", (json_int_t)forest->world.seed,
                              "time_s", picture->time_s, "camera",
                              "position_m", vector(camera->position_m, 3), "yaw_rad", camera->yaw_rad,
@@ -34,22 +34,21 @@ static char *about(const struct wd_picture *picture, const struct wd_forest *for
     return text;
 }
 
-/* Sheets are seen from both sides: their normals are those of the side that is seen. */
-static void turn_normals(struct wd_picture *picture)
+void wd_rays_init(struct wd_rays *rays, const struct wd_camera *camera, uint32_t width, uint32_t height)
 {
-    double right[3], forward[3], up[3];
-    wd_camera_axes(&picture->camera, right, forward, up);
-    double tall = tan(0.5 * picture->camera.fov_rad), wide = tall * picture->width / picture->height;
-    for (uint32_t y = 0; y < picture->height; y++)
-        for (uint32_t x = 0; x < picture->width; x++) {
-            float *n = picture->normal + 3 * ((size_t)y * picture->width + x);
-            double aside = wide * (2 * (x + 0.5) / picture->width - 1);
-            double above = tall * (1 - 2 * (y + 0.5) / picture->height), away = 0;
-            for (int k = 0; k < 3; k++)
-                away += (double)n[k] * (forward[k] + aside * right[k] + above * up[k]);
-            for (int k = 0; away > 0 && k < 3; k++)
-                n[k] = -n[k];
-        }
+    double right[3], forward[3], up[3], tall = tan(0.5 * camera->fov_rad), wide = tall * width / height;
+    wd_camera_axes(camera, right, forward, up);
+    for (int k = 0; k < 3; k++) {
+        rays->right[k] = (float)(2 * wide / width * right[k]);
+        rays->down[k] = (float)(-2 * tall / height * up[k]);
+        rays->first[k] = (float)(forward[k] + wide * (1.0 / width - 1) * right[k] + tall * (1 - 1.0 / height) * up[k]);
+    }
+}
+
+struct wd_vec3 wd_ray_through(const struct wd_rays *rays, uint32_t x, uint32_t y)
+{
+    struct wd_vec3 row = wd_v3_add(wd_v3_of(rays->first), wd_v3_scale(wd_v3_of(rays->down), (float)y));
+    return wd_v3_add(row, wd_v3_scale(wd_v3_of(rays->right), (float)x));
 }
 
 void wd_picture_settle(struct wd_picture *picture, const struct wd_forest *forest,
@@ -58,8 +57,6 @@ void wd_picture_settle(struct wd_picture *picture, const struct wd_forest *fores
     picture->camera = *camera;
     picture->time_s = time_s;
     picture->about = about(picture, forest);
-    if (picture->normal)
-        turn_normals(picture);
 }
 
 void wd_picture_camera_matrix(float m[4][4], const struct wd_camera *camera)

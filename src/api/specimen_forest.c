@@ -170,12 +170,14 @@ enum wd_result wd_forest_create_specimens(struct wd_forest **result,
     if (ok) {
         struct wd_tree *trees = make_trees(specimens, count);
         struct row row = measure(specimens, count);
-        double far = make_cameras(&forest->scene, &row, aspect, distance_m);
+        double far = make_cameras(&forest->scene, &row, aspect, distance_m), most_m = 1e6;
+        ok = far <= most_m || wd_error(&forest->log, "aspect %g: all would be seen from %.3g m off; %.0f m is possible",
+                                       aspect, far, most_m);
         hold_low_plants(&forest->scene, &row);
         forest->scene.quality.shadow_distance_m = far + 3 * row.height_m;
         const struct wd_world_params world = {
             .trees = trees, .tree_count = count, .log = &forest->log};
-        ok = wd_world_init(&forest->world, &forest->scene, &world);
+        ok = ok && wd_world_init(&forest->world, &forest->scene, &world);
         free(trees);
     }
     if (!ok) {

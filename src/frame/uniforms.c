@@ -111,6 +111,7 @@ static void fill_camera(struct wd_frame_uniforms *uniforms, struct wd_view *view
     uniforms->height = params->height;
     double span_s = params->time_s - params->previous_time_s;
     double begin_s = wd_wind_begin_s(params->time_s);
+    uniforms->wind_period = wd_wind_period_of(params->time_s);
     uniforms->time_s = (float)(params->time_s - begin_s + span_s * scene->lens.shutter * exposure.time);
     uniforms->previous_time_s = (float)(params->previous_time_s - begin_s);
 }

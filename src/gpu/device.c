@@ -160,7 +160,9 @@ bool wd_gpu_init(struct wd_gpu *gpu, const struct wd_gpu_params *params, const s
     *gpu = (struct wd_gpu){.log = log};
     bool ok = params->external ? init_external(gpu, params) : init_own(gpu, params);
     if (!ok || !init_rest(gpu)) {
+        bool no_memory = gpu->no_memory;
         wd_gpu_finish(gpu);
+        gpu->no_memory = no_memory; /* whoever asked is told why */
         return false;
     }
     wd_info(log, "Vulkan device: %s", gpu->properties.deviceName);

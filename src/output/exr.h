@@ -44,7 +44,8 @@ struct wd_exr_image {
     bool no_memory; /* reading failed for want of memory */
 };
 
-/* On failure, logged, it holds nothing but no_memory. Reads the first part, scan lines of any compression but DWAA and DWAB. */
+/* Reads the first part, scan lines of any compression but DWAA and DWAB. On failure, logged, the image holds
+ * nothing but no_memory. */
 bool wd_exr_read(struct wd_exr_image *image, const char *path, const struct wd_log *log);
 void wd_exr_image_finish(struct wd_exr_image *image);
 const struct wd_exr_plane *wd_exr_find(const struct wd_exr_image *image, const char *name);

@@ -215,7 +215,7 @@ static void layer_pixel(const struct pass *pass, uint32_t x, uint32_t y)
         return;
     struct wd_surface surface;
     wd_surface_at(&surface, tracer->scene, &ray, &hit, tracer->pixel_rad);
-    put(picture->normal, pixel, surface.outward);
+    put(picture->normal, pixel, wd_normal_seen(surface.outward, through, surface.sheet));
     put(picture->albedo, pixel, surface.albedo);
     if (hit.tree >= world->tree_count)
         return;

@@ -85,6 +85,7 @@ static void leaf_surface(struct wd_surface *surface, const struct wd_trace_model
 {
     float turn = wd_trace_uv_turn(model, hit->triangle);
     bool upper = wd_v3_dot(surface->flat, eye) * turn > 0;
+    surface->sheet = true;
     surface->glossy = upper && texel->layer == WD_LOOK_LEAF;
     if (!upper && texel->layer == WD_LOOK_LEAF)
         texel->layer = WD_LOOK_LEAF_BACK;

@@ -9,7 +9,8 @@ struct wd_surface {
     struct wd_vec3 place;     /* camera-relative */
     struct wd_vec3 flat;      /* the triangle's normal, on the eye's side; unit */
     struct wd_vec3 normal;    /* for shading, on the eye's side; unit */
-    struct wd_vec3 outward;   /* as the picture's normal layer shows it: not turned to the eye */
+    struct wd_vec3 outward;   /* as the picture's normal layer shows it, before it is turned to the eye */
+    bool sheet;               /* a leaf, seen from either side */
     struct wd_vec3 albedo;
     struct wd_vec3 transmittance; /* diffuse, to the other side; 0 but for leaves */
     bool glossy;              /* the waxy upper side of a leaf */

@@ -275,6 +275,19 @@ static void note_heights(struct wd_species *species, const struct wd_scene_layer
     species->planted_m[1] = fmaxf(species->planted_m[1], high);
 }
 
+/* Whether an inventory's trees are to be of the species: by the names that it maps, or where it maps none as the first
+ * of its Latin name. */
+static bool may_hold(const struct wd_scene_inventory *inventory, const struct wd_scene *scene, size_t species)
+{
+    const char *latin = scene->species[species].latin;
+    bool first = inventory->species_count == 0;
+    for (size_t i = 0; i < species && first; i++)
+        first = !latin || !scene->species[i].latin || strcasecmp(latin, scene->species[i].latin) != 0;
+    for (size_t i = 0; i < inventory->species_count && !first; i++)
+        first = wd_scene_find_species(scene, inventory->species[i].value) == (int)species;
+    return first;
+}
+
 static void note_planted(struct wd_scene *scene)
 {
     for (size_t i = 0; i < scene->layer_count; i++)
@@ -283,9 +296,10 @@ static void note_planted(struct wd_scene *scene)
             if (index >= 0)
                 note_heights(&scene->species[index], &scene->layers[i]);
         }
-    for (size_t i = 0; scene->inventory_count > 0 && i < scene->species_file_count; i++)
-        if (scene->species[i].planted_m[1] > 0)
-            scene->species[i].planted_m[1] = scene->species[i].height_range_m[1];
+    for (size_t i = 0; i < scene->species_file_count; i++)
+        for (size_t j = 0; j < scene->inventory_count; j++)
+            if (scene->species[i].planted_m[1] > 0 && may_hold(&scene->inventories[j], scene, i))
+                scene->species[i].planted_m[1] = scene->species[i].height_range_m[1];
 }
 
 bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *place)

@@ -261,15 +261,15 @@ static bool at_shore(const struct rivers *rivers, size_t at)
 
 /* The surface meets the ground where the map's shore runs: on both sides of it heights go by the way there, alike steep.
  * By samples that are wet or dry, whose banks are of any height, shores followed the terrain's cells. */
-static void meet_shore(struct rivers *rivers, size_t at)
+static void meet_shore(struct rivers *rivers, size_t at, float depth_m)
 {
     struct wd_terrain *terrain = rivers->terrain;
     double cell_m = terrain->cell_m;
     double x_m = (double)(at % terrain->width) * cell_m, y_m = (double)(at / terrain->width) * cell_m;
     float way_m = wd_shoreline_way_m(&rivers->shoreline, x_m, y_m, SHORE_CELLS * cell_m);
     float rise_m = fminf(BED_SLOPE, SHORE_RISE_M / (float)cell_m) * way_m;
-    terrain->height_m[at] = rivers->wet[at] ? terrain->water_m[at] - rise_m
-                                            : fminf(terrain->height_m[at], terrain->water_m[at] + rise_m);
+    float height_m = terrain->water_m[at] + (rivers->wet[at] ? -fminf(rise_m, depth_m) : rise_m);
+    terrain->height_m[at] = fminf(terrain->height_m[at], height_m);
 }
 
 /* A bed that falls away from the shore down to the wanted depth. */
@@ -278,7 +278,7 @@ static void dig(struct rivers *rivers, float depth_m)
     struct wd_terrain *terrain = rivers->terrain;
     for (size_t i = 0; i < rivers->count; i++) {
         if (at_shore(rivers, i)) {
-            meet_shore(rivers, i);
+            meet_shore(rivers, i, depth_m);
         } else if (rivers->wet[i]) {
             float deep_m = fminf(depth_m, 0.1f + BED_SLOPE * rivers->shore_m[i]);
             terrain->height_m[i] = fminf(terrain->height_m[i], terrain->water_m[i] - deep_m);

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "shared/vec.h"
 #include "suite.h"
 
 enum { PIXELS = PICTURE_WIDTH * PICTURE_HEIGHT };
@@ -111,6 +112,17 @@ static void expect_toward_eye(const struct wd_picture *p)
     }
 }
 
+/* Solid things are not turned inside out where their smooth normals look past the eye. */
+static void solid_normals_are_bent_not_turned(void **state)
+{
+    (void)state;
+    const struct wd_vec3 ahead = {0, 2, -0.1f}, ground = {0, 0.08f, 0.9968f}, leaf = {0, 0.8f, 0.6f};
+    struct wd_vec3 solid = wd_normal_seen(ground, ahead, false), sheet = wd_normal_seen(leaf, ahead, true);
+    assert_true(solid.z > 0.99f && fabsf(wd_v3_dot(solid, ahead)) < 1e-5f);
+    assert_true(wd_v3_dot(sheet, leaf) < -0.99f);
+    assert_true(wd_v3_dot(wd_normal_seen(leaf, wd_v3_scale(ahead, -1), true), leaf) > 0.99f);
+}
+
 static bool holds(const char *path, const char *text)
 {
     static char bytes[1 << 16];
@@ -148,6 +160,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(nothing_lit_has_to_be_before),
         cmocka_unit_test(layers_need_no_light),
         cmocka_unit_test(mattes_are_of_all_samples),
+        cmocka_unit_test(solid_normals_are_bent_not_turned),
         cmocka_unit_test(pictures_tell_what_they_show),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]) || wd_renderer_set_forest(suite.renderer, suite.forest) != WD_OK)

@@ -15,7 +15,7 @@
 #include "frame/view.h"
 #include "shared/hash.h"
 #include "shared/turn.h"
-#include "shared/wind.h"
+#include "shared/waves.h"
 
 static struct wd_frame_uniforms sun_at(double azimuth_deg, double elevation_deg)
 {
@@ -217,6 +217,22 @@ static void test_wind(void **state)
     assert_true(wd_wind_begin_s(3999.99) == 0 && wd_wind_begin_s(86400.5) == 84000 && wd_wind_begin_s(-1) == -4000);
 }
 
+/* Waves go on where a new period begins. */
+static void test_waves(void **state)
+{
+    (void)state;
+    struct wd_frame_uniforms before = {.wind_speed_mps = 6, .wind_toward = {0.6f, 0.8f}, .time_s = WD_WIND_PERIOD_S};
+    struct wd_frame_uniforms after = before;
+    after.time_s = 0;
+    after.wind_period = 1;
+    for (int i = 0; i < 50; i++) {
+        struct wd_waves a = wd_waves_at(&before, i * 1.7f, i * -0.9f, 0.01f);
+        struct wd_waves b = wd_waves_at(&after, i * 1.7f, i * -0.9f, 0.01f);
+        struct wd_vec3 apart = wd_v3_sub(a.normal, b.normal);
+        assert_true(wd_v3_dot(apart, apart) < 1e-4f);
+    }
+}
+
 /* --- cascades --------------------------------------------------------------------------------- */
 
 /* Where a cascade has the place 5 m ahead of `from`. */
@@ -337,7 +353,8 @@ int main(void)
         cmocka_unit_test(test_direction), cmocka_unit_test(test_sun_and_sky),
         cmocka_unit_test(test_nightfall), cmocka_unit_test(test_horizon),
         cmocka_unit_test(test_sun_field), cmocka_unit_test(test_sun_field_of_level_ground),
-        cmocka_unit_test(test_wind), cmocka_unit_test(test_walls),
+        cmocka_unit_test(test_wind),
+        cmocka_unit_test(test_waves), cmocka_unit_test(test_walls),
         cmocka_unit_test(test_cascades_of_moved_eyes),
         cmocka_unit_test(test_cascades_that_end_in_steps),
         cmocka_unit_test(test_look_ups_turn),

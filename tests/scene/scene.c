@@ -254,8 +254,6 @@ static void stems_of_stands_are_slender(void **state)
     }
 }
 
-/* Chlorophyll leaves more red beside green than one would paint: PROSPECT-D's leaves of 35 to 65 ug/cm2 have 0.57 to
- * 0.63 in what they reflect and 0.39 to 0.63 in what they let through. */
 static void assert_variants(const struct fixture *f, const char *name, float low_m, float high_m)
 {
     float range_m[2];
@@ -280,6 +278,19 @@ static void saplings_have_variants_of_their_own(void **state)
     assert_variants(f, "hazel", 0.45f * hazel->typical_height_m, 1.1f * hazel->typical_height_m);
 }
 
+/* An inventory may hold any height, but only of what it names. */
+static void inventories_leave_saplings_alone(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"species\": {\"young oak\": \"../species/oak.json\", \"young beech\": \"../species/beech.json\"},"
+                        "\"layers\": [{\"species\": {\"young oak\": 1, \"young beech\": 1}, \"height_m\": [2, 5]}],"
+                        "\"inventories\": [{\"file\": \"t.csv\", \"species\": {\"*\": \"oak\", \"b\": \"young beech\"}}]}"));
+    assert_variants(f, "young oak", 2, 5);
+    assert_variants(f, "young beech", 14.4f, 35.2f);
+}
+
+/* Chlorophyll leaves more red beside green than one would paint: PROSPECT-D's leaves of 35 to 65 ug/cm2 have 0.57 to
+ * 0.63 in what they reflect and 0.39 to 0.63 in what they let through. */
 static void green_leaves_are_not_too_green(void **state)
 {
     struct fixture *f = *state;
@@ -399,6 +410,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(allometry_inverts, setup, teardown),
         cmocka_unit_test_setup_teardown(stems_of_stands_are_slender, setup, teardown),
         cmocka_unit_test_setup_teardown(saplings_have_variants_of_their_own, setup, teardown),
+        cmocka_unit_test_setup_teardown(inventories_leave_saplings_alone, setup, teardown),
         cmocka_unit_test_setup_teardown(green_leaves_are_not_too_green, setup, teardown),
         cmocka_unit_test_setup_teardown(months_change_leaves, setup, teardown),
         cmocka_unit_test_setup_teardown(dates_leave_models_as_they_are, setup, teardown),

@@ -182,6 +182,31 @@ static void a_shore_runs_as_on_the_map(void **state)
     wd_terrain_finish(&terrain);
 }
 
+/* Beside the shore, too, where beds go by the way there. */
+static void no_bed_is_dug_deeper_than_asked(void **state)
+{
+    (void)state;
+    const double depths_m[] = {0.1, 0.5, 2};
+    for (int k = 0; k < 3; k++) {
+        struct wd_terrain terrain, before;
+        struct small_scene small;
+        scene_of(&small, soft_pond);
+        small.scene.water.depth_m = depths_m[k];
+        assert_true(wd_terrain_init(&before, &small.scene, 7, 0, 0, NULL, NULL));
+        assert_true(wd_terrain_init(&terrain, &small.scene, 7, 0, 0, NULL, NULL));
+        assert_true(wd_rivers_init(&terrain, &small.scene, &log_kept));
+        size_t count = (size_t)terrain.width * terrain.height, dug = 0;
+        for (size_t i = 0; i < count; i++) {
+            float bed_m = fminf(before.height_m[i], terrain.water_m[i] - (float)depths_m[k]);
+            dug += terrain.height_m[i] < before.height_m[i];
+            assert_true(terrain.height_m[i] == before.height_m[i] || terrain.height_m[i] > bed_m - 1e-3f);
+        }
+        assert_true(dug > 0);
+        wd_terrain_finish(&terrain);
+        wd_terrain_finish(&before);
+    }
+}
+
 /* Water that rises or falls a metre in twenty away from an eye 3 m over it, half a metre deep; the eye looks so far down. */
 static void check_fall(double rise, double down)
 {
@@ -253,6 +278,7 @@ int main(void)
         cmocka_unit_test(a_pond_is_nearly_level),
         cmocka_unit_test(rays_meet_water_that_falls_toward_the_eye),
         cmocka_unit_test(a_shore_runs_as_on_the_map),
+        cmocka_unit_test(no_bed_is_dug_deeper_than_asked),
         cmocka_unit_test(trees_keep_out_of_the_water),
         cmocka_unit_test(useless_maps_are_refused),
     };
