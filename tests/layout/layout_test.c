@@ -88,6 +88,7 @@ static const struct member members[] = {
     F(sky_form), F(sky_under), F(sky_under_tint), F(sky_quarters), F(sky_slant), F(sunward), F(leaf_scatter), F(width), F(height),
     F(terrain_width), F(terrain_height), F(sample_index), F(sample_count), F(adds), F(view_mode),
     F(shadow_taps),
+    F(wind_period),
 };
 
 enum { OP_NAME = 5, OP_MEMBER_NAME = 6, OP_MEMBER_DECORATE = 72, DECORATION_OFFSET = 35 };

@@ -29,7 +29,7 @@ static void saplings_are_green_to_the_ground(void **state)
     (void)state;
     struct wd_arena arena = {0};
     for (int s = 0; s < TREES; s++)
-        for (uint32_t seed = 1; seed <= 4; seed++)
+        for (uint32_t seed = 1; seed <= 2; seed++)
             for (int open = 0; open <= 1; open++) {
                 struct wd_species species = test_species(&arena, trees[s]);
                 float height = fminf(2, 0.25f * species.typical_height_m);
@@ -70,7 +70,7 @@ static void saplings_have_one_leader(void **state)
     (void)state;
     struct wd_arena arena = {0};
     for (int s = 0; s < TREES; s++)
-        for (uint32_t seed = 1; seed <= 4; seed++) {
+        for (uint32_t seed = 1; seed <= 2; seed++) {
             struct wd_species species = test_species(&arena, trees[s]);
             struct wd_grow_params params = {.seed = seed, .height_m = 0.12f * species.typical_height_m};
             assert_true(wd_grow_params_resolve(&params, &species, NULL));
@@ -94,9 +94,9 @@ static void planted_crowns_are_the_grown_ones(void **state)
         for (int i = 0; i < 3; i++) {
             struct wd_species species = test_species(&arena, trees[s]);
             float height = fmaxf(shares[i] * species.typical_height_m, species.height_range_m[0]), sum = 0;
-            for (uint32_t seed = 1; seed <= 6; seed++) {
+            for (uint32_t seed = 1; seed <= 3; seed++) {
                 struct wd_tree_model model = test_grow_tree(&species, seed, height, species.openness);
-                sum += model.crown_radius_m / 6;
+                sum += model.crown_radius_m / 3;
                 wd_tree_model_finish(&model);
             }
             double planted = 0.5 * wd_species_crown_of_height_m(&species, (double)height);
