@@ -37,8 +37,9 @@ WD_FUNC WD_STRUCT wd_waves wd_waves_at(WD_FRAME_IN float east_m, float north_m, 
         float north = wd_wind_rate((WD_FRAME(wind_toward[1]) + aside * WD_FRAME(wind_toward[0])) * hertz);
         WD_STRUCT wd_lattice at = wd_lattice_at(WD_FRAME_PASS east_m - east * cell_m * WD_FRAME(time_s),
                                                 north_m - north * cell_m * WD_FRAME(time_s), bits);
-        at.column -= WD_FRAME(wind_period) * wd_wind_turns(east);
-        at.row -= WD_FRAME(wind_period) * wd_wind_turns(north);
+        /* modulo 2^32: years of periods are more cells than numbers */
+        at.column = WD_INT(WD_UINT(at.column) - WD_UINT(WD_FRAME(wind_period)) * WD_UINT(wd_wind_turns(east)));
+        at.row = WD_INT(WD_UINT(at.row) - WD_UINT(WD_FRAME(wind_period)) * WD_UINT(wd_wind_turns(north)));
         WD_VECTOR wave = wd_gradient_noise(at, 20u + WD_UINT(bits));
         slope = wd_v3_add(slope, wd_v3_scale(wave, share));
         waves.hidden -= each * share * share;

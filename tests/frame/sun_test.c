@@ -230,6 +230,9 @@ static void test_waves(void **state)
         struct wd_waves b = wd_waves_at(&after, i * 1.7f, i * -0.9f, 0.01f);
         struct wd_vec3 apart = wd_v3_sub(a.normal, b.normal);
         assert_true(wd_v3_dot(apart, apart) < 1e-4f);
+        after.wind_period = 250000; /* 1e9 s: no number overflows */
+        assert_true(isfinite(wd_waves_at(&after, i * 1.7f, i * -0.9f, 0.01f).normal.z));
+        after.wind_period = 1;
     }
 }
 
