@@ -136,17 +136,16 @@ static enum wd_result choose_camera(struct cli_session *session, const struct wd
                                     struct wd_camera *camera, struct wd_camera *previous)
 {
     const struct cli_options *options = session->options;
-    double before_s = options->time_s - step_s(options);
-    if (!options->path) {
-        enum wd_result result = wd_forest_get_camera(forest, options->camera, camera);
-        *previous = *camera;
+    double at_s = options->time_s, before_s = at_s - step_s(options), after_s = at_s + step_s(options);
+    enum wd_result result = options->path ? wd_forest_get_path_camera(forest, options->path, at_s, camera, NULL)
+                                          : wd_forest_get_camera(forest, options->camera, camera);
+    *previous = *camera;
+    if (result != WD_OK || !options->path)
         return result;
-    }
-    enum wd_result result = wd_forest_get_path_camera(forest, options->path, options->time_s, camera, NULL);
-    if (result != WD_OK || before_s >= 0)
-        return result == WD_OK ? wd_forest_get_path_camera(forest, options->path, before_s, previous, NULL) : result;
-    struct wd_camera next;
-    result = wd_forest_get_path_camera(forest, options->path, options->time_s + step_s(options), &next, NULL);
+    if (before_s >= 0)
+        return wd_forest_get_path_camera(forest, options->path, before_s, previous, NULL);
+    struct wd_camera next = *camera;
+    result = wd_forest_get_path_camera(forest, options->path, after_s, &next, NULL);
     cli_camera_before(previous, camera, &next);
     return result;
 }
@@ -156,13 +155,14 @@ static enum wd_result render_picture(struct cli_session *session, const struct w
 {
     struct cli_painter painter = {0};
     struct wd_picture picture = {0};
-    struct wd_camera previous;
+    struct wd_camera previous = {.fov_rad = 0};
     enum wd_result result = choose_camera(session, forest, &plan->params.camera, &previous);
-    plan->params.previous_camera = &previous;
     if (result == WD_OK)
         result = cli_painter_open(&painter, session, forest, plan);
+    struct wd_render_params params = plan->params;
+    params.previous_camera = &previous;
     if (result == WD_OK)
-        result = cli_painter_paint(&painter, &plan->params, &picture);
+        result = cli_painter_paint(&painter, &params, &picture);
     if (result == WD_OK)
         result = wd_picture_write(&picture, session->options->output, &session->log);
     if (result == WD_OK) {
