@@ -9,7 +9,6 @@
 #include "shared/types.h"
 
 #define WD_PATCH_CELLS 8
-#define WD_PATCH_VERTICES 81
 #define WD_TERRAIN_LEVELS 16
 
 /* values of wd_terrain_patch.edge */

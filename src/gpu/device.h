@@ -42,18 +42,15 @@ struct wd_gpu_params {
 /* Optional features; each user has a fallback, and tests disable them. */
 enum wd_gpu_feature {
     WD_GPU_FEATURE_INT64_ATOMICS = 1 << 0, /* shaderInt64 + shaderBufferInt64Atomics */
-    WD_GPU_FEATURE_MULTI_DRAW_INDIRECT = 1 << 1, /* multiDrawIndirect + drawIndirectFirstInstance */
-    WD_GPU_FEATURE_DRAW_INDIRECT_COUNT = 1 << 2,
-    WD_GPU_FEATURE_DEPTH_CLAMP = 1 << 3,
-    WD_GPU_FEATURE_ANISOTROPY = 1 << 4,
-    WD_GPU_FEATURE_TIMESTAMPS = 1 << 5, /* and they are true: never set on software devices */
-    WD_GPU_FEATURE_DEBUG_LABELS = 1 << 6,
-    WD_GPU_FEATURE_BLOCKS = 1 << 7, /* textureCompressionBC */
+    WD_GPU_FEATURE_ANISOTROPY = 1 << 1,
+    WD_GPU_FEATURE_TIMESTAMPS = 1 << 2, /* and they are true: never set on software devices */
+    WD_GPU_FEATURE_DEBUG_LABELS = 1 << 3,
+    WD_GPU_FEATURE_BLOCKS = 1 << 4, /* textureCompressionBC */
     /* shaderStorageImageExtendedFormats: compute fills the G-buffer, where fragments cost more than that: on
      * software devices only if asked for */
-    WD_GPU_FEATURE_STORED_TARGETS = 1 << 8,
+    WD_GPU_FEATURE_STORED_TARGETS = 1 << 5,
     /* Thousands of lanes: what one would do for long is shared out. On software devices only if asked for. */
-    WD_GPU_FEATURE_MANY_LANES = 1 << 9,
+    WD_GPU_FEATURE_MANY_LANES = 1 << 6,
 };
 
 struct wd_gpu {

@@ -131,53 +131,6 @@ static void null_handle_is_an_error(void **state)
     assert_logged(test, "null handle");
 }
 
-static VkImage make_foreign_image(struct gpu_test *test, VkDeviceMemory *memory)
-{
-    const VkImageCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-        .imageType = VK_IMAGE_TYPE_2D,
-        .format = VK_FORMAT_B8G8R8A8_UNORM,
-        .extent = {16, 8, 1},
-        .mipLevels = 1,
-        .arrayLayers = 1,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-    };
-    VkImage image;
-    assert_int_equal(vkCreateImage(test->gpu.device, &info, NULL, &image), VK_SUCCESS);
-    VkMemoryRequirements needs;
-    vkGetImageMemoryRequirements(test->gpu.device, image, &needs);
-    const VkMemoryAllocateInfo allocation = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = needs.size,
-    };
-    assert_int_equal(vkAllocateMemory(test->gpu.device, &allocation, NULL, memory), VK_SUCCESS);
-    assert_int_equal(vkBindImageMemory(test->gpu.device, image, *memory, 0), VK_SUCCESS);
-    return image;
-}
-
-static void foreign_image_is_drawn_into(void **state)
-{
-    struct gpu_test *test = *state;
-    VkDeviceMemory memory;
-    VkImage foreign = make_foreign_image(test, &memory);
-    struct wd_image image;
-    assert_true(wd_image_wrap(&image, &test->gpu, foreign, VK_FORMAT_B8G8R8A8_UNORM, 16, 8));
-    struct wd_cmd cmd = begin_frame(test);
-    wd_cmd_begin_rendering(&cmd, &(struct wd_rendering){
-        .width = 16, .height = 8, .color_count = 1,
-        .color = {{.image = &image, .load = WD_LOAD_CLEAR, .clear = {.float32 = {1, 0, 0, 1}}}}});
-    wd_cmd_end_rendering(&cmd);
-    finish_frame(test, &cmd);
-    uint8_t texels[8][16][4];
-    assert_true(wd_image_read(&test->gpu, &image, 0, 0, texels, sizeof texels));
-    assert_memory_equal(texels[7][15], ((uint8_t[]){0, 0, 255, 255}), 4);
-    wd_image_finish(&image, &test->gpu);
-    vkDestroyImage(test->gpu.device, foreign, NULL);
-    vkFreeMemory(test->gpu.device, memory, NULL);
-}
-
 static int log_teardown(void **state)
 {
     free(*state);
@@ -192,7 +145,6 @@ int main(void)
         LOG_TEST(enabled_features_are_believed_where_possible),
         LOG_TEST(the_queue_is_of_its_own_family),
         LOG_TEST(null_handle_is_an_error),
-        cmocka_unit_test_setup_teardown(foreign_image_is_drawn_into, gpu_setup, gpu_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
