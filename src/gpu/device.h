@@ -11,15 +11,16 @@ enum wd_gpu_validation {
     WD_GPU_VALIDATION_ON, /* validation + synchronization validation; abort() on the first error */
 };
 
-/* A device that belongs to somebody else; never destroyed here. The device must have been created
- * with the features that wd_gpu_required_features() fills in. */
+/* A device that belongs to somebody else; never destroyed here. It must have been made with the
+ * features that wd_gpu_required_features() fills in. */
 struct wd_gpu_external {
     VkInstance instance;
     VkPhysicalDevice physical_device;
     VkDevice device;
     VkQueue queue;         /* graphics + compute + transfer; used only during our calls */
     uint32_t queue_family;
-    uint32_t features;     /* wd_gpu_feature bits that were enabled when it was created */
+    /* what it was made with, read by wd_gpu_init alone; NULL: the required ones */
+    const VkPhysicalDeviceFeatures2 *enabled;
 };
 
 struct wd_gpu_params {
@@ -91,6 +92,10 @@ struct wd_gpu {
 void wd_gpu_required_features(VkPhysicalDeviceFeatures2 *features,
                               VkPhysicalDeviceVulkan12Features *features12,
                               VkPhysicalDeviceVulkan13Features *features13);
+/* These and the optional ones that the device has. */
+void wd_gpu_wanted_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2 *features,
+                            VkPhysicalDeviceVulkan12Features *features12,
+                            VkPhysicalDeviceVulkan13Features *features13);
 
 /* On failure `*gpu` is `{0}`, and the log says what was looked for and what was found. */
 bool wd_gpu_init(struct wd_gpu *gpu, const struct wd_gpu_params *params, const struct wd_log *log);

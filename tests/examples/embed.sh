@@ -26,7 +26,14 @@ flags=$(pkg-config --cflags --libs weald | sed "s,$scratch/installed/usr/include
 # shellcheck disable=SC2086  # one word a flag, and of the compiler
 $compiler "$root/examples/embed.c" $flags -lvulkan -o "$scratch/embed"
 libraries=$(dirname "$(find "$scratch/installed" -name 'libweald.so' | head -1)")
-LD_LIBRARY_PATH=$libraries "$scratch/embed" "$root/tests/viewer/tiny.json" "$scratch/installed.ppm"
+# Under validation, which says what it finds and goes on.
+VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation \
+    VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT \
+    LD_LIBRARY_PATH=$libraries "$scratch/embed" "$root/tests/viewer/tiny.json" \
+    "$scratch/installed.ppm" >"$scratch/said" 2>&1
+if grep 'Validation Error' "$scratch/said"; then
+    exit 1
+fi
 cmp "$scratch/built.ppm" "$scratch/installed.ppm"
 echo "the installed library draws the same picture"
 
