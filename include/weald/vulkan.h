@@ -55,7 +55,9 @@ void wd_renderer_get_vulkan(const struct wd_renderer *renderer, struct wd_vulkan
 
 /* Where a frame goes. */
 struct wd_vulkan_target {
-    VkImage image;          /* usage TRANSFER_DST; one mip, one layer */
+    VkImage image;          /* 2D, one sample, one mip, one layer; usage TRANSFER_DST. Its tiling
+                               has the format feature TRANSFER_DST; for B8G8R8A8_UNORM, which is
+                               blitted and not copied, BLIT_DST. Optimal tiling always has both. */
     VkFormat format;        /* R8G8B8A8_UNORM, R8G8B8A8_SRGB or B8G8R8A8_UNORM; receives
                                sRGB-encoded bytes in each case */
     uint32_t width, height; /* must equal params->width, height */
@@ -65,7 +67,16 @@ struct wd_vulkan_target {
 };
 
 /* Draws one frame into `target` and returns once it is submitted: up to two frames are in flight.
- * Only the display is made (params->layers is not used). Errors: as wd_renderer_render. */
+ * Only the display is made (params->layers is not used).
+ * Before the image is written, `wait` is waited for, by the frame's transfers alone; without it,
+ * transfers that were submitted to the queue earlier, and nothing else.
+ * After it, whoever waits for `signal` sees the image in any use. Without `signal`, work that is
+ * submitted to the queue later sees it as a colour attachment and as a source of transfers; any
+ * other use needs a barrier that begins at the stage TRANSFER.
+ * No ownership passes between queue families. None need be given to the renderer's, for the old
+ * contents are discarded; to use an image of exclusive sharing in another family afterwards,
+ * release it on the renderer's queue.
+ * Errors: as wd_renderer_render; `signal` is then not signalled. */
 enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_render_params *params,
                                 const struct wd_vulkan_target *target);
 
