@@ -74,8 +74,7 @@ static uint8_t layer_of(const struct layer_ends *layers, uint32_t id)
 
 /* Takes the list's trees: octree order, and the tables beside them. */
 static void index_trees(struct wd_world *world, struct wd_tree_list *list,
-                        const struct layer_ends *layers, const struct wd_scene *scene,
-                        unsigned threads)
+                        const struct layer_ends *layers, const struct wd_scene *scene)
 {
     world->trees = list->trees;
     world->tree_count = list->count;
@@ -83,8 +82,7 @@ static void index_trees(struct wd_world *world, struct wd_tree_list *list,
     wd_octree_init(&world->octree, world->trees, world->tree_count,
                    &(struct wd_octree_params){
                        .max_depth = (uint32_t)scene->methods.octree.max_depth,
-                       .leaf_trees = (uint32_t)scene->methods.octree.leaf_trees,
-                       .threads = threads});
+                       .leaf_trees = (uint32_t)scene->methods.octree.leaf_trees});
     world->tree_of_id = wd_alloc_array(world->tree_count + 1, sizeof *world->tree_of_id);
     world->layer_of_tree = wd_alloc(world->tree_count);
     world->species_counts = wd_alloc_array(scene->species_file_count,
@@ -130,7 +128,7 @@ static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool
     uint64_t count = list->count;
     ok = ok && wd_progress_report(params->progress, "sorting trees", 0, count);
     if (ok) {
-        index_trees(world, list, &layers, scene, params->threads);
+        index_trees(world, list, &layers, scene);
         count_expected(world, scene);
         wd_cover_init(world, params->threads);
         ok = wd_progress_report(params->progress, "sorting trees", count, count);
