@@ -19,7 +19,7 @@ struct wd_renderer_params {
     const char *gpu; /* NULL: the best device; "software"; or a part of a device's name */
     enum wd_validation validation;
     const char *cache_dir; /* of baked trees; NULL: $XDG_CACHE_HOME/weald; "": no cache */
-    unsigned threads;
+    unsigned threads; /* 0: one a processor; changes no picture */
     struct wd_progress progress; /* of wd_renderer_set_forest */
     struct wd_log log;
 };
