@@ -229,12 +229,18 @@ static void hash_words(XXH64_state_t *state, const uint32_t *words, size_t count
     }
 }
 
+/* Members of 32 bits each, none of them an address. */
+static void hash_layer(XXH64_state_t *state, const struct wd_place_layer *layer)
+{
+    static_assert(sizeof *layer % sizeof(uint32_t) == 0, "a layer is whole words");
+    uint32_t words[sizeof *layer / sizeof(uint32_t)];
+    memcpy(words, layer, sizeof words);
+    hash_words(state, words, sizeof words / sizeof *words);
+}
+
 static void hash_map(XXH64_state_t *state, const struct wd_placement *placement)
 {
     const struct wd_place_layer *layer = &placement->input.layer;
-    const uint32_t words[5] = {layer->map_kind, layer->map_width, layer->map_height,
-                               layer->map_half_mm[0], layer->map_half_mm[1]};
-    hash_words(state, words, 5);
     for (size_t i = 0; i < (size_t)layer->map_width * layer->map_height; i++) {
         uint32_t word;
         memcpy(&word, &placement->map[i], sizeof word);
@@ -242,17 +248,13 @@ static void hash_map(XXH64_state_t *state, const struct wd_placement *placement)
     }
 }
 
-/* Layers on demand: their numbers and what their maps and tables hold. */
+/* Layers on demand: their rules and what their maps and tables hold. */
 static void hash_demand(XXH64_state_t *state, const struct wd_demand *demand)
 {
     for (uint32_t i = 0; i < demand->count; i++) {
         const struct wd_placement *placement = &demand->layers[i].placement;
-        const struct wd_place_layer *layer = &placement->input.layer;
-        const uint32_t words[8] = {layer->key,           layer->columns,
-                                   layer->rows,          layer->cell_mm,
-                                   layer->height_min_cm, layer->height_span_cm,
-                                   layer->variants,      demand->layers[i].first_id};
-        hash_words(state, words, 8);
+        hash_layer(state, &placement->input.layer);
+        hash_words(state, &demand->layers[i].first_id, 1);
         hash_words(state, placement->table, placement->table_count);
         if (placement->map)
             hash_map(state, placement);
