@@ -31,7 +31,7 @@ static struct lit lit_ground(float woods, float footprint_m)
     double squares = 0;
     for (uint32_t i = 0; i < PLACES; i++) {
         struct wd_vec3 rel = {3000 * wd_hash_unit(wd_hash2(i, 1)) - 1500, 3000 * wd_hash_unit(wd_hash2(i, 2)) - 1500, 0};
-        struct wd_ground_look look = wd_ground_cover(&frame, rel, 0, 0, woods, woods, -1e9f, footprint_m);
+        struct wd_ground_look look = wd_ground_cover(&frame, rel, 0, 0, woods, woods, 0, -1e9f, footprint_m);
         double sun = fmax(0.6 * (double)look.normal.x + 0.8 * (double)look.normal.z, 0);
         const double light[3] = {look.albedo.x * sun, look.albedo.y * sun, look.albedo.z * sun};
         for (int k = 0; k < 3; k++)
