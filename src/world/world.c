@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "world/cover.h"
+#include "world/far_sward.h"
 #include "world/inventory.h"
 #include "world/placement.h"
 #include "world/river.h"
@@ -131,6 +132,7 @@ static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool
         index_trees(world, list, &layers, scene);
         count_expected(world, scene);
         wd_cover_init(world, params->threads);
+        wd_far_sward_init(world, scene);
         ok = wd_progress_report(params->progress, "sorting trees", count, count);
     }
     free(layers.ends);
