@@ -4,6 +4,7 @@
 #define WD_SHARED_GROUND_COVER_H
 
 #include "shared/ground_litter.h"
+#include "shared/hash.h"
 #include "shared/noise.h"
 #include "shared/snow.h"
 
@@ -96,12 +97,19 @@ WD_FUNC WD_STRUCT wd_ground_strewn wd_ground_strewn_at(WD_FRAME_IN float east_m,
     return strewn;
 }
 
-/* Layers of rock: bands by height, tilted a little, broken by noise. */
+/* -1..1, of the layer of rock that is the so-manieth from the world's zero up. */
+WD_FUNC float wd_bed_tone(int32_t index)
+{
+    return 2.0f * wd_hash_unit(wd_hash1(WD_UINT(index))) - 1.0f;
+}
+
+/* Layers of rock: bands by height, no two alike, tilted a little, broken by noise. */
 WD_FUNC WD_VECTOR wd_rock_albedo(WD_FRAME_IN float height_m, WD_STRUCT wd_ground_noise n,
                                  float footprint_m)
 {
     float bed = height_m * 0.11f + n.broad * 3.0f + n.middle * 0.7f;
-    float band = WD_ABS(wd_fract(bed) - 0.5f) * 4.0f - 1.0f;
+    int32_t index = WD_INT(WD_FLOOR(bed));
+    float band = WD_MIX(wd_bed_tone(index), wd_bed_tone(index + 1), WD_SMOOTH(0.55f, 1.0f, wd_fract(bed)));
     band *= 1.0f - WD_SMOOTH(2.0f, 8.0f, footprint_m);
     float stain = 1.0f + 0.16f * band + 0.35f * n.small_ + 0.30f * n.fine + 0.2f * n.middle;
     WD_VECTOR hue = wd_v3_mix(WD_V3(1.0f, 1.0f, 1.0f), WD_V3(1.07f, 1.0f, 0.90f), 0.5f + n.broad);
