@@ -169,6 +169,26 @@ static void checks_across_keys_hold(void **state)
     }
 }
 
+/* Items that were refused are empty where the checks of the whole scene come to them. */
+static void refused_items_are_passed_over(void **state)
+{
+    struct fixture *f = *state;
+    static const struct wrong cases[] = {
+        {"{\"layers\": [{\"species\": \"oak\"}], \"inventories\": [{\"file\": \"a.csv\", "
+         "\"species\": {\"x\": null}}]}", "inventories[0].species.x: found null"},
+        {"{\"layers\": [{\"species\": \"oak\"}], \"inventories\": [{\"file\": \"a.csv\", "
+         "\"species\": {\"x\": [], \"*\": \"oak\"}}]}", "inventories[0].species.x: found a list"},
+        {"{\"layers\": [{\"species\": \"oak\"}], \"inventories\": [{\"file\": \"a.csv\", "
+         "\"dead\": [null]}]}", "inventories[0].dead[0]: found null"},
+        {"{\"layers\": [{\"species\": \"oak\"}], \"clips\": {\"oak\": 1}, \"openness\": {\"oak\": \"x\"}, "
+         "\"species\": {\"a\": 1}}", "clips.oak: found 1"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_false(load(f, cases[i].text));
+        assert_true(logged(&f->log, cases[i].message));
+    }
+}
+
 static void all_errors_come_in_one_pass(void **state)
 {
     struct fixture *f = *state;
@@ -402,6 +422,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(species_are_found_and_loaded, setup, teardown),
         cmocka_unit_test_setup_teardown(unknown_species_are_errors, setup, teardown),
         cmocka_unit_test_setup_teardown(checks_across_keys_hold, setup, teardown),
+        cmocka_unit_test_setup_teardown(refused_items_are_passed_over, setup, teardown),
         cmocka_unit_test_setup_teardown(all_errors_come_in_one_pass, setup, teardown),
         cmocka_unit_test_setup_teardown(data_directory_is_put_into_names, setup, teardown),
         cmocka_unit_test_setup_teardown(unreadable_files_are_errors, setup, teardown),
