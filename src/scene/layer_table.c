@@ -115,7 +115,8 @@ static const struct wd_key inventory_keys[] = {
      .doc = "\"local\": metres from the terrain's south-west corner; \"projected\": the terrain's "
             "own coordinates; or \"EPSG:n\"."},
     {"offset_m", WD_KEY_VECTOR, INVENTORY(offset_m), -1e8, 1e8, "[0, 0]",
-     "Added to x and y, in metres.", .length = 2},
+     "Added to x and y, in metres: to the file's own, or, where its frame is in degrees or feet, once "
+     "they are the terrain's coordinates.", .length = 2},
     {"rotate_deg", WD_KEY_DOUBLE, INVENTORY(rotate_deg), -360, 360, "0",
      "Local frame: turned counter-clockwise about its origin before the offset, in degrees."},
     {"species", WD_KEY_STRING_MAP, INVENTORY(species), .count_offset = INVENTORY(species_count),

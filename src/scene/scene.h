@@ -93,7 +93,7 @@ struct wd_scene_inventory {
     const char *height_unit; /* "m", "cm", "ft"; NULL: as the column's name says, else m */
     const char *frame;       /* "local" (default): metres from the terrain's south-west corner;
                                 "projected": the terrain's own coordinates; or "EPSG:n" */
-    double offset_m[2];      /* added to x, y */
+    double offset_m[2];      /* added to x, y; of a frame in degrees or feet, to the terrain's own */
     double rotate_deg;       /* local frame: turned counter-clockwise about its origin, before */
     struct wd_string_pair *species; /* name in the file -> species name; "*": any other */
     size_t species_count;
