@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -210,6 +211,72 @@ static void an_output_appears_whole_or_not_at_all(void **state)
     free(path);
 }
 
+static void write_text(const char *path, const char *text)
+{
+    struct wd_output_file file;
+    assert_true(wd_output_open(&file, path, NULL));
+    fputs(text, file.stream);
+    assert_true(wd_output_commit(&file, NULL));
+}
+
+/* Links stay and lead to what was written, also to what was not there; permissions stay. */
+static void outputs_go_where_links_lead(void **state)
+{
+    (void)state;
+    char directory[] = "/tmp/weald-test-XXXXXX";
+    assert_non_null(mkdtemp(directory));
+    char *sub = wd_format("%s/sub", directory), *path = wd_format("%s/out.txt", directory);
+    char *link = wd_format("%s/link.txt", sub), *loop = wd_format("%s/loop.txt", sub);
+    struct stat info;
+    struct heard heard = {0};
+    const struct wd_log log = {hear, &heard};
+    struct wd_output_file file;
+    assert_int_equal(mkdir(sub, 0777) | symlink("../out.txt", link) | symlink("loop.txt", loop), 0);
+    write_text(link, "new");
+    assert_int_equal(chmod(path, 0640), 0);
+    write_text(link, "newer");
+    assert_true(lstat(link, &info) == 0 && S_ISLNK(info.st_mode));
+    assert_true(lstat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size == 5);
+    assert_int_equal(info.st_mode & 0777, 0640);
+    assert_false(wd_output_open(&file, loop, &log));
+    assert_non_null(strstr(heard.last, "loop.txt: cannot be written: Too many levels"));
+    assert_int_equal(unlink(loop) | mkfifo(loop, 0666), 0);
+    assert_false(wd_output_open(&file, loop, &log));
+    assert_non_null(strstr(heard.last, "loop.txt: is a device, pipe or socket"));
+    assert_int_equal(unlink(loop) | unlink(link) | unlink(path) | rmdir(sub) | rmdir(directory), 0);
+    free(sub);
+    free(path);
+    free(link);
+    free(loop);
+}
+
+/* Root may write whatever the permissions say: a child of the test is somebody else. */
+static void files_that_may_not_be_written_stay(void **state)
+{
+    (void)state;
+    char directory[] = "/tmp/weald-test-XXXXXX";
+    assert_non_null(mkdtemp(directory));
+    char *path = wd_format("%s/out.txt", directory);
+    struct stat info;
+    write_text(path, "old");
+    assert_int_equal(chmod(directory, 0777) | chmod(path, 0444), 0);
+    pid_t child = fork();
+    if (child == 0) {
+        struct heard heard = {0};
+        const struct wd_log log = {hear, &heard};
+        struct wd_output_file file;
+        if (geteuid() == 0 && setuid(65534) != 0)
+            _exit(0);
+        _exit(wd_output_open(&file, path, &log) || !strstr(heard.last, "out.txt: cannot be written: Permission denied"));
+    }
+    int status = -1;
+    waitpid(child, &status, 0);
+    assert_int_equal(status, 0);
+    assert_true(stat(path, &info) == 0 && info.st_size == 3 && (info.st_mode & 0777) == 0444);
+    assert_int_equal(unlink(path) | rmdir(directory), 0);
+    free(path);
+}
+
 static void *write_again(void *path)
 {
     struct wd_output_file file;
@@ -306,6 +373,8 @@ int main(void)
         cmocka_unit_test(every_index_is_worked_once),
         cmocka_unit_test(loops_tell_how_far_they_are),
         cmocka_unit_test(an_output_appears_whole_or_not_at_all),
+        cmocka_unit_test(outputs_go_where_links_lead),
+        cmocka_unit_test(files_that_may_not_be_written_stay),
         cmocka_unit_test(threads_may_write_one_output),
         cmocka_unit_test(what_killed_writers_leave_is_swept),
         cmocka_unit_test(a_full_disk_leaves_nothing),
