@@ -1,4 +1,5 @@
 #include "scene/scene_parts.h"
+#include "weald/forest.h"
 
 #define SCENE(member) offsetof(struct wd_scene, member)
 #define IN(group, member) (SCENE(group.member) - SCENE(group))
@@ -180,8 +181,8 @@ static const struct wd_key lens_keys[] = {
 static const struct wd_keys lens_table = GROUP("lens", lens_keys, lens);
 
 static const struct wd_key quality_keys[] = {
-    {"width", WD_KEY_INTEGER, IN(quality, width), 1, 32768, "1280", "Width in pixels."},
-    {"height", WD_KEY_INTEGER, IN(quality, height), 1, 32768, "720", "Height in pixels."},
+    {"width", WD_KEY_INTEGER, IN(quality, width), 1, WD_MOST_SIZE_PX, "1280", "Width in pixels."},
+    {"height", WD_KEY_INTEGER, IN(quality, height), 1, WD_MOST_SIZE_PX, "720", "Height in pixels."},
     {"samples", WD_KEY_INTEGER, IN(quality, samples), 1, 65536, "4", "Samples a pixel."},
     {"mesh_distance_m", WD_KEY_DOUBLE, IN(quality, mesh_distance_m), 0, 1e6, "40",
      "Full meshes are drawn nearer than this, in metres, for a tree of 20 m in a picture of 600 "

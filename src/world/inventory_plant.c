@@ -299,7 +299,7 @@ bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placemen
         .key = wd_hash2(params->seed, 0x80000000u + (uint32_t)index),
     };
     double *x, *y;
-    if (!wd_ground_input_init(&planting.ground, params->terrain, params->log) ||
+    if (!wd_ground_input_init(&planting.ground, params) ||
         !wd_inventory_points(inventory, params->terrain->crs, params->log, &x, &y))
         return false;
     bool local = wd_inventory_frame(inventory->wanted) == WD_FRAME_LOCAL && !fitted;

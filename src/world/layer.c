@@ -143,7 +143,7 @@ bool wd_placement_init(struct wd_placement *placement, const struct wd_placement
         snprintf(placement->name, sizeof placement->name, "layer %s", placement->layer->name);
     else
         snprintf(placement->name, sizeof placement->name, "layers[%zu]", layer_index);
-    if (wd_ground_input_init(&placement->input.ground, params->terrain, params->log) &&
+    if (wd_ground_input_init(&placement->input.ground, params) &&
         set_layer(placement, params, layer_index) && wd_layer_tables_init(placement, params) &&
         wd_layer_map_load(placement, params)) {
         placement->input.map = placement->map;

@@ -153,8 +153,14 @@ static void checks_across_keys_hold(void **state)
         {"{\"paths\": [{\"name\": \"a\", \"keys\": [{\"position_m\": [0, 0, 1]}]}]}",
          "paths[0].keys: found 1; a path needs at least two keys"},
         {"{\"quality\": {\"width\": 0}}", "quality.width: found 0; allowed is a whole number from "
-                                          "1 to 32768"},
-        {"{\"quality\": {\"width\": 100000}}", "quality.width: found 100000"},
+                                          "1 to 16384"},
+        {"{\"quality\": {\"height\": 16385}}", "quality.height: found 16385"},
+        {"{\"terrain\": {\"size_m\": [0, 0]}, \"layers\": [{\"species\": \"oak\"}]}",
+         "terrain.size_m: found 0 x 0, to be fitted to inventories, of which there are none"},
+        {"{\"cameras\": [{\"name\": \"a\", \"position_m\": [0, -2e6, 1]}]}",
+         "cameras[0].position_m: found [0, -2000000, 1]; allowed is less than 2000000 each way"},
+        {"{\"paths\": [{\"name\": \"a\", \"keys\": [{\"position_m\": [0, 0, 1]}, {\"position_m\": [0, 0, 3e6]}]}]}",
+         "paths[0].keys[1].position_m: found [0, 0, 3000000]"},
         {"{\"method\": \"octre\"}", "method: found \"octre\"; did you mean \"octree\"?"},
         {"{\"species\": {\"oak\": \"../species/oak.json\"}, \"inventories\": [{\"file\": \"a\", "
          "\"delimiter\": \"xy\", \"frame\": \"EPSG:x\"}]}",
