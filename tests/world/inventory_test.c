@@ -410,6 +410,8 @@ static void test_errors(void **state)
     expect_error("x,y,dbh\n1,2,-3\n", "inventory_test.csv:2: column dbh: -3 is negative");
     expect_error("x,y,height\n1,2,3\n1,2,1700\n",
                  "inventory_test.csv:3: column height: 1700 is too much");
+    expect_error("x,y,crown\n1,1,81.91\n1,2,81.92\n",
+                 "inventory_test.csv:3: column crown: 81.92 is too much; above 0 and up to 81.91 m");
     expect_error("x,y\n1,nan\n", "inventory_test.csv:2: column y");
     expect_error("x,y\n1,2,3\n", "inventory_test.csv:2: 3 fields, but the header has 2");
     expect_error("x,y\n", "no trees");
