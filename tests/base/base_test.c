@@ -20,6 +20,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/point_locale.h"
+#include "base/utf8.h"
 #include "comma_locale.h"
 
 static void elementary_functions_are_accurate(void **state)
@@ -178,6 +179,30 @@ static void hear(void *user, enum wd_log_level level, const char *message)
     struct heard *heard = user;
     heard->errors += level == WD_LOG_ERROR;
     snprintf(heard->last, sizeof heard->last, "%s", message);
+}
+
+static void assert_heard(struct heard *heard, const char *text, const char *wanted)
+{
+    const struct wd_log log = {hear, heard};
+    wd_error(&log, "%s", text);
+    assert_string_equal(heard->last, wanted);
+}
+
+/* Whatever is in a file or its name: a message is one line of UTF-8. */
+static void messages_are_one_line_of_utf8(void **state)
+{
+    (void)state;
+    struct heard heard = {0};
+    assert_heard(&heard, "a\nb\tc\rd\x1b[31m\x7f", "a\\nb\\tc\\rd\\x1b[31m\\x7f");
+    assert_heard(&heard, "H\xc3\xb6he \xe2\x82\xac \xf0\x9f\x8c\xb2", "H\xc3\xb6he \xe2\x82\xac \xf0\x9f\x8c\xb2");
+    assert_heard(&heard, "H\xf6he \xc3", "H\\xf6he \\xc3");
+    assert_heard(&heard, "\xc0\xaf \xed\xa0\x80 \xf4\x90\x80\x80", /* too long, half a pair, too far */
+                 "\\xc0\\xaf \\xed\\xa0\\x80 \\xf4\\x90\\x80\\x80");
+    char line[8];
+    wd_utf8_line(line, sizeof line, "12345\xc3\xb6\xc3\xb6");
+    assert_string_equal(line, "12345\xc3\xb6");
+    wd_utf8_line(line, sizeof line, "12345\n\n");
+    assert_string_equal(line, "12345\\n");
 }
 
 static void an_output_appears_whole_or_not_at_all(void **state)
@@ -369,6 +394,7 @@ int main(void)
         cmocka_unit_test(elementary_functions_are_accurate),
         cmocka_unit_test(numbers_have_points),
         cmocka_unit_test(threads_log_one_at_a_time),
+        cmocka_unit_test(messages_are_one_line_of_utf8),
         cmocka_unit_test(srgb_round_trips),
         cmocka_unit_test(every_index_is_worked_once),
         cmocka_unit_test(loops_tell_how_far_they_are),
