@@ -465,6 +465,19 @@ static void test_names_of_columns(void **state)
 }
 
 /* What the scene says of units counts, and is told from what it leaves to the column's name. */
+static void test_one_column_for_two(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->columns.y = "X";
+    write_file("x,y\n1,2\n");
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "inventory_test.csv:1: column x counts as both x and y");
+}
+
 static void test_units_said_twice(void **state)
 {
     (void)state;
@@ -687,6 +700,7 @@ int main(void)
 #endif
         cmocka_unit_test(test_errors),
         cmocka_unit_test(test_names_of_columns),
+        cmocka_unit_test(test_one_column_for_two),
         cmocka_unit_test(test_units_said_twice),
         cmocka_unit_test(test_no_sizes),
         cmocka_unit_test(test_degrees_as_metres),
