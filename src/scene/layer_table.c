@@ -21,7 +21,7 @@ static const struct wd_key map_keys[] = {
     {"class_density", WD_KEY_NUMBERS, MAP(class_density), 0, 1,
      .count_offset = MAP(class_density_count),
      .doc = "Probability of each of the classes, in their order; 1 where it is not given."},
-    {"value_range", WD_KEY_FLOATS, MAP(value_range), .length = 2,
+    {"value_range", WD_KEY_FLOATS, MAP(value_range), -1e30, 1e30, .length = 2,
      .doc = "Without classes: value at probability 0 and value at probability 1; may fall."},
     {0},
 };

@@ -13,7 +13,7 @@ struct wd_scene_terrain {
     int kind;                /* enum wd_terrain_kind */
     double size_m[2];        /* flat, diamond-square: east, north extent; flat and
                                 0, 0: fitted to the inventories */
-    double cell_m;           /* diamond-square: sample spacing; raster: wanted spacing, 0: its own */
+    double cell_m;           /* diamond-square: sample spacing; raster: wanted spacing, 0: its own; flat: not used */
     double relief_m;         /* diamond-square: highest minus lowest */
     double roughness;        /* diamond-square: y of R1; smooth from 0.8 */
     double valley;           /* diamond-square: 0 none .. 1 a valley carved along the y axis */

@@ -20,7 +20,8 @@ static const struct wd_key terrain_keys[] = {
      "flat, diamond-square: extent to the east and north, in metres; flat and 0, 0: fitted to the "
      "inventories.", .length = 2},
     {"cell_m", WD_KEY_DOUBLE, TERRAIN(cell_m), 0, 10000, "0",
-     "Distance between samples in metres; 0: the raster's own, or 1024 samples a side."},
+     "raster, diamond-square: distance between samples in metres; 0: the raster's own, or 1024 samples a "
+     "side. Flat ground has none to choose."},
     {"relief_m", WD_KEY_DOUBLE, TERRAIN(relief_m), 0, 12000, "200",
      "diamond-square: highest minus lowest, in metres."},
     {"roughness", WD_KEY_DOUBLE, TERRAIN(roughness), 0, 4, "0.9",

@@ -154,6 +154,9 @@ static void checks_across_keys_hold(void **state)
          "paths[0].keys: found 1; a path needs at least two keys"},
         {"{\"quality\": {\"width\": 0}}", "quality.width: found 0; allowed is a whole number from "
                                           "1 to 16384"},
+        {"{\"$schema\": null}", "a.json:1:13: $schema: is no text"},
+        {"{\"layers\": [{\"species\": \"oak\", \"map\": {\"file\": \"a\", \"value_range\": [-1e31, 1]}}]}",
+         "value_range[0]: found -1e+31; allowed is a list of 2 numbers, each a number from -1e+30 to 1e+30"},
         {"{\"quality\": {\"height\": 16385}}", "quality.height: found 16385"},
         {"{\"terrain\": {\"size_m\": [0, 0]}, \"layers\": [{\"species\": \"oak\"}]}",
          "terrain.size_m: found 0 x 0, to be fitted to inventories, of which there are none"},
