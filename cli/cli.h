@@ -32,7 +32,7 @@ enum cli_command_bit {
     CLI_EVERY = (1 << 12) - 1,
 };
 
-enum { CLI_MAX_SIZE_PX = 16384, CLI_MAX_WORDS = 32 };
+enum { CLI_MAX_SIZE_PX = WD_MOST_SIZE_PX, CLI_MAX_WORDS = 32 };
 
 /* What an option that may be given more than once was given. */
 struct cli_words {

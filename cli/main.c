@@ -59,9 +59,10 @@ static const struct cli_command commands[] = {
      cli_info},
     {"check", CLI_CHECK, "FILE...", 1, 1 << 20,
      "look for faults in scene, species, CSV and raster files",
-     "Checks files without planting anything: scenes and species (.json), inventories (.csv), rasters\n"
-     "(anything else). A scene's inventories and ground are read as it would, other files that it names\n"
-     "must be there and readable. Faults are named with file, line and key. Exits with 1 if any file has one.",
+     "Checks files: scenes and species (.json), inventories (.csv), rasters (anything else). A scene's ground\n"
+     "is made, its inventories are planted and the maps of its layers read as it would; layers are not planted\n"
+     "(they may have too many trees, or none), models of its species not read, and its sky need only be there\n"
+     "and readable. Faults are named with file and line or key. Exits with 1 if any file has one.",
      "  weald check scenes/*.json species/*.json\n"
      "  weald check my-plot.csv --data ~/plots\n",
      cli_check},

@@ -24,19 +24,31 @@ enum cli_output_kind cli_output_kind(const char *path)
     return wd_film_has_ending(path) ? CLI_OUTPUT_FILM : CLI_OUTPUT_UNKNOWN;
 }
 
+/* A file's name beside the output, or beside where links lead from there. */
+static char *probe_name(const char *path)
+{
+    char *target = realpath(path, NULL), *probe = NULL;
+    const char *at = target ? target : path, *slash = strrchr(at, '/');
+    if (asprintf(&probe, "%.*s.weald-XXXXXX", slash ? (int)(slash - at + 1) : 0, at) < 0)
+        probe = NULL;
+    free(target);
+    return probe;
+}
+
 bool cli_output_probe(struct cli_session *session, const char *path)
 {
     struct stat status;
-    if (!stat(path, &status) && S_ISDIR(status.st_mode))
+    bool there = !stat(path, &status);
+    if (there && S_ISDIR(status.st_mode))
         return cli_fail(session, "%s is a directory; name a file in it", path);
-    if (!stat(path, &status) && !S_ISREG(status.st_mode))
+    if (there && !S_ISREG(status.st_mode))
         return cli_fail(session, "%s is a device, pipe or socket; only plain files are written",
                         path);
+    if (there && access(path, W_OK))
+        return cli_fail(session, "%s cannot be written: %s", path, strerror(errno));
 
-    const char *slash = strrchr(path, '/');
-    int directory_length = slash ? (int)(slash - path + 1) : 0;
-    char *probe = NULL;
-    if (asprintf(&probe, "%.*s.weald-XXXXXX", directory_length, path) < 0)
+    char *probe = probe_name(path);
+    if (!probe)
         return cli_fail(session, "out of memory");
     int file = mkstemp(probe);
     if (file < 0) {

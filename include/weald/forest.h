@@ -96,9 +96,14 @@ double wd_forest_ground_m(const struct wd_forest *forest, double x_m, double y_m
 #define WD_LEAST_FOV_DEG 0.1
 #define WD_MOST_FOV_DEG 179.0
 
+/* How far from the local frame's origin a camera may be, each way, in metres. */
+#define WD_MOST_PLACE_M 2.0e6
+/* Most pixels of a picture each way. */
+#define WD_MOST_SIZE_PX 16384
+
 /* A pinhole camera. All of it is finite. */
 struct wd_camera {
-    double position_m[3]; /* local frame, within 2,000 km of its origin; z above the datum */
+    double position_m[3]; /* local frame, less than WD_MOST_PLACE_M from its origin; z above the datum */
     double yaw_rad;       /* clockwise from north */
     double pitch_rad;     /* up from the horizon */
     double fov_rad;       /* vertical field of view, WD_LEAST_FOV_DEG..WD_MOST_FOV_DEG as radians */
@@ -138,9 +143,10 @@ struct wd_render_defaults {
 void wd_forest_get_render_defaults(const struct wd_forest *forest,
                                    struct wd_render_defaults *defaults);
 
-/* Checks a file without planting anything: a scene or species (.json), an inventory (.csv) or a raster. A scene's
- * inventories and ground are read as it would, other files that it names must be there and readable. Faults are
- * logged with file, line and key. */
+/* Checks a file: a scene or species (.json), an inventory (.csv) or a raster. A scene's ground is made, its
+ * inventories are planted and the maps of its layers read as it would; layers are not planted (they may turn out
+ * to have too many trees, or none), models not read, and its sky need only be there and readable. Faults are logged
+ * with file and line or key. */
 enum wd_result wd_file_check(const char *path, const char *data_dir, const struct wd_log *log);
 
 /* JSON Schema of scene ("scene") files, or of species that are grown ("species") or an artist's

@@ -231,14 +231,16 @@ enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *pictur
 /* Keeps finished frames, or for numbered pictures their checksums, in PATH.partial until the film has
  * `frame_count` of them: a film that was stopped or killed can be gone on with. `key` is a hash of all
  * that the frames follow from (wd_renderer_key, wd_forest_key, and what the caller chose). To be called
- * before the first frame. A film of 3840 x 2160 takes about 15 MB a frame.
- * Errors: WD_ERROR_OUTPUT; also where PATH.partial is of another key, or in use. */
+ * once, before the first frame. A film of 3840 x 2160 takes about 15 MB a frame.
+ * Errors: WD_ERROR_INPUT (a second time, or after a frame); WD_ERROR_OUTPUT, also where PATH.partial is of
+ * another key, or in use. */
 enum wd_result wd_film_keep(struct wd_film *film, uint64_t key, uint64_t frame_count);
 /* Adds the next of the frames that were kept by an earlier film, if it is there and whole; else it is
  * to be drawn, like all after it. `*frames`: how many the film now has. */
 enum wd_result wd_film_add_kept(struct wd_film *film, uint64_t *frames);
 /* Finishes the film under its name, with the frames that it has, and frees it whatever comes back. With no
- * frame added nothing is written. Errors: WD_ERROR_OUTPUT; also where a frame could not be written. */
+ * frame added nothing is written. Errors: WD_ERROR_INPUT (no film); WD_ERROR_OUTPUT, also where a frame could not be
+ * written. */
 enum wd_result wd_film_commit(struct wd_film **film);
 /* Drops the film (numbered pictures already written stay). Accepts a pointer to NULL. */
 void wd_film_discard(struct wd_film **film);

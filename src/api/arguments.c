@@ -5,7 +5,7 @@
 
 #include "base/log.h"
 
-static const double MOST_M = 2.0e6, MOST_S = 1.0e9;
+static const double MOST_S = 1.0e9;
 static const double DEGREE = 3.14159265358979323846 / 180.0;
 
 bool wd_check_given(const void *pointer, const char *function, const char *name,
@@ -32,7 +32,7 @@ bool wd_check_camera(const struct wd_camera *camera, const char *name, const str
     const double *at = camera->position_m, fov_deg = camera->fov_rad / DEGREE;
     const double rounding_deg = 1e-9; /* of bounds that come as radians */
     for (int k = 0; k < 3; k++) {
-        if (!(fabs(at[k]) < MOST_M))
+        if (!(fabs(at[k]) < WD_MOST_PLACE_M))
             return wd_error(log,
                             "%s.position_m is %g, %g, %g: within 2,000 km of the origin is possible",
                             name, at[0], at[1], at[2]);

@@ -12,7 +12,6 @@ bool wd_check_given(const void *pointer, const char *function, const char *name,
                     const struct wd_log *log);
 
 /* Width and height of a picture, each 1 to WD_MOST_SIZE_PX. */
-enum { WD_MOST_SIZE_PX = 16384 };
 bool wd_check_size(uint32_t width, uint32_t height, const struct wd_log *log);
 bool wd_check_samples(uint32_t samples, uint32_t most, const struct wd_log *log);
 

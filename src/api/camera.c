@@ -1,9 +1,11 @@
 #include "api/forest.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/log.h"
 #include "base/memory.h"
 
 static const double PI = 3.14159265358979323846;
@@ -19,10 +21,9 @@ const char *wd_forest_path_name(const struct wd_forest *forest, uint32_t index)
 }
 
 /* A place of the scene file in the local frame. */
-static void local_place(const struct wd_forest *forest, const struct wd_scene_camera *camera,
+static void local_place(const struct wd_terrain *terrain, const struct wd_scene_camera *camera,
                         const double from[3], double to[3])
 {
-    const struct wd_terrain *terrain = &forest->world.terrain;
     bool projected = camera->frame && strcmp(camera->frame, "projected") == 0;
     to[0] = from[0] - (projected ? terrain->origin_m[0] : 0.0);
     to[1] = from[1] - (projected ? terrain->origin_m[1] : 0.0);
@@ -35,6 +36,41 @@ static void look_at(struct wd_camera *camera, const double target_m[3])
     double up = target_m[2] - camera->position_m[2];
     camera->yaw_rad = atan2(east, north);
     camera->pitch_rad = atan2(up, hypot(east, north));
+}
+
+static bool is_near(const struct wd_terrain *terrain, const struct wd_scene_camera *camera)
+{
+    double at[3];
+    local_place(terrain, camera, camera->position_m, at);
+    return camera->automatic || fmax(fmax(fabs(at[0]), fabs(at[1])), fabs(at[2])) < WD_MOST_PLACE_M;
+}
+
+static bool too_far(const struct wd_scene *scene, const struct wd_scene_camera *camera,
+                    const char *key, const struct wd_log *log)
+{
+    const double *at = camera->position_m;
+    return wd_error(log, "%s: %s.position_m: (%.10g, %.10g, %.10g) is %g km or more from the terrain's "
+                    "south-west corner; is \"frame\": \"%s\" right?", scene->path, key, at[0], at[1],
+                    at[2], WD_MOST_PLACE_M * 1e-3, camera->frame);
+}
+
+bool wd_scene_check_places(const struct wd_scene *scene, const struct wd_terrain *terrain,
+                           const struct wd_log *log)
+{
+    char key[64];
+    bool ok = true;
+    for (size_t i = 0; i < scene->camera_count; i++) {
+        snprintf(key, sizeof key, "cameras[%zu]", i);
+        ok = (is_near(terrain, &scene->cameras[i]) || too_far(scene, &scene->cameras[i], key, log)) && ok;
+    }
+    for (size_t i = 0; i < scene->path_count; i++) {
+        const struct wd_scene_path *path = &scene->paths[i];
+        for (size_t k = 0; k < path->key_count; k++) {
+            snprintf(key, sizeof key, "paths[%zu].keys[%zu]", i, k);
+            ok = (is_near(terrain, &path->keys[k]) || too_far(scene, &path->keys[k], key, log)) && ok;
+        }
+    }
+    return ok;
 }
 
 /* Over the south-western corner, looking to the middle: for scenes that name no camera. */
@@ -65,10 +101,10 @@ static void resolve(const struct wd_forest *forest, const struct wd_scene_camera
         overlook(forest, camera);
         return;
     }
-    local_place(forest, from, from->position_m, camera->position_m);
+    local_place(&forest->world.terrain, from, from->position_m, camera->position_m);
     if (from->look_at_count == 3) {
         double target[3];
-        local_place(forest, from, from->look_at_m, target);
+        local_place(&forest->world.terrain, from, from->look_at_m, target);
         look_at(camera, target);
     }
 }

@@ -5,11 +5,13 @@
 #include <string.h>
 
 #include "api/arguments.h"
+#include "api/forest.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "tree/import.h"
 #include "world/inventory.h"
 #include "world/terrain.h"
+#include "world/world.h"
 
 /* --- inventories ------------------------------------------------------------------------- */
 
@@ -65,19 +67,10 @@ static bool check_csv(const char *path, const struct wd_log *log)
 
 /* --- rasters ----------------------------------------------------------------------------- */
 
-/* Reads a scene's raster as its ground, coarsely. */
-static bool check_ground(const struct wd_scene *scene, const struct wd_log *log)
-{
-    enum { COARSE_SAMPLES = 65536 };
-    struct wd_terrain terrain;
-    if (!wd_terrain_init(&terrain, scene, 0, COARSE_SAMPLES, 0, NULL, log))
-        return false;
-    wd_terrain_finish(&terrain);
-    return true;
-}
-
+/* As ground, coarsely. */
 static bool check_raster(const char *path, const struct wd_log *log)
 {
+    enum { COARSE_SAMPLES = 65536 };
     const struct wd_scene scene = {
         .path = "",
         .terrain = {.kind = WD_TERRAIN_RASTER,
@@ -86,7 +79,11 @@ static bool check_raster(const char *path, const struct wd_log *log)
                     .nodata = NAN,
                     .vertical_scale = 1.0},
     };
-    return check_ground(&scene, log);
+    struct wd_terrain terrain;
+    if (!wd_terrain_init(&terrain, &scene, 0, COARSE_SAMPLES, 0, NULL, log))
+        return false;
+    wd_terrain_finish(&terrain);
+    return true;
 }
 
 /* --- scenes and species ------------------------------------------------------------------ */
@@ -117,17 +114,14 @@ static bool check_species(const char *path, const struct wd_log *log)
     return ok;
 }
 
-/* All inventories and the ground, as the scene reads them. */
-static bool check_data(const struct wd_scene *scene, const struct wd_log *log)
+/* All that comes before the layers' trees, and the cameras on that ground. */
+static bool check_world(const struct wd_scene *scene, const struct wd_log *log)
 {
-    bool ok = scene->terrain.kind != WD_TERRAIN_RASTER || check_ground(scene, log);
-    for (size_t i = 0; i < scene->inventory_count; i++) {
-        struct wd_inventory inventory;
-        bool loaded = wd_inventory_load(&inventory, scene, i, log);
-        if (loaded)
-            wd_inventory_finish(&inventory);
-        ok = ok && loaded;
-    }
+    struct wd_world world;
+    if (!wd_world_check(&world, scene, &(struct wd_world_params){.log = log}))
+        return false;
+    bool ok = wd_scene_check_places(scene, &world.terrain, log);
+    wd_world_finish(&world);
     return ok;
 }
 
@@ -142,7 +136,7 @@ static bool check_json(const char *path, const char *data_dir, const struct wd_l
     struct wd_scene scene;
     if (!wd_scene_load_with(&scene, path, &params, log))
         return false;
-    bool ok = check_data(&scene, log);
+    bool ok = check_world(&scene, log);
     wd_scene_finish(&scene);
     return ok;
 }

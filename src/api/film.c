@@ -112,6 +112,12 @@ static bool mark_of(struct file_mark *mark, const struct wd_film *film, uint64_t
 
 enum wd_result wd_film_keep(struct wd_film *film, uint64_t key, uint64_t frame_count)
 {
+    if (!wd_given(film, NULL))
+        return WD_ERROR_INPUT;
+    if (film->store.stream || film->frames > 0 || film->failed) {
+        wd_error(&film->log, "%s: wd_film_keep is to be called once, before the first frame", film->path);
+        return WD_ERROR_INPUT;
+    }
     char *path = wd_format("%s.partial", film->path);
     bool ok = wd_film_store_open(&film->store, path, key, &film->log);
     film->frame_count = frame_count;
@@ -209,6 +215,8 @@ static bool commit(struct wd_film *film)
 
 enum wd_result wd_film_commit(struct wd_film **film)
 {
+    if (!wd_given(film, NULL) || !wd_given(*film, NULL))
+        return WD_ERROR_INPUT;
     struct wd_film *f = *film;
     bool ok = commit(f);
     if (ok && f->frames == f->frame_count)

@@ -59,6 +59,7 @@ enum wd_result wd_forest_create(struct wd_forest **result, const struct wd_fores
         !wd_species_import_models(forest->scene.species, forest->scene.species_file_count,
                                   &progress, &forest->log) ||
         !wd_world_init(&forest->world, &forest->scene, &world) ||
+        !wd_scene_check_places(&forest->scene, &forest->world.terrain, &forest->log) ||
         (failure = wd_sky_file_load(&forest->world.sky, &forest->scene, &forest->log)) != WD_OK) {
         wd_forest_destroy(&forest);
         return watch.stopped ? WD_ERROR_INTERRUPTED : failure;

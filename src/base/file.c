@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,22 +113,52 @@ char *wd_temporary_name(const char *path)
     return wd_format("%.*s.%d.%d-%s", directory, path, (int)getpid(), (int)gettid(), path + directory);
 }
 
+/* Where symbolic links lead, whether there is a file or not: it is the file there that is replaced. */
+static char *target_of(const char *path)
+{
+    enum { MOST_LINKS = 40 };
+    char *target = wd_strdup(path), text[PATH_MAX];
+    ssize_t length = 0;
+    for (int i = 0; i < MOST_LINKS; i++) {
+        length = readlink(target, text, sizeof text - 1);
+        if (length <= 0)
+            break;
+        text[length] = '\0';
+        char *next = wd_path_beside(target, text);
+        free(target);
+        target = next;
+    }
+    return target;
+}
+
+static bool cannot_write(const char *path, const struct wd_log *log)
+{
+    return wd_error(log, "%s: cannot be written: %s", path, strerror(errno));
+}
+
+/* A file that is there keeps its permissions, those against writing, too. */
+static bool open_temporary(struct wd_output_file *file, const struct wd_log *log)
+{
+    struct stat info;
+    bool there = stat(file->path, &info) == 0;
+    if (there && S_ISDIR(info.st_mode))
+        return wd_error(log, "%s: is a directory, cannot be written as a file", file->path);
+    if (there && !S_ISREG(info.st_mode))
+        return wd_error(log, "%s: is a device, pipe or socket; only plain files are written", file->path);
+    if ((!there && errno == ELOOP) || (there && access(file->path, W_OK) != 0))
+        return cannot_write(file->path, log);
+    file->stream = fopen(file->temporary, "wb");
+    return (file->stream && (!there || fchmod(fileno(file->stream), info.st_mode & 07777) == 0)) ||
+           cannot_write(file->path, log);
+}
+
 bool wd_output_open(struct wd_output_file *file, const char *path, const struct wd_log *log)
 {
-    *file = (struct wd_output_file){.path = wd_strdup(path), .temporary = wd_temporary_name(path)};
-    struct stat info;
-    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) {
-        wd_error(log, "%s: is a directory, cannot be written as a file", path);
-        goto fail;
-    }
-    file->stream = fopen(file->temporary, "wb");
-    if (file->stream)
+    char *target = target_of(path);
+    *file = (struct wd_output_file){wd_strdup(path), target, wd_temporary_name(target), NULL};
+    if (open_temporary(file, log))
         return true;
-    wd_error(log, "%s: cannot be written: %s", path, strerror(errno));
-fail:
-    free(file->path);
-    free(file->temporary);
-    *file = (struct wd_output_file){0};
+    wd_output_discard(file);
     return false;
 }
 
@@ -140,7 +171,7 @@ bool wd_output_commit(struct wd_output_file *file, const struct wd_log *log)
         error = errno;
     }
     file->stream = NULL;
-    if (ok && rename(file->temporary, file->path) != 0) {
+    if (ok && rename(file->temporary, file->target) != 0) {
         ok = false;
         error = errno;
     }
@@ -157,6 +188,7 @@ void wd_output_discard(struct wd_output_file *file)
     if (file->temporary)
         unlink(file->temporary); /* after a commit there is nothing under this name */
     free(file->path);
+    free(file->target);
     free(file->temporary);
     *file = (struct wd_output_file){0};
 }
@@ -173,8 +205,9 @@ static pid_t writer_of(const char *name, const char *base)
     return *end == '-' && strcmp(end + 1, base) == 0 ? (pid_t)process : 0;
 }
 
-void wd_output_sweep(const char *path)
+void wd_output_sweep(const char *named)
 {
+    char *path = target_of(named);
     const char *slash = strrchr(path, '/');
     char *folder = slash ? wd_format("%.*s", (int)(slash + 1 - path), path) : wd_strdup(".");
     DIR *stream = opendir(folder);
@@ -186,4 +219,5 @@ void wd_output_sweep(const char *path)
     if (stream)
         closedir(stream);
     free(folder);
+    free(path);
 }

@@ -26,22 +26,24 @@ char *wd_path_beside(const char *base_file, const char *name);
 /* Directory for cached bakes: $XDG_CACHE_HOME/weald or ~/.cache/weald. free() it. */
 char *wd_cache_directory(void);
 
-/* An output that appears whole or not at all: written beside `path` under a temporary name,
+/* An output that appears whole or not at all: written beside `target` under a temporary name,
  * renamed by commit. `{0}` is closed. */
 struct wd_output_file {
-    FILE *stream;
-    char *path;
+    char *path;      /* as it was named */
+    char *target;    /* where symbolic links lead from there: they stay */
     char *temporary;
+    FILE *stream;
 };
 
+/* A file that is there keeps its permissions; one that may not be written is an error. */
 bool wd_output_open(struct wd_output_file *file, const char *path, const struct wd_log *log);
 /* Flushes, checks every earlier write, renames. On failure the old file at `path` is untouched. */
 bool wd_output_commit(struct wd_output_file *file, const struct wd_log *log);
 /* Drops the temporary file. Accepts a committed file and `{0}`. */
 void wd_output_discard(struct wd_output_file *file);
 
-/* Removes what processes that were killed have left of `path` under temporary names. */
-void wd_output_sweep(const char *path);
+/* Removes what processes that were killed have left of an output under temporary names. */
+void wd_output_sweep(const char *named);
 
 /* A fresh temporary name beside `path` (same directory and extension) for writers that insist on
  * opening by name; each thread has its own. free() it. */

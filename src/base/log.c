@@ -3,6 +3,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/utf8.h"
+
 static void deliver(const struct wd_log *log, enum wd_log_level level, const char *message)
 {
     if (log && log->sink) {
@@ -14,12 +16,24 @@ static void deliver(const struct wd_log *log, enum wd_log_level level, const cha
     fprintf(stderr, "weald: %s%s\n", level == WD_LOG_WARNING ? "warning: " : "", message);
 }
 
+/* Takes from the end what is left of a character that was cut. */
+static void drop_cut(char *message, size_t length)
+{
+    for (size_t i = 1; i < 4 && i <= length; i++)
+        if ((message[length - i] & 0xc0) == 0xc0 && wd_utf8_length(message + length - i, i) == 0)
+            message[length - i] = '\0';
+}
+
+/* A name or a text in a file may hold anything; a message is one line. */
 static void log_message(const struct wd_log *log, enum wd_log_level level, const char *format,
                         va_list args)
 {
-    char message[2048];
-    vsnprintf(message, sizeof message, format, args);
-    deliver(log, level, message);
+    char message[2048], line[2048];
+    int length = vsnprintf(message, sizeof message, format, args);
+    if (length >= (int)sizeof message)
+        drop_cut(message, sizeof message - 1);
+    wd_utf8_line(line, sizeof line, message);
+    deliver(log, level, line);
 }
 
 bool wd_error(const struct wd_log *log, const char *format, ...)

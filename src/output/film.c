@@ -142,6 +142,21 @@ char *wd_film_frame_name(const char *pattern, uint64_t frame)
     return wd_format("%.*s%s%s", (int)(percent - pattern), pattern, number, percent + length);
 }
 
+bool wd_film_frame_number(const char *pattern, const char *name, uint64_t *frame)
+{
+    const char *percent = strchr(pattern, '%'), *slash = strrchr(pattern, '/');
+    const char *begin = slash ? slash + 1 : pattern;
+    size_t before = (size_t)(percent - begin);
+    char *end;
+    if (strncmp(name, begin, before) != 0)
+        return false;
+    *frame = strtoull(name + before, &end, 10);
+    char *same = wd_film_frame_name(begin, *frame); /* digits of no other writing */
+    bool is_frame = end > name + before && strcmp(name, same) == 0;
+    free(same);
+    return is_frame;
+}
+
 bool wd_film_writer_add(struct wd_film_writer *film, const uint8_t *rgb, const struct wd_log *log)
 {
     bool ok;

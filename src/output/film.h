@@ -24,6 +24,8 @@ struct wd_film_writer {
  * one of them; free() it. */
 bool wd_film_sequence_check(const char *path, const struct wd_log *log);
 char *wd_film_frame_name(const char *pattern, uint64_t frame);
+/* Whether a file of the pattern's folder has the name of one of them, and of which. */
+bool wd_film_frame_number(const char *pattern, const char *name, uint64_t *frame);
 
 /* Whether such a film or sequence can be at all: size, rate and quality; and its name, too. */
 bool wd_film_shape_check(const struct wd_film_writer_params *params, const struct wd_log *log);

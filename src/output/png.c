@@ -63,8 +63,9 @@ static bool write_png(const char *path, const void *pixels, uint32_t width, uint
     spng_ctx_free(context);
     if (!result)
         return wd_output_commit(&file, log);
+    /* the encoder goes on after a failed write and ends with an error of its own */
     wd_error(log, "%s: cannot be written: %s", path,
-             result == SPNG_IO_ERROR && error ? strerror(error) : spng_strerror(result));
+             ferror(file.stream) && error ? strerror(error) : spng_strerror(result));
     wd_output_discard(&file);
     return false;
 }

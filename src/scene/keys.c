@@ -128,6 +128,8 @@ static bool check_names(const struct wd_keys *table, json_t *json,
     json_object_foreach(json, name, value)
     {
         bool known = !place->parent && strcmp(name, "$schema") == 0;
+        if (known && !json_is_string(value))
+            ok = wd_keys_error(place, name, "is no text; it names the schema that editors check the file by");
         for (const struct wd_key *key = table->keys; key->name && !known; key++)
             known = strcmp(key->name, name) == 0;
         if (!known)

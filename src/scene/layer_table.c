@@ -21,7 +21,7 @@ static const struct wd_key map_keys[] = {
     {"class_density", WD_KEY_NUMBERS, MAP(class_density), 0, 1,
      .count_offset = MAP(class_density_count),
      .doc = "Probability of each of the classes, in their order; 1 where it is not given."},
-    {"value_range", WD_KEY_FLOATS, MAP(value_range), .length = 2,
+    {"value_range", WD_KEY_FLOATS, MAP(value_range), -1e30, 1e30, .length = 2,
      .doc = "Without classes: value at probability 0 and value at probability 1; may fall."},
     {0},
 };
@@ -115,7 +115,8 @@ static const struct wd_key inventory_keys[] = {
      .doc = "\"local\": metres from the terrain's south-west corner; \"projected\": the terrain's "
             "own coordinates; or \"EPSG:n\"."},
     {"offset_m", WD_KEY_VECTOR, INVENTORY(offset_m), -1e8, 1e8, "[0, 0]",
-     "Added to x and y, in metres.", .length = 2},
+     "Added to x and y, in metres: to the file's own, or, where its frame is in degrees or feet, once "
+     "they are the terrain's coordinates.", .length = 2},
     {"rotate_deg", WD_KEY_DOUBLE, INVENTORY(rotate_deg), -360, 360, "0",
      "Local frame: turned counter-clockwise about its origin before the offset, in degrees."},
     {"species", WD_KEY_STRING_MAP, INVENTORY(species), .count_offset = INVENTORY(species_count),

@@ -13,7 +13,7 @@ struct wd_scene_terrain {
     int kind;                /* enum wd_terrain_kind */
     double size_m[2];        /* flat, diamond-square: east, north extent; flat and
                                 0, 0: fitted to the inventories */
-    double cell_m;           /* diamond-square: sample spacing; raster: wanted spacing, 0: its own */
+    double cell_m;           /* diamond-square: sample spacing; raster: wanted spacing, 0: its own; flat: not used */
     double relief_m;         /* diamond-square: highest minus lowest */
     double roughness;        /* diamond-square: y of R1; smooth from 0.8 */
     double valley;           /* diamond-square: 0 none .. 1 a valley carved along the y axis */
@@ -93,7 +93,7 @@ struct wd_scene_inventory {
     const char *height_unit; /* "m", "cm", "ft"; NULL: as the column's name says, else m */
     const char *frame;       /* "local" (default): metres from the terrain's south-west corner;
                                 "projected": the terrain's own coordinates; or "EPSG:n" */
-    double offset_m[2];      /* added to x, y */
+    double offset_m[2];      /* added to x, y; of a frame in degrees or feet, to the terrain's own */
     double rotate_deg;       /* local frame: turned counter-clockwise about its origin, before */
     struct wd_string_pair *species; /* name in the file -> species name; "*": any other */
     size_t species_count;

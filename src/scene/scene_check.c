@@ -1,4 +1,5 @@
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -6,6 +7,7 @@
 
 #include "base/file.h"
 #include "scene/scene_parts.h"
+#include "weald/forest.h"
 
 static struct wd_keys_place child(const struct wd_keys_place *place, const char *key)
 {
@@ -177,6 +179,12 @@ bool wd_scene_check_inventory(void *object, const struct wd_keys_place *place)
 bool wd_scene_check_camera(void *object, const struct wd_keys_place *place)
 {
     const struct wd_scene_camera *camera = object;
+    const double *at = camera->position_m;
+    /* of projected coordinates it is told once the terrain says where it is */
+    bool local = strcmp(camera->frame, "local") == 0;
+    if (local && fmax(fmax(fabs(at[0]), fabs(at[1])), fabs(at[2])) >= WD_MOST_PLACE_M)
+        return wd_keys_error(place, "position_m", "found [%.10g, %.10g, %.10g]; allowed is less than "
+                             "%.10g each way", at[0], at[1], at[2], WD_MOST_PLACE_M);
     if (camera->look_at_count && memcmp(camera->look_at_m, camera->position_m,
                                         sizeof camera->position_m) == 0)
         return wd_keys_error(place, "look_at_m", "is the camera's own position; it must be "
@@ -191,6 +199,17 @@ bool wd_scene_check_path(void *object, const struct wd_keys_place *place)
         return wd_keys_error(place, "keys", "found %zu; a path needs at least two keys",
                              path->key_count);
     return true;
+}
+
+/* Ground of no size is made under inventories. */
+static bool check_size(const struct wd_scene *scene, const struct wd_keys_place *place)
+{
+    const struct wd_scene_terrain *terrain = &scene->terrain;
+    struct wd_keys_place here = child(place, "terrain");
+    return terrain->kind != WD_TERRAIN_FLAT || terrain->size_m[0] > 0 || terrain->window_count ||
+           scene->inventory_count ||
+           wd_keys_error(&here, "size_m", "found 0 x 0, to be fitted to inventories, of which there are "
+                         "none; both must be above 0");
 }
 
 /* Names of items that begin with `const char *name`, of which no two may be the same. */
@@ -256,6 +275,7 @@ bool wd_scene_check(void *object, const struct wd_keys_place *place)
     ok = check_unique(scene->layers, scene->layer_count, sizeof *scene->layers, "layers", place) &&
          ok;
     name_layers(scene, arena);
+    ok = check_size(scene, place) && ok;
     if (scene->camera_count == 0)
         add_automatic_camera(scene, arena);
     ok = wd_scene_load_species(scene, place) && ok;

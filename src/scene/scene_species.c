@@ -283,8 +283,10 @@ static bool may_hold(const struct wd_scene_inventory *inventory, const struct wd
     bool first = inventory->species_count == 0;
     for (size_t i = 0; i < species && first; i++)
         first = !latin || !scene->species[i].latin || strcasecmp(latin, scene->species[i].latin) != 0;
-    for (size_t i = 0; i < inventory->species_count && !first; i++)
-        first = wd_scene_find_species(scene, inventory->species[i].value) == (int)species;
+    for (size_t i = 0; i < inventory->species_count && !first; i++) {
+        const char *name = inventory->species[i].value; /* NULL: an error that has been reported */
+        first = name && wd_scene_find_species(scene, name) == (int)species;
+    }
     return first;
 }
 

@@ -1,4 +1,5 @@
 #include "scene/scene_parts.h"
+#include "weald/forest.h"
 
 #define SCENE(member) offsetof(struct wd_scene, member)
 #define IN(group, member) (SCENE(group.member) - SCENE(group))
@@ -19,7 +20,8 @@ static const struct wd_key terrain_keys[] = {
      "flat, diamond-square: extent to the east and north, in metres; flat and 0, 0: fitted to the "
      "inventories.", .length = 2},
     {"cell_m", WD_KEY_DOUBLE, TERRAIN(cell_m), 0, 10000, "0",
-     "Distance between samples in metres; 0: the raster's own, or 1024 samples a side."},
+     "raster, diamond-square: distance between samples in metres; 0: the raster's own, or 1024 samples a "
+     "side. Flat ground has none to choose."},
     {"relief_m", WD_KEY_DOUBLE, TERRAIN(relief_m), 0, 12000, "200",
      "diamond-square: highest minus lowest, in metres."},
     {"roughness", WD_KEY_DOUBLE, TERRAIN(roughness), 0, 4, "0.9",
@@ -180,8 +182,8 @@ static const struct wd_key lens_keys[] = {
 static const struct wd_keys lens_table = GROUP("lens", lens_keys, lens);
 
 static const struct wd_key quality_keys[] = {
-    {"width", WD_KEY_INTEGER, IN(quality, width), 1, 32768, "1280", "Width in pixels."},
-    {"height", WD_KEY_INTEGER, IN(quality, height), 1, 32768, "720", "Height in pixels."},
+    {"width", WD_KEY_INTEGER, IN(quality, width), 1, WD_MOST_SIZE_PX, "1280", "Width in pixels."},
+    {"height", WD_KEY_INTEGER, IN(quality, height), 1, WD_MOST_SIZE_PX, "720", "Height in pixels."},
     {"samples", WD_KEY_INTEGER, IN(quality, samples), 1, 65536, "4", "Samples a pixel."},
     {"mesh_distance_m", WD_KEY_DOUBLE, IN(quality, mesh_distance_m), 0, 1e6, "40",
      "Full meshes are drawn nearer than this, in metres, for a tree of 20 m in a picture of 600 "

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "tree/clip_mesh.h"
 #include "tree/import_parts.h"
+#include "tree/model_obj.h"
 #include "tree/model_reduce.h"
 #include "tree/openness.h"
 #include "tree/vec.h"
@@ -226,6 +227,15 @@ static void warn_of_pictures(const struct wd_import_work *work)
         fclose(stream);
 }
 
+/* Of materials without a library the importing library makes one grey. */
+static void warn_of_materials(const struct wd_import_work *work)
+{
+    char *lacks = wd_model_obj_lacks(work->species->model.file);
+    if (lacks)
+        wd_warn(work->log, "%s: %s: grey stands in", work->species->model.file, lacks);
+    free(lacks);
+}
+
 static bool import_file(struct wd_tree_import *import, const struct wd_species *species,
                         const struct wd_log *log)
 {
@@ -242,6 +252,7 @@ static bool import_file(struct wd_tree_import *import, const struct wd_species *
         wd_import_measure(&import->model);
         wd_tree_model_fit_openness(&import->model);
         warn_of_pictures(&work);
+        warn_of_materials(&work);
         report(&work);
     }
     free(work.corners);

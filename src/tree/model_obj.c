@@ -1,36 +1,15 @@
 #include "tree/model_obj.h"
 
-#include <assimp/cfileio.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
+#include "base/memory.h"
 
-struct text {
-    char *bytes;
-    size_t size, place;
-};
-
-/* The whole file with a zero byte behind it; NULL where it cannot be read. */
-static char *read_whole(const char *path, size_t *size)
+bool wd_model_is_obj(const char *path)
 {
-    FILE *file = fopen(path, "rb");
-    char *bytes = NULL;
-    long length = -1;
-    *size = 0;
-    if (!file)
-        return NULL;
-    if (fseek(file, 0, SEEK_END) == 0)
-        length = ftell(file);
-    if (length >= 0 && fseek(file, 0, SEEK_SET) == 0)
-        bytes = malloc((size_t)length + 1);
-    if (bytes) {
-        *size = fread(bytes, 1, (size_t)length, file);
-        bytes[*size] = '\0';
-    }
-    fclose(file);
-    return bytes;
+    return wd_has_ending(path, ".obj");
 }
 
 static bool is_blank(char c)
@@ -38,9 +17,8 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-/* Copies the text, or only counts where `to` is NULL, with a zero in each place that lacks one: in
- * lines of vertices alone, for names may begin with a point. */
-static size_t add_zeroes(char *to, const char *from, size_t size)
+/* In lines of vertices alone, for names may begin with a point. */
+size_t wd_model_obj_add_zeroes(char *to, const char *from, size_t size)
 {
     size_t length = 0;
     bool vertex = false;
@@ -59,123 +37,53 @@ static size_t add_zeroes(char *to, const char *from, size_t size)
     return length;
 }
 
-bool wd_model_obj_is_short(const char *path)
-{
-    size_t size;
-    char *bytes = wd_has_ending(path, ".obj") ? read_whole(path, &size) : NULL;
-    bool lacks = bytes && add_zeroes(NULL, bytes, size) > size;
-    free(bytes);
-    return lacks;
-}
+/* --- materials --------------------------------------------------------------------------- */
 
-/* --- what assimp asks for ---------------------------------------------------------------- */
-
-static struct text *text_of(struct aiFile *file)
+/* What follows the word that a line begins with; NULL: it begins with another. */
+static char *after_word(char *line, const char *word)
 {
-    return (struct text *)(void *)file->UserData;
-}
-
-static size_t read_items(struct aiFile *file, char *to, size_t size, size_t count)
-{
-    struct text *text = text_of(file);
-    size_t left = size ? (text->size - text->place) / size : 0;
-    count = count < left ? count : left;
-    memcpy(to, text->bytes + text->place, size * count);
-    text->place += size * count;
-    return count;
-}
-
-static size_t write_items(struct aiFile *file, const char *from, size_t size, size_t count)
-{
-    (void)file, (void)from, (void)size, (void)count;
-    return 0;
-}
-
-static size_t tell(struct aiFile *file)
-{
-    return text_of(file)->place;
-}
-
-static size_t size_of(struct aiFile *file)
-{
-    return text_of(file)->size;
-}
-
-static enum aiReturn seek(struct aiFile *file, size_t offset, enum aiOrigin origin)
-{
-    struct text *text = text_of(file);
-    size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? text->place : text->size;
-    if (from + offset > text->size)
-        return aiReturn_FAILURE;
-    text->place = from + offset;
-    return aiReturn_SUCCESS;
-}
-
-static void flush(struct aiFile *file)
-{
-    (void)file;
-}
-
-static void close_file(struct aiFileIO *io, struct aiFile *file)
-{
-    (void)io;
-    if (!file)
-        return;
-    free(text_of(file)->bytes);
-    free(text_of(file));
-    free(file);
-}
-
-static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
-{
-    size_t size;
-    (void)io;
-    char *bytes = strchr(mode, 'w') ? NULL : read_whole(path, &size);
-    struct text *text = bytes ? calloc(1, sizeof *text) : NULL;
-    struct aiFile *file = text ? calloc(1, sizeof *file) : NULL;
-    if (!file) {
-        free(bytes);
-        free(text);
+    size_t length = strlen(word);
+    if (strncmp(line, word, length) != 0 || !is_blank(line[length]))
         return NULL;
-    }
-    *text = (struct text){bytes, size, 0};
-    size_t longer = wd_has_ending(path, ".obj") ? add_zeroes(NULL, bytes, size) : size;
-    char *whole = longer > size ? malloc(longer + 1) : NULL;
-    if (whole) {
-        add_zeroes(whole, bytes, size);
-        whole[longer] = '\0';
-        free(bytes);
-        *text = (struct text){whole, longer, 0};
-    }
-    *file = (struct aiFile){.ReadProc = read_items, .WriteProc = write_items, .TellProc = tell,
-                            .FileSizeProc = size_of, .SeekProc = seek, .FlushProc = flush,
-                            .UserData = (char *)text};
-    return file;
+    char *text = line + length + strspn(line + length, " \t");
+    text[strcspn(text, "\r\n")] = '\0';
+    return text;
 }
 
-struct aiFileIO *wd_model_obj_io(void)
+/* The library that the file names first, and whether it has materials before one or without. */
+static char *find_library(const char *path, bool *materials)
 {
-    struct aiFileIO *io = calloc(1, sizeof *io);
-    if (io)
-        *io = (struct aiFileIO){.OpenProc = open_file, .CloseProc = close_file};
-    return io;
-}
-
-char *wd_model_obj_library(const char *path)
-{
-    FILE *file = wd_has_ending(path, ".obj") ? fopen(path, "rb") : NULL;
+    FILE *file = wd_model_is_obj(path) ? fopen(path, "rb") : NULL;
     char *line = NULL, *found = NULL;
     size_t room = 0;
+    *materials = false;
     while (file && !found && getline(&line, &room, file) > 0) {
-        char *name = line + 6;
-        if (strncmp(line, "mtllib", 6) != 0 || !is_blank(*name))
-            continue;
-        name += strspn(name, " \t");
-        name[strcspn(name, "\r\n")] = '\0';
-        found = wd_path_beside(path, name);
+        char *start = line + (strncmp(line, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);
+        char *name = after_word(start, "mtllib");
+        *materials = *materials || after_word(start, "usemtl");
+        if (name)
+            found = wd_path_beside(path, name);
     }
     free(line);
     if (file)
         fclose(file);
     return found;
+}
+
+char *wd_model_obj_library(const char *path)
+{
+    bool materials;
+    return find_library(path, &materials);
+}
+
+char *wd_model_obj_lacks(const char *path)
+{
+    bool materials;
+    char *library = find_library(path, &materials), *lacks = NULL;
+    if (library && !wd_file_exists(library))
+        lacks = wd_format("its material library %s is not there", library);
+    else if (!library && materials)
+        lacks = wd_strdup("names materials (usemtl) but no library that has them (mtllib)");
+    free(library);
+    return lacks;
 }

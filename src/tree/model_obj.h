@@ -1,18 +1,19 @@
-/* model_obj.h: OBJ files whose numbers leave out the zero before the point. */
+/* model_obj.h: what OBJ files leave out. */
 #ifndef WD_TREE_MODEL_OBJ_H
 #define WD_TREE_MODEL_OBJ_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
-struct aiFileIO;
+bool wd_model_is_obj(const char *path);
 
-/* Whether the file at `path` is an OBJ with numbers such as .5, which assimp 5.2 takes for words. */
-bool wd_model_obj_is_short(const char *path);
-
-/* Reads files as they are, but OBJ files with those zeroes. */
-struct aiFileIO *wd_model_obj_io(void);
+/* Copies an OBJ file's text with a zero in each number that begins with its point, as .5 does, which
+ * assimp 5.2 takes for words. Returns its length; `to` may be NULL. */
+size_t wd_model_obj_add_zeroes(char *to, const char *from, size_t size);
 
 /* The file of materials that an OBJ file names, beside it; NULL: none, or no OBJ. free() it. */
 char *wd_model_obj_library(const char *path);
+/* What materials an OBJ file names and lacks, in words that follow its name; NULL: none. free() it. */
+char *wd_model_obj_lacks(const char *path);
 
 #endif

@@ -1,6 +1,6 @@
 /* Reading with assimp. Runs in a process of its own (model_file.c): a crash here is a message there,
  * and nothing needs to be freed. */
-#include "tree/model_obj.h"
+#include "tree/model_io.h"
 #include "tree/model_parts.h"
 
 #include <assimp/cimport.h>
@@ -90,7 +90,11 @@ static void open_scene(struct parse *parse, const char *path)
         steps |= aiProcess_GlobalScale;
     struct aiPropertyStore *store = aiCreatePropertyStore();
     aiSetImportPropertyFloat(store, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 70);
-    struct aiFileIO *io = wd_model_obj_is_short(path) ? wd_model_obj_io() : NULL;
+    bool skins;
+    struct aiFileIO *io = wd_model_io(path, &skins);
+    if (skins)
+        keep_warning("Warn,: has skins, which are not read: its vertices stand as they are in the file; apply "
+                     "the pose before the export for another", (void *)&parse->header);
     parse->scene = aiImportFileExWithProperties(path, steps, io, store);
     if (!parse->scene)
         give_up(parse, "is not a model that can be read: %s", aiGetErrorString());

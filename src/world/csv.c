@@ -8,9 +8,25 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/utf8.h"
 
 static const size_t most_bytes = (size_t)1 << 30;
 enum { MOST_COLUMNS = 4096 };
+
+/* Species and columns are compared with names of the scene, which is UTF-8. */
+static bool check_utf8(const char *path, const char *text, size_t size, const struct wd_log *log)
+{
+    uint64_t line = 1;
+    size_t length;
+    for (size_t at = 0; at < size; at += length) {
+        line += text[at] == '\n';
+        length = wd_utf8_length(text + at, size - at);
+        if (length == 0)
+            return wd_error(log, "%s:%" PRIu64 ": byte 0x%02x is not UTF-8, it may be Latin-1 or Windows-1252; "
+                            "save the file as UTF-8", path, line, (unsigned char)text[at]);
+    }
+    return true;
+}
 
 static bool check_encoding(const char *path, const char *text, size_t size,
                            const struct wd_log *log)
@@ -28,7 +44,7 @@ static bool check_encoding(const char *path, const char *text, size_t size,
                         (size_t)(zero - text));
     if (memchr(text, '\r', size) && !memchr(text, '\n', size))
         return wd_error(log, "%s: lines end in CR alone; save it with LF or CRLF", path);
-    return true;
+    return check_utf8(path, text, size, log);
 }
 
 /* The candidate that stands most often in the first line outside quotes. */

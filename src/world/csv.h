@@ -20,7 +20,7 @@ struct wd_csv {
 };
 
 /* `path` must outlive the table. `delimiter` is one character or "tab"; NULL: found out from the
- * header. Files over 1 GB, UTF-16 and binary files are refused. */
+ * header. Files over 1 GB, binary files and what is not UTF-8 are refused. */
 bool wd_csv_open(struct wd_csv *csv, const char *path, const char *delimiter,
                  const struct wd_log *log);
 void wd_csv_close(struct wd_csv *csv);

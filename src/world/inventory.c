@@ -10,8 +10,9 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-/* The tallest, thickest and widest trees known are about 116 m, 1100 cm and 60 m. */
-static const double most_dbh_cm = 1500.0, most_height_m = 130.0, most_crown_m = 100.0;
+/* The tallest, thickest and widest trees known are about 116 m, 1100 cm and 60 m; wider crowns than these are
+ * not stored. */
+static const double most_dbh_cm = 1500.0, most_height_m = 130.0, most_crown_m = WD_TREE_CROWN_MOST_CM / 100.0;
 
 struct reader {
     struct wd_inventory *inventory;

@@ -38,7 +38,7 @@ bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placemen
 enum wd_inventory_frame { WD_FRAME_LOCAL, WD_FRAME_PROJECTED, WD_FRAME_CRS };
 enum wd_inventory_frame wd_inventory_frame(const struct wd_scene_inventory *wanted);
 
-/* Rotation and offset, then reprojection to `crs` (may be NULL unless the frame is a CRS):
+/* Rotation, offset and reprojection to `crs` (may be NULL unless the frame is a CRS):
  * coordinates in the ground's projected frame, or local ones for a local frame. free() them. */
 bool wd_inventory_points(const struct wd_inventory *inventory, const char *crs,
                          const struct wd_log *log, double **x, double **y);

@@ -208,6 +208,24 @@ static void warn_of_no_sizes(const struct wd_csv *csv, const struct wd_inventory
     free(names);
 }
 
+/* Whether no column counts as two places or sizes. */
+static bool check_apart(const struct wd_inventory_columns *columns, const struct wd_csv *csv,
+                        const struct wd_log *log)
+{
+    const struct {
+        const char *what;
+        int column;
+    } numbers[] = {{"x", columns->x}, {"y", columns->y}, {"dbh", columns->dbh}, {"height", columns->height},
+                   {"crown_diameter", columns->crown}};
+    for (size_t i = 1; i < sizeof numbers / sizeof *numbers; i++)
+        for (size_t k = 0; k < i; k++)
+            if (numbers[i].column >= 0 && numbers[i].column == numbers[k].column)
+                return wd_error(log, "%s:1: column %s counts as both %s and %s; say in columns.%s and "
+                                "columns.%s which they are", csv->path, csv->header[numbers[i].column],
+                                numbers[k].what, numbers[i].what, numbers[k].what, numbers[i].what);
+    return true;
+}
+
 bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struct wd_csv *csv,
                                const struct wd_scene_inventory *wanted, const struct wd_log *log)
 {
@@ -228,6 +246,8 @@ bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struc
         if (!find(csv, &wishes[i].wish, log, wishes[i].column) ||
             (i < 2 && !need(csv, wishes[i].wish.what, *wishes[i].column, log)))
             return false;
+    if (!check_apart(columns, csv, log))
+        return false;
     warn_of_no_sizes(csv, columns, log);
     return find_unit(csv, "dbh_unit", wanted->dbh_unit, columns->dbh, dbh_units, log, &columns->dbh_cm) &&
            find_unit(csv, "height_unit", wanted->height_unit, columns->height, height_units, log,

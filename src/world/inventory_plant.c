@@ -17,31 +17,73 @@ enum wd_inventory_frame wd_inventory_frame(const struct wd_scene_inventory *want
     return strcasecmp(wanted->frame, "projected") == 0 ? WD_FRAME_PROJECTED : WD_FRAME_CRS;
 }
 
+static void turn_points(const struct wd_inventory *inventory, double turn_rad, double *x, double *y)
+{
+    double cosine = wd_dcos(turn_rad), sine = wd_dsin(turn_rad);
+    for (size_t i = 0; i < inventory->count; i++) {
+        const struct wd_inventory_tree *tree = &inventory->trees[i];
+        x[i] = tree->x * cosine - tree->y * sine;
+        y[i] = tree->x * sine + tree->y * cosine;
+    }
+}
+
+static void shift_points(const struct wd_inventory *inventory, double *x, double *y)
+{
+    for (size_t i = 0; i < inventory->count; i++) {
+        x[i] += inventory->wanted->offset_m[0];
+        y[i] += inventory->wanted->offset_m[1];
+    }
+}
+
+static bool reproject(const struct wd_inventory *inventory, const char *crs, double *x, double *y,
+                      const struct wd_log *log)
+{
+    const char *frame = inventory->wanted->frame;
+    size_t placed;
+    if (!crs)
+        return wd_error(log, "%s: frame %s: the terrain has no coordinate system to reproject to",
+                        inventory->path, frame);
+    if (!wd_reproject_some(frame, crs, x, y, inventory->count, &placed, log))
+        return false;
+    return placed == inventory->count ||
+           wd_error(log, "%s:%u: (%.9g, %.9g) is no place of %s, the inventory's frame, that the "
+                    "terrain's coordinates have", inventory->path, inventory->trees[placed].row,
+                    x[placed], y[placed], frame);
+}
+
+/* The offset is in metres: it goes to coordinates in metres, the frame's own or else the ground's. */
+static bool place_by_crs(const struct wd_inventory *inventory, const char *crs, double *x, double *y,
+                         const struct wd_log *log)
+{
+    char *subject = wd_format("%s: frame", inventory->path);
+    bool metres, known = wd_crs_counts_metres(inventory->wanted->frame, subject, &metres, log);
+    free(subject);
+    if (known && metres)
+        shift_points(inventory, x, y);
+    if (!known || !reproject(inventory, crs, x, y, log))
+        return false;
+    if (!metres)
+        shift_points(inventory, x, y);
+    return true;
+}
+
 bool wd_inventory_points(const struct wd_inventory *inventory, const char *crs,
                          const struct wd_log *log, double **x, double **y)
 {
     const struct wd_scene_inventory *wanted = inventory->wanted;
     enum wd_inventory_frame frame = wd_inventory_frame(wanted);
-    double turn = frame == WD_FRAME_LOCAL ? wanted->rotate_deg * (WD_PI / 180.0) : 0.0;
-    double cosine = wd_dcos(turn), sine = wd_dsin(turn);
     *x = wd_alloc_array(inventory->count, sizeof **x);
     *y = wd_alloc_array(inventory->count, sizeof **y);
-    for (size_t i = 0; i < inventory->count; i++) {
-        const struct wd_inventory_tree *tree = &inventory->trees[i];
-        (*x)[i] = tree->x * cosine - tree->y * sine + wanted->offset_m[0];
-        (*y)[i] = tree->x * sine + tree->y * cosine + wanted->offset_m[1];
-    }
+    turn_points(inventory, frame == WD_FRAME_LOCAL ? wanted->rotate_deg * (WD_PI / 180.0) : 0.0, *x, *y);
     if (frame != WD_FRAME_CRS)
-        return true;
-    bool ok = crs ? wd_reproject(wanted->frame, crs, *x, *y, inventory->count, log)
-                  : wd_error(log, "%s: frame %s: the terrain has no coordinate system to "
-                             "reproject to", inventory->path, wanted->frame);
-    if (!ok) {
+        shift_points(inventory, *x, *y);
+    else if (!place_by_crs(inventory, crs, *x, *y, log)) {
         free(*x);
         free(*y);
         *x = *y = NULL;
+        return false;
     }
-    return ok;
+    return true;
 }
 
 static uint32_t whole_cm(double cm, uint32_t most)
@@ -257,7 +299,7 @@ bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placemen
         .key = wd_hash2(params->seed, 0x80000000u + (uint32_t)index),
     };
     double *x, *y;
-    if (!wd_ground_input_init(&planting.ground, params->terrain, params->log) ||
+    if (!wd_ground_input_init(&planting.ground, params) ||
         !wd_inventory_points(inventory, params->terrain->crs, params->log, &x, &y))
         return false;
     bool local = wd_inventory_frame(inventory->wanted) == WD_FRAME_LOCAL && !fitted;

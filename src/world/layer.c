@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/dmath.h"
 #include "base/memory.h"
@@ -135,15 +136,22 @@ static bool set_layer(struct wd_placement *placement, const struct wd_placement_
     return set_patches(placement, params->log) && set_cells(placement, params->log);
 }
 
+/* One without a name is called "layer N" by the scene. */
+static void set_name(struct wd_placement *placement, size_t index)
+{
+    const char *given = placement->layer->name;
+    size_t size = sizeof placement->name;
+    snprintf(placement->name, size, "layer %zu", index + 1);
+    if (given && strcmp(given, placement->name) != 0)
+        snprintf(placement->name, size, "layer %s", given);
+}
+
 bool wd_placement_init(struct wd_placement *placement, const struct wd_placement_params *params,
                        size_t layer_index)
 {
     *placement = (struct wd_placement){.layer = &params->scene->layers[layer_index]};
-    if (placement->layer->name)
-        snprintf(placement->name, sizeof placement->name, "layer %s", placement->layer->name);
-    else
-        snprintf(placement->name, sizeof placement->name, "layers[%zu]", layer_index);
-    if (wd_ground_input_init(&placement->input.ground, params->terrain, params->log) &&
+    set_name(placement, layer_index);
+    if (wd_ground_input_init(&placement->input.ground, params) &&
         set_layer(placement, params, layer_index) && wd_layer_tables_init(placement, params) &&
         wd_layer_map_load(placement, params)) {
         placement->input.map = placement->map;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/log.h"
 #include "base/memory.h"
 #include "world/river.h"
 
@@ -37,6 +38,23 @@ static void set_grid(struct wd_place_layer *to, uint32_t width, uint32_t height,
         to->map_axis[axis] = wd_axis_of(cell_m[axis] * 1000.0);
         to->map_half_mm[axis] = (uint32_t)(cell_m[axis] * 500.0);
     }
+}
+
+/* A raster without any data has been told of. */
+static void warn_of_nothing(const struct wd_placement *placement, const struct wd_raster *raster,
+                            const struct wd_log *log)
+{
+    const struct wd_scene_map *map = &placement->layer->map;
+    size_t count = (size_t)raster->width * raster->height;
+    bool known = false;
+    for (size_t i = 0; i < count; i++) {
+        if (placement->map[i] > 0.0f)
+            return;
+        known = known || !isnan(raster->values[i]);
+    }
+    if (known)
+        wd_warn(log, "%s: %s has no pixel on the terrain %s: no tree can stand", placement->name, map->file,
+                map->class_count > 0 ? "that is of its \"classes\"" : "beyond the first of its \"value_range\"");
 }
 
 static void take_raster(struct wd_placement *placement, const struct wd_raster *raster)
@@ -97,11 +115,13 @@ static bool load_own(struct wd_placement *placement, const struct wd_placement_p
                         params->log))
         return false;
     bool ok = raster.cell_x_m >= 0.002 && raster.cell_y_m >= 0.002;
-    if (ok)
+    if (ok) {
         take_raster(placement, &raster);
-    else
+        warn_of_nothing(placement, &raster, params->log);
+    } else {
         wd_error(params->log, "%s: cells of %g x %g m are too small", map->file, raster.cell_x_m,
                  raster.cell_y_m);
+    }
     wd_raster_finish(&raster);
     return ok;
 }

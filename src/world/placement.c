@@ -53,18 +53,19 @@ struct wd_axis wd_axis_of(double cell_mm)
     return axis;
 }
 
-bool wd_ground_input_init(struct wd_ground_input *input, const struct wd_terrain *terrain,
-                          const struct wd_log *log)
+bool wd_ground_input_init(struct wd_ground_input *input, const struct wd_placement_params *params)
 {
+    const struct wd_terrain *terrain = params->terrain;
+    const char *scene = params->scene->path ? params->scene->path : "scene";
     double x_mm = wd_terrain_extent_x_m(terrain) * 1000.0;
     double y_mm = wd_terrain_extent_y_m(terrain) * 1000.0;
     *input = (struct wd_ground_input){0};
     if (!(x_mm < 2e9 && y_mm < 2e9))
-        return wd_error(log, "terrain: %.0f x %.0f km, at most 2000 x 2000 km can be planted",
-                        x_mm * 1e-6, y_mm * 1e-6);
+        return wd_error(params->log, "%s: terrain: is %.0f x %.0f km; at most 2000 x 2000 km can be planted "
+                        "(see size_m and window_m, or what it is fitted to)", scene, x_mm * 1e-6, y_mm * 1e-6);
     if (!(terrain->cell_m >= 0.002))
-        return wd_error(log, "terrain: samples %g m apart, at least 0.002 m are needed",
-                        terrain->cell_m);
+        return wd_error(params->log, "%s: terrain: has samples %g m apart; at least 0.002 m are needed (see "
+                        "cell_m, crs and unit)", scene, terrain->cell_m);
     input->ground = (struct wd_place_ground){
         .extent_mm = {(int32_t)x_mm, (int32_t)y_mm},
         .width = terrain->width,

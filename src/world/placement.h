@@ -17,9 +17,6 @@ struct wd_tree_list {
 void wd_tree_list_add(struct wd_tree_list *list, const struct wd_tree *tree);
 void wd_tree_list_finish(struct wd_tree_list *list);
 
-/* Points at the terrain's arrays. False where the terrain is too large for whole millimetres. */
-bool wd_ground_input_init(struct wd_ground_input *input, const struct wd_terrain *terrain,
-                          const struct wd_log *log);
 struct wd_axis wd_axis_of(double cell_mm); /* 2 <= cell_mm < 2^31 */
 
 /* What all layers of a world share. */
@@ -32,6 +29,9 @@ struct wd_placement_params {
     const struct wd_progress *progress;
     const struct wd_log *log;
 };
+
+/* Points at the terrain's arrays. False where the terrain is too large for whole millimetres. */
+bool wd_ground_input_init(struct wd_ground_input *input, const struct wd_placement_params *params);
 
 /* A layer made ready: its numbers, probability map and tables. */
 struct wd_placement {

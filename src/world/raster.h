@@ -27,5 +27,13 @@ float wd_raster_at(const struct wd_raster *raster, double x_m, double y_m);
  * (longitude then latitude for degrees). */
 bool wd_reproject(const char *from_crs, const char *to_crs, double *x, double *y, size_t count,
                   const struct wd_log *log);
+/* The same up to the first point that has no place there, which stays as it is and is not told of:
+ * `*placed` of `count`. */
+bool wd_reproject_some(const char *from_crs, const char *to_crs, double *x, double *y, size_t count,
+                       size_t *placed, const struct wd_log *log);
+
+/* Whether the coordinates of a system ("EPSG:n" or WKT) are metres, not degrees or feet. False with an
+ * error that begins with `subject` where there is no such system. */
+bool wd_crs_counts_metres(const char *crs, const char *subject, bool *metres, const struct wd_log *log);
 
 #endif

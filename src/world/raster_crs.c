@@ -137,8 +137,16 @@ char *wd_crs_wkt_in_metres(const char *crs, const struct wd_log *log)
     return wkt;
 }
 
-static bool transform(OGRCoordinateTransformationH change, double *x, double *y, size_t count,
-                      const char *from_crs, const struct wd_log *log)
+bool wd_crs_counts_metres(const char *crs, const char *subject, bool *metres, const struct wd_log *log)
+{
+    OGRSpatialReferenceH parsed = wd_crs_parse(crs, subject, log);
+    *metres = parsed && OSRIsProjected(parsed) && fabs(OSRGetLinearUnits(parsed, NULL) - 1) < 1e-9;
+    wd_crs_free(parsed);
+    return parsed != NULL;
+}
+
+/* Returns the index of the first point that has no place there, which stays as it is, or `count`. */
+static size_t transform(OGRCoordinateTransformationH change, double *x, double *y, size_t count)
 {
     enum { CHUNK = 4096 };
     int done[CHUNK];
@@ -149,16 +157,19 @@ static bool transform(OGRCoordinateTransformationH change, double *x, double *y,
         memcpy(before_y, y + first, n * sizeof *y);
         OCTTransformEx(change, n, x + first, y + first, NULL, done);
         for (int i = 0; i < n; i++)
-            if (!done[i] || !isfinite(x[first + i]) || !isfinite(y[first + i]))
-                return wd_error(log, "%s: point %zu at (%.9g, %.9g) cannot be reprojected", from_crs,
-                                first + i + 1, before_x[i], before_y[i]);
+            if (!done[i] || !isfinite(x[first + i]) || !isfinite(y[first + i])) {
+                x[first + i] = before_x[i];
+                y[first + i] = before_y[i];
+                return first + i;
+            }
     }
-    return true;
+    return count;
 }
 
-char *wd_crs_in_metres_at(const char *crs, double x, double y, const struct wd_log *log)
+char *wd_crs_in_metres_at(const char *crs, double x, double y, const char *subject,
+                          const struct wd_log *log)
 {
-    OGRSpatialReferenceH parsed = wd_crs_parse(crs, "coordinate system", log);
+    OGRSpatialReferenceH parsed = wd_crs_parse(crs, subject, log);
     bool known = parsed != NULL, metric = known && wd_crs_is_metric(parsed);
     wd_crs_free(parsed);
     if (metric)
@@ -168,22 +179,21 @@ char *wd_crs_in_metres_at(const char *crs, double x, double y, const struct wd_l
     OGRSpatialReferenceH utm = wd_crs_utm_at(x, y);
     char *wkt = utm ? wd_crs_wkt(utm) : NULL;
     if (!wkt)
-        wd_error(log, "%s: there is no UTM zone at (%.9g, %.9g)", crs, x, y);
+        wd_error(log, "%s: there is no UTM zone at (%.9g, %.9g)", subject, x, y);
     wd_crs_free(utm);
     return wkt;
 }
 
-bool wd_reproject(const char *from_crs, const char *to_crs, double *x, double *y, size_t count,
-                  const struct wd_log *log)
+bool wd_reproject_some(const char *from_crs, const char *to_crs, double *x, double *y, size_t count,
+                       size_t *placed, const struct wd_log *log)
 {
     OGRSpatialReferenceH from = wd_crs_parse(from_crs, "coordinate system", log);
     OGRSpatialReferenceH to = from ? wd_crs_parse(to_crs, "coordinate system", log) : NULL;
     struct wd_gdal_scope scope;
     wd_gdal_enter(&scope, "reprojection", log);
     OGRCoordinateTransformationH change = to ? OCTNewCoordinateTransformation(from, to) : NULL;
-    bool ok = false;
     if (change)
-        ok = transform(change, x, y, count, from_crs, log);
+        *placed = transform(change, x, y, count);
     else if (to)
         wd_error(log, "no way from \"%s\" to \"%s\"%s", from_crs, to_crs, wd_gdal_reason(&scope));
     if (change)
@@ -191,5 +201,14 @@ bool wd_reproject(const char *from_crs, const char *to_crs, double *x, double *y
     wd_gdal_leave(&scope);
     wd_crs_free(from);
     wd_crs_free(to);
-    return ok;
+    return change != NULL;
+}
+
+bool wd_reproject(const char *from_crs, const char *to_crs, double *x, double *y, size_t count,
+                  const struct wd_log *log)
+{
+    size_t placed;
+    return wd_reproject_some(from_crs, to_crs, x, y, count, &placed, log) &&
+           (placed == count || wd_error(log, "%s: point %zu at (%.9g, %.9g) cannot be reprojected",
+                                        from_crs, placed + 1, x[placed], y[placed]));
 }

@@ -25,8 +25,10 @@ char *wd_crs_wkt_in_metres(const char *crs, const struct wd_log *log)
     return NULL;
 }
 
-char *wd_crs_in_metres_at(const char *crs, double x, double y, const struct wd_log *log)
+char *wd_crs_in_metres_at(const char *crs, double x, double y, const char *subject,
+                          const struct wd_log *log)
 {
+    (void)subject;
     (void)x;
     (void)y;
     refuse(crs, log);
@@ -43,6 +45,20 @@ bool wd_raster_load(struct wd_raster *raster, const struct wd_scene *scene,
     (void)max_samples;
     *raster = (struct wd_raster){0};
     return refuse(map->file ? map->file : "map.file", log);
+}
+
+bool wd_crs_counts_metres(const char *crs, const char *subject, bool *metres, const struct wd_log *log)
+{
+    (void)subject;
+    *metres = false;
+    return refuse(crs, log);
+}
+
+bool wd_reproject_some(const char *from_crs, const char *to_crs, double *x, double *y, size_t count,
+                       size_t *placed, const struct wd_log *log)
+{
+    *placed = 0;
+    return wd_reproject(from_crs, to_crs, x, y, count, log);
 }
 
 bool wd_reproject(const char *from_crs, const char *to_crs, double *x, double *y, size_t count,

@@ -73,7 +73,8 @@ bool wd_source_open(struct wd_raster_source *source, const char *base, const cha
     source->path = wd_path_beside(base, name);
     struct wd_gdal_scope scope;
     wd_gdal_enter(&scope, source->path, log);
-    bool ok = check_file(source->path, key, log) && open_band(source, band, key, &scope);
+    bool ok = check_file(source->path, key, log) && open_band(source, band, key, &scope) &&
+              wd_source_check_text(source, log);
     if (ok)
         find_position(source);
     wd_gdal_leave(&scope);

@@ -29,6 +29,9 @@ struct wd_raster_source {
 bool wd_source_open(struct wd_raster_source *source, const char *base, const char *name,
                     int64_t band, const char *key, const struct wd_log *log);
 void wd_source_finish(struct wd_raster_source *source);
+/* False, logged, where a raster of text has words for cells, or more or fewer than it says; others are not
+ * looked at. */
+bool wd_source_check_text(const struct wd_raster_source *source, const struct wd_log *log);
 
 /* From coordinates of a wanted frame to pixel coordinates of a source: pixel (i, j) covers
  * [i, i+1) x [j, j+1), j southward in most files. */

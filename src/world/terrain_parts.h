@@ -18,8 +18,9 @@ bool wd_terrain_read_raster(struct wd_terrain *terrain, const struct wd_scene *s
 /* The CRS as WKT (free() it), or NULL with an error: not known, or not in metres. */
 char *wd_crs_wkt_in_metres(const char *crs, const struct wd_log *log);
 /* The CRS itself if it is in metres, else the UTM zone of a place in it (free() it); or NULL with an
- * error. */
-char *wd_crs_in_metres_at(const char *crs, double x, double y, const struct wd_log *log);
+ * error, which begins with `subject`. */
+char *wd_crs_in_metres_at(const char *crs, double x, double y, const char *subject,
+                          const struct wd_log *log);
 
 /* Carves a winding valley along the y axis into heights that span 0..1; `strength` 0..1. */
 void wd_terrain_carve_valley(struct wd_terrain *terrain, double strength, uint32_t seed);

@@ -78,7 +78,13 @@ static bool find_position(struct dem *dem)
     struct wd_raster_source *source = &dem->source;
     if (source->has_position)
         return true;
-    if (dem->source_crs || !dem->wanted->unit)
+    if (dem->source_crs)
+        return wd_error(dem->log,
+                        "%s: %s a coordinate system, but the file does not say where it lies in it (no "
+                        "geotransform): add a world file%s", source->path,
+                        source->crs ? "has" : "terrain.crs gives",
+                        source->crs ? "" : ", or give terrain.unit \"metres\" in place of terrain.crs");
+    if (!dem->wanted->unit)
         return wd_error(dem->log,
                         "%s: the file does not say where it is (no geotransform): add a world "
                         "file, or give terrain.unit \"metres\" and terrain.cell_m", source->path);
@@ -212,6 +218,18 @@ static double choose_cell(struct dem *dem, double pixel_m, const double extent_m
     return cell_m;
 }
 
+/* Metres between the middles of its outer pixels are fewer than a cell takes. */
+static bool too_small(const struct dem *dem, const double extent_m[2], double pixel_m, double cell_m)
+{
+    double most_m = (fmin(extent_m[0], extent_m[1]) + pixel_m) / 2;
+    if (dem->wanted->cell_m > 0)
+        return wd_error(dem->log, "terrain.cell_m: %g m is too much for %s, which is %g x %g m from middle "
+                        "to middle of its outer pixels; at most %g m fit", dem->wanted->cell_m,
+                        dem->source.path, extent_m[0], extent_m[1], most_m);
+    return wd_error(dem->log, "%s: samples %g m apart do not fit into %g x %g m", dem->source.path,
+                    cell_m, extent_m[0], extent_m[1]);
+}
+
 /* Sample (0, 0) is the centre of the south-west pixel, or of the south-west block of pixels. */
 static bool choose_grid(struct dem *dem, struct wd_terrain *terrain)
 {
@@ -233,14 +251,13 @@ static bool choose_grid(struct dem *dem, struct wd_terrain *terrain)
     double pixel_m = fmin(bounds.pixel[0], bounds.pixel[1]);
     double cell_m = choose_cell(dem, pixel_m, extent_m);
     dem->step = (int)fmax(1, floor(cell_m / pixel_m + 1e-6));
+    double shift_m = (dem->step - 1) * pixel_m / 2;
+    if (samples_of(fmin(extent_m[0], extent_m[1]) - 2 * shift_m, cell_m) < 2)
+        return too_small(dem, extent_m, pixel_m, cell_m);
     for (int axis = 0; axis < 2; axis++) {
-        double shift_m = (dem->step - 1) * pixel_m / 2;
         extent_m[axis] -= 2 * shift_m;
         dem->first_m[axis] = terrain->origin_m[axis] = first_m[axis] + shift_m;
     }
-    if (samples_of(extent_m[0], cell_m) < 2 || samples_of(extent_m[1], cell_m) < 2)
-        return wd_error(dem->log, "%s: samples %g m apart do not fit into %g x %g m",
-                        dem->source.path, cell_m, extent_m[0], extent_m[1]);
     terrain->cell_m = cell_m;
     terrain->width = (uint32_t)samples_of(extent_m[0], cell_m);
     terrain->height = (uint32_t)samples_of(extent_m[1], cell_m);

@@ -112,15 +112,10 @@ static void count_expected(struct wd_world *world, const struct wd_scene *scene)
     }
 }
 
-static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool fitted,
-                  const struct wd_placement_params *params, struct wd_tree_list *list)
+static bool plant(struct wd_world *world, const struct wd_placement_params *params,
+                  struct wd_tree_list *list)
 {
     const struct wd_scene *scene = params->scene;
-    for (size_t i = 0; i < scene->inventory_count; i++) {
-        if (!wd_inventory_plant(&inventories[i], params, i, fitted, list, &world->tags))
-            return false;
-        world->inventories[i] = inventories[i].report;
-    }
     struct layer_ends layers = {.ends = wd_alloc_array(scene->layer_count, sizeof(size_t))};
     bool on_demand;
     bool ok = wd_demand_wanted(params, &on_demand) &&
@@ -139,27 +134,73 @@ static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool
     return ok;
 }
 
+/* A canopy's heights may be as many as pixels: what can be wrong shows in a few. */
+static bool check_canopy(const struct wd_placement_params *params, const struct wd_scene_layer *layer)
+{
+    enum { FEW = 1 << 16 };
+    struct wd_raster raster;
+    if (layer->placement != WD_PLACE_CANOPY)
+        return true;
+    bool ok = wd_raster_load(&raster, params->scene, &layer->canopy, params->terrain, WD_RESAMPLE_MAX, FEW,
+                             params->log);
+    wd_raster_finish(&raster);
+    return ok;
+}
+
+/* Layers are made ready and no more. */
+static bool check_layers(struct wd_world *world, const struct wd_placement_params *params,
+                         struct wd_tree_list *list)
+{
+    (void)world, (void)list;
+    bool ok = true;
+    for (size_t i = 0; i < params->scene->layer_count; i++) {
+        struct wd_placement placement;
+        ok = wd_placement_init(&placement, params, i) && check_canopy(params, placement.layer) && ok;
+        wd_placement_finish(&placement);
+    }
+    return ok;
+}
+
+static bool plant_inventories(struct wd_world *world, struct wd_inventory *inventories, bool fitted,
+                              const struct wd_placement_params *params, struct wd_tree_list *list)
+{
+    for (size_t i = 0; i < params->scene->inventory_count; i++) {
+        if (!wd_inventory_plant(&inventories[i], params, i, fitted, list, &world->tags))
+            return false;
+        world->inventories[i] = inventories[i].report;
+    }
+    return true;
+}
+
+/* What becomes of the layers, once the ground is made and inventories are planted. */
+typedef bool plant_function(struct wd_world *world, const struct wd_placement_params *params,
+                            struct wd_tree_list *list);
+
 static bool make(struct wd_world *world, struct wd_inventory *inventories,
-                 struct wd_placement_params *params, struct wd_tree_list *list)
+                 struct wd_placement_params *params, plant_function *layers,
+                 struct wd_tree_list *list)
 {
     const struct wd_scene *scene = params->scene;
-    for (size_t i = 0; i < scene->inventory_count; i++)
-        if (!wd_inventory_load(&inventories[i], scene, i, params->log) ||
-            !wd_progress_report(params->progress, "reading inventories", i + 1,
-                                scene->inventory_count))
+    bool fitted, loaded = true;
+    for (size_t i = 0; i < scene->inventory_count; i++) {
+        loaded = wd_inventory_load(&inventories[i], scene, i, params->log) && loaded;
+        if (!wd_progress_report(params->progress, "reading inventories", i + 1, scene->inventory_count))
             return false;
-    bool fitted;
+    }
+    if (!loaded)
+        return false;
     if (!wd_world_make_terrain(&world->terrain, inventories, params, &fitted))
         return false;
     if (!wd_rivers_init(&world->terrain, scene, params->log))
         return false;
     params->terrain = &world->terrain;
     world->inventories = wd_alloc_array(scene->inventory_count, sizeof *world->inventories);
-    return plant(world, inventories, fitted, params, list);
+    return plant_inventories(world, inventories, fitted, params, list) &&
+           layers(world, params, list);
 }
 
-bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
-                   const struct wd_world_params *params)
+static bool init(struct wd_world *world, const struct wd_scene *scene,
+                 const struct wd_world_params *params, plant_function *layers)
 {
     *world = (struct wd_world){0};
     world->seed = params->has_seed ? params->seed : (uint32_t)scene->seed;
@@ -180,7 +221,7 @@ bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
     for (size_t i = 0; i < params->tree_count; i++)
         wd_tree_list_add(&list, &params->trees[i]);
     struct wd_inventory *inventories = wd_alloc_array(scene->inventory_count, sizeof *inventories);
-    bool ok = make(world, inventories, &placement, &list);
+    bool ok = make(world, inventories, &placement, layers, &list);
     for (size_t i = 0; i < scene->inventory_count; i++)
         wd_inventory_finish(&inventories[i]);
     free(inventories);
@@ -188,6 +229,18 @@ bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
     if (!ok)
         wd_world_finish(world);
     return ok;
+}
+
+bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
+                   const struct wd_world_params *params)
+{
+    return init(world, scene, params, plant);
+}
+
+bool wd_world_check(struct wd_world *world, const struct wd_scene *scene,
+                    const struct wd_world_params *params)
+{
+    return init(world, scene, params, check_layers);
 }
 
 void wd_world_finish(struct wd_world *world)

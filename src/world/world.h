@@ -63,6 +63,10 @@ struct wd_world {
  * threads. On failure, or when the progress report asks to stop, `*world` is `{0}`. */
 bool wd_world_init(struct wd_world *world, const struct wd_scene *scene,
                    const struct wd_world_params *params);
+/* The same without the layers' trees: their maps are read, and of canopies few of the heights. The world has its
+ * terrain and the reports of inventories alone. */
+bool wd_world_check(struct wd_world *world, const struct wd_scene *scene,
+                    const struct wd_world_params *params);
 void wd_world_finish(struct wd_world *world);
 
 /* Whether it has any trees, stored or on demand. */

@@ -54,7 +54,9 @@ static bool choose_crs(char **crs, const struct wd_inventory *inventories, size_
         if (wd_inventory_frame(inventories[i].wanted) != WD_FRAME_CRS)
             continue;
         const struct wd_inventory_tree *tree = &inventories[i].trees[0];
-        *crs = wd_crs_in_metres_at(inventories[i].wanted->frame, tree->x, tree->y, log);
+        char *subject = wd_format("%s: frame", inventories[i].path);
+        *crs = wd_crs_in_metres_at(inventories[i].wanted->frame, tree->x, tree->y, subject, log);
+        free(subject);
         return *crs != NULL;
     }
     return true;

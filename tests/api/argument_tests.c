@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "parts.h"
 #include "weald/compare.h"
@@ -206,6 +207,20 @@ static void nothing_is_written_of_nothing(void **state)
     assert_null(wd_schema_text(NULL));
 }
 
+/* However many there are to be, asked at once: those that are there are looked at, links too. */
+static void frames_do_not_replace_sources(void **state)
+{
+    struct suite *suite = *state;
+    const char *pattern = suite_path(suite, "kept-%d.png"), *link = suite_path(suite, "kept-7.png");
+    const uint64_t many = UINT64_C(1) << 40;
+    assert_int_equal(wd_forest_check_output(suite->forest, pattern, many, &suite->log), WD_OK);
+    assert_int_equal(symlink(suite->small_path, link), 0);
+    assert_input(suite, wd_forest_check_output(suite->forest, pattern, many, &suite->log),
+                 "kept-7.png: is the scene file of");
+    assert_int_equal(wd_forest_check_output(suite->forest, pattern, 7, &suite->log), WD_OK);
+    assert_int_equal(unlink(link), 0);
+}
+
 /* --- specimens --------------------------------------------------------------------------- */
 
 static void rows_have_a_tree_and_a_shape(void **state)
@@ -248,6 +263,7 @@ int argument_tests(struct suite *suite)
         cmocka_unit_test_prestate(unknown_names_list_all, suite),
         cmocka_unit_test_prestate(nothing_is_made_of_nothing, suite),
         cmocka_unit_test_prestate(nothing_is_written_of_nothing, suite),
+        cmocka_unit_test_prestate(frames_do_not_replace_sources, suite),
         cmocka_unit_test_prestate(rows_have_a_tree_and_a_shape, suite),
     };
     return cmocka_run_group_tests_name("arguments", tests, NULL, NULL);

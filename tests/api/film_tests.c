@@ -118,12 +118,33 @@ static void wrong_films_are_input(void **state)
     }
 }
 
+/* Frames are kept from the first on or not at all, and what is no film is no crash. */
+static void films_are_kept_once_and_from_the_first_frame(void **state)
+{
+    static struct pixels pixels;
+    struct suite *suite = *state;
+    const struct wd_picture picture = picture_of(&pixels, SIDE);
+    struct wd_film *film = open_film(suite, "keep-%d.png");
+    assert_int_equal(wd_film_keep(film, 1, 5), WD_OK);
+    assert_int_equal(wd_film_keep(film, 1, 5), WD_ERROR_INPUT);
+    assert_true(suite_logged(suite, "keep-%d.png: wd_film_keep is to be called once, before the first frame"));
+    wd_film_discard(&film);
+    film = open_film(suite, "keep-%d.png");
+    assert_int_equal(wd_film_add(film, &picture), WD_OK);
+    assert_int_equal(wd_film_keep(film, 1, 5), WD_ERROR_INPUT);
+    assert_int_equal(wd_film_commit(&film), WD_OK);
+    assert_int_not_equal(access(suite_path(suite, "keep-%d.png.partial"), F_OK), 0);
+    assert_int_equal(wd_film_commit(&film), WD_ERROR_INPUT);
+    assert_int_equal(wd_film_commit(NULL), WD_ERROR_INPUT);
+}
+
 int film_tests(struct suite *suite)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(frames_have_the_films_size, suite),
         cmocka_unit_test_prestate(films_end_with_a_failed_frame, suite),
         cmocka_unit_test_prestate(wrong_films_are_input, suite),
+        cmocka_unit_test_prestate(films_are_kept_once_and_from_the_first_frame, suite),
     };
     return cmocka_run_group_tests_name("films", tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -21,6 +22,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/point_locale.h"
+#include "base/utf8.h"
 #include "comma_locale.h"
 
 static void elementary_functions_are_accurate(void **state)
@@ -232,6 +234,30 @@ static void hear(void *user, enum wd_log_level level, const char *message)
     snprintf(heard->last, sizeof heard->last, "%s", message);
 }
 
+static void assert_heard(struct heard *heard, const char *text, const char *wanted)
+{
+    const struct wd_log log = {hear, heard};
+    wd_error(&log, "%s", text);
+    assert_string_equal(heard->last, wanted);
+}
+
+/* Whatever is in a file or its name: a message is one line of UTF-8. */
+static void messages_are_one_line_of_utf8(void **state)
+{
+    (void)state;
+    struct heard heard = {0};
+    assert_heard(&heard, "a\nb\tc\rd\x1b[31m\x7f", "a\\nb\\tc\\rd\\x1b[31m\\x7f");
+    assert_heard(&heard, "H\xc3\xb6he \xe2\x82\xac \xf0\x9f\x8c\xb2", "H\xc3\xb6he \xe2\x82\xac \xf0\x9f\x8c\xb2");
+    assert_heard(&heard, "H\xf6he \xc3", "H\\xf6he \\xc3");
+    assert_heard(&heard, "\xc0\xaf \xed\xa0\x80 \xf4\x90\x80\x80", /* too long, half a pair, too far */
+                 "\\xc0\\xaf \\xed\\xa0\\x80 \\xf4\\x90\\x80\\x80");
+    char line[8];
+    wd_utf8_line(line, sizeof line, "12345\xc3\xb6\xc3\xb6");
+    assert_string_equal(line, "12345\xc3\xb6");
+    wd_utf8_line(line, sizeof line, "12345\n\n");
+    assert_string_equal(line, "12345\\n");
+}
+
 static void an_output_appears_whole_or_not_at_all(void **state)
 {
     (void)state;
@@ -260,6 +286,72 @@ static void an_output_appears_whole_or_not_at_all(void **state)
     assert_non_null(strstr(heard.last, directory));
     unlink(path);
     assert_int_equal(rmdir(directory), 0); /* no temporary file is left */
+    free(path);
+}
+
+static void write_text(const char *path, const char *text)
+{
+    struct wd_output_file file;
+    assert_true(wd_output_open(&file, path, NULL));
+    fputs(text, file.stream);
+    assert_true(wd_output_commit(&file, NULL));
+}
+
+/* Links stay and lead to what was written, also to what was not there; permissions stay. */
+static void outputs_go_where_links_lead(void **state)
+{
+    (void)state;
+    char directory[] = "/tmp/weald-test-XXXXXX";
+    assert_non_null(mkdtemp(directory));
+    char *sub = wd_format("%s/sub", directory), *path = wd_format("%s/out.txt", directory);
+    char *link = wd_format("%s/link.txt", sub), *loop = wd_format("%s/loop.txt", sub);
+    struct stat info;
+    struct heard heard = {0};
+    const struct wd_log log = {hear, &heard};
+    struct wd_output_file file;
+    assert_int_equal(mkdir(sub, 0777) | symlink("../out.txt", link) | symlink("loop.txt", loop), 0);
+    write_text(link, "new");
+    assert_int_equal(chmod(path, 0640), 0);
+    write_text(link, "newer");
+    assert_true(lstat(link, &info) == 0 && S_ISLNK(info.st_mode));
+    assert_true(lstat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size == 5);
+    assert_int_equal(info.st_mode & 0777, 0640);
+    assert_false(wd_output_open(&file, loop, &log));
+    assert_non_null(strstr(heard.last, "loop.txt: cannot be written: Too many levels"));
+    assert_int_equal(unlink(loop) | mkfifo(loop, 0666), 0);
+    assert_false(wd_output_open(&file, loop, &log));
+    assert_non_null(strstr(heard.last, "loop.txt: is a device, pipe or socket"));
+    assert_int_equal(unlink(loop) | unlink(link) | unlink(path) | rmdir(sub) | rmdir(directory), 0);
+    free(sub);
+    free(path);
+    free(link);
+    free(loop);
+}
+
+/* Root may write whatever the permissions say: a child of the test is somebody else. */
+static void files_that_may_not_be_written_stay(void **state)
+{
+    (void)state;
+    char directory[] = "/tmp/weald-test-XXXXXX";
+    assert_non_null(mkdtemp(directory));
+    char *path = wd_format("%s/out.txt", directory);
+    struct stat info;
+    write_text(path, "old");
+    assert_int_equal(chmod(directory, 0777) | chmod(path, 0444), 0);
+    pid_t child = fork();
+    if (child == 0) {
+        struct heard heard = {0};
+        const struct wd_log log = {hear, &heard};
+        struct wd_output_file file;
+        if (geteuid() == 0 && setuid(65534) != 0)
+            _exit(0);
+        _exit(wd_output_open(&file, path, &log) || !strstr(heard.last, "out.txt: cannot be written: Permission denied"));
+    }
+    int status = -1;
+    waitpid(child, &status, 0);
+    assert_int_equal(status, 0);
+    assert_true(stat(path, &info) == 0 && info.st_size == 3 && (info.st_mode & 0777) == 0444);
+    assert_int_equal(unlink(path) | rmdir(directory), 0);
     free(path);
 }
 
@@ -355,12 +447,15 @@ int main(void)
         cmocka_unit_test(elementary_functions_are_accurate),
         cmocka_unit_test(numbers_have_points),
         cmocka_unit_test(threads_log_one_at_a_time),
+        cmocka_unit_test(messages_are_one_line_of_utf8),
         cmocka_unit_test(srgb_round_trips),
         cmocka_unit_test(every_index_is_worked_once),
         cmocka_unit_test(as_many_threads_as_asked_for_work),
         cmocka_unit_test(threads_are_as_many_as_processors),
         cmocka_unit_test(loops_tell_how_far_they_are),
         cmocka_unit_test(an_output_appears_whole_or_not_at_all),
+        cmocka_unit_test(outputs_go_where_links_lead),
+        cmocka_unit_test(files_that_may_not_be_written_stay),
         cmocka_unit_test(threads_may_write_one_output),
         cmocka_unit_test(what_killed_writers_leave_is_swept),
         cmocka_unit_test(a_full_disk_leaves_nothing),

@@ -85,6 +85,19 @@ expect 0 'elm.csv: ok' check "$scratch/elm.csv"
 echo 'no raster' >"$scratch/ground.tif"
 change rows '.terrain = {"kind": "raster", "file": "ground.tif"}'
 expect 1 'ground.tif.* not a raster' check "$scratch/rows.json"
+# Nor is anything ok that cannot be planted or seen.
+change rows '.inventories = [{"file": "elm.csv", "species": {"*": "oak"}, "offset_m": [1e7, 0]}]'
+expect 1 'elm.csv: no tree stands on the ground' check "$scratch/rows.json"
+change rows '.inventories = [{"file": "elm.csv", "species": {"*": "oak"}, "offset_m": [-1.5, 0], "outside": "error"}]'
+expect 1 'elm.csv:2: stands at' check "$scratch/rows.json"
+change rows '.terrain = {"size_m": [0, 0]} | .inventories = [{"file": "elm.csv", "species": {"*": "oak"}},
+    {"file": "elm.csv", "species": {"*": "oak"}, "offset_m": [1e7, 0]}]'
+expect 1 'rows.json: terrain: is 10000 x 0 km; at most' check "$scratch/rows.json"
+change rows '.terrain = {"size_m": [0, 0]}'
+expect 1 'rows.json:[0-9]+:[0-9]+: terrain.size_m: found 0 x 0' check "$scratch/rows.json"
+change rows '.cameras[0].frame = "projected" | .cameras[0].position_m = [5e6, 0, 2]'
+expect 1 'rows.json: cameras\[0\].position_m: \(5000000, 0, 2\) is 2000 km or more' check "$scratch/rows.json"
+expect 1 'cameras\[0\].position_m: \(5000000' info "$scratch/rows.json"
 change layer '.layers[0].name = "model" | .name = "allometry"'
 echo '// a "model" with "allometry"' >>"$scratch/layer.json"
 expect 0 'layer.json: ok' check "$scratch/layer.json"

@@ -141,6 +141,25 @@ static void sequences_are_written_frame_by_frame(void **state)
     wd_image8_finish(&image);
 }
 
+static void frames_are_known_by_their_names(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *pattern, *name;
+        long frame; /* -1: none */
+    } cases[] = {{"a/f-%03d.png", "f-002.png", 2},  {"f-%d.png", "f-12.png", 12},
+                 {"f-%03d.png", "f-1002.png", 1002}, {"f-%3d.png", "f-  7.png", 7},
+                 {"f-%03d.png", "f-2.png", -1},      {"f-%d.png", "f-012.png", -1},
+                 {"f-%d.png", "f-.png", -1},         {"f-%d.png", "f-+1.png", -1},
+                 {"f-%d.png", "f--1.png", -1},       {"f-%d.png", "f-1.png.partial", -1},
+                 {"%d", "5", 5},                     {"f-%d.png", "g-1.png", -1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        uint64_t frame;
+        bool is_frame = wd_film_frame_number(cases[i].pattern, cases[i].name, &frame);
+        assert_int_equal(is_frame ? (long)frame : -1, cases[i].frame);
+    }
+}
+
 static void names_and_sizes_are_checked(void **state)
 {
     struct fixture *f = *state;
@@ -252,6 +271,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(colours_are_kept, setup, teardown),
         cmocka_unit_test_setup_teardown(discarded_films_leave_nothing, setup, teardown),
         cmocka_unit_test_setup_teardown(sequences_are_written_frame_by_frame, setup, teardown),
+        cmocka_unit_test(frames_are_known_by_their_names),
         cmocka_unit_test_setup_teardown(names_and_sizes_are_checked, setup, teardown),
         cmocka_unit_test_setup_teardown(missing_ffmpeg_is_told, setup, teardown),
         cmocka_unit_test_setup_teardown(failing_ffmpeg_is_told, setup, teardown),

@@ -153,8 +153,17 @@ static void checks_across_keys_hold(void **state)
         {"{\"paths\": [{\"name\": \"a\", \"keys\": [{\"position_m\": [0, 0, 1]}]}]}",
          "paths[0].keys: found 1; a path needs at least two keys"},
         {"{\"quality\": {\"width\": 0}}", "quality.width: found 0; allowed is a whole number from "
-                                          "1 to 32768"},
-        {"{\"quality\": {\"width\": 100000}}", "quality.width: found 100000"},
+                                          "1 to 16384"},
+        {"{\"$schema\": null}", "a.json:1:13: $schema: is no text"},
+        {"{\"layers\": [{\"species\": \"oak\", \"map\": {\"file\": \"a\", \"value_range\": [-1e31, 1]}}]}",
+         "value_range[0]: found -1e+31; allowed is a list of 2 numbers, each a number from -1e+30 to 1e+30"},
+        {"{\"quality\": {\"height\": 16385}}", "quality.height: found 16385"},
+        {"{\"terrain\": {\"size_m\": [0, 0]}, \"layers\": [{\"species\": \"oak\"}]}",
+         "terrain.size_m: found 0 x 0, to be fitted to inventories, of which there are none"},
+        {"{\"cameras\": [{\"name\": \"a\", \"position_m\": [0, -2e6, 1]}]}",
+         "cameras[0].position_m: found [0, -2000000, 1]; allowed is less than 2000000 each way"},
+        {"{\"paths\": [{\"name\": \"a\", \"keys\": [{\"position_m\": [0, 0, 1]}, {\"position_m\": [0, 0, 3e6]}]}]}",
+         "paths[0].keys[1].position_m: found [0, 0, 3000000]"},
         {"{\"method\": \"octre\"}", "method: found \"octre\"; did you mean \"octree\"?"},
         {"{\"species\": {\"oak\": \"../species/oak.json\"}, \"inventories\": [{\"file\": \"a\", "
          "\"delimiter\": \"xy\", \"frame\": \"EPSG:x\"}]}",
@@ -162,6 +171,26 @@ static void checks_across_keys_hold(void **state)
         {"{\"species\": {\"oak\": \"../species/oak.json\"}, \"inventories\": [{\"file\": \"a\", "
          "\"frame\": \"EPSG:32610\", \"rotate_deg\": 3}]}",
          "rotate_deg: only the local frame"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_false(load(f, cases[i].text));
+        assert_true(logged(&f->log, cases[i].message));
+    }
+}
+
+/* Items that were refused are empty where the checks of the whole scene come to them. */
+static void refused_items_are_passed_over(void **state)
+{
+    struct fixture *f = *state;
+    static const struct wrong cases[] = {
+        {"{\"layers\": [{\"species\": \"oak\"}], \"inventories\": [{\"file\": \"a.csv\", "
+         "\"species\": {\"x\": null}}]}", "inventories[0].species.x: found null"},
+        {"{\"layers\": [{\"species\": \"oak\"}], \"inventories\": [{\"file\": \"a.csv\", "
+         "\"species\": {\"x\": [], \"*\": \"oak\"}}]}", "inventories[0].species.x: found a list"},
+        {"{\"layers\": [{\"species\": \"oak\"}], \"inventories\": [{\"file\": \"a.csv\", "
+         "\"dead\": [null]}]}", "inventories[0].dead[0]: found null"},
+        {"{\"layers\": [{\"species\": \"oak\"}], \"clips\": {\"oak\": 1}, \"openness\": {\"oak\": \"x\"}, "
+         "\"species\": {\"a\": 1}}", "clips.oak: found 1"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         assert_false(load(f, cases[i].text));
@@ -402,6 +431,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(species_are_found_and_loaded, setup, teardown),
         cmocka_unit_test_setup_teardown(unknown_species_are_errors, setup, teardown),
         cmocka_unit_test_setup_teardown(checks_across_keys_hold, setup, teardown),
+        cmocka_unit_test_setup_teardown(refused_items_are_passed_over, setup, teardown),
         cmocka_unit_test_setup_teardown(all_errors_come_in_one_pass, setup, teardown),
         cmocka_unit_test_setup_teardown(data_directory_is_put_into_names, setup, teardown),
         cmocka_unit_test_setup_teardown(unreadable_files_are_errors, setup, teardown),

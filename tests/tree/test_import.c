@@ -282,6 +282,66 @@ static void a_missing_texture_is_a_warning(void **state)
     drop(result);
 }
 
+static void missing_materials_are_warnings(void **state)
+{
+    static const char *const files[][2] = {
+        {"mtllib no-such.mtl\n" TRUNK LEAF, "no-such.mtl is not there: grey stands in"},
+        {TRUNK LEAF, "names materials (usemtl) but no library that has them (mtllib): grey"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        write_text("bare.obj", files[i][0]);
+        struct result *result = import("bare.obj");
+        assert_true(result->ok);
+        expect_message(result, files[i][1]);
+        drop(result);
+    }
+}
+
+static void marks_of_byte_order_are_no_text(void **state)
+{
+    (void)state;
+    write_text("mark.mtl", "\xef\xbb\xbf" LIBRARY);
+    write_text("mark.obj", "\xef\xbb\xbfv 490 0 -10\n" /* the first vertex, which all indices count */
+                           "v 510 0 -10\nv 510 300 10\nmtllib mark.mtl\nusemtl Blatt\nf 1 2 3\n");
+    struct result *result = import("mark.obj");
+    if (!result->ok)
+        fail_msg("%s", result->record.text);
+    assert_int_equal(test_leaf_triangles(&result->import.model.full), 1);
+    expect_message(result, "of leaves (Blatt)");
+    assert_null(strstr(result->record.text, "grey"));
+    drop(result);
+    write_text("mark.obj", "\xef\xbb\xbfmtllib mark.mtl\n" TRUNK);
+    result = import("mark.obj");
+    assert_true(result->ok);
+    const struct wd_model_file *file = &result->import.file;
+    bool found = false; /* the library's first */
+    for (uint32_t i = 0; i < file->material_count; i++)
+        found = found || (strcmp(file->materials[i].name, "Bark") == 0 && file->materials[i].color[0] == 0.3f);
+    assert_true(found);
+    drop(result);
+}
+
+/* Where a skin has no matrices, assimp 5.2 ends the process. */
+static void skins_are_passed_over_and_told(void **state)
+{
+    (void)state;
+    write_text("skin.gltf",
+               "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 0, \"scenes\": [{\"nodes\": [0, 1]}], \"nodes\": "
+               "[{\"mesh\": 0, \"skin\" : 0, \"name\": \"skin\"}, {\"name\": \"root\"}], \"meshes\": [{\"primitives\": "
+               "[{\"attributes\": {\"POSITION\": 0}}]}], \"buffers\": [{\"byteLength\": 36, \"uri\": \"skin.bin\"}], "
+               "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"accessors\": [{\"bufferView\": 0, "
+               "\"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\", \"min\": [0, 0, 0], \"max\": [1, 3, 0]}], "
+               "\"skins\": [{\"joints\": [1]}]}");
+    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 3, 0};
+    write_file("skin.bin", corners, sizeof corners);
+    struct result *result = import("skin.gltf");
+    if (!result->ok)
+        fail_msg("%s", result->record.text);
+    expect_message(result, "has skins, which are not read");
+    assert_float_equal(result->import.model.height_m, 3, 1e-4);
+    drop(result);
+}
+
 static void holes_of_textures_reach_the_look(void **state)
 {
     (void)state;
@@ -611,6 +671,9 @@ int main(void)
         cmocka_unit_test(a_length_that_is_not_the_files_is_told),
         cmocka_unit_test(what_cannot_be_is_told),
         cmocka_unit_test(a_missing_texture_is_a_warning),
+        cmocka_unit_test(missing_materials_are_warnings),
+        cmocka_unit_test(marks_of_byte_order_are_no_text),
+        cmocka_unit_test(skins_are_passed_over_and_told),
         cmocka_unit_test(holes_of_textures_reach_the_look),
         cmocka_unit_test(many_triangles_are_reduced_by_count),
         cmocka_unit_test(exported_trees_come_back),

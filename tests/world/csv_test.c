@@ -176,6 +176,8 @@ static void test_bad_files(void **state)
     expect_refused("a\0,\0b\0\n\0", 8, "UTF-16");
     expect_refused("GIF89a\0\1\2", 9, "binary");
     expect_refused("a,b\r1,2\r", 8, "CR alone");
+    expect_refused("a,b\n1,2\n3,H\xf6he\n", 15, "csv_test.csv:3: byte 0xf6 is not UTF-8");
+    expect_refused("a,b\n1,\xc3", 7, ":2: byte 0xc3 is not UTF-8");
     struct wd_csv csv;
     captured.text[0] = 0;
     assert_false(wd_csv_open(&csv, "no_such_file.csv", NULL, &sink));

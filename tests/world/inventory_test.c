@@ -288,6 +288,52 @@ static void test_ground_under_data(void **state)
 }
 
 #ifdef HAVE_GDAL
+/* The same offset is as many metres whether the file is in metres, feet or degrees. */
+static void test_offsets_are_metres(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *frame, *row;
+    } files[] = {{"EPSG:32610", "493471,5821351\n"}, {"EPSG:2227", "6000000,2100000\n"},
+                 {"EPSG:4326", "-123.0,52.5\n"}};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        struct small_scene small;
+        struct wd_world world;
+        small_scene_init(&small);
+        for (int k = 0; k < 2; k++) {
+            struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+            inventory->frame = files[i].frame;
+            inventory->offset_m[0] = k * 5.0;
+            inventory->offset_m[1] = k * -7.0;
+        }
+        char text[64];
+        snprintf(text, sizeof text, "%s\n%s", i == 2 ? "lon,lat" : "x,y", files[i].row);
+        write_file(text);
+        make_or_fail(&small, &world);
+        struct wd_tree here = tree_at(&world, 0), there = tree_at(&world, 1);
+        assert_in_range(there.x_mm - here.x_mm, 4999, 5001);
+        assert_in_range(here.y_mm - there.y_mm, 6999, 7001);
+        wd_world_finish(&world);
+    }
+}
+
+/* A place that cannot be reprojected is told by its line, a frame that is none by the file. */
+static void test_frames_without_a_place(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path)->frame = "EPSG:4326";
+    write_file("lon,lat\n9.0,48.0\n9.001,148.0\n");
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "inventory_test.csv:3: (9.001, 148) is no place of EPSG:4326");
+    small.scene.terrain.target_crs = "EPSG:32632";
+    small.inventories[0].frame = "EPSG:999999";
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "inventory_test.csv: frame: \"EPSG:999999\" is not a coordinate system");
+}
+
 /* Longitude and latitude on made-up ground: the UTM zone of the data. 0.001 degrees are 111.3 m
  * along the equator and 110.6 m along a meridian; UTM shortens by 0.9996 at its middle. */
 static void test_degrees(void **state)
@@ -364,6 +410,8 @@ static void test_errors(void **state)
     expect_error("x,y,dbh\n1,2,-3\n", "inventory_test.csv:2: column dbh: -3 is negative");
     expect_error("x,y,height\n1,2,3\n1,2,1700\n",
                  "inventory_test.csv:3: column height: 1700 is too much");
+    expect_error("x,y,crown\n1,1,81.91\n1,2,81.92\n",
+                 "inventory_test.csv:3: column crown: 81.92 is too much; above 0 and up to 81.91 m");
     expect_error("x,y\n1,nan\n", "inventory_test.csv:2: column y");
     expect_error("x,y\n1,2,3\n", "inventory_test.csv:2: 3 fields, but the header has 2");
     expect_error("x,y\n", "no trees");
@@ -417,6 +465,19 @@ static void test_names_of_columns(void **state)
 }
 
 /* What the scene says of units counts, and is told from what it leaves to the column's name. */
+static void test_one_column_for_two(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    inventory->columns.y = "X";
+    write_file("x,y\n1,2\n");
+    assert_false(make(&small, &world));
+    assert_said(captured.errors, "inventory_test.csv:1: column x counts as both x and y");
+}
+
 static void test_units_said_twice(void **state)
 {
     (void)state;
@@ -633,10 +694,13 @@ int main(void)
         cmocka_unit_test(test_fitted_ground),
         cmocka_unit_test(test_ground_under_data),
 #ifdef HAVE_GDAL
+        cmocka_unit_test(test_offsets_are_metres),
+        cmocka_unit_test(test_frames_without_a_place),
         cmocka_unit_test(test_degrees),
 #endif
         cmocka_unit_test(test_errors),
         cmocka_unit_test(test_names_of_columns),
+        cmocka_unit_test(test_one_column_for_two),
         cmocka_unit_test(test_units_said_twice),
         cmocka_unit_test(test_no_sizes),
         cmocka_unit_test(test_degrees_as_metres),

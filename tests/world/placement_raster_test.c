@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "base/memory.h"
+#include "logged.h"
 #include "small_scene.h"
 #include "world/world.h"
 
@@ -198,6 +199,31 @@ static void test_quesnel_canopy(void **state)
     free(file);
 }
 
+/* Nothing grows by such a map, which is said; the layer, which has no name, is called once. */
+static void test_map_of_nothing(void **state)
+{
+    (void)state;
+    static int64_t classes[] = {777};
+    struct small_scene small;
+    struct wd_world world;
+    struct logged logged = {0};
+    const struct wd_log log = {logged_sink, &logged};
+    small_scene_init(&small);
+    struct wd_scene_layer *layer = small_scene_layer(&small);
+    layer->name = "layer 1"; /* as the scene calls it */
+    layer->map.file = path;
+    layer->map.crs = "local";
+    layer->map.classes = classes;
+    layer->map.class_count = 1;
+    write_grid(16, 12, land_cover);
+    small.scene.path = NULL;
+    assert_true(wd_world_init(&world, &small.scene, &(struct wd_world_params){.log = &log}));
+    assert_true(world.tree_count == 0 && logged.warnings == 1);
+    assert_non_null(strstr(logged.text, "layer 1: placement_raster_test.asc has no pixel on the terrain that is of"));
+    assert_null(strstr(logged.text, "layer layer"));
+    wd_world_finish(&world);
+}
+
 static void test_missing_map(void **state)
 {
     (void)state;
@@ -224,6 +250,7 @@ int main(void)
         cmocka_unit_test(test_hash_on_demand),
         cmocka_unit_test(test_canopy),
         cmocka_unit_test(test_quesnel_canopy),
+        cmocka_unit_test(test_map_of_nothing),
         cmocka_unit_test(test_missing_map),
     };
     return cmocka_run_group_tests_name("placement-raster", tests, NULL, remove_file);

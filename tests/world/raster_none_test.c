@@ -20,7 +20,7 @@ static void everything_is_refused(void **state)
     assert_false(wd_terrain_read_raster(&terrain, &scene, 100, NULL, &log));
     assert_non_null(strstr(logged.text, "dem.tif: this build has no GDAL"));
     assert_null(wd_crs_wkt_in_metres("EPSG:32632", &log));
-    assert_null(wd_crs_in_metres_at("EPSG:4326", 9, 50, &log));
+    assert_null(wd_crs_in_metres_at("EPSG:4326", 9, 50, "t.csv", &log));
     struct wd_scene_map map = {.file = "cover.tif"};
     struct wd_raster raster;
     assert_false(wd_raster_load(&raster, &scene, &map, &terrain, WD_RESAMPLE_MAX, 0, &log));

@@ -252,7 +252,8 @@ static void bad_files_are_refused_clearly(void **state)
     assert_refused(&scene, "band 2");
     scene.terrain.band = 1;
     scene.terrain.cell_m = 100;
-    assert_refused(&scene, "do not fit");
+    assert_refused(&scene, "terrain.cell_m: 100 m is too much for /vsimem/plain.tif, which is 8 x 6 m from middle to "
+                           "middle of its outer pixels; at most 4 m fit");
     scene.terrain.cell_m = NAN;
     assert_refused(&scene, "terrain.cell_m");
 }
@@ -317,8 +318,40 @@ static void pictures_without_a_position_get_one_from_the_cell(void **state)
     assert_float_equal(terrain.height_m[0], 40, 0);
     wd_terrain_finish(&terrain);
     scene.terrain.unit = NULL;
+    assert_refused(&scene, "no coordinate system");
     scene.terrain.crs = "EPSG:32632";
-    assert_refused(&scene, "where it is");
+    assert_refused(&scene, "terrain.crs gives a coordinate system, but the file does not say where it lies in it");
+    make_raster(&(struct made_raster){.name = "/vsimem/placeless.tif", .width = 5, .height = 4, .epsg = 32632,
+                                      .values = five_by_four});
+    scene = scene_of("/vsimem/placeless.tif");
+    scene.terrain.unit = "metres";
+    scene.terrain.cell_m = 3;
+    assert_refused(&scene, "placeless.tif: has a coordinate system");
+}
+
+/* GDAL would take words for level ground and leave out rows. */
+static void text_holds_what_its_header_says(void **state)
+{
+    (void)state;
+    static const char *const cells[][2] = {{"1 2 3\n4 5 nan\n", NULL},
+                                           {"1,5 -2e0 3\r\n4 5 6", NULL},
+                                           {"1 2 3\n4 x 6\n", "grid.asc:7: \"x\" is no number"},
+                                           {"1 2 3\n4 5 6\n7 8 9\n", "grid.asc: has 9 numbers; its header says 3 x 2"},
+                                           {"1 2 3\n4 5\n", "grid.asc: has 5 numbers"}};
+    for (size_t i = 0; i < sizeof cells / sizeof *cells; i++) {
+        VSILFILE *file = VSIFOpenL("/vsimem/grid.asc", "wb");
+        VSIFPrintfL(file, "ncols 3\nNROWS 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n%s", cells[i][0]);
+        VSIFCloseL(file);
+        struct wd_scene scene = scene_of("/vsimem/grid.asc");
+        scene.terrain.unit = "metres";
+        if (cells[i][1]) {
+            assert_refused(&scene, cells[i][1]);
+            continue;
+        }
+        struct wd_terrain terrain = read_scene(&scene);
+        wd_terrain_finish(&terrain);
+    }
+    VSIUnlink("/vsimem/grid.asc");
 }
 
 /* Heights that are a function of longitude and latitude, 3" apart. */
@@ -659,6 +692,7 @@ int main(void)
         cmocka_unit_test_setup(truncated_files_are_refused, forget_log),
         cmocka_unit_test_setup(files_without_a_crs_ask_for_it, forget_log),
         cmocka_unit_test_setup(pictures_without_a_position_get_one_from_the_cell, forget_log),
+        cmocka_unit_test_setup(text_holds_what_its_header_says, forget_log),
         cmocka_unit_test_setup(degrees_become_metres, forget_log),
         cmocka_unit_test_setup(mercator_becomes_metres, forget_log),
         cmocka_unit_test_setup(half_the_earth_fits_no_zone, forget_log),
