@@ -14,6 +14,15 @@ static void deliver(const struct wd_log *log, enum wd_log_level level, const cha
     fprintf(stderr, "weald: %s%s\n", level == WD_LOG_WARNING ? "warning: " : "", message);
 }
 
+static void ignore(void *user, enum wd_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    (void)message;
+}
+
+const struct wd_log wd_log_quiet = {.sink = ignore};
+
 static void log_message(const struct wd_log *log, enum wd_log_level level, const char *format,
                         va_list args)
 {
