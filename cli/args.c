@@ -13,7 +13,8 @@
 static const struct cli_option option_table[] = {
     {"output", 'o', "FILE", CLI_KIND_TEXT, AT(output), 0, 0,
      CLI_RENDER,
-     "where to write: .png, .exr (all layers), .mp4, or numbered files (frame-%05d.png)"},
+     "where to write: .png, .exr (all layers), .mp4 (or .m4v, .mov, .mkv), or numbered files "
+     "(frame-%05d.png)"},
     {"output", 'o', "DIR", CLI_KIND_TEXT, AT(output), 0, 0, CLI_BENCH,
      "directory for results, reference pictures and the report"},
     {"output", 'o', "FILE", CLI_KIND_TEXT, AT(output), 0, 0, CLI_GROW | CLI_EXPORT,

@@ -13,7 +13,6 @@ enum cli_status {
     CLI_FAILED = 1,
     CLI_USAGE = 2,
     CLI_NO_DISPLAY = 3, /* `view` found no display to open a window on */
-    CLI_INTERRUPTED = 130,
 };
 
 /* Commands as bits: an option says which of them know it. */

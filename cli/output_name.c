@@ -21,7 +21,7 @@ enum cli_output_kind cli_output_kind(const char *path)
         return numbered ? CLI_OUTPUT_NUMBERED_PNG : CLI_OUTPUT_PNG;
     if (ends_with(path, ".exr"))
         return numbered ? CLI_OUTPUT_NUMBERED_EXR : CLI_OUTPUT_EXR;
-    return ends_with(path, ".mp4") ? CLI_OUTPUT_FILM : CLI_OUTPUT_UNKNOWN;
+    return wd_film_has_ending(path) ? CLI_OUTPUT_FILM : CLI_OUTPUT_UNKNOWN;
 }
 
 bool cli_output_probe(struct cli_session *session, const char *path)

@@ -8,7 +8,7 @@ enum cli_output_kind {
     CLI_OUTPUT_UNKNOWN,
     CLI_OUTPUT_PNG,
     CLI_OUTPUT_EXR,
-    CLI_OUTPUT_FILM,         /* .mp4 */
+    CLI_OUTPUT_FILM,         /* in one file: wd_film_has_ending */
     CLI_OUTPUT_NUMBERED_PNG, /* a name with %d or %05d */
     CLI_OUTPUT_NUMBERED_EXR,
 };

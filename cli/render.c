@@ -68,7 +68,8 @@ static bool make_plan(struct cli_session *session, struct cli_plan *plan)
         return cli_fail(session, "no output named: add -o FILE.png, .exr or .mp4");
     plan->kind = cli_output_kind(options->output);
     if (plan->kind == CLI_OUTPUT_UNKNOWN)
-        return cli_fail(session, "%s: the output must end in .png, .exr or .mp4", options->output);
+        return cli_fail(session, "%s: the output must end in .png, .exr, .mp4, .m4v, .mov or .mkv",
+                        options->output);
     plan->film = plan->kind >= CLI_OUTPUT_FILM;
     if (!plan->film && options->frames > 1)
         return cli_fail(session,

@@ -22,7 +22,6 @@ static struct wd_vulkan_handles open_device(void)
     const VkInstanceCreateInfo instance = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                            .pApplicationInfo = &application};
     CHECK(vkCreateInstance(&instance, NULL, &vk.instance));
-
     uint32_t one = 1; /* the first device, and its first queue family, do for an example */
     vkEnumeratePhysicalDevices(vk.instance, &one, &vk.physical_device);
     CHECK(vk.physical_device == VK_NULL_HANDLE);
@@ -31,10 +30,11 @@ static struct wd_vulkan_handles open_device(void)
                                            .queueFamilyIndex = vk.queue_family,
                                            .queueCount = 1,
                                            .pQueuePriorities = &priority};
-    VkPhysicalDeviceFeatures2 features;
-    VkPhysicalDeviceVulkan12Features features12;
-    VkPhysicalDeviceVulkan13Features features13;
-    wd_vulkan_required_features(&features, &features12, &features13);
+    static VkPhysicalDeviceFeatures2 features; /* all three are read again for the renderer */
+    static VkPhysicalDeviceVulkan12Features features12;
+    static VkPhysicalDeviceVulkan13Features features13;
+    wd_vulkan_wanted_features(vk.physical_device, &features, &features12, &features13);
+    vk.enabled = &features;
     const VkDeviceCreateInfo device = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                        .pNext = &features,
                                        .queueCreateInfoCount = 1,

@@ -19,7 +19,7 @@ struct wd_renderer_params {
     const char *gpu; /* NULL: the best device; "software"; or a part of a device's name */
     enum wd_validation validation;
     const char *cache_dir; /* of baked trees; NULL: $XDG_CACHE_HOME/weald; "": no cache */
-    unsigned threads;
+    unsigned threads; /* 0: one a processor; changes no picture */
     struct wd_progress progress; /* of wd_renderer_set_forest */
     struct wd_log log;
 };
@@ -200,20 +200,23 @@ char *wd_device_list(void);
 
 /* --- writing pictures ------------------------------------------------------------------- */
 
-/* Writes `picture` whole or not at all. ".png" takes the display layer, ".exr" every layer there
+/* Writes `picture` whole or not at all; endings are in upper or lower case. ".png" takes the display layer, ".exr" every layer there
  * is (R G B, Z in metres, N.X N.Y N.Z, albedo.R .G .B, species, tree_id, velocity.X .Y; ranks as
  * Cryptomatte 1.2: weald_tree00.R .G .B .A to weald_tree02, trees named "tree_ID" in the manifest).
  * Errors: WD_ERROR_INPUT for another ending or a missing layer, WD_ERROR_OUTPUT, WD_ERROR_MEMORY. */
 enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
                                 const struct wd_log *log);
 
-/* A film (".mp4", through ffmpeg) or numbered pictures (a name with %d or %05d, .png or .exr). */
+/* A film in one file (".mp4", ".m4v", ".mov" or ".mkv", through ffmpeg) or numbered pictures (a name with %d or
+ * %05d, ".png" or ".exr"); endings in upper or lower case. */
 struct wd_film;
+/* Whether a name ends as that of a film in one file. NULL does not. */
+bool wd_film_has_ending(const char *path);
 #define WD_LEAST_FRAMES_PER_SECOND 0.01
 #define WD_MOST_FRAMES_PER_SECOND 1000.0
 struct wd_film_params {
     const char *path;         /* required */
-    uint32_t width, height;   /* of every frame; even for .mp4 */
+    uint32_t width, height;   /* of every frame; even for a film in one file */
     double frames_per_second; /* WD_LEAST_FRAMES_PER_SECOND..WD_MOST_FRAMES_PER_SECOND; 0: 30. Numbered
                                  pictures do not tell of it */
 };

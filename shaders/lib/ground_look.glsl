@@ -30,11 +30,7 @@ float footprint_of(vec3 rel, float distance_m, vec2 slope)
  * is too far off to be drawn, the ground stands for all of it. */
 float sward_open(float layers, float distance_m)
 {
-    float gone = view.sward_fade_m.y > 0.0
-                     ? clamp((distance_m - view.sward_fade_m.x)
-                                 / max(view.sward_fade_m.y - view.sward_fade_m.x, 1e-3), 0.0, 1.0)
-                     : 0.0;
-    return exp(-0.35 * layers * (1.0 - gone));
+    return exp(-0.35 * layers * (1.0 - wd_sward_gone(distance_m)));
 }
 
 /* `side`: of the curtain that is seen, WD_EDGE_* */
@@ -48,7 +44,7 @@ wd_ground_look ground_look(vec3 rel, int side)
     vec3 cover = textureLod(cover_map, local_m * view.cover_scale,
                             level - log2(view.cover_texel_m)).xyz;
     float river_m = water_m.length() > 1 ? river_level(local_m) : WD_NO_WATER_M;
-    wd_ground_look look = wd_ground_cover(rel, slope.x, slope.y, cover.x, cover.y, river_m,
+    wd_ground_look look = wd_ground_cover(rel, slope.x, slope.y, cover.x, cover.y, 4.0 * cover.z, river_m,
                                           footprint_of(rel, distance_m, slope));
     look.openness *= sward_open(4.0 * cover.z, distance_m);
     if (side != WD_EDGE_NONE) {

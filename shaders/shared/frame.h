@@ -78,6 +78,8 @@ struct wd_frame_uniforms {
     WD_VEC3(soil); float snow_line_m;
     WD_VEC3(rock); float tree_line_m;
     WD_VEC3(litter); float terrain_cell_m;
+    WD_VEC3(sward); float sward_share; /* of low plants that fade with distance: as they are seen; of all of them; */
+    float sward_whole_m, sward_gone_m; /* and from where to where they do. 0, 0: none does */
     WD_VEC3(sky_form[9]);            /* the sky's irradiance, but the circumsolar part, as a polynomial in the
                                         normal: 1, x, y, z, xy, yz, zz, xz, xx - yy */
     WD_VEC3(sky_under[9]);           /* sky_form of what comes down below a closed forest, times so much

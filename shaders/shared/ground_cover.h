@@ -222,11 +222,29 @@ WD_FUNC WD_VECTOR wd_ground_albedo(WD_FRAME_IN float height_m, float above_water
     return albedo;
 }
 
+/* Share of a sward that is too far off to be drawn. */
+WD_FUNC float wd_sward_gone(WD_FRAME_IN float distance_m)
+{
+    float begin_m = WD_FRAME(sward_whole_m), span_m = WD_MAX(WD_FRAME(sward_gone_m) - begin_m, 1e-3f);
+    return WD_FRAME(sward_gone_m) > 0.0f ? WD_CLAMP((distance_m - begin_m) / span_m, 0.0f, 1.0f) : 0.0f;
+}
+
+/* Where plants are that far off the ground has the colour of what they would show; tufts stand at random, and leave some of
+ * it open. `layers` of them, and of those that do not fade. */
+WD_FUNC WD_VECTOR wd_far_sward(WD_FRAME_IN WD_VECTOR albedo, float layers, float distance_m,
+                               WD_STRUCT wd_ground_noise n)
+{
+    float share = 1.0f - WD_EXP(-layers * WD_FRAME(sward_share));
+    WD_VECTOR sward = wd_v3_scale(WD_FRAME_V3(sward), 1.0f + 0.3f * n.small_ + 0.2f * n.middle);
+    return wd_v3_mix(albedo, sward, share * wd_sward_gone(WD_FRAME_PASS distance_m));
+}
+
 /* `rel`: the place; `slope`: rise over run east and north; `cover`: of the canopy, 0..1; `woods`: its
- * mean about the place (world/cover.h); `river_m`: height of the surface of a map's water there. */
+ * mean about the place (world/cover.h); `layers`: of low plants; `river_m`: height of the surface of a map's
+ * water there. */
 WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, float slope_east,
                                                  float slope_north, float cover, float woods,
-                                                 float river_m, float footprint_m)
+                                                 float layers, float river_m, float footprint_m)
 {
     float height_m = rel.z + WD_FLOAT(WD_FRAME(camera_mm[2])) * 0.001f;
     float above_water_m = height_m - WD_MAX(WD_FRAME(water_level_m), river_m);
@@ -238,6 +256,7 @@ WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, floa
     float snow = wd_snow_share(WD_FRAME_PASS height_m, steep, n);
     WD_VECTOR albedo = wd_ground_albedo(WD_FRAME_PASS height_m, above_water_m, steep, cover,
                                         floor_share, n, strewn, footprint_m);
+    albedo = wd_far_sward(WD_FRAME_PASS albedo, layers, WD_SQRT(wd_v3_dot(rel, rel)), n);
     WD_STRUCT wd_ground_look look;
     look.albedo = wd_v3_clamp(wd_v3_mix(albedo, WD_SNOW_ALBEDO, snow), 0.0f, 1.0f);
     float rough = 1.0f + WD_SMOOTH(0.7f, 1.2f, steep / WD_FRAME(rock_slope)) * 1.5f;

@@ -9,7 +9,6 @@
 #include "shared/types.h"
 
 #define WD_PATCH_CELLS 8
-#define WD_PATCH_VERTICES 81
 #define WD_TERRAIN_LEVELS 16
 
 /* values of wd_terrain_patch.edge */
@@ -45,7 +44,6 @@ struct wd_terrain_view {
     float slopes_texel_m, cover_texel_m;
     float pixel_rad;            /* angle that a pixel spans, */
     float sample_rad;           /* and one of its samples, for what is small on the ground */
-    WD_VEC2(sward_fade_m);      /* distances over which the sward fades; 0, 0: it does not */
     WD_VEC2(morph[WD_TERRAIN_LEVELS]); /* distance at which morphing begins; 1 / its span */
 };
 

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "api/arguments.h"
 #include "base/file.h"
@@ -11,12 +10,6 @@
 #include "tree/import.h"
 #include "world/inventory.h"
 #include "world/terrain.h"
-
-static bool has_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcasecmp(path + length - tail, ending) == 0;
-}
 
 /* --- inventories ------------------------------------------------------------------------- */
 
@@ -162,8 +155,8 @@ enum wd_result wd_file_check(const char *path, const char *data_dir, const struc
         wd_error(log, "%s: there is no such file", path);
         return WD_ERROR_INPUT;
     }
-    bool ok = has_ending(path, ".json")        ? check_json(path, data_dir, log)
-              : has_ending(path, ".csv")       ? check_csv(path, log)
+    bool ok = wd_has_ending(path, ".json")        ? check_json(path, data_dir, log)
+              : wd_has_ending(path, ".csv")       ? check_csv(path, log)
               : wd_species_is_model_file(path) ? check_species(path, log)
                                                : check_raster(path, log);
     return ok ? WD_OK : WD_ERROR_INPUT;

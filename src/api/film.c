@@ -1,6 +1,7 @@
 #include "output/film.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <xxhash.h>
 
 #include "api/arguments.h"
@@ -36,9 +37,9 @@ enum wd_result wd_film_open(struct wd_film **result, const struct wd_film_params
     *result = NULL;
     if (!wd_given(params, log) || !wd_given(params->path, log))
         return WD_ERROR_INPUT;
-    if (!wd_film_path(params->path)) {
+    if (!wd_film_has_ending(params->path) && !strchr(params->path, '%')) {
         wd_error(log,
-                 "%s: films end in .mp4, .mov or .mkv, numbered pictures have %%d or %%05d in "
+                 "%s: films end in .mp4, .m4v, .mov or .mkv, numbered pictures have %%d or %%05d in "
                  "their name",
                  params->path);
         return WD_ERROR_INPUT;

@@ -2,21 +2,15 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "api/arguments.h"
 #include "api/shown.h"
+#include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "output/cryptomatte.h"
 #include "output/exr.h"
 #include "output/image.h"
-
-bool wd_has_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcasecmp(path + length - tail, ending) == 0;
-}
 
 uint8_t *wd_picture_rgb(const struct wd_picture *picture, const struct wd_log *log)
 {

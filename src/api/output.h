@@ -4,8 +4,6 @@
 
 #include "weald/renderer.h"
 
-bool wd_has_ending(const char *path, const char *ending);
-
 /* The display layer as three bytes a pixel; free() it. NULL, logged, where there is not so much memory. */
 uint8_t *wd_picture_rgb(const struct wd_picture *picture, const struct wd_log *log);
 

@@ -89,7 +89,7 @@ enum wd_result wd_renderer_create_vulkan(struct wd_renderer **renderer,
         return WD_ERROR_INPUT;
     const struct wd_gpu_external external = {handles->instance, handles->physical_device,
                                              handles->device, handles->queue,
-                                             handles->queue_family};
+                                             handles->queue_family, handles->enabled};
     const struct wd_gpu_params gpu = {.external = &external};
     return create(renderer, &gpu, params);
 }

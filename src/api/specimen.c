@@ -2,22 +2,15 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "api/arguments.h"
 #include "base/file.h"
 #include "base/memory.h"
 
-static bool has_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcasecmp(path + length - tail, ending) == 0;
-}
-
 /* The file of a species by name, or the file itself. */
 static bool find_source(struct wd_specimen *specimen, const char *source)
 {
-    bool file = wd_species_is_model_file(source) || has_ending(source, ".json");
+    bool file = wd_species_is_model_file(source) || wd_has_ending(source, ".json");
     specimen->source = file ? wd_strdup(source) : wd_species_find_file(source, &specimen->log);
     return specimen->source != NULL;
 }

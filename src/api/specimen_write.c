@@ -2,32 +2,26 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "api/arguments.h"
 #include "api/forest.h"
 #include "api/sources.h"
 #include "api/specimen.h"
 #include "api/tree_list.h"
+#include "base/file.h"
 #include "base/memory.h"
 #include "tree/export.h"
 #include "tree/variant.h"
 
 enum { DEFAULT_MAX_TREES = 1000000, GROUND_SIDE = 513 };
 
-static bool has_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcasecmp(path + length - tail, ending) == 0;
-}
-
 enum wd_result wd_specimens_write(const struct wd_specimen *const *specimens, uint32_t count,
                                   const char *path, const struct wd_log *log)
 {
     if (!wd_given(path, log) || !wd_specimens_check(specimens, count, log))
         return WD_ERROR_INPUT;
-    bool glb = has_ending(path, ".glb");
-    if (!glb && !has_ending(path, ".obj")) {
+    bool glb = wd_has_ending(path, ".glb");
+    if (!glb && !wd_has_ending(path, ".obj")) {
         wd_error(log, "%s: trees are written as .glb or .obj", path);
         return WD_ERROR_INPUT;
     }
@@ -207,13 +201,13 @@ enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path,
     if (!wd_given(forest, log) || !wd_given(path, log))
         return WD_ERROR_INPUT;
     const struct wd_terrain *terrain = &forest->world.terrain;
-    bool csv = has_ending(path, ".csv");
+    bool csv = wd_has_ending(path, ".csv");
     uint64_t most = max_trees ? max_trees : csv ? UINT64_MAX : DEFAULT_MAX_TREES;
     struct scene_export export = {.forest = forest, .variants = (uint32_t)forest->scene.variants};
     if (!wd_demand_is_none(&forest->world.demand, path, log) ||
         !wd_scene_check_output(&forest->scene, path, log))
         return WD_ERROR_INPUT;
-    if (!csv && !has_ending(path, ".glb")) {
+    if (!csv && !wd_has_ending(path, ".glb")) {
         wd_error(log, "%s: forests are written as .glb or .csv", path);
         return WD_ERROR_INPUT;
     }

@@ -11,11 +11,19 @@ void wd_vulkan_required_features(VkPhysicalDeviceFeatures2 *features,
     wd_gpu_required_features(features, features12, features13);
 }
 
+void wd_vulkan_wanted_features(VkPhysicalDevice physical_device,
+                               VkPhysicalDeviceFeatures2 *features,
+                               VkPhysicalDeviceVulkan12Features *features12,
+                               VkPhysicalDeviceVulkan13Features *features13)
+{
+    wd_gpu_wanted_features(physical_device, features, features12, features13);
+}
+
 void wd_renderer_get_vulkan(const struct wd_renderer *renderer, struct wd_vulkan_handles *handles)
 {
     const struct wd_gpu *gpu = &renderer->gpu;
     *handles = (struct wd_vulkan_handles){gpu->instance, gpu->physical_device, gpu->device,
-                                          gpu->queue, gpu->queue_family};
+                                          gpu->queue, gpu->queue_family, NULL};
 }
 
 static bool check_target(const struct wd_renderer *renderer, const struct wd_render_params *params,

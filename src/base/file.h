@@ -13,6 +13,9 @@ bool wd_file_read(const char *path, size_t max_size, const struct wd_log *log, c
 
 bool wd_file_exists(const char *path);
 
+/* Whether a name ends in `ending` (".png"), in upper or lower case, with something before it. */
+bool wd_has_ending(const char *path, const char *ending);
+
 /* Makes `path` and its parents. An existing directory is fine. */
 bool wd_make_directories(const char *path, const struct wd_log *log);
 

@@ -3,6 +3,9 @@
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
 
 struct loop {
     atomic_size_t next, done;
@@ -15,13 +18,22 @@ struct loop {
     atomic_bool stop;
 };
 
+/* 0 where the system's set of processors does not fit into one of `places`. */
+static unsigned count_processors(size_t places)
+{
+    cpu_set_t *set = CPU_ALLOC(places);
+    size_t size = CPU_ALLOC_SIZE(places);
+    int count = set && sched_getaffinity(0, size, set) == 0 ? CPU_COUNT_S(size, set) : 0;
+    CPU_FREE(set);
+    return (unsigned)count;
+}
+
 unsigned wd_jobs_default_threads(void)
 {
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set) != 0)
-        return 1;
-    int count = CPU_COUNT(&set);
-    return count > 0 ? (unsigned)count : 1;
+    unsigned count = 0;
+    for (size_t places = 64; count == 0 && places <= 1 << 20; places *= 2)
+        count = count_processors(places);
+    return count ? count : 1;
 }
 
 static void *loop_run(void *argument)
@@ -42,8 +54,6 @@ static void *loop_run(void *argument)
 bool wd_jobs_run_told(unsigned threads, size_t count, void (*work)(void *user, size_t index),
                       void *user, const struct wd_progress *progress, const char *stage)
 {
-    enum { MAX_THREADS = 64 };
-    pthread_t helpers[MAX_THREADS];
     struct loop loop = {.count = count,
                         .work = work,
                         .user = user,
@@ -52,17 +62,18 @@ bool wd_jobs_run_told(unsigned threads, size_t count, void (*work)(void *user, s
                         .caller = pthread_self()};
     if (threads == 0)
         threads = wd_jobs_default_threads();
-    if (threads > MAX_THREADS)
-        threads = MAX_THREADS;
     if (threads > count)
         threads = count ? (unsigned)count : 1;
+    pthread_t *helpers = wd_try_array(threads - 1, sizeof *helpers);
     unsigned started = 0;
     /* A helper that cannot be started is no error: the others do its work. */
-    while (started + 1 < threads && pthread_create(&helpers[started], NULL, loop_run, &loop) == 0)
+    while (helpers && started + 1 < threads &&
+           pthread_create(&helpers[started], NULL, loop_run, &loop) == 0)
         started++;
     loop_run(&loop);
     for (unsigned i = 0; i < started; i++)
         pthread_join(helpers[i], NULL);
+    free(helpers);
     return !atomic_load(&loop.stop);
 }
 

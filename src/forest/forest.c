@@ -178,19 +178,6 @@ static bool upload_fades(struct wd_forest_device *forest, struct wd_gpu *gpu)
                       count * sizeof *forest->host_fades);
 }
 
-/* The ground shows as much of its sward's shade as there is of the sward. */
-static void set_sward_fade(struct wd_forest_device *forest)
-{
-    for (size_t i = 0; i < forest->scene->layer_count; i++) {
-        const struct wd_scene_layer *layer = &forest->scene->layers[i];
-        if (layer->height_m[1] * 100 >= WD_CANOPY_CM || layer->fade_far_m[1] <= 0)
-            continue;
-        for (int k = 0; k < 2; k++)
-            forest->ground.sward_fade_m[k] = (float)layer->fade_far_m[k];
-        return;
-    }
-}
-
 /* Leaves absorb what none of them reflects or lets through, and of what a crown stops it absorbs more, since
  * what they scatter meets others of it; each model counts by its area. */
 static void set_leaf_scatter(struct preparation *work)
@@ -359,7 +346,6 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
               wd_sampler_init(&forest->point_sampler, gpu, WD_SAMPLER_NEAREST_CLAMP) &&
               (forest->model_count == 0 || prepare(&work, gpu)) && make_canopy_light(&work, gpu) &&
               wd_sky_upload(&forest->sky, gpu, &params->world->sky);
-    set_sward_fade(forest);
     for (uint32_t i = 0; i < forest->model_count; i++)
         wd_tree_model_finish(&work.grown[i]);
     wd_transfer_drop_staging(gpu);

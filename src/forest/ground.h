@@ -25,7 +25,6 @@ struct wd_ground {
     struct wd_image slopes;           /* R16G16_SFLOAT, mips: rise over run eastward, northward */
     struct wd_image cover;            /* RGBA8, mips: of the canopy; its mean about; a quarter of the
                                          layers of the sward */
-    float sward_fade_m[2];            /* distances over which the sward fades; 0, 0: it does not */
     VkSampler sampler;                /* trilinear, clamped, for both */
     uint32_t slopes_step;             /* samples from texel to texel of `slopes` */
     double cover_cell_m;

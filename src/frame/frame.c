@@ -218,12 +218,18 @@ static bool record_trees(const struct recording *r, const struct wd_view *view,
     return !stats.unfinished;
 }
 
-static bool is_kept(const struct wd_kept_cascade *kept, const struct wd_method *method,
+/* Samples that a map's detail goes by: where an error is bounded, those of a frame (continuum). */
+static uint32_t detail_samples(const struct wd_frame_params *params)
+{
+    return params->max_error_px > 0.0f ? 1 : params->samples;
+}
+
+static bool is_kept(const struct wd_kept_cascade *kept, const struct wd_frame_params *params,
                     const struct wd_cascade_box *box)
 {
     const struct wd_cascade_box *old = &kept->box;
-    return kept->method == method && box->calm && old->calm && box->radius == old->radius &&
-           box->depth == old->depth && !memcmp(box->center, old->center, sizeof box->center) &&
+    return kept->method == params->method && kept->samples == detail_samples(params) && box->calm &&
+           old->calm && box->radius == old->radius && box->depth == old->depth && !memcmp(box->center, old->center, sizeof box->center) &&
            !memcmp(box->toward, old->toward, sizeof box->toward);
 }
 
@@ -252,12 +258,13 @@ static void record_shadows(const struct recording *r)
             .depth_view = targets->shadow_layers[i],
             .depth_load = WD_LOAD_CLEAR,
         };
-        const struct wd_method *method = r->frame->params.method;
+        const struct wd_frame_params *params = &r->frame->params;
         struct wd_kept_cascade *kept = &r->frame->kept[i];
-        if (is_kept(kept, method, &r->cascades[i].box))
+        if (is_kept(kept, params, &r->cascades[i].box))
             continue;
         bool whole = record_trees(r, &r->cascades[i], WD_PASS_SHADOW, &rendering);
-        *kept = (struct wd_kept_cascade){whole ? method : NULL, r->cascades[i].box};
+        *kept = (struct wd_kept_cascade){whole ? params->method : NULL, detail_samples(params),
+                                         r->cascades[i].box};
     }
     wd_cmd_scope_end(r->cmd);
 }

@@ -57,6 +57,7 @@ struct wd_frame {
     void *method_state;              /* of params.method */
     struct wd_kept_cascade {         /* what the shadow maps hold, as far as it may be kept */
         const struct wd_method *method; /* NULL: unknown */
+        uint32_t samples;
         struct wd_cascade_box box;
     } kept[WD_CASCADES];
     struct wd_draw_stats camera_stats; /* of the last sample: what the camera sees */

@@ -13,9 +13,6 @@ struct use_row {
 #define GRAPHICS (VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | FRAGMENT)
 #define DEPTH_TESTS                                                                                \
     (VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT)
-#define PRESENT                                                                                    \
-    (VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |      \
-     COMPUTE)
 #define SHADER_READS                                                                               \
     (VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |                   \
      VK_ACCESS_2_UNIFORM_READ_BIT)
@@ -45,17 +42,11 @@ static const struct use_row uses[WD_USE_COUNT] = {
     [WD_USE_DEPTH_TARGET] = {DEPTH_TESTS, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
                              VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                              LAYOUT(DEPTH_STENCIL_ATTACHMENT_OPTIMAL)},
-    [WD_USE_PRESENT] = {PRESENT, 0, 0, LAYOUT(PRESENT_SRC_KHR)},
     [WD_USE_GRAPHICS_WRITE] = {FRAGMENT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
                                VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, LAYOUT(GENERAL)},
     [WD_USE_HOST_READ] = {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT, 0,
                           LAYOUT(UNDEFINED)},
 };
-
-VkPipelineStageFlags2 wd_present_stages(void)
-{
-    return PRESENT;
-}
 
 /* What must be waited for and made visible before the next use. */
 struct before {
@@ -95,8 +86,8 @@ static bool is_visible(enum wd_gpu_use last, uint32_t reads, enum wd_gpu_use nex
 bool wd_barrier_for_buffer(struct wd_buffer *buffer, enum wd_gpu_use use,
                            struct wd_barrier *barrier)
 {
-    assert(buffer->buffer && use > WD_USE_NONE && use < WD_USE_COUNT && use != WD_USE_PRESENT &&
-           use != WD_USE_COLOR_TARGET && use != WD_USE_DEPTH_TARGET);
+    assert(buffer->buffer && use > WD_USE_NONE && use < WD_USE_COUNT && use != WD_USE_COLOR_TARGET &&
+           use != WD_USE_DEPTH_TARGET);
     enum wd_gpu_use last = buffer->last_use;
     struct before before = pending(last, buffer->reads);
     bool writes = uses[use].writes;
@@ -132,9 +123,6 @@ bool wd_barrier_for_image(struct wd_image *image, enum wd_gpu_use use, enum wd_c
     assert(image->image && uses[use].layout != VK_IMAGE_LAYOUT_UNDEFINED);
     enum wd_gpu_use last = image->last_use;
     struct before before = pending(last, image->reads);
-    /* The owner of a foreign image handed it over with a semaphore. */
-    if (last == WD_USE_NONE && !image->memory)
-        before.stages = PRESENT;
     bool changes = uses[last].layout != uses[use].layout;
     bool writes = uses[use].writes;
     bool fresh = changes || uses[last].writes;

@@ -20,7 +20,4 @@ bool wd_barrier_for_image(struct wd_image *image, enum wd_gpu_use use, enum wd_c
 
 void wd_barrier_record(VkCommandBuffer commands, const struct wd_barrier *barrier);
 
-/* Stages that may touch a presented image first: semaphore waits chain into barriers with them. */
-VkPipelineStageFlags2 wd_present_stages(void);
-
 #endif

@@ -152,21 +152,6 @@ void wd_cmd_draw_indexed_indirect(struct wd_cmd *cmd, const struct wd_buffer *bu
                                  sizeof(VkDrawIndexedIndirectCommand));
 }
 
-void wd_cmd_draw_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer, VkDeviceSize offset,
-                          uint32_t draws, uint32_t stride)
-{
-    assert(cmd->rendering);
-    if (cmd->failed)
-        return;
-    bool together = cmd->gpu->features & WD_GPU_FEATURE_MULTI_DRAW_INDIRECT;
-    if (together || draws < 2) {
-        vkCmdDrawIndirect(cmd->vk, buffer->buffer, offset, draws, stride);
-        return;
-    }
-    for (uint32_t i = 0; i < draws; i++)
-        vkCmdDrawIndirect(cmd->vk, buffer->buffer, offset + (VkDeviceSize)i * stride, 1, stride);
-}
-
 void wd_cmd_fill_buffer(struct wd_cmd *cmd, struct wd_buffer *buffer, uint32_t value)
 {
     assert(!cmd->rendering && buffer->size % 4 == 0);

@@ -72,11 +72,12 @@ struct wd_cmd {
 
 /* Waits until the slot's earlier frame is done, frees what was deferred, starts recording. */
 bool wd_frame_begin(struct wd_frames *frames, struct wd_cmd *cmd);
-/* Ends and submits; wait/signal may be VK_NULL_HANDLE (binary semaphores, for swapchains). To be
- * called for every frame that was begun, also after a failure. A failed frame draws nothing: only
- * its barriers are submitted, so that tracked uses stay true; `wait` is consumed, `signal` is not
- * signalled, the result is false and the next frame may begin. With timing on a device without
- * true timestamps, work on the image that `wait` guards must stand after the last scope. */
+/* Ends and submits; wait/signal may be VK_NULL_HANDLE (binary semaphores, for swapchains). `wait`
+ * holds back the frame's transfers: what it guards is copied into. To be called for every frame
+ * that was begun, also after a failure. A failed frame draws nothing: only its barriers are
+ * submitted, so that tracked uses stay true; `wait` is consumed, `signal` is not signalled, the
+ * result is false and the next frame may begin. With timing on a device without true timestamps,
+ * work on the image that `wait` guards must stand after the last scope. */
 bool wd_frame_submit(struct wd_cmd *cmd, VkSemaphore wait, VkSemaphore signal);
 /* Waits for every submitted frame; afterwards frames->last_scopes is that of the newest one. */
 bool wd_frames_wait(struct wd_frames *frames);
@@ -121,9 +122,7 @@ void wd_cmd_bind_vertices(struct wd_cmd *cmd, const struct wd_buffer *vertices);
 void wd_cmd_bind_indices(struct wd_cmd *cmd, const struct wd_buffer *indices);
 void wd_cmd_bind_indices_of(struct wd_cmd *cmd, const struct wd_buffer *indices, VkIndexType type);
 void wd_cmd_draw_indexed(struct wd_cmd *cmd, const VkDrawIndexedIndirectCommand *draw);
-void wd_cmd_draw_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer, VkDeviceSize offset,
-                          uint32_t draws, uint32_t stride);
-/* One indexed draw with its parameters from the buffer. */
+/* One indexed draw with its parameters from the buffer, the first instance 0. */
 void wd_cmd_draw_indexed_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer,
                                   VkDeviceSize offset);
 void wd_cmd_dispatch_indirect(struct wd_cmd *cmd, const struct wd_buffer *buffer,
@@ -143,7 +142,7 @@ void *wd_cmd_upload(struct wd_cmd *cmd, VkDeviceSize size, struct wd_binding *bi
 struct wd_color_attachment {
     struct wd_image *image;
     VkImageView view; /* VK_NULL_HANDLE: image->view */
-    enum wd_load { WD_LOAD_KEEP, WD_LOAD_CLEAR, WD_LOAD_DISCARD } load;
+    enum wd_load { WD_LOAD_KEEP, WD_LOAD_CLEAR } load;
     VkClearColorValue clear;
 };
 struct wd_rendering {

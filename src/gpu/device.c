@@ -85,6 +85,14 @@ static void load_debug_functions(struct wd_gpu *gpu)
 /* What costs software devices more than it spares them. */
 static const uint32_t hardware_alone = WD_GPU_FEATURE_STORED_TARGETS | WD_GPU_FEATURE_MANY_LANES;
 
+/* Of those that there are. */
+static void choose_features(struct wd_gpu *gpu, const struct wd_gpu_params *params)
+{
+    if (gpu->software)
+        gpu->features &= params->asked_features | ~hardware_alone;
+    gpu->features &= ~params->disabled_features;
+}
+
 static bool init_own(struct wd_gpu *gpu, const struct wd_gpu_params *params)
 {
     gpu->owned = true;
@@ -98,13 +106,28 @@ static bool init_own(struct wd_gpu *gpu, const struct wd_gpu_params *params)
     if (debug_utils)
         gpu->features |= WD_GPU_FEATURE_DEBUG_LABELS;
     gpu->features |= WD_GPU_FEATURE_MANY_LANES;
-    if (gpu->software)
-        gpu->features &= params->asked_features | ~hardware_alone;
-    gpu->features &= ~params->disabled_features;
+    choose_features(gpu, params);
     return create_device(gpu, params->presentation);
 }
 
-/* What the owner enabled cannot be asked of a VkDevice: only what the hardware supports can. */
+/* What the owner enabled cannot be asked of a VkDevice: the owner says it. */
+static bool read_enabled(struct wd_gpu *gpu, const struct wd_gpu_external *external, uint32_t *bits)
+{
+    struct wd_feature_set set;
+    *bits = 0;
+    if (!external->enabled)
+        return true;
+    wd_features_read(&set, external->enabled);
+    *bits = wd_features_optional(&set);
+    char *missing = wd_features_missing(&set);
+    if (!missing)
+        return true;
+    wd_error(gpu->log, "the external Vulkan device \"%s\" was made without the feature %s",
+             gpu->properties.deviceName, missing);
+    free(missing);
+    return false;
+}
+
 static bool init_external(struct wd_gpu *gpu, const struct wd_gpu_params *params)
 {
     const struct wd_gpu_external *external = params->external;
@@ -122,11 +145,12 @@ static bool init_external(struct wd_gpu *gpu, const struct wd_gpu_params *params
         return false;
     }
     take_candidate(gpu, &candidate);
-    uint32_t from_hardware = WD_GPU_FEATURE_TIMESTAMPS;
-    gpu->features &= external->features | from_hardware;
-    gpu->features |= gpu->software ? 0 : WD_GPU_FEATURE_MANY_LANES;
-    gpu->features |= external->features & WD_GPU_FEATURE_DEBUG_LABELS;
-    gpu->features &= ~params->disabled_features;
+    uint32_t enabled;
+    if (!read_enabled(gpu, external, &enabled))
+        return false;
+    gpu->features &= enabled | WD_GPU_FEATURE_TIMESTAMPS;
+    gpu->features |= WD_GPU_FEATURE_MANY_LANES;
+    choose_features(gpu, params);
     gpu->instance = external->instance;
     gpu->device = external->device;
     gpu->queue = external->queue;

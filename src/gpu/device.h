@@ -11,15 +11,16 @@ enum wd_gpu_validation {
     WD_GPU_VALIDATION_ON, /* validation + synchronization validation; abort() on the first error */
 };
 
-/* A device that belongs to somebody else; never destroyed here. The device must have been created
- * with the features that wd_gpu_required_features() fills in. */
+/* A device that belongs to somebody else; never destroyed here. It must have been made with the
+ * features that wd_gpu_required_features() fills in. */
 struct wd_gpu_external {
     VkInstance instance;
     VkPhysicalDevice physical_device;
     VkDevice device;
     VkQueue queue;         /* graphics + compute + transfer; used only during our calls */
     uint32_t queue_family;
-    uint32_t features;     /* wd_gpu_feature bits that were enabled when it was created */
+    /* what it was made with, read by wd_gpu_init alone; NULL: the required ones */
+    const VkPhysicalDeviceFeatures2 *enabled;
 };
 
 struct wd_gpu_params {
@@ -42,18 +43,15 @@ struct wd_gpu_params {
 /* Optional features; each user has a fallback, and tests disable them. */
 enum wd_gpu_feature {
     WD_GPU_FEATURE_INT64_ATOMICS = 1 << 0, /* shaderInt64 + shaderBufferInt64Atomics */
-    WD_GPU_FEATURE_MULTI_DRAW_INDIRECT = 1 << 1, /* multiDrawIndirect + drawIndirectFirstInstance */
-    WD_GPU_FEATURE_DRAW_INDIRECT_COUNT = 1 << 2,
-    WD_GPU_FEATURE_DEPTH_CLAMP = 1 << 3,
-    WD_GPU_FEATURE_ANISOTROPY = 1 << 4,
-    WD_GPU_FEATURE_TIMESTAMPS = 1 << 5, /* and they are true: never set on software devices */
-    WD_GPU_FEATURE_DEBUG_LABELS = 1 << 6,
-    WD_GPU_FEATURE_BLOCKS = 1 << 7, /* textureCompressionBC */
+    WD_GPU_FEATURE_ANISOTROPY = 1 << 1,
+    WD_GPU_FEATURE_TIMESTAMPS = 1 << 2, /* and they are true: never set on software devices */
+    WD_GPU_FEATURE_DEBUG_LABELS = 1 << 3,
+    WD_GPU_FEATURE_BLOCKS = 1 << 4, /* textureCompressionBC */
     /* shaderStorageImageExtendedFormats: compute fills the G-buffer, where fragments cost more than that: on
      * software devices only if asked for */
-    WD_GPU_FEATURE_STORED_TARGETS = 1 << 8,
+    WD_GPU_FEATURE_STORED_TARGETS = 1 << 5,
     /* Thousands of lanes: what one would do for long is shared out. On software devices only if asked for. */
-    WD_GPU_FEATURE_MANY_LANES = 1 << 9,
+    WD_GPU_FEATURE_MANY_LANES = 1 << 6,
 };
 
 struct wd_gpu {
@@ -94,6 +92,10 @@ struct wd_gpu {
 void wd_gpu_required_features(VkPhysicalDeviceFeatures2 *features,
                               VkPhysicalDeviceVulkan12Features *features12,
                               VkPhysicalDeviceVulkan13Features *features13);
+/* These and the optional ones that the device has. */
+void wd_gpu_wanted_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2 *features,
+                            VkPhysicalDeviceVulkan12Features *features12,
+                            VkPhysicalDeviceVulkan13Features *features13);
 
 /* On failure `*gpu` is `{0}`, and the log says what was looked for and what was found. */
 bool wd_gpu_init(struct wd_gpu *gpu, const struct wd_gpu_params *params, const struct wd_log *log);

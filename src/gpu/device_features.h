@@ -13,6 +13,8 @@ struct wd_feature_set {
 
 /* What the physical device supports. It must be a Vulkan 1.3 device. */
 void wd_features_query(struct wd_feature_set *set, VkPhysicalDevice device);
+/* What a device was made with: `enabled` and all behind it, structs of single features, too. */
+void wd_features_read(struct wd_feature_set *set, const VkPhysicalDeviceFeatures2 *enabled);
 /* Required features plus the optional ones of `bits`. The set must not move afterwards. */
 void wd_features_choose(struct wd_feature_set *set, uint32_t bits);
 /* Comma-separated names of required features that `supported` lacks; NULL if none. free() it. */

@@ -153,7 +153,7 @@ static VkResult submit(struct wd_gpu *gpu, struct wd_frame_slot *slot, VkSemapho
     const VkSemaphoreSubmitInfo before = {
         .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
         .semaphore = wait,
-        .stageMask = wd_present_stages(),
+        .stageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, /* all else may begin before */
     };
     const VkSemaphoreSubmitInfo after = {
         .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,

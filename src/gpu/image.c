@@ -159,10 +159,8 @@ static bool create_image(struct wd_image *image, struct wd_gpu *gpu,
     }
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(gpu->device, image->image, &needs);
-    if (!wd_allocate(gpu, &needs, WD_MEMORY_DEVICE, params->name, &image->memory)) {
-        vkDestroyImage(gpu->device, image->image, NULL);
+    if (!wd_allocate(gpu, &needs, WD_MEMORY_DEVICE, params->name, &image->memory))
         return false;
-    }
     image->memory_size = needs.size;
     result = vkBindImageMemory(gpu->device, image->image, image->memory, 0);
     return wd_gpu_check(gpu, result, params->name);
@@ -207,33 +205,13 @@ bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu, const struct wd_i
     return true;
 }
 
-bool wd_image_wrap(struct wd_image *image, struct wd_gpu *gpu, VkImage foreign, VkFormat format,
-                   uint32_t width, uint32_t height)
-{
-    *image = (struct wd_image){
-        .image = foreign,
-        .format = format,
-        .aspect = wd_format_aspect(format),
-        .width = width,
-        .height = height,
-        .layers = 1,
-        .mips = 1,
-    };
-    const struct view_kind kind = {VK_IMAGE_VIEW_TYPE_2D, format, 0};
-    if (!create_whole_view(gpu, image, &kind, "foreign", &image->view)) {
-        *image = (struct wd_image){0};
-        return false;
-    }
-    return true;
-}
-
 void wd_image_finish(struct wd_image *image, struct wd_gpu *gpu)
 {
     if (image->view)
         vkDestroyImageView(gpu->device, image->view, NULL);
     if (image->stored)
         vkDestroyImageView(gpu->device, image->stored, NULL);
-    if (image->memory)
+    if (image->image)
         vkDestroyImage(gpu->device, image->image, NULL);
     wd_free_memory(gpu, image->memory, image->memory_size);
     *image = (struct wd_image){0};

@@ -18,7 +18,6 @@ enum wd_gpu_use {
     WD_USE_INDIRECT,         /* indirect commands, also read by compute */
     WD_USE_COLOR_TARGET,
     WD_USE_DEPTH_TARGET,
-    WD_USE_PRESENT,          /* images only: ready for the presentation engine */
     WD_USE_GRAPHICS_WRITE,   /* storage buffer or image: fragments write or update atomically */
     WD_USE_HOST_READ,        /* read-back memory, read by the CPU after the frame has finished */
     WD_USE_COUNT,
@@ -57,9 +56,9 @@ void wd_buffer_finish(struct wd_buffer *buffer, struct wd_gpu *gpu);
 
 struct wd_image {
     VkImage image;
-    VkDeviceMemory memory; /* VK_NULL_HANDLE: the image belongs to somebody else */
-    VkImageView view;      /* all layers and mips; 2D, or 2D array when layered */
-    VkImageView stored;    /* the same to be stored to, where its parameters name a format */
+    VkDeviceMemory memory;
+    VkImageView view;   /* all layers and mips; 2D, or 2D array when layered */
+    VkImageView stored; /* the same to be stored to, where its parameters name a format */
     VkFormat format;
     VkImageAspectFlags aspect;
     uint32_t width, height, layers, mips;
@@ -85,10 +84,6 @@ struct wd_image_params {
 #define WD_ALL_MIPS UINT32_MAX
 bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu,
                    const struct wd_image_params *params);
-/* Wraps a foreign VkImage (one layer, one mip) and makes a view of it. Its layout counts as
- * undefined; set last_use where the contents matter. */
-bool wd_image_wrap(struct wd_image *image, struct wd_gpu *gpu, VkImage foreign, VkFormat format,
-                   uint32_t width, uint32_t height);
 void wd_image_finish(struct wd_image *image, struct wd_gpu *gpu);
 
 /* A view of one layer (and one mip) to render into or to store to. The caller destroys it. */

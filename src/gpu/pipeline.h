@@ -71,7 +71,6 @@ struct wd_graphics_params {
     enum wd_cull cull;           /* counter-clockwise is front */
     VkPrimitiveTopology topology; /* 0 would be points: set TRIANGLE_LIST yourself */
     float depth_bias_constant, depth_bias_slope; /* both 0: off */
-    bool depth_clamp;            /* used where the device can */
 };
 /* Viewport and scissor are dynamic; wd_cmd_begin_rendering sets them. */
 bool wd_pipeline_init_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,

@@ -10,12 +10,10 @@ static VkCullModeFlags cull_mode(enum wd_cull cull)
                                    : VK_CULL_MODE_NONE;
 }
 
-static VkPipelineRasterizationStateCreateInfo raster_state(struct wd_gpu *gpu,
-                                                           const struct wd_graphics_params *params)
+static VkPipelineRasterizationStateCreateInfo raster_state(const struct wd_graphics_params *params)
 {
     return (VkPipelineRasterizationStateCreateInfo){
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-        .depthClampEnable = params->depth_clamp && (gpu->features & WD_GPU_FEATURE_DEPTH_CLAMP),
         .polygonMode = VK_POLYGON_MODE_FILL,
         .cullMode = cull_mode(params->cull),
         .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
@@ -102,7 +100,7 @@ static VkResult create_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu
         .viewportCount = 1,
         .scissorCount = 1,
     };
-    const VkPipelineRasterizationStateCreateInfo raster = raster_state(gpu, params);
+    const VkPipelineRasterizationStateCreateInfo raster = raster_state(params);
     const VkPipelineMultisampleStateCreateInfo samples = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
         .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT,
@@ -175,7 +173,7 @@ static void add_graphics(struct wd_pipeline_key *key, const struct wd_graphics_p
 {
     const uint32_t state[] = {params->push_size, params->color_count, params->color_writes, params->blend,
                               params->depth_format, params->depth_compare, params->depth_read_only, params->cull,
-                              params->topology, params->depth_clamp};
+                              params->topology};
     const float bias[] = {params->depth_bias_constant, params->depth_bias_slope};
     wd_pipeline_key_add(key, &params->vertex.words, sizeof params->vertex.words);
     wd_pipeline_key_add(key, &params->fragment.words, sizeof params->fragment.words);

@@ -2,13 +2,6 @@
 
 #include "gpu/command.h"
 
-static VkAttachmentLoadOp load_op(enum wd_load load)
-{
-    return load == WD_LOAD_KEEP    ? VK_ATTACHMENT_LOAD_OP_LOAD
-           : load == WD_LOAD_CLEAR ? VK_ATTACHMENT_LOAD_OP_CLEAR
-                                   : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-}
-
 static void use_target(struct wd_cmd *cmd, const struct wd_rendering *rendering,
                        struct wd_image *image, enum wd_load load, enum wd_gpu_use use)
 {
@@ -27,7 +20,8 @@ static VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layo
         .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
         .imageView = view,
         .imageLayout = layout,
-        .loadOp = load_op(load),
+        .loadOp =
+            load == WD_LOAD_KEEP ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR,
         .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
     };
 }

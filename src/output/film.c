@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "output/image.h"
@@ -10,19 +11,13 @@
 
 enum { MAX_SIDE_PX = 32768, MAX_FILM_SIDE_PX = 16384, MAX_DIGITS = 9 };
 
-static const char *extension(const char *path)
-{
-    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    return dot && (!slash || dot > slash) ? dot + 1 : "";
-}
-
 /* ffmpeg's name of the container, or NULL. */
 static const char *container(const char *path)
 {
     static const char *const names[][2] = {
-        {"mp4", "mp4"}, {"m4v", "mp4"}, {"mov", "mov"}, {"mkv", "matroska"}};
+        {".mp4", "mp4"}, {".m4v", "mp4"}, {".mov", "mov"}, {".mkv", "matroska"}};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        if (strcmp(extension(path), names[i][0]) == 0)
+        if (wd_has_ending(path, names[i][0]))
             return names[i][1];
     }
     return NULL;
@@ -37,9 +32,9 @@ static size_t conversion(const char *percent, unsigned *digits)
     return percent[1 + zeros + wide] == 'd' ? 2 + zeros + wide : 0;
 }
 
-bool wd_film_path(const char *path)
+bool wd_film_has_ending(const char *path)
 {
-    return strchr(path, '%') || container(path);
+    return path && container(path);
 }
 
 bool wd_film_sequence_check(const char *path, const struct wd_log *log)
@@ -75,7 +70,7 @@ static bool check_sequence(const char *path, const struct wd_log *log)
 {
     if (!wd_film_sequence_check(path, log))
         return false;
-    if (strcmp(extension(path), "png") != 0)
+    if (!wd_has_ending(path, ".png"))
         return wd_error(log, "%s: frames of a film are .png files", path);
     return true;
 }
@@ -84,7 +79,7 @@ static bool check_film(const struct wd_film_writer_params *params, const struct 
 {
     if (!container(params->path))
         return wd_error(log,
-                        "%s: films are .mp4, .mov or .mkv files, or frames like "
+                        "%s: films are .mp4, .m4v, .mov or .mkv files, or frames like "
                         "frame-%%05d.png",
                         params->path);
     if (params->width % 2 || params->height % 2)

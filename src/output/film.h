@@ -5,7 +5,7 @@
 #include "output/encoder.h"
 
 struct wd_film_writer_params {
-    const char *path;    /* .mp4, .mov or .mkv; or frame-%05d.png, one file a frame from 0 */
+    const char *path;    /* .mp4, .m4v, .mov or .mkv; or frame-%05d.png, one file a frame from 0 */
     uint32_t width, height; /* both even for a film file */
     double frame_rate;   /* frames a second, WD_LEAST_FRAMES_PER_SECOND..WD_MOST_FRAMES_PER_SECOND; 0: 30 */
     int crf;             /* quality of x264, 1 best .. 51; 0: 16 */
@@ -19,9 +19,6 @@ struct wd_film_writer {
     uint32_t width, height;
     uint64_t frames;
 };
-
-/* Whether `path` names a film or a sequence, as against a single picture. */
-bool wd_film_path(const char *path);
 
 /* Numbered pictures: whether the name holds exactly one number like %d or %05d, and the name of
  * one of them; free() it. */

@@ -117,9 +117,8 @@ bool wd_species_text_has_model(const char *path, const char *text, size_t size)
 bool wd_species_is_model_file(const char *path)
 {
     static const char *const endings[] = {".obj", ".gltf", ".glb", ".fbx", ".dae"};
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
-        if (strcasecmp(dot, endings[i]) == 0)
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (wd_has_ending(path, endings[i]))
             return true;
     return false;
 }

@@ -1,7 +1,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -190,10 +189,9 @@ bool wd_export_obj(const struct wd_export *what, const char *path, const struct 
 char *wd_export_obj_beside(const char *path, const char *species, uint32_t index)
 {
     static const uint32_t layers[] = {WD_LOOK_BARK, WD_LOOK_LEAF, WD_LOOK_FLOWER};
-    const char *dot = strrchr(path, '.');
-    if (!dot || strcasecmp(dot, ".obj") != 0 || index > 6)
+    if (!wd_has_ending(path, ".obj") || index > 6)
         return NULL;
-    int stem = (int)(dot - path);
+    int stem = (int)(strrchr(path, '.') - path);
     if (index == 0)
         return wd_format("%.*s.mtl", stem, path);
     char *plain = plain_name(species);

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/file.h"
 
@@ -32,12 +31,6 @@ static char *read_whole(const char *path, size_t *size)
     }
     fclose(file);
     return bytes;
-}
-
-static bool is_obj(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, ".obj") == 0;
 }
 
 static bool is_blank(char c)
@@ -69,7 +62,7 @@ static size_t add_zeroes(char *to, const char *from, size_t size)
 bool wd_model_obj_is_short(const char *path)
 {
     size_t size;
-    char *bytes = is_obj(path) ? read_whole(path, &size) : NULL;
+    char *bytes = wd_has_ending(path, ".obj") ? read_whole(path, &size) : NULL;
     bool lacks = bytes && add_zeroes(NULL, bytes, size) > size;
     free(bytes);
     return lacks;
@@ -146,7 +139,7 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
         return NULL;
     }
     *text = (struct text){bytes, size, 0};
-    size_t longer = is_obj(path) ? add_zeroes(NULL, bytes, size) : size;
+    size_t longer = wd_has_ending(path, ".obj") ? add_zeroes(NULL, bytes, size) : size;
     char *whole = longer > size ? malloc(longer + 1) : NULL;
     if (whole) {
         add_zeroes(whole, bytes, size);
@@ -170,7 +163,7 @@ struct aiFileIO *wd_model_obj_io(void)
 
 char *wd_model_obj_library(const char *path)
 {
-    FILE *file = is_obj(path) ? fopen(path, "rb") : NULL;
+    FILE *file = wd_has_ending(path, ".obj") ? fopen(path, "rb") : NULL;
     char *line = NULL, *found = NULL;
     size_t room = 0;
     while (file && !found && getline(&line, &room, file) > 0) {

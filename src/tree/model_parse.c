@@ -13,10 +13,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "base/file.h"
 
 /* One mesh of the scene where a node puts it. */
 struct placed {
@@ -55,12 +56,6 @@ static void put_text(char *to, size_t size, const char *text)
     to[length] = '\0';
 }
 
-static bool is_fbx(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, ".fbx") == 0;
-}
-
 /* Smooth normals with creases take time with the square of loose triangles (of ten millions, half
  * an hour), joining vertices some 600 bytes for each: large files get both from finish_large. */
 static bool is_large(const char *path)
@@ -91,7 +86,7 @@ static void open_scene(struct parse *parse, const char *path)
                      aiProcess_ValidateDataStructure;
     if (!is_large(path))
         steps |= aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices;
-    if (is_fbx(path))
+    if (wd_has_ending(path, ".fbx"))
         steps |= aiProcess_GlobalScale;
     struct aiPropertyStore *store = aiCreatePropertyStore();
     aiSetImportPropertyFloat(store, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 70);

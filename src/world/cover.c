@@ -134,20 +134,24 @@ uint32_t wd_grid_place(double at, uint32_t count, float *share)
     return cell;
 }
 
-float wd_cover_at(const struct wd_world *world, double x_m, double y_m)
+float wd_cover_grid_at(const struct wd_world *world, const uint8_t *grid, double x_m, double y_m)
 {
-    if (!world->cover || !world->cover_width || !world->cover_height)
-        return 0.0f;
     float u, v;
     uint32_t width = world->cover_width, height = world->cover_height;
     uint32_t i = wd_grid_place(x_m / world->cover_cell_m - 0.5, width, &u);
     uint32_t j = wd_grid_place(y_m / world->cover_cell_m - 0.5, height, &v);
-    const uint8_t *south = world->cover + (size_t)j * width + i;
+    const uint8_t *south = grid + (size_t)j * width + i;
     const uint8_t *north = height > 1 ? south + width : south;
     int right = width > 1;
     float low = (float)south[0] + u * (float)(south[right] - south[0]);
     float high = (float)north[0] + u * (float)(north[right] - north[0]);
-    return (low + v * (high - low)) / 255.0f;
+    return low + v * (high - low);
+}
+
+float wd_cover_at(const struct wd_world *world, double x_m, double y_m)
+{
+    bool has = world->cover && world->cover_width && world->cover_height;
+    return has ? wd_cover_grid_at(world, world->cover, x_m, y_m) / 255.0f : 0.0f;
 }
 
 float wd_woods_at(const struct wd_world *world, double x_m, double y_m)

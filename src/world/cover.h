@@ -20,6 +20,9 @@ void wd_cover_init(struct wd_world *world, unsigned threads);
 float wd_cover_at(const struct wd_world *world, double x_m, double y_m);
 float wd_woods_at(const struct wd_world *world, double x_m, double y_m);
 
+/* world->cover or world->sward between its cells' middles. */
+float wd_cover_grid_at(const struct wd_world *world, const uint8_t *grid, double x_m, double y_m);
+
 /* The lower of two neighbours on a grid of `count` and the share of the upper, clamped. */
 uint32_t wd_grid_place(double at, uint32_t count, float *share);
 

@@ -33,10 +33,9 @@ struct wd_octree {
 struct wd_octree_params {
     uint32_t max_depth;     /* 0: 8 */
     uint32_t leaf_trees;    /* an octant with fewer trees is not split; 0: 64 */
-    unsigned threads;
 };
-/* Orders trees[count] in place and builds the octree over them. The same result for any number of
- * threads. count may be 0: then the octree is empty ({0}). */
+/* Orders trees[count] in place and builds the octree over them. count may be 0: then the octree is
+ * empty ({0}). */
 void wd_octree_init(struct wd_octree *octree, struct wd_tree *trees, size_t count,
                     const struct wd_octree_params *params);
 void wd_octree_finish(struct wd_octree *octree);

@@ -24,8 +24,9 @@ static void fill_weather(struct wd_frame_uniforms *uniforms, const struct wd_sce
 }
 
 static void fill_ground(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene,
-                        const struct wd_terrain *terrain)
+                        const struct wd_world *world)
 {
+    const struct wd_terrain *terrain = &world->terrain;
     memcpy(uniforms->grass, scene->ground.grass, sizeof uniforms->grass);
     memcpy(uniforms->soil, scene->ground.soil, sizeof uniforms->soil);
     memcpy(uniforms->rock, scene->ground.rock, sizeof uniforms->rock);
@@ -36,6 +37,10 @@ static void fill_ground(struct wd_frame_uniforms *uniforms, const struct wd_scen
     uniforms->tree_line_m =
         scene->ground.tree_line_m > 0.0 ? (float)scene->ground.tree_line_m : 1e9f;
     uniforms->snow = (float)scene->ground.snow;
+    memcpy(uniforms->sward, world->far_sward.albedo, sizeof uniforms->sward);
+    uniforms->sward_share = world->far_sward.share;
+    uniforms->sward_whole_m = world->far_sward.fade_m[0];
+    uniforms->sward_gone_m = world->far_sward.fade_m[1];
     uniforms->terrain_cell_m = (float)terrain->cell_m;
     uniforms->terrain_width = terrain->width;
     uniforms->terrain_height = terrain->height;
@@ -45,7 +50,7 @@ void wd_surroundings_fill(struct wd_frame_uniforms *uniforms, const struct wd_sc
                           const struct wd_world *world)
 {
     fill_weather(uniforms, scene);
-    fill_ground(uniforms, scene, &world->terrain);
+    fill_ground(uniforms, scene, world);
     wd_sun_fill(uniforms, scene, world->sky.width ? &world->sky : NULL);
 }
 

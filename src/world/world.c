@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "world/cover.h"
+#include "world/far_sward.h"
 #include "world/inventory.h"
 #include "world/placement.h"
 #include "world/river.h"
@@ -74,8 +75,7 @@ static uint8_t layer_of(const struct layer_ends *layers, uint32_t id)
 
 /* Takes the list's trees: octree order, and the tables beside them. */
 static void index_trees(struct wd_world *world, struct wd_tree_list *list,
-                        const struct layer_ends *layers, const struct wd_scene *scene,
-                        unsigned threads)
+                        const struct layer_ends *layers, const struct wd_scene *scene)
 {
     world->trees = list->trees;
     world->tree_count = list->count;
@@ -83,8 +83,7 @@ static void index_trees(struct wd_world *world, struct wd_tree_list *list,
     wd_octree_init(&world->octree, world->trees, world->tree_count,
                    &(struct wd_octree_params){
                        .max_depth = (uint32_t)scene->methods.octree.max_depth,
-                       .leaf_trees = (uint32_t)scene->methods.octree.leaf_trees,
-                       .threads = threads});
+                       .leaf_trees = (uint32_t)scene->methods.octree.leaf_trees});
     world->tree_of_id = wd_alloc_array(world->tree_count + 1, sizeof *world->tree_of_id);
     world->layer_of_tree = wd_alloc(world->tree_count);
     world->species_counts = wd_alloc_array(scene->species_file_count,
@@ -130,9 +129,10 @@ static bool plant(struct wd_world *world, struct wd_inventory *inventories, bool
     uint64_t count = list->count;
     ok = ok && wd_progress_report(params->progress, "sorting trees", 0, count);
     if (ok) {
-        index_trees(world, list, &layers, scene, params->threads);
+        index_trees(world, list, &layers, scene);
         count_expected(world, scene);
         wd_cover_init(world, params->threads);
+        wd_far_sward_init(world, scene);
         ok = wd_progress_report(params->progress, "sorting trees", count, count);
     }
     free(layers.ends);
@@ -231,12 +231,18 @@ static void hash_words(XXH64_state_t *state, const uint32_t *words, size_t count
     }
 }
 
+/* Members of 32 bits each, none of them an address. */
+static void hash_layer(XXH64_state_t *state, const struct wd_place_layer *layer)
+{
+    static_assert(sizeof *layer % sizeof(uint32_t) == 0, "a layer is whole words");
+    uint32_t words[sizeof *layer / sizeof(uint32_t)];
+    memcpy(words, layer, sizeof words);
+    hash_words(state, words, sizeof words / sizeof *words);
+}
+
 static void hash_map(XXH64_state_t *state, const struct wd_placement *placement)
 {
     const struct wd_place_layer *layer = &placement->input.layer;
-    const uint32_t words[5] = {layer->map_kind, layer->map_width, layer->map_height,
-                               layer->map_half_mm[0], layer->map_half_mm[1]};
-    hash_words(state, words, 5);
     for (size_t i = 0; i < (size_t)layer->map_width * layer->map_height; i++) {
         uint32_t word;
         memcpy(&word, &placement->map[i], sizeof word);
@@ -244,17 +250,13 @@ static void hash_map(XXH64_state_t *state, const struct wd_placement *placement)
     }
 }
 
-/* Layers on demand: their numbers and what their maps and tables hold. */
+/* Layers on demand: their rules and what their maps and tables hold. */
 static void hash_demand(XXH64_state_t *state, const struct wd_demand *demand)
 {
     for (uint32_t i = 0; i < demand->count; i++) {
         const struct wd_placement *placement = &demand->layers[i].placement;
-        const struct wd_place_layer *layer = &placement->input.layer;
-        const uint32_t words[8] = {layer->key,           layer->columns,
-                                   layer->rows,          layer->cell_mm,
-                                   layer->height_min_cm, layer->height_span_cm,
-                                   layer->variants,      demand->layers[i].first_id};
-        hash_words(state, words, 8);
+        hash_layer(state, &placement->input.layer);
+        hash_words(state, &demand->layers[i].first_id, 1);
         hash_words(state, placement->table, placement->table_count);
         if (placement->map)
             hash_map(state, placement);

@@ -47,6 +47,11 @@ struct wd_world {
     /* Crowns of what is lower, herbs and swards, over the ground that they stand on (WD_SWARD_LAYER is
      * once). NULL: there are none, or on demand. */
     uint8_t *sward;
+    struct wd_far_sward {
+        float albedo[3]; /* of those that fade with distance, as they are seen from above */
+        float share;     /* of these in all */
+        float fade_m[2]; /* distances over which they do; 0, 0: none does */
+    } far_sward;
     uint32_t cover_width, cover_height;
     double cover_cell_m;
     uint32_t seed;

@@ -104,7 +104,7 @@ static void wrong_films_are_input(void **state)
         {"none-%d.exr", 0, 24, WD_ERROR_INPUT, "found 0 x 32 pixels"},
         {"no.gif", 32, 24, WD_ERROR_INPUT, "films end in"},
         {"nowhere/a.mp4", 32, 24, WD_ERROR_OUTPUT, "No such file"},
-        {"least-%d.png", 32, 0.01, WD_OK, ""},
+        {"least-%d.PNG", 32, 0.01, WD_OK, ""},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const struct wd_film_params params = {suite_path(suite, cases[i].name), cases[i].width, 32,

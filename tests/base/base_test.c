@@ -1,5 +1,6 @@
 #include <math.h>
 #include <pthread.h>
+#include <sched.h>
 #include <setjmp.h>
 #include <stdatomic.h>
 #include <stdarg.h>
@@ -8,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -127,6 +129,57 @@ static void every_index_is_worked_once(void **state)
             assert_int_equal(calls[i], 1);
     }
     wd_jobs_run(4, 0, count_call, NULL);
+}
+
+/* Of a loop whose calls wait for one another. */
+struct meeting {
+    pthread_mutex_t lock;
+    pthread_cond_t came;
+    unsigned inside, wanted;
+    bool met;
+    struct timespec until; /* the wanted are waited for */
+};
+
+static void meet(void *user, size_t index)
+{
+    struct meeting *meeting = user;
+    (void)index;
+    pthread_mutex_lock(&meeting->lock);
+    meeting->met |= ++meeting->inside >= meeting->wanted;
+    pthread_cond_broadcast(&meeting->came);
+    int waited = 0;
+    while (!meeting->met && waited == 0)
+        waited = pthread_cond_timedwait(&meeting->came, &meeting->lock, &meeting->until);
+    meeting->inside--;
+    pthread_mutex_unlock(&meeting->lock);
+}
+
+static void as_many_threads_as_asked_for_work(void **state)
+{
+    (void)state;
+    struct meeting meeting = {.lock = PTHREAD_MUTEX_INITIALIZER,
+                              .came = PTHREAD_COND_INITIALIZER,
+                              .wanted = 100};
+    clock_gettime(CLOCK_REALTIME, &meeting.until);
+    meeting.until.tv_sec += 20;
+    wd_jobs_run(100, 100, meet, &meeting);
+    assert_true(meeting.met);
+}
+
+static void threads_are_as_many_as_processors(void **state)
+{
+    (void)state;
+    cpu_set_t all, one;
+    if (sched_getaffinity(0, sizeof all, &all) != 0)
+        skip(); /* more processors than the set has places */
+    assert_int_equal(wd_jobs_default_threads(), CPU_COUNT(&all));
+    CPU_ZERO(&one);
+    for (int i = 0; i < CPU_SETSIZE && CPU_COUNT(&one) == 0; i++)
+        if (CPU_ISSET(i, &all))
+            CPU_SET(i, &one);
+    assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
+    assert_int_equal(wd_jobs_default_threads(), 1);
+    assert_int_equal(sched_setaffinity(0, sizeof all, &all), 0);
 }
 
 struct told {
@@ -304,6 +357,8 @@ int main(void)
         cmocka_unit_test(threads_log_one_at_a_time),
         cmocka_unit_test(srgb_round_trips),
         cmocka_unit_test(every_index_is_worked_once),
+        cmocka_unit_test(as_many_threads_as_asked_for_work),
+        cmocka_unit_test(threads_are_as_many_as_processors),
         cmocka_unit_test(loops_tell_how_far_they_are),
         cmocka_unit_test(an_output_appears_whole_or_not_at_all),
         cmocka_unit_test(threads_may_write_one_output),

@@ -47,8 +47,11 @@ expect 2 'no method "octre", did you mean "octree"\?' render "$tiny" -o a.png --
 expect 2 'there are: .*separate' render "$tiny" -o a.png --method painting
 expect 2 'no method "octre"' view "$tiny" --method octre
 expect 2 'no output named' render "$tiny"
-expect 2 'must end in .png, .exr or .mp4' render "$tiny" -o a.gif
-expect 2 'must end in .png, .exr or .mp4' render "$tiny" -o .png
+expect 2 'must end in .png, .exr, .mp4, .m4v, .mov or .mkv' render "$tiny" -o a.gif
+expect 2 'must end in .png, .exr, .mp4, .m4v, .mov or .mkv' render "$tiny" -o .png
+for film in a.mp4 a.M4V a.mov a.mkv; do
+    expect 2 'exclude each other' render "$tiny" -o "$film" --frames 5 --camera a --path b
+done
 expect 2 'holds one frame' render "$tiny" -o a.png --frames 5
 expect 2 'exclude each other' render "$tiny" -o a.png --camera a --path b
 for layer in velocity cryptomatte; do

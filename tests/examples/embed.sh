@@ -15,18 +15,18 @@ colors=$(tail -c +16 "$scratch/built.ppm" | od -An -v -w3 -tx1 | sort -u | wc -l
 echo "the picture has $colors colours"
 [ "$colors" -gt 500 ]
 
-DESTDIR=$scratch/installed meson install -C "$build" --no-rebuild --quiet
-pc=$(find "$scratch/installed" -name weald.pc)
-[ -n "$pc" ]
-PKG_CONFIG_SYSROOT_DIR=$scratch/installed
-PKG_CONFIG_PATH=$(dirname "$pc")
-export PKG_CONFIG_SYSROOT_DIR PKG_CONFIG_PATH
-# A system root is put before every directory, also before Vulkan's: only weald's flags are asked for.
-flags=$(pkg-config --cflags --libs weald | sed "s,$scratch/installed/usr/include ,/usr/include ,g")
+# shellcheck source=installed.sh
+. "$root/tests/examples/installed.sh"
 # shellcheck disable=SC2086  # one word a flag, and of the compiler
 $compiler "$root/examples/embed.c" $flags -lvulkan -o "$scratch/embed"
-libraries=$(dirname "$(find "$scratch/installed" -name 'libweald.so' | head -1)")
-LD_LIBRARY_PATH=$libraries "$scratch/embed" "$root/tests/viewer/tiny.json" "$scratch/installed.ppm"
+# Under validation, which says what it finds and goes on.
+VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation \
+    VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT \
+    LD_LIBRARY_PATH=$libraries "$scratch/embed" "$root/tests/viewer/tiny.json" \
+    "$scratch/installed.ppm" >"$scratch/said" 2>&1 || { cat "$scratch/said" && exit 1; }
+if grep 'Validation Error' "$scratch/said"; then
+    exit 1
+fi
 cmp "$scratch/built.ppm" "$scratch/installed.ppm"
 echo "the installed library draws the same picture"
 

@@ -31,7 +31,7 @@ static struct lit lit_ground(float woods, float footprint_m)
     double squares = 0;
     for (uint32_t i = 0; i < PLACES; i++) {
         struct wd_vec3 rel = {3000 * wd_hash_unit(wd_hash2(i, 1)) - 1500, 3000 * wd_hash_unit(wd_hash2(i, 2)) - 1500, 0};
-        struct wd_ground_look look = wd_ground_cover(&frame, rel, 0, 0, woods, woods, -1e9f, footprint_m);
+        struct wd_ground_look look = wd_ground_cover(&frame, rel, 0, 0, woods, woods, 0, -1e9f, footprint_m);
         double sun = fmax(0.6 * (double)look.normal.x + 0.8 * (double)look.normal.z, 0);
         const double light[3] = {look.albedo.x * sun, look.albedo.y * sun, look.albedo.z * sun};
         for (int k = 0; k < 3; k++)
@@ -68,11 +68,38 @@ static void samples_show_leaves_that_pixels_do_not(void **state)
     assert_float_equal(wd_sample_footprint(64), wd_sample_footprint(4), 0);
 }
 
+static double green_at(const struct wd_frame_uniforms *frame, float layers, float away_m)
+{
+    return (double)wd_ground_cover(frame, WD_V3(away_m, 0.3f, 0), 0, 0, 0, 0, layers, -1e9f, 0.4f).albedo.y;
+}
+
+/* The ground has their colour from where plants are no longer drawn, as far as they stand close and fade. */
+static void ground_has_the_colour_of_plants_too_far_to_be_drawn(void **state)
+{
+    (void)state;
+    struct wd_frame_uniforms bare = palette(), meadow = palette();
+    const float dark = 0.01f;
+    for (int k = 0; k < 3; k++)
+        meadow.sward[k] = dark;
+    meadow.sward_share = 1;
+    meadow.sward_whole_m = 30;
+    meadow.sward_gone_m = 60;
+    double lawn = green_at(&bare, 3, 70);
+    assert_float_equal(green_at(&meadow, 3, 29), green_at(&bare, 3, 29), 0);
+    assert_float_equal(green_at(&meadow, 0, 70), lawn, 0);
+    assert_true(green_at(&meadow, 20, 70) < 1.5 * (double)dark);
+    double some = green_at(&meadow, 0.7f, 70); /* they leave half of the ground open */
+    assert_true(some > 0.45 * lawn && some < 0.65 * lawn + (double)dark);
+    meadow.sward_share = 0;
+    assert_float_equal(green_at(&meadow, 3, 70), lawn, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ground_is_as_bright_with_its_leaves_as_without),
         cmocka_unit_test(samples_show_leaves_that_pixels_do_not),
+        cmocka_unit_test(ground_has_the_colour_of_plants_too_far_to_be_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

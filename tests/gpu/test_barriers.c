@@ -25,7 +25,6 @@ static struct wd_image imagined_image(void)
 {
     return (struct wd_image){
         .image = (VkImage)(uintptr_t)1,
-        .memory = (VkDeviceMemory)(uintptr_t)1,
         .layers = 1,
         .mips = 1,
     };
@@ -36,8 +35,7 @@ static void first_use_of_a_buffer_needs_nothing(void **state)
     (void)state;
     struct wd_barrier barrier;
     for (int use = WD_USE_TRANSFER_READ; use < WD_USE_COUNT; use++) {
-        bool image_only = use == WD_USE_PRESENT || use == WD_USE_COLOR_TARGET ||
-                          use == WD_USE_DEPTH_TARGET;
+        bool image_only = use == WD_USE_COLOR_TARGET || use == WD_USE_DEPTH_TARGET;
         struct wd_buffer buffer = imagined_buffer();
         if (!image_only)
             assert_false(wd_barrier_for_buffer(&buffer, (enum wd_gpu_use)use, &barrier));
@@ -107,7 +105,6 @@ static void image_layouts_follow_the_use(void **state)
         {WD_USE_COLOR_TARGET, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL},
         {WD_USE_TRANSFER_READ, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL},
         {WD_USE_TRANSFER_WRITE, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL},
-        {WD_USE_PRESENT, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR},
         {WD_USE_DEPTH_TARGET, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL},
     };
     struct wd_image image = imagined_image();
@@ -123,16 +120,6 @@ static void image_layouts_follow_the_use(void **state)
     }
     assert_true(wd_barrier_for_image(&image, WD_USE_DEPTH_TARGET, WD_CONTENTS_DISCARD, &barrier));
     assert_int_equal(barrier.image.oldLayout, VK_IMAGE_LAYOUT_UNDEFINED);
-}
-
-static void foreign_image_waits_for_its_semaphore(void **state)
-{
-    (void)state;
-    struct wd_image image = imagined_image();
-    image.memory = VK_NULL_HANDLE;
-    struct wd_barrier barrier;
-    assert_true(wd_barrier_for_image(&image, WD_USE_COLOR_TARGET, WD_CONTENTS_DISCARD, &barrier));
-    assert_int_equal(barrier.image.srcStageMask, wd_present_stages());
 }
 
 static void step(struct wd_cmd *cmd, const struct wd_pipeline *pipeline, struct wd_buffer *from,
@@ -269,7 +256,6 @@ int main(void)
         cmocka_unit_test(write_after_write_is_ordered),
         cmocka_unit_test(each_new_reader_is_let_in_once),
         cmocka_unit_test(image_layouts_follow_the_use),
-        cmocka_unit_test(foreign_image_waits_for_its_semaphore),
         cmocka_unit_test(validation_aborts_on_a_hazard),
         GPU_TEST(ping_pong_chain_is_right),
         GPU_TEST(atomic_dispatches_are_ordered),

@@ -83,7 +83,7 @@ static void missing_instance_extension_is_named(void **state)
 static void every_optional_feature_can_be_disabled(void **state)
 {
     struct gpu_test *test = *state;
-    for (uint32_t bit = 1; bit <= WD_GPU_FEATURE_DEBUG_LABELS; bit *= 2) {
+    for (uint32_t bit = 1; bit <= WD_GPU_FEATURE_MANY_LANES; bit *= 2) {
         struct wd_gpu gpu;
         const struct wd_gpu_params params = {.name = "software", .disabled_features = bit};
         assert_true(wd_gpu_init(&gpu, &params, &test->log));
@@ -110,9 +110,41 @@ static void lacking_features_are_named(void **state)
     char *missing = wd_features_missing(&set);
     assert_string_equal(missing, "scalarBlockLayout, synchronization2");
     free(missing);
-    wd_features_choose(&set, WD_GPU_FEATURE_INT64_ATOMICS | WD_GPU_FEATURE_DEPTH_CLAMP);
+    wd_features_choose(&set, WD_GPU_FEATURE_INT64_ATOMICS | WD_GPU_FEATURE_ANISOTROPY);
     set.base.features.shaderInt64 = VK_FALSE; /* half of a pair is none */
-    assert_int_equal(wd_features_optional(&set), WD_GPU_FEATURE_DEPTH_CLAMP);
+    assert_int_equal(wd_features_optional(&set), WD_GPU_FEATURE_ANISOTROPY);
+}
+
+/* In two structs as we chain them, and each in one of its own as older programs do. */
+static void enabled_features_are_read_from_any_chain(void **state)
+{
+    (void)state;
+    struct wd_feature_set chosen, read;
+    wd_features_choose(&chosen, UINT32_MAX);
+    wd_features_read(&read, &chosen.base);
+    assert_null(wd_features_missing(&read));
+    assert_int_equal(wd_features_optional(&read), wd_features_optional(&chosen));
+#define LINK(name) VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_##name##_FEATURES, chain
+    void *chain = NULL;
+    chain = &(VkPhysicalDeviceMultiviewFeatures){LINK(MULTIVIEW), .multiview = VK_TRUE};
+    chain = &(VkPhysicalDeviceScalarBlockLayoutFeatures){LINK(SCALAR_BLOCK_LAYOUT), VK_TRUE};
+    chain = &(VkPhysicalDeviceDynamicRenderingFeatures){LINK(DYNAMIC_RENDERING), VK_TRUE};
+    chain = &(VkPhysicalDeviceSynchronization2Features){LINK(SYNCHRONIZATION_2), VK_TRUE};
+    chain = &(VkPhysicalDeviceMaintenance4Features){LINK(MAINTENANCE_4), VK_TRUE};
+    chain = &(VkPhysicalDeviceShaderTerminateInvocationFeatures){LINK(SHADER_TERMINATE_INVOCATION),
+                                                                 VK_TRUE};
+    chain = &(VkPhysicalDeviceShaderDemoteToHelperInvocationFeatures){
+        LINK(SHADER_DEMOTE_TO_HELPER_INVOCATION), VK_TRUE};
+    VkPhysicalDeviceShaderAtomicInt64Features atomics = {LINK(SHADER_ATOMIC_INT64), VK_TRUE};
+#undef LINK
+    const VkPhysicalDeviceFeatures2 base = {.pNext = &atomics, .features = chosen.base.features};
+    wd_features_read(&read, &base);
+    assert_null(wd_features_missing(&read));
+    assert_int_equal(wd_features_optional(&read), wd_features_optional(&chosen));
+    atomics.shaderBufferInt64Atomics = VK_FALSE;
+    wd_features_read(&read, &base);
+    assert_int_equal(wd_features_optional(&chosen) & ~wd_features_optional(&read),
+                     WD_GPU_FEATURE_INT64_ATOMICS);
 }
 
 static void presentation_enables_the_swapchain(void **state)
@@ -172,6 +204,7 @@ int main(void)
         LOG_TEST(missing_instance_extension_is_named),
         LOG_TEST(every_optional_feature_can_be_disabled),
         cmocka_unit_test(lacking_features_are_named),
+        cmocka_unit_test(enabled_features_are_read_from_any_chain),
         LOG_TEST(presentation_enables_the_swapchain),
         LOG_TEST(list_names_the_software_device),
         cmocka_unit_test_setup_teardown(lost_device_fails_fast, gpu_setup, gpu_teardown),

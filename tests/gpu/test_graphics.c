@@ -28,7 +28,7 @@ struct vertex {
 
 struct scene {
     struct wd_image color, id, depth;
-    struct wd_buffer vertices, arguments;
+    struct wd_buffer vertices;
     struct wd_pipeline pipeline;
 };
 
@@ -65,10 +65,6 @@ static void make_scene(struct scene *scene, struct gpu_test *test,
                                VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
     scene->vertices = make_buffer(test, size);
     assert_true(wd_buffer_upload(&test->gpu, &scene->vertices, 0, vertices, size));
-    scene->arguments = make_buffer(test, 32);
-    uint32_t count = (uint32_t)(size / sizeof *vertices);
-    const uint32_t arguments[8] = {3, 1, 0, 0, count - 3, 1, 3, 0};
-    assert_true(wd_buffer_upload(&test->gpu, &scene->arguments, 0, arguments, sizeof arguments));
     assert_true(wd_pipeline_init_graphics(&scene->pipeline, &test->gpu, params));
 }
 
@@ -78,7 +74,6 @@ static void finish_scene(struct scene *scene, struct gpu_test *test)
     wd_image_finish(&scene->id, &test->gpu);
     wd_image_finish(&scene->depth, &test->gpu);
     wd_buffer_finish(&scene->vertices, &test->gpu);
-    wd_buffer_finish(&scene->arguments, &test->gpu);
 }
 
 static void draw_into(struct scene *scene, struct wd_cmd *cmd, enum wd_load load)
@@ -93,7 +88,6 @@ static void draw_into(struct scene *scene, struct wd_cmd *cmd, enum wd_load load
         .depth_load = load,
     };
     wd_cmd_use_buffer(cmd, &scene->vertices, WD_USE_GRAPHICS_READ);
-    wd_cmd_use_buffer(cmd, &scene->arguments, WD_USE_INDIRECT);
     wd_cmd_begin_rendering(cmd, &rendering);
     wd_cmd_bind(cmd, &scene->pipeline, (struct wd_binding[]){WD_BIND_BUFFER(&scene->vertices)});
 }
@@ -198,30 +192,6 @@ static void depth_can_be_tested_without_writing(void **state)
     finish_scene(&scene, test);
 }
 
-static void check_indirect(struct gpu_test *test)
-{
-    const struct vertex vertices[] = {HALF(0.25f, 1, 0, 0, 1), HALF(0.75f, 0, 1, 0, 1)};
-    struct scene scene;
-    struct wd_graphics_params params = usual_params();
-    make_scene(&scene, test, &params, vertices, sizeof vertices);
-    struct wd_cmd cmd = begin_frame(test);
-    draw_into(&scene, &cmd, WD_LOAD_CLEAR);
-    wd_cmd_draw_indirect(&cmd, &scene.arguments, 0, 2, 16);
-    wd_cmd_end_rendering(&cmd);
-    finish_frame(test, &cmd);
-    check(&scene, test, COLORS(0, 1, 0, 1), (uint32_t[]){2, 99}, (float[]){0.75f, 0});
-    finish_scene(&scene, test);
-}
-
-static void indirect_draws_with_and_without_the_feature(void **state)
-{
-    struct gpu_test *test = *state;
-    assert_true(test->gpu.features & WD_GPU_FEATURE_MULTI_DRAW_INDIRECT);
-    check_indirect(test);
-    test->gpu.features &= ~(uint32_t)WD_GPU_FEATURE_MULTI_DRAW_INDIRECT;
-    check_indirect(test);
-}
-
 /* As a shadow cascade is drawn: no fragment shader, one layer of a depth array, biased. */
 static void depth_only_into_a_layer(void **state)
 {
@@ -240,7 +210,7 @@ static void depth_only_into_a_layer(void **state)
     assert_true(wd_pipeline_init_graphics(&pipeline, &test->gpu, &(struct wd_graphics_params){
         .vertex = SPIRV(shadow_vert), .bindings = BINDINGS(STORAGE),
         .depth_format = VK_FORMAT_D32_SFLOAT, .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
-        .depth_bias_constant = -4096, .depth_clamp = true}));
+        .depth_bias_constant = -4096}));
     struct wd_cmd cmd = begin_frame(test);
     wd_cmd_use_buffer(&cmd, &buffer, WD_USE_GRAPHICS_READ);
     wd_cmd_begin_rendering(&cmd, &(struct wd_rendering){
@@ -266,7 +236,6 @@ static void other_writes(struct wd_graphics_params *params) { params->color_writ
 static void other_compare(struct wd_graphics_params *params) { params->depth_compare = VK_COMPARE_OP_ALWAYS; }
 static void other_depth(struct wd_graphics_params *params) { params->depth_read_only = true; }
 static void other_bias(struct wd_graphics_params *params) { params->depth_bias_slope = 1; }
-static void other_clamp(struct wd_graphics_params *params) { params->depth_clamp = true; }
 static void other_push(struct wd_graphics_params *params) { params->push_size = 16; }
 static void other_format(struct wd_graphics_params *params) { params->color_formats[0] = VK_FORMAT_R16G16B16A16_SFLOAT; }
 static void other_topology(struct wd_graphics_params *params)
@@ -279,7 +248,7 @@ static void other_parameters_give_other_pipelines(void **state)
     struct gpu_test *test = *state;
     void (*const changes[])(struct wd_graphics_params *) = {
         other_cull, other_blend, other_writes, other_compare, other_depth,
-        other_bias, other_clamp, other_push,   other_format,  other_topology};
+        other_bias, other_push,  other_format, other_topology};
     enum { CHANGES = sizeof changes / sizeof *changes };
     struct wd_pipeline pipelines[CHANGES + 1], again;
     struct wd_graphics_params params = usual_params();
@@ -305,7 +274,6 @@ int main(void)
         GPU_TEST(back_faces_are_culled),
         GPU_TEST(blending_is_premultiplied),
         GPU_TEST(depth_can_be_tested_without_writing),
-        GPU_TEST(indirect_draws_with_and_without_the_feature),
         GPU_TEST(depth_only_into_a_layer),
         GPU_TEST(other_parameters_give_other_pipelines),
     };

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Include rules: a folder may include only what stands left of it in the way of the data.
+# Include rules: a folder may include only what stands left of it in the way of the data, where frame
+# and methods stand at one place.
 #   includes.sh ROOT
 set -eu
 cd "$1"

@@ -85,6 +85,7 @@ static const struct member members[] = {
     F(fog_height_m), F(fog_base_m), F(wind_speed_mps), F(wind_gust),
     F(wind_toward), F(water_level_m), F(water_clarity_m), F(water_color), F(exposure), F(grass),
     F(rock_slope), F(soil), F(snow_line_m), F(rock), F(tree_line_m), F(litter), F(terrain_cell_m),
+    F(sward), F(sward_share), F(sward_whole_m), F(sward_gone_m),
     F(sky_form), F(sky_under), F(sky_under_tint), F(sky_quarters), F(sky_slant), F(sunward), F(leaf_scatter), F(width), F(height),
     F(terrain_width), F(terrain_height), F(sample_index), F(sample_count), F(adds), F(view_mode),
     F(shadow_taps),

@@ -2,6 +2,7 @@
 #include "limits.h"
 #include "output/film.h"
 #include "output/image.h"
+#include "weald/renderer.h"
 
 static const char script[] = "#!/bin/sh\n";
 
@@ -45,11 +46,11 @@ static int count_frames(const char *path)
 static void films_hold_their_frames(void **state)
 {
     struct fixture *f = *state;
-    static const char *const names[] = {"a.mp4", "a.mov", "a.mkv"};
-    for (size_t i = 0; i < 3; i++) {
+    static const char *const names[] = {"a.mp4", "a.m4v", "a.mov", "a.MKV"};
+    for (size_t i = 0; i < 4; i++) {
         struct wd_film_writer film;
         struct wd_film_writer_params params = {in_folder(f, names[i]), 64, 48, .frame_rate = 25};
-        assert_true(wd_film_path(params.path));
+        assert_true(wd_film_has_ending(params.path));
         assert_true(wd_film_writer_open(&film, &params, &f->log));
         assert_true(add_frames(&film, 64, 48, 7, &f->log));
         assert_false(access(f->path, F_OK) == 0); /* not before it is whole */
@@ -57,7 +58,9 @@ static void films_hold_their_frames(void **state)
         assert_int_equal(count_frames(f->path), 7);
         assert_int_equal(file_count(f), (int)i + 1);
     }
-    assert_false(wd_film_path("a.png") || wd_film_path("a.exr") || wd_film_path("mp4"));
+    static const char *const others[] = {"a.png", "a.exr", "mp4", ".mp4", "a.mp4/b", "", NULL};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        assert_false(wd_film_has_ending(others[i]));
 }
 
 /* A flat colour comes back through the matrix and range that the film says it has. */
@@ -150,7 +153,7 @@ static void names_and_sizes_are_checked(void **state)
         {{"/tmp/a.mp4", 100000, 48}, "found 100000 x 48 pixels"},
         {{"/tmp/a.mp4", 64, 48, .frame_rate = -1}, "found -1 frames a second"},
         {{"/tmp/a.mp4", 64, 48, .crf = 99}, "found a crf of 99"},
-        {{"/tmp/a.avi", 64, 48}, "films are .mp4, .mov or .mkv"},
+        {{"/tmp/a.avi", 64, 48}, "films are .mp4, .m4v, .mov or .mkv"},
         {{"/tmp/%s.png", 64, 48}, "not a name for a sequence"},
         {{"/tmp/%d-%d.png", 64, 48}, "not a name for a sequence"},
         {{"/tmp/%d/a.png", 64, 48}, "not a name for a sequence"},

@@ -89,6 +89,45 @@ static void test_seed(void **state)
     wd_world_finish(&world);
 }
 
+static uint64_t hash_on_demand(void (*change)(struct wd_scene_layer *layer))
+{
+    struct small_scene small;
+    struct wd_world world;
+    make_scene(&small);
+    small.scene.planting = WD_PLANTING_ON_DEMAND;
+    change(&small.layers[0]);
+    assert_true(wd_world_init(&world, &small.scene, &(struct wd_world_params){0}));
+    assert_int_equal(world.demand.count, 1); /* the grid */
+    uint64_t hash = wd_world_hash(&world);
+    wd_world_finish(&world);
+    return hash;
+}
+
+/* Each changes one rule. */
+static void no_other(struct wd_scene_layer *layer) { (void)layer; }
+static void other_altitude(struct wd_scene_layer *layer) { layer->altitude_m[1] = 300.0; }
+static void other_slope(struct wd_scene_layer *layer) { layer->slope_deg[1] = 25.0f; }
+static void other_jitter(struct wd_scene_layer *layer) { layer->jitter = 0.5; }
+static void other_aspect(struct wd_scene_layer *layer) { layer->aspect[1] = 1.5f; }
+static void other_tint(struct wd_scene_layer *layer) { layer->tint = 0.25; }
+static void other_groves(struct wd_scene_layer *layer) { layer->patch_size_m = 90.0; }
+
+/* None of its trees is there to be hashed. */
+static void test_rules_on_demand(void **state)
+{
+    (void)state;
+    void (*const changes[])(struct wd_scene_layer *) = {
+        no_other, other_altitude, other_slope, other_jitter, other_aspect, other_tint, other_groves};
+    enum { CHANGES = sizeof changes / sizeof *changes };
+    uint64_t hashes[CHANGES];
+    for (int i = 0; i < CHANGES; i++) {
+        hashes[i] = hash_on_demand(changes[i]);
+        for (int k = 0; k < i; k++)
+            assert_true(hashes[i] != hashes[k]);
+        assert_true(hash_on_demand(changes[i]) == hashes[i]);
+    }
+}
+
 static void test_empty(void **state)
 {
     (void)state;
@@ -243,6 +282,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_any_number_of_threads),
         cmocka_unit_test(test_seed),
+        cmocka_unit_test(test_rules_on_demand),
         cmocka_unit_test(test_empty),
         cmocka_unit_test(test_cover),
         cmocka_unit_test(test_dense_cover),

@@ -166,7 +166,6 @@ void wd_terrain_view_init(struct wd_terrain_view *out, const struct wd_patch_ran
         .cover_texel_m = (float)ground->cover_cell_m,
         .pixel_rad = 1 / view->pixels_per_radian,
         .sample_rad = wd_sample_footprint(view->samples) / view->pixels_per_radian,
-        .sward_fade_m = {ground->sward_fade_m[0], ground->sward_fade_m[1]},
     };
     for (int k = 0; k < 2; k++) {
         double cell = floor(view->eye_m[k] / terrain->cell_m);
