@@ -6,6 +6,8 @@
 
 /* What a line may ask for: commands that end by themselves. */
 enum { OF_LINES = CLI_RENDER | CLI_GROW | CLI_EXPORT | CLI_INFO | CLI_CHECK };
+/* Those that write what scenes are made of, and draw forests of their own. */
+enum { MAKERS_OF_SOURCES = CLI_GROW | CLI_EXPORT };
 
 struct line {
     uint32_t number;
@@ -109,13 +111,18 @@ static bool read_lines(struct batch *batch)
     return ok;
 }
 
+/* What a line that failed leaves may be of a lost device. */
 static enum cli_status run_line(struct batch *batch, struct line *line)
 {
     struct cli_session *session = batch->session;
     const struct cli_options *own = session->options;
     line->options.quiet |= own->quiet;
     cli_session_take(session, &line->options);
+    if (line->command->bit & MAKERS_OF_SOURCES)
+        cli_kept_drop_forest(session->kept);
     enum cli_status status = line->command->run(session);
+    if (status != CLI_OK)
+        cli_kept_drop_forest(session->kept);
     cli_session_take(session, own);
     if (status != CLI_OK && !cli_session_interrupted(session))
         complain(batch, line->number, "failed: ", line->command->name);
@@ -147,7 +154,7 @@ enum cli_status cli_batch(struct cli_session *session)
     session->kept = &kept;
     enum cli_status status = read_lines(&batch) ? run_lines(&batch) : CLI_USAGE;
     session->kept = NULL;
-    wd_renderer_destroy(&kept.renderer);
+    cli_kept_finish(&kept);
     for (uint32_t i = 0; i < batch.count; i++) {
         free(batch.lines[i].text);
         free(batch.lines[i].words);

@@ -77,17 +77,20 @@ struct cli_interrupt {
     sigset_t signals;
 };
 
-/* The renderer that one line of `batch` leaves to the next, and what it was opened with. */
+/* What one line of `batch` leaves to the next, and what it was opened with. */
 struct cli_kept {
     struct wd_renderer *renderer;
     const char *gpu;
     bool gpu_validate;
     uint32_t threads;
+    struct wd_forest *forest;
+    char *forest_text;             /* all that it was made of */
+    const struct wd_forest *shown; /* what the renderer has on its device: NULL or `forest` */
 };
 
 struct cli_session {
     const struct cli_options *options;
-    struct cli_kept *kept; /* of batch; NULL: renderers are closed after use */
+    struct cli_kept *kept; /* of batch; NULL: renderers and forests are closed after use */
     struct cli_meter meter;
     struct cli_interrupt interrupt;
     struct wd_log log;
@@ -130,11 +133,19 @@ __attribute__((format(printf, 2, 3))) void cli_say(struct cli_session *session, 
 __attribute__((format(printf, 2, 3))) bool cli_fail(struct cli_session *session, const char *format,
                                                     ...); /* returns false */
 
-/* Opens the forest that the scene operand and the options ask for. */
+/* The forest that the scene operand and the options ask for, or the kept one; close it after use.
+ * Its method is --method only where options of that method are given. */
 enum wd_result cli_forest_open(struct cli_session *session, struct wd_forest **forest);
+void cli_forest_close(struct cli_session *session, struct wd_forest **forest);
 /* A renderer on the device that the options ask for, or the kept one; close it after use. */
 enum wd_result cli_renderer_open(struct cli_session *session, struct wd_renderer **renderer);
 void cli_renderer_close(struct cli_session *session, struct wd_renderer **renderer);
+/* As wd_renderer_set_forest, with nothing to do where the kept renderer has it. */
+enum wd_result cli_renderer_show(struct cli_session *session, struct wd_renderer *renderer,
+                                 const struct wd_forest *forest);
+/* The next line reads its files anew. */
+void cli_kept_drop_forest(struct cli_kept *kept);
+void cli_kept_finish(struct cli_kept *kept);
 /* Whether there is a method of that name; complains if not. */
 bool cli_method_known(struct cli_session *session, const char *name);
 /* Tells a wrong --method from a right one before any long work. */

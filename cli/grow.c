@@ -250,6 +250,8 @@ enum cli_status cli_export(struct cli_session *session)
                                           : "no output named: add -o FILE.glb or FILE.csv");
         return CLI_USAGE;
     }
+    if (!cli_method_check(session))
+        return CLI_USAGE;
     if (!cli_output_probe(session, options->output))
         return CLI_FAILED;
     enum wd_result result = cli_forest_open(session, &forest);
@@ -258,6 +260,6 @@ enum cli_status cli_export(struct cli_session *session)
                                  &session->log);
     if (result == WD_OK)
         say_file(session);
-    wd_forest_destroy(&forest);
+    cli_forest_close(session, &forest);
     return cli_session_status(session, result);
 }

@@ -100,10 +100,8 @@ static void print_devices(const char *devices)
 }
 
 static void print_text(const struct wd_forest *forest, const struct wd_forest_info *info,
-                       const char *devices)
+                       const struct wd_render_defaults *defaults, const char *devices)
 {
-    struct wd_render_defaults defaults;
-    wd_forest_get_render_defaults(forest, &defaults);
     printf("scene       %s\n", info->name);
     printf("seed        %u, hash %016llx\n", info->seed, (unsigned long long)info->hash);
     printf("extent      %.1f x %.1f m, heights %.1f to %.1f m, ground sampled every %.2f m\n",
@@ -115,8 +113,8 @@ static void print_text(const struct wd_forest *forest, const struct wd_forest_in
         printf("crs         %.*s\n", (int)strcspn(info->crs, "\n"), info->crs);
     printf("octree      %u octants, %u levels\n", info->octant_count, info->octree_depth);
     printf("memory      %.2f MB for terrain, trees and octree\n", (double)info->host_bytes / 1e6);
-    printf("picture     %ux%u, %u samples, method %s\n", defaults.width, defaults.height,
-           defaults.samples, defaults.method);
+    printf("picture     %ux%u, %u samples, method %s\n", defaults->width, defaults->height,
+           defaults->samples, defaults->method);
     print_trees(forest, info);
     print_cameras(forest);
     print_devices(devices);
@@ -224,10 +222,8 @@ static void json_devices(const char *devices)
 }
 
 static void print_json(const struct wd_forest *forest, const struct wd_forest_info *info,
-                       const char *devices)
+                       const struct wd_render_defaults *defaults, const char *devices)
 {
-    struct wd_render_defaults defaults;
-    wd_forest_get_render_defaults(forest, &defaults);
     printf("{\n");
     json_text("name", info->name);
     printf("  \"seed\": %u,\n  \"hash\": \"%016llx\",\n", info->seed,
@@ -243,9 +239,9 @@ static void print_json(const struct wd_forest *forest, const struct wd_forest_in
            (unsigned long long)info->host_bytes);
     printf("  \"octant_count\": %u,\n  \"octree_depth\": %u,\n", info->octant_count,
            info->octree_depth);
-    printf("  \"width\": %u,\n  \"height\": %u,\n  \"samples\": %u,\n", defaults.width,
-           defaults.height, defaults.samples);
-    json_text("method", defaults.method);
+    printf("  \"width\": %u,\n  \"height\": %u,\n  \"samples\": %u,\n", defaults->width,
+           defaults->height, defaults->samples);
+    json_text("method", defaults->method);
     json_species(forest, info);
     json_inventories(forest);
     json_cameras(forest);
@@ -256,18 +252,24 @@ static void print_json(const struct wd_forest *forest, const struct wd_forest_in
 enum cli_status cli_info(struct cli_session *session)
 {
     struct wd_forest *forest = NULL;
+    if (!cli_method_check(session))
+        return CLI_USAGE;
     enum wd_result result = cli_forest_open(session, &forest);
     if (result != WD_OK)
         return cli_session_status(session, result);
     struct wd_forest_info info;
+    struct wd_render_defaults defaults;
     wd_forest_get_info(forest, &info);
+    wd_forest_get_render_defaults(forest, &defaults);
+    if (session->options->method)
+        defaults.method = session->options->method;
     char *devices = wd_device_list();
     cli_meter_clear(&session->meter);
     if (session->options->json)
-        print_json(forest, &info, devices);
+        print_json(forest, &info, &defaults, devices);
     else
-        print_text(forest, &info, devices);
+        print_text(forest, &info, &defaults, devices);
     free(devices);
-    wd_forest_destroy(&forest);
+    cli_forest_close(session, &forest);
     return CLI_OK;
 }

@@ -68,7 +68,9 @@ static const struct cli_command commands[] = {
      cli_check},
     {"batch", CLI_BATCH, "FILE", 1, 1, "run many commands with one start",
      "Runs a file's lines, each a command as after `weald` (render, grow, export, info, check; - reads\n"
-     "standard input). Device and shaders are opened once, which saves most of what small pictures take.\n"
+     "standard input). Device and shaders are opened once, which saves most of what small pictures take;\n"
+     "lines that follow each other and differ in method, camera, time, size or samples alone share a forest,\n"
+     "of files as they were at the first of them.\n"
      "Quotes keep blanks in a word, # begins a comment; nothing else of a shell's is known. All lines are\n"
      "read before the first is run: one that cannot be ends it with 2. One that fails is named, the others\n"
      "are run, and the exit status is 1. Another --gpu, --gpu-validate or --threads opens the device anew.",

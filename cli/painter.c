@@ -6,7 +6,7 @@
 static enum wd_result open_renderer(struct cli_painter *painter, const struct wd_forest *forest)
 {
     enum wd_result result = cli_renderer_open(painter->session, &painter->renderer);
-    return result == WD_OK ? wd_renderer_set_forest(painter->renderer, forest) : result;
+    return result == WD_OK ? cli_renderer_show(painter->session, painter->renderer, forest) : result;
 }
 
 /* A picture that takes long can be stopped and gone on with. */

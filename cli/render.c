@@ -210,6 +210,6 @@ enum cli_status cli_render(struct cli_session *session)
         result = plan.film ? render_film(session, forest, &plan)
                            : render_picture(session, forest, &plan);
     }
-    wd_forest_destroy(&forest);
+    cli_forest_close(session, &forest);
     return cli_session_status(session, result);
 }

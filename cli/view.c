@@ -43,6 +43,6 @@ enum cli_status cli_view(struct cli_session *session)
         result = WD_ERROR_INPUT;
     if (result == WD_OK)
         result = wd_viewer_run(forest, &params);
-    wd_forest_destroy(&forest);
+    cli_forest_close(session, &forest);
     return cli_session_status(session, result);
 }

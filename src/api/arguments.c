@@ -3,10 +3,11 @@
 #include <inttypes.h>
 #include <math.h>
 
+#include "base/dmath.h"
 #include "base/log.h"
 
 static const double MOST_S = 1.0e9;
-static const double DEGREE = 3.14159265358979323846 / 180.0;
+static const double DEGREE = WD_PI / 180.0;
 
 bool wd_check_given(const void *pointer, const char *function, const char *name,
                     const struct wd_log *log)

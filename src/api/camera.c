@@ -5,10 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/dmath.h"
 #include "base/log.h"
 #include "base/memory.h"
-
-static const double PI = 3.14159265358979323846;
 
 const char *wd_forest_camera_name(const struct wd_forest *forest, uint32_t index)
 {
@@ -93,9 +92,9 @@ static void resolve(const struct wd_forest *forest, const struct wd_scene_camera
                     struct wd_camera *camera)
 {
     *camera = (struct wd_camera){
-        .yaw_rad = from->yaw_deg * (PI / 180.0),
-        .pitch_rad = from->pitch_deg * (PI / 180.0),
-        .fov_rad = from->fov_deg * (PI / 180.0),
+        .yaw_rad = from->yaw_deg * (WD_PI / 180.0),
+        .pitch_rad = from->pitch_deg * (WD_PI / 180.0),
+        .fov_rad = from->fov_deg * (WD_PI / 180.0),
     };
     if (from->automatic) {
         overlook(forest, camera);
@@ -148,7 +147,7 @@ static double catmull_rom(const double p[4], double t)
 /* The turn from `from` to `to` the short way round. */
 static double near_angle(double from, double to)
 {
-    return from + remainder(to - from, 2.0 * PI);
+    return from + remainder(to - from, 2.0 * WD_PI);
 }
 
 static void interpolate(const struct wd_camera keys[4], double t, struct wd_camera *camera)
@@ -167,7 +166,7 @@ static void interpolate(const struct wd_camera keys[4], double t, struct wd_came
         camera->position_m[k] = catmull_rom(values[k], t);
     camera->yaw_rad = catmull_rom(values[3], t);
     /* the curve may leave the keys' range: not over the zenith, and no view without or beyond an angle */
-    camera->pitch_rad = fmin(fmax(catmull_rom(values[4], t), -0.5 * PI), 0.5 * PI);
+    camera->pitch_rad = fmin(fmax(catmull_rom(values[4], t), -0.5 * WD_PI), 0.5 * WD_PI);
     camera->fov_rad = fmin(fmax(catmull_rom(values[5], t), fmin(values[5][1], values[5][2])),
                            fmax(values[5][1], values[5][2]));
 }

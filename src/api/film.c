@@ -89,19 +89,11 @@ struct file_mark {
 };
 static const size_t MAX_PICTURE_BYTES = (size_t)1 << 36;
 
-static void ignore_message(void *user, enum wd_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    (void)message;
-}
-
 static bool mark_of(struct file_mark *mark, const struct wd_film *film, uint64_t frame)
 {
     char *path = wd_film_frame_name(film->pattern, frame), *data;
-    const struct wd_log quiet = {.sink = ignore_message};
     size_t size;
-    bool ok = wd_file_exists(path) && wd_file_read(path, MAX_PICTURE_BYTES, &quiet, &data, &size);
+    bool ok = wd_file_exists(path) && wd_file_read(path, MAX_PICTURE_BYTES, &wd_log_quiet, &data, &size);
     if (ok) {
         *mark = (struct file_mark){size, XXH64(data, size, 0)};
         free(data);

@@ -12,7 +12,9 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include "base/bytes.h"
 #include "base/file.h"
+#include "base/log.h"
 #include "base/memory.h"
 
 #include "code_key.h"
@@ -44,20 +46,6 @@ static char *cache_path(const struct wd_bake_cache *cache, const char *kind, uin
     return wd_format("%s/%s-%016llx.bin", cache->directory, kind, (unsigned long long)key);
 }
 
-static void put_u64(uint8_t *at, uint64_t value)
-{
-    for (int i = 0; i < 8; i++)
-        at[i] = (uint8_t)(value >> (8 * i));
-}
-
-static uint64_t get_u64(const uint8_t *at)
-{
-    uint64_t value = 0;
-    for (int i = 0; i < 8; i++)
-        value |= (uint64_t)at[i] << (8 * i);
-    return value;
-}
-
 void wd_cache_put_word(uint8_t *words, size_t at, uint32_t value)
 {
     for (size_t i = 0; i < 4; i++)
@@ -72,25 +60,18 @@ uint32_t wd_cache_get_word(const uint8_t *words, size_t at)
     return value;
 }
 
-static void ignore_message(void *user, enum wd_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    (void)message;
-}
-
 /* --- loading ----------------------------------------------------------------------------- */
 
 static void *decode(const uint8_t *file, size_t file_size, uint64_t key, size_t max_size,
                     size_t *size)
 {
     if (file_size < HEADER_BYTES || memcmp(file, MAGIC, sizeof MAGIC) != 0 ||
-        get_u64(file + 8) != key || get_u64(file + 16) > max_size)
+        wd_get_u64(file + 8) != key || wd_get_u64(file + 16) > max_size)
         return NULL;
-    size_t expected = (size_t)get_u64(file + 16);
+    size_t expected = (size_t)wd_get_u64(file + 16);
     uint8_t *data = wd_alloc(expected);
     size_t got = ZSTD_decompress(data, expected, file + HEADER_BYTES, file_size - HEADER_BYTES);
-    if (ZSTD_isError(got) || got != expected || XXH64(data, got, key) != get_u64(file + 24)) {
+    if (ZSTD_isError(got) || got != expected || XXH64(data, got, key) != wd_get_u64(file + 24)) {
         free(data);
         return NULL;
     }
@@ -101,7 +82,6 @@ static void *decode(const uint8_t *file, size_t file_size, uint64_t key, size_t 
 void *wd_cache_load(struct wd_bake_cache *cache, const char *kind, uint64_t key, size_t max_size,
                     size_t *size)
 {
-    const struct wd_log quiet = {.sink = ignore_message};
     *size = 0;
     if (is_off(cache))
         return NULL;
@@ -109,7 +89,7 @@ void *wd_cache_load(struct wd_bake_cache *cache, const char *kind, uint64_t key,
     size_t file_size = 0;
     void *data = NULL;
     if (wd_file_exists(path) &&
-        wd_file_read(path, HEADER_BYTES + ZSTD_compressBound(max_size), &quiet, &file, &file_size))
+        wd_file_read(path, HEADER_BYTES + ZSTD_compressBound(max_size), &wd_log_quiet, &file, &file_size))
         data = decode((const uint8_t *)file, file_size, key, max_size, size);
     if (data)
         utimensat(AT_FDCWD, path, NULL, 0); /* used now; a folder that forbids it ages on */
@@ -190,19 +170,17 @@ static void bound_size(const struct wd_bake_cache *cache)
 
 static bool write_file(const char *path, const uint8_t *header, const void *packed, size_t size)
 {
-    const struct wd_log quiet = {.sink = ignore_message};
     struct wd_output_file file;
-    if (!wd_output_open(&file, path, &quiet))
+    if (!wd_output_open(&file, path, &wd_log_quiet))
         return false;
     fwrite(header, 1, HEADER_BYTES, file.stream);
     fwrite(packed, 1, size, file.stream);
-    return wd_output_commit(&file, &quiet);
+    return wd_output_commit(&file, &wd_log_quiet);
 }
 
 void wd_cache_store(struct wd_bake_cache *cache, const char *kind, uint64_t key, const void *data,
                     size_t size)
 {
-    const struct wd_log quiet = {.sink = ignore_message};
     if (is_off(cache))
         return;
     size_t bound = ZSTD_compressBound(size);
@@ -210,11 +188,11 @@ void wd_cache_store(struct wd_bake_cache *cache, const char *kind, uint64_t key,
     size_t packed_bytes = ZSTD_compress(packed, bound, data, size, COMPRESSION);
     uint8_t header[HEADER_BYTES];
     memcpy(header, MAGIC, sizeof MAGIC);
-    put_u64(header + 8, key);
-    put_u64(header + 16, size);
-    put_u64(header + 24, XXH64(data, size, key));
+    wd_put_u64(header + 8, key);
+    wd_put_u64(header + 16, size);
+    wd_put_u64(header + 24, XXH64(data, size, key));
     char *path = cache_path(cache, kind, key);
-    bool ok = !ZSTD_isError(packed_bytes) && wd_make_directories(cache->directory, &quiet) &&
+    bool ok = !ZSTD_isError(packed_bytes) && wd_make_directories(cache->directory, &wd_log_quiet) &&
               write_file(path, header, packed, packed_bytes);
     int error = errno;
     if (ok)

@@ -16,6 +16,15 @@ static void deliver(const struct wd_log *log, enum wd_log_level level, const cha
     fprintf(stderr, "weald: %s%s\n", level == WD_LOG_WARNING ? "warning: " : "", message);
 }
 
+static void ignore(void *user, enum wd_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    (void)message;
+}
+
+const struct wd_log wd_log_quiet = {.sink = ignore};
+
 /* Takes from the end what is left of a character that was cut. */
 static void drop_cut(char *message, size_t length)
 {

@@ -17,6 +17,9 @@ void wd_info(const struct wd_log *log, const char *format, ...)
 void wd_debug(const struct wd_log *log, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* Where nobody is told: of what may fail. */
+extern const struct wd_log wd_log_quiet;
+
 /* Several threads' way to one log, whose sink takes one message at a time. Not to be moved. `to` must
  * outlive it; to that itself a sink may log. */
 struct wd_shared_log {

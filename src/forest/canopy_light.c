@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/dmath.h"
 #include "base/jobs.h"
 #include "base/memory.h"
 #include "forest/crowns_apart.h"
@@ -11,7 +12,7 @@
 #include "shared/tree_pose.h"
 #include "tree/vec.h"
 
-static const float PI = 3.14159265f;
+static const float PI = (float)WD_PI;
 
 /* --- the stand ----------------------------------------------------------------------------- */
 

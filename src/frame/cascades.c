@@ -25,11 +25,6 @@ static const float LEAVES_M = 25.0f;
 /* Penumbras and the offsets of shadow look-ups reach this far. */
 static const float CASTER_MARGIN_M = 3.0f;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void sun_axes(struct wd_cascade_box *box, const float direction[3])
 {
     double *t = box->toward, *r = box->right;
@@ -68,12 +63,12 @@ static double slice_square(const struct wd_cascade_box *box, const struct wd_vie
     wd_camera_axes(&view->camera, right, forward, up);
     const double *axes[2] = {box->right, box->up};
     for (int axis = 0; axis < 2; axis++) {
-        double wide = fabs(half_width * dot(right, axes[axis])) +
-                      fabs(half_height * dot(up, axes[axis]));
-        double along = dot(forward, axes[axis]);
+        double wide = fabs(half_width * wd_dot(right, axes[axis])) +
+                      fabs(half_height * wd_dot(up, axes[axis]));
+        double along = wd_dot(forward, axes[axis]);
         double low = fmin(near * (along - wide), far * (along - wide));
         double high = fmax(near * (along + wide), far * (along + wide));
-        middle[axis] = dot(view->eye_m, axes[axis]) + 0.5 * (low + high);
+        middle[axis] = wd_dot(view->eye_m, axes[axis]) + 0.5 * (low + high);
         half_m = fmax(half_m, 0.5 * (high - low));
     }
     return pow(SIZE_STEP, ceil(log(half_m + LOOK_MARGIN_M) / log(SIZE_STEP)));
@@ -120,7 +115,7 @@ static void cascade_box(struct wd_cascade_box *box, const struct wd_cascades_par
     sun_axes(box, params->sun_direction);
     const double *axes[3] = {box->right, box->up, box->toward};
     for (int k = 0; k < 3; k++)
-        box->center[k] = dot(center, axes[k]);
+        box->center[k] = wd_dot(center, axes[k]);
     double middle[2], half_m = slice_square(box, view, near, far, middle);
     if (half_m < LENS_SHARE * box->radius) {
         box->radius = half_m;
@@ -147,7 +142,7 @@ static void cascade_view(struct wd_view *cascade, const struct wd_view *view, co
     const double *rows[3] = {box->right, box->up, box->toward};
     const double scale[3] = {1.0 / box->radius, 1.0 / box->radius, 1.0 / box->depth};
     for (int row = 0; row < 3; row++) {
-        double origin = (dot(eye_m, rows[row]) - box->center[row]) * scale[row];
+        double origin = (wd_dot(eye_m, rows[row]) - box->center[row]) * scale[row];
         for (int k = 0; k < 3; k++)
             cascade->clip_from_rel[k][row] = (float)(rows[row][k] * scale[row]);
         cascade->clip_from_rel[3][row] = (float)origin;
@@ -228,9 +223,9 @@ static void slice_corner(const struct wd_cascade_box *box, const struct wd_view 
     const double *axes[2] = {box->right, box->up};
     for (int axis = 0; axis < 2; axis++) {
         double beside = k & 1 ? half_width : -half_width, above = k & 2 ? half_height : -half_height;
-        double along = dot(forward, axes[axis]) + beside * dot(right, axes[axis]) +
-                       above * dot(up, axes[axis]);
-        at[axis] = (dot(view->eye_m, axes[axis]) + way_m * along - box->center[axis]) / box->radius;
+        double along = wd_dot(forward, axes[axis]) + beside * wd_dot(right, axes[axis]) +
+                       above * wd_dot(up, axes[axis]);
+        at[axis] = (wd_dot(view->eye_m, axes[axis]) + way_m * along - box->center[axis]) / box->radius;
     }
 }
 

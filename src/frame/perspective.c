@@ -11,11 +11,6 @@ static const double LEAST_SINE = 0.05;
 /* Penumbras and the offsets of shadow look-ups reach this far. */
 static const double MARGIN_M = 3.0;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void cross(double c[3], const double a[3], const double b[3])
 {
     for (int k = 0; k < 3; k++)
@@ -29,12 +24,12 @@ static double set_axes(struct wd_cascade_box *box, const struct wd_cascades_para
     for (int k = 0; k < 3; k++)
         box->toward[k] = params->sun_direction[k];
     const double *ahead = forward;
-    double sine = sqrt(fmax(1 - dot(forward, box->toward) * dot(forward, box->toward), 0));
+    double sine = sqrt(fmax(1 - wd_dot(forward, box->toward) * wd_dot(forward, box->toward), 0));
     if (sine < LEAST_SINE) {
         ahead = camera_up;
         sine = LEAST_SINE;
     }
-    double along = dot(ahead, box->toward), length = sqrt(fmax(1 - along * along, 1e-6));
+    double along = wd_dot(ahead, box->toward), length = sqrt(fmax(1 - along * along, 1e-6));
     for (int k = 0; k < 3; k++)
         box->up[k] = (ahead[k] - along * box->toward[k]) / length;
     cross(box->right, box->up, box->toward);
@@ -65,7 +60,7 @@ static void add_place(struct bounds *bounds, const struct wd_cascade_box *box, i
 {
     const double *axes[3] = {box->right, box->up, box->toward};
     for (int axis = 0; axis < 3; axis++) {
-        double at_m = way_m * dot(ray, axes[axis]);
+        double at_m = way_m * wd_dot(ray, axes[axis]);
         bounds->place[i][axis] = at_m;
         bounds->low[axis] = fmin(bounds->low[axis], at_m - MARGIN_M);
         bounds->high[axis] = fmax(bounds->high[axis], at_m + MARGIN_M);

@@ -20,6 +20,11 @@ enum wd_side { WD_OUTSIDE, WD_PARTLY, WD_INSIDE };
 enum wd_side wd_frustum_box(const struct wd_frustum *frustum, const float min[3],
                             const float max[3]);
 
+static inline double wd_dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /* What methods and passes need to know on the CPU about one view (the camera or a cascade). */
 struct wd_view {
     struct wd_camera camera;

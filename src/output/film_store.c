@@ -12,25 +12,12 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include "base/bytes.h"
 #include "base/log.h"
 #include "base/memory.h"
 
 static const char MAGIC[8] = {'W', 'D', 'F', 'I', 'L', 'M', '0', '1'};
 enum { HEAD = 16, FRAME_HEAD = 16, LEVEL = 1 };
-
-static uint64_t get_u64(const uint8_t *bytes)
-{
-    uint64_t value = 0;
-    for (int i = 7; i >= 0; i--)
-        value = value << 8 | bytes[i];
-    return value;
-}
-
-static void put_u64(uint8_t *bytes, uint64_t value)
-{
-    for (int i = 0; i < 8; i++)
-        bytes[i] = (uint8_t)(value >> (8 * i));
-}
 
 static bool cannot(const struct wd_film_store *store, const struct wd_log *log)
 {
@@ -54,7 +41,7 @@ static bool check_head(struct wd_film_store *store, uint64_t key, const struct w
 {
     uint8_t head[HEAD], found[HEAD];
     memcpy(head, MAGIC, 8);
-    put_u64(head + 8, key);
+    wd_put_u64(head + 8, key);
     size_t got = fread(found, 1, HEAD, store->stream);
     if (memcmp(found, MAGIC, got < 8 ? got : 8) != 0)
         return wd_error(log, "%s: is no unfinished film; remove it to begin anew", store->path);
@@ -124,12 +111,12 @@ static bool read_frame(struct wd_film_store *store, void *frame, size_t size)
     uint8_t head[FRAME_HEAD];
     if (fread(head, 1, FRAME_HEAD, store->stream) != FRAME_HEAD)
         return false;
-    uint64_t packed = get_u64(head);
+    uint64_t packed = wd_get_u64(head);
     if (packed > ZSTD_compressBound(size))
         return false;
     uint8_t *bytes = wd_alloc(packed);
     bool ok = fread(bytes, 1, packed, store->stream) == packed &&
-              XXH64(bytes, packed, store->key + store->frames) == get_u64(head + 8) &&
+              XXH64(bytes, packed, store->key + store->frames) == wd_get_u64(head + 8) &&
               ZSTD_decompress(frame, size, bytes, packed) == size;
     free(bytes);
     return ok;
@@ -166,8 +153,8 @@ bool wd_film_store_add(struct wd_film_store *store, const void *frame, size_t si
     size_t room = ZSTD_compressBound(size);
     uint8_t head[FRAME_HEAD], *bytes = wd_alloc(room);
     size_t packed = ZSTD_compress(bytes, room, frame, size, LEVEL);
-    put_u64(head, packed);
-    put_u64(head + 8, XXH64(bytes, packed, store->key + store->frames));
+    wd_put_u64(head, packed);
+    wd_put_u64(head + 8, XXH64(bytes, packed, store->key + store->frames));
     bool ok = fwrite(head, 1, FRAME_HEAD, store->stream) == FRAME_HEAD &&
               fwrite(bytes, 1, packed, store->stream) == packed;
     int error = errno;

@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "base/color.h"
+#include "base/dmath.h"
 #include "base/memory.h"
 #include "output/convolve.h"
 
 /* Symbols in comments are the paper's. */
-static const double PI = 3.14159265358979323846;
 static const float WHITE[3] = {0.950428545f, 1.0f, 1.088900371f}; /* XYZ of D65 */
 
 /* --- colour spaces --------------------------------------------------------------------------- */
@@ -121,7 +121,7 @@ static double fill_gaussian(float *kernel, int radius, double b, float pixels_pe
     double sum = 0;
     for (int k = -radius; k <= radius; k++) {
         double x = k / (double)pixels_per_degree;
-        double value = exp(-PI * PI * x * x / b);
+        double value = exp(-WD_PI * WD_PI * x * x / b);
         kernel[k + radius] = (float)value;
         sum += value;
     }
@@ -133,7 +133,7 @@ static void filter_channel(float *plane, const struct plane_set *set, int channe
                            float pixels_per_degree)
 {
     const double *csf = CSF[channel];
-    int radius = (int)ceil(3 * sqrt(0.04 / (2 * PI * PI)) * (double)pixels_per_degree);
+    int radius = (int)ceil(3 * sqrt(0.04 / (2 * WD_PI * WD_PI)) * (double)pixels_per_degree);
     size_t pixels = (size_t)set->width * set->height;
     float *kernel = wd_alloc_array(2 * (size_t)radius + 1, sizeof *kernel);
     float *scratch = wd_alloc_array(pixels, sizeof *scratch);
@@ -144,7 +144,7 @@ static void filter_channel(float *plane, const struct plane_set *set, int channe
         if (a == 0)
             continue;
         double total = fill_gaussian(kernel, radius, b, pixels_per_degree);
-        double height = a * sqrt(PI / b);
+        double height = a * sqrt(WD_PI / b);
         weight += height * total * total;
         wd_convolve(part, scratch, plane, set->width, set->height, kernel, kernel, radius);
         for (size_t k = 0; k < pixels; k++)

@@ -14,8 +14,6 @@ void wd_image8_finish(struct wd_image8 *image);
 /* Writes sRGB pixels (rows from the top, 3 values a pixel); the file appears whole or not at all. */
 bool wd_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t height,
                   const struct wd_log *log);
-bool wd_png_write16(const char *path, const uint16_t *rgb, uint32_t width, uint32_t height,
-                    const struct wd_log *log);
 
 /* Any PNG up to 32768 pixels a side as 8-bit RGB; transparency is dropped. */
 bool wd_png_read(struct wd_image8 *image, const char *path, const struct wd_log *log);

@@ -28,12 +28,12 @@ static int note_colours(spng_ctx *context)
     return result ? result : spng_set_chrm_int(context, &srgb);
 }
 
-static int encode(spng_ctx *context, FILE *stream, const void *pixels, uint32_t width,
-                  uint32_t height, uint8_t bit_depth)
+static int encode(spng_ctx *context, FILE *stream, const uint8_t *rgb, uint32_t width,
+                  uint32_t height)
 {
-    struct spng_ihdr header = {.width = width, .height = height, .bit_depth = bit_depth,
+    struct spng_ihdr header = {.width = width, .height = height, .bit_depth = 8,
                                .color_type = SPNG_COLOR_TYPE_TRUECOLOR};
-    size_t size = (size_t)width * height * 3 * (bit_depth / 8);
+    size_t size = (size_t)width * height * 3;
     int result = spng_set_png_file(context, stream);
     if (!result)
         result = spng_set_option(context, SPNG_IMG_COMPRESSION_LEVEL, COMPRESSION_LEVEL);
@@ -42,12 +42,12 @@ static int encode(spng_ctx *context, FILE *stream, const void *pixels, uint32_t 
     if (!result)
         result = note_colours(context);
     if (!result)
-        result = spng_encode_image(context, pixels, size, SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
+        result = spng_encode_image(context, rgb, size, SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
     return result;
 }
 
-static bool write_png(const char *path, const void *pixels, uint32_t width, uint32_t height,
-                      uint8_t bit_depth, const struct wd_log *log)
+bool wd_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t height,
+                  const struct wd_log *log)
 {
     if (width < 1 || height < 1 || width > MAX_SIDE_PX || height > MAX_SIDE_PX)
         return wd_error(log, "%s: a picture of %u x %u pixels; allowed are 1 to %d a side", path,
@@ -57,7 +57,7 @@ static bool write_png(const char *path, const void *pixels, uint32_t width, uint
         return false;
     spng_ctx *context = spng_ctx_new(SPNG_CTX_ENCODER);
     errno = 0;
-    int result = context ? encode(context, file.stream, pixels, width, height, bit_depth)
+    int result = context ? encode(context, file.stream, rgb, width, height)
                          : SPNG_EMEM;
     int error = errno;
     spng_ctx_free(context);
@@ -68,18 +68,6 @@ static bool write_png(const char *path, const void *pixels, uint32_t width, uint
              ferror(file.stream) && error ? strerror(error) : spng_strerror(result));
     wd_output_discard(&file);
     return false;
-}
-
-bool wd_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t height,
-                  const struct wd_log *log)
-{
-    return write_png(path, rgb, width, height, 8, log);
-}
-
-bool wd_png_write16(const char *path, const uint16_t *rgb, uint32_t width, uint32_t height,
-                    const struct wd_log *log)
-{
-    return write_png(path, rgb, width, height, 16, log);
 }
 
 static int decode(spng_ctx *context, FILE *stream, struct wd_image8 *image)

@@ -1,9 +1,10 @@
 #include "reference/scatter.h"
 
+#include "base/dmath.h"
 #include "shared/wax.h"
 #include "tree/vec.h"
 
-static const float PI = 3.14159265f;
+static const float PI = (float)WD_PI;
 
 /* A leaf's measured albedo holds what its surface reflects; the rest is what comes from within. */
 static struct wd_vec3 inner_albedo(const struct wd_surface *surface)

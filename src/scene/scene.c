@@ -29,18 +29,6 @@ bool wd_scene_load_with(struct wd_scene *scene, const char *path,
     return ok;
 }
 
-bool wd_scene_load(struct wd_scene *scene, const char *path, const struct wd_log *log)
-{
-    return wd_scene_load_with(scene, path, NULL, log);
-}
-
-static void say_nothing(void *user, enum wd_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    (void)message;
-}
-
 static size_t count_known(json_t *root, const struct wd_keys *table)
 {
     size_t known = 0;
@@ -51,8 +39,7 @@ static size_t count_known(json_t *root, const struct wd_keys *table)
 
 bool wd_scene_text_is_species(const char *path, const char *text, size_t size)
 {
-    const struct wd_log silent = {say_nothing, NULL};
-    char *json = wd_json_blank_comments(path, text, size, &silent);
+    char *json = wd_json_blank_comments(path, text, size, &wd_log_quiet);
     json_t *root = json ? json_loadb(json, strlen(json), 0, NULL) : NULL;
     size_t scene = count_known(root, &wd_scene_keys);
     bool species = count_known(root, &wd_species_keys) > scene ||

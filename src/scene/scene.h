@@ -251,7 +251,6 @@ bool wd_scene_load_with(struct wd_scene *scene, const char *path,
 /* Whether a file's text has more keys of a species, of either kind, than of a scene at its root. Text
  * that is no JSON object has none. */
 bool wd_scene_text_is_species(const char *path, const char *text, size_t size);
-bool wd_scene_load(struct wd_scene *scene, const char *path, const struct wd_log *log);
 void wd_scene_finish(struct wd_scene *scene);
 
 const struct wd_scene_camera *wd_scene_find_camera(const struct wd_scene *scene, const char *name);

@@ -148,7 +148,7 @@ double wd_species_young_crown_m(const struct wd_species *species, double height_
 
 float wd_hedge_reach_m(float width_m, float depth_m)
 {
-    return sqrtf(width_m * depth_m / 3.14159265f);
+    return sqrtf(width_m * depth_m / (float)WD_PI);
 }
 
 /* No variant of usual height fits any of the scene's trees. */

@@ -104,17 +104,9 @@ static bool check_species(void *object, const struct wd_keys_place *place)
 const struct wd_keys wd_species_model_keys = {"model species", species_keys,
                                               sizeof(struct wd_species), check_species};
 
-static void say_nothing(void *user, enum wd_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    (void)message;
-}
-
 bool wd_species_text_has_model(const char *path, const char *text, size_t size)
 {
-    const struct wd_log silent = {say_nothing, NULL};
-    char *json = wd_json_blank_comments(path, text, size, &silent);
+    char *json = wd_json_blank_comments(path, text, size, &wd_log_quiet);
     json_t *root = json ? json_loadb(json, strlen(json), JSON_REJECT_DUPLICATES, NULL) : NULL;
     bool found = json_object_get(root, "model") != NULL;
     json_decref(root);

@@ -90,9 +90,4 @@ void wd_tree_model_drop_leaves(struct wd_tree_model *model);
  * its memory near by. `leaves` are in that order afterwards, no longer in the progressive one. */
 void wd_tree_model_add_leaves_by_place(struct wd_tree_model *model);
 
-/* Look textures, generated: `size` x `size` texels RGBA8 (sRGB colour, A = 255), tileable bark and
- * one leaf (or needle shoot) that fills the square. `rgba` holds size * size * 4 bytes. */
-void wd_species_bark_texture(const struct wd_species *species, uint32_t size, uint8_t *rgba);
-void wd_species_leaf_texture(const struct wd_species *species, uint32_t size, uint8_t *rgba);
-
 #endif

@@ -20,8 +20,6 @@ bool wd_raster_load(struct wd_raster *raster, const struct wd_scene *scene,
                     const struct wd_scene_map *map, const struct wd_terrain *terrain,
                     enum wd_resampling resampling, uint64_t max_samples, const struct wd_log *log);
 void wd_raster_finish(struct wd_raster *raster);
-/* NaN outside or where there is no data. */
-float wd_raster_at(const struct wd_raster *raster, double x_m, double y_m);
 
 /* Reprojects points from `from_crs` ("EPSG:n" or WKT) to the terrain's CRS, in place, x then y
  * (longitude then latitude for degrees). */

@@ -3,11 +3,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/dmath.h"
 #include "base/memory.h"
 #include "shared/sky_map.h"
 #include "world/sky_map_sun.h"
 
-static const float PI = 3.14159265f;
+static const float PI = (float)WD_PI;
 enum { CHOICE_WIDTH = 512, CELL_SIDE = 16 };
 static const float BELOW = 0.1f; /* what is under the horizon is seldom met: its share of choices */
 

@@ -2,7 +2,9 @@
 
 #include <math.h>
 
-static const float PI = 3.14159265f;
+#include "base/dmath.h"
+
+static const float PI = (float)WD_PI;
 
 /* The sun and its glare on film lie within this of the brightest place; beyond, up to the second,
  * is the sky about it. */

@@ -3,8 +3,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/dmath.h"
+
 enum { RINGS = WD_SKYLIGHT_RINGS, BEARINGS = WD_SKYLIGHT_BEARINGS, FORMS = 9 };
-static const float PI = 3.14159265f;
+static const float PI = (float)WD_PI;
 
 /* Moments of the radiance that spherical harmonics up to the second order are made of. */
 static void forms_of(struct wd_vec3 d, float forms[FORMS])

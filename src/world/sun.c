@@ -3,10 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/dmath.h"
 #include "shared/air.h"
 #include "world/skylight.h"
 
-static const float DEGREE = 3.14159265f / 180.0f;
+static const float DEGREE = (float)WD_PI / 180.0f;
 
 /* Full moon over sun (Kieffer and Stone 2005: some 1 / 400,000), a little redder in truth, but eyes
  * (and films) expect it blue. Where the sun's twilight has become fainter, the moon takes over. */

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/dmath.h"
 #include "world/sun.h"
 
-static const double PI = 3.14159265358979323846;
 
 static void fill_weather(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene)
 {
@@ -15,7 +15,7 @@ static void fill_weather(struct wd_frame_uniforms *uniforms, const struct wd_sce
     uniforms->fog_base_m = (float)scene->fog.base_m;
     uniforms->wind_speed_mps = (float)scene->wind.speed_mps;
     uniforms->wind_gust = (float)scene->wind.gust;
-    double from = scene->wind.direction_deg * (PI / 180.0);
+    double from = scene->wind.direction_deg * (WD_PI / 180.0);
     uniforms->wind_toward[0] = (float)-sin(from);
     uniforms->wind_toward[1] = (float)-cos(from);
     uniforms->water_level_m = scene->water.enabled ? (float)scene->water.level_m : -1e9f;
@@ -31,7 +31,7 @@ static void fill_ground(struct wd_frame_uniforms *uniforms, const struct wd_scen
     memcpy(uniforms->soil, scene->ground.soil, sizeof uniforms->soil);
     memcpy(uniforms->rock, scene->ground.rock, sizeof uniforms->rock);
     memcpy(uniforms->litter, scene->ground.litter, sizeof uniforms->litter);
-    uniforms->rock_slope = (float)tan(scene->ground.rock_slope_deg * (PI / 180.0));
+    uniforms->rock_slope = (float)tan(scene->ground.rock_slope_deg * (WD_PI / 180.0));
     uniforms->snow_line_m =
         scene->ground.snow_line_m > 0.0 ? (float)scene->ground.snow_line_m : 1e9f;
     uniforms->tree_line_m =

@@ -154,29 +154,6 @@ float wd_terrain_height(const struct wd_terrain *terrain, double x_m, double y_m
     return (float)(sw + at.v * (north[0] - sw) + at.u * (ne - north[0]));
 }
 
-static double sample_slope_squared(const struct wd_terrain *terrain, uint32_t i, uint32_t j)
-{
-    uint32_t west = i ? i - 1 : 0, east = i + 1 < terrain->width ? i + 1 : i;
-    uint32_t south = j ? j - 1 : 0, north = j + 1 < terrain->height ? j + 1 : j;
-    const float *row = terrain->height_m + (size_t)j * terrain->width;
-    const float *row_south = terrain->height_m + (size_t)south * terrain->width;
-    const float *row_north = terrain->height_m + (size_t)north * terrain->width;
-    double dx = ((double)row[east] - row[west]) / ((east - west) * terrain->cell_m);
-    double dy = ((double)row_north[i] - row_south[i]) / ((north - south) * terrain->cell_m);
-    return dx * dx + dy * dy;
-}
-
-float wd_terrain_slope_squared(const struct wd_terrain *terrain, double x_m, double y_m)
-{
-    struct place at = locate(terrain, x_m, y_m);
-    double steepest = 0;
-    for (uint32_t corner = 0; corner < 4; corner++) {
-        double slope = sample_slope_squared(terrain, at.i + (corner & 1), at.j + (corner >> 1));
-        steepest = fmax(steepest, slope);
-    }
-    return (float)steepest;
-}
-
 float wd_terrain_foot_m(const struct wd_terrain *terrain)
 {
     return terrain->min_m - 0.02f * (float)wd_terrain_extent_x_m(terrain);

@@ -34,8 +34,6 @@ double wd_terrain_extent_x_m(const struct wd_terrain *terrain);
 double wd_terrain_extent_y_m(const struct wd_terrain *terrain);
 /* Local metres; positions outside are clamped to the edge. */
 float wd_terrain_height(const struct wd_terrain *terrain, double x_m, double y_m);
-/* Rise over run of the steeper of the cell's surroundings (central differences), squared. */
-float wd_terrain_slope_squared(const struct wd_terrain *terrain, double x_m, double y_m);
 /* Where the walls of earth end that close the ground at its edges. */
 float wd_terrain_foot_m(const struct wd_terrain *terrain);
 /* Inside the extent and not in a hole. */

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "output/compare.h"
+#include "../output/image_compare.h"
 
 enum { PIXELS = PICTURE_WIDTH * PICTURE_HEIGHT, SAMPLES = 4, DIFFERENCE_GAIN = 4 };
 

@@ -28,8 +28,9 @@ static struct painters {
 static int painters_finish(void **state)
 {
     (void)state;
+    painters.stand = NULL;
     wd_reference_destroy(&painters.reference);
-    enum wd_result result = wd_renderer_set_forest(suite.renderer, suite.forest);
+    enum wd_result result = wd_renderer_set_forest(suite.renderer, NULL);
     wd_forest_destroy(&painters.forest);
     return result != WD_OK;
 }
@@ -45,10 +46,10 @@ static void paint(const struct stand *stand)
     if (painters.stand == stand)
         return;
     assert_int_equal(painters_finish(NULL), 0);
-    painters.stand = stand;
     assert_int_equal(wd_forest_create(&painters.forest, &forest), WD_OK);
     assert_int_equal(wd_renderer_set_forest(suite.renderer, painters.forest), WD_OK);
     assert_int_equal(wd_reference_create(&painters.reference, painters.forest, &params), WD_OK);
+    painters.stand = stand;
 }
 
 static struct wd_camera camera_at(int place)
@@ -372,14 +373,14 @@ static void haze_between_stands_is_as_bright_as_traced(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
+    const struct CMUnitTest tests[] = { /* those of one stand follow each other */
         cmocka_unit_test(the_floor_of_a_plot_is_as_bright_as_traced),
         cmocka_unit_test(a_dark_floor_is_as_bright_as_traced),
         cmocka_unit_test(crowns_from_within_are_as_bright_as_traced),
+        cmocka_unit_test(haze_within_a_stand_is_as_dark_as_traced),
         cmocka_unit_test(a_tree_is_as_dark_as_its_neighbours_make_it),
         cmocka_unit_test(crowns_about_an_eye_are_as_dark_as_traced),
         cmocka_unit_test(crowns_from_within_hide_as_much_of_the_sky_as_traced),
-        cmocka_unit_test(haze_within_a_stand_is_as_dark_as_traced),
         cmocka_unit_test(haze_between_stands_is_as_bright_as_traced),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))

@@ -31,6 +31,36 @@ cp "$scratch/output" "$scratch/all"
 check 'another for another number of threads' [ "$(grep -c 'Vulkan device:' "$scratch/all")" -eq 3 ]
 check 'lines of standard input' sh -c "echo info '$tiny' --json | '$weald' batch - | grep -q tree_count"
 
+# A forest serves the lines that differ in how they draw it: its scene comes out of a pipe, which can be read once.
+sed "s,\.\./\.\.,$root,g" "$tiny" >"$scratch/tiny.json"
+once=$scratch/once.json
+while read -r name more; do
+    echo "render $scratch/tiny.json -o $alone/$name.png --size 96x54 --gpu software $more"
+done >"$scratch/apart" <<EOF
+drawn --method octree --camera west
+more --method octree --camera west --samples 3
+other --method continuum --camera west
+told --camera south --time 2 --view normal
+again --method octree --camera west
+EOF
+sed "s|$scratch/tiny.json|$once|; s|$alone\([^ ]*\)|'$out\1'|" "$scratch/apart" >"$scratch/shared"
+mkfifo "$once"
+timeout 60 cp "$scratch/tiny.json" "$once" &
+expect 0 '5 lines, 0 failed' batch "$scratch/shared"
+sed '/again.png/d' "$scratch/apart" | xargs -L 1 "$weald" >"$scratch/output" 2>&1
+for name in drawn more other told; do
+    check "$name.png of a shared forest is as made alone" cmp "$out/$name.png" "$alone/$name.png"
+done
+check 'the first again, after the others' cmp "$out/drawn.png" "$out/again.png"
+
+# What a line grows is read anew by those after it.
+for age in 5 9; do
+    echo "grow oak --age $age -o $scratch/model.obj"
+    echo "render $tiny -o $alone/$age.png --size 96x54 --gpu software --set species.oak=$scratch/model.obj"
+done >"$scratch/grown"
+expect 0 '4 lines, 0 failed' batch "$scratch/grown"
+check 'another model, another picture' sh -c "test -s '$alone/9.png' && ! cmp -s '$alone/5.png' '$alone/9.png'"
+
 printf '\357\273\277info %s --json\n' "$tiny" >"$scratch/marked"
 expect 0 tree_count batch "$scratch/marked"
 

@@ -9,6 +9,7 @@
 #include "forest/canopy_light.h"
 #include "forest/sky.h"
 #include "frame/uniforms.h"
+#include "world/placement.h"
 
 static void set_weather(struct wd_scene *scene)
 {
@@ -43,12 +44,16 @@ static void make_cover(struct wd_world *world)
     world->cover_cell_m = 8;
     world->cover_width = (uint32_t)(wd_terrain_extent_x_m(terrain) / 8) + 1;
     world->cover_height = (uint32_t)(wd_terrain_extent_y_m(terrain) / 8) + 1;
+    struct wd_ground_input ground;
+    if (!wd_ground_input_init(&ground, terrain, NULL))
+        abort();
     world->cover = wd_alloc_array((size_t)world->cover_width * world->cover_height, 1);
     for (uint32_t j = 0; j < world->cover_height; j++) {
         for (uint32_t i = 0; i < world->cover_width; i++) {
             double x = i * 8.0, y = j * 8.0;
             double wave = sin(x / 130) + sin(y / 110 + x / 300) + 0.7 * sin(x / 41 - y / 53);
-            bool steep = wd_terrain_slope_squared(terrain, x, y) > 0.5f;
+            struct wd_ground_place place = wd_ground_locate(&ground, (int32_t)(1000 * x), (int32_t)(1000 * y));
+            bool steep = wd_ground_slope_squared(&ground, place) > 0.5f;
             double share = steep ? 0 : fmin(fmax(wave, 0), 1);
             world->cover[(size_t)j * world->cover_width + i] = (uint8_t)(255 * share);
         }

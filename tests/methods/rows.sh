@@ -41,6 +41,17 @@ make() {
     esac
 }
 
+# by_forest: lines that share a forest follow each other: those with the same settings and no options of methods
+by_forest() {
+    awk '{
+        settings = ""
+        for (i = 1; i <= NF; i++)
+            if ($i == "--set") settings = settings " " $(i + 1)
+            else if ($i == "--option" || $i == "--faithful") settings = settings " " $0
+        print settings "\t" $0
+    }' | sort -s -t "$(printf '\t')" -k 1,1 | cut -f 2-
+}
+
 covered=0
 rows=0
 sed -n '/^## Every row/,$ {/^| [GRWOI][0-9]/p}' "$root/docs/methods.md" >"$scratch/table"
@@ -50,7 +61,7 @@ while IFS='|' read -r _ _ _ with against _; do
     make $(words "$with")
     make $(words "$against")
 done <"$scratch/table"
-"$weald" batch "$scratch/pictures" -q
+by_forest <"$scratch/pictures" | "$weald" batch - -q
 
 # shellcheck disable=SC2046,SC2086,SC2116
 while IFS='|' read -r _ row _ with against must _; do

@@ -1,7 +1,7 @@
 #include <math.h>
 
 #include "common.h"
-#include "output/compare.h"
+#include "image_compare.h"
 
 static void equal_pictures_differ_in_nothing(void **state)
 {

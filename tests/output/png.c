@@ -19,24 +19,20 @@ static void pictures_round_trip(void **state)
     assert_int_equal(file_count(f), 1);
 }
 
-static void files_say_srgb_and_16_bits_stay(void **state)
+static void files_say_srgb(void **state)
 {
     struct fixture *f = *state;
-    uint16_t rgb[2 * 3] = {0, 1, 257, 65535, 32768, 255};
-    assert_true(wd_png_write16(in_folder(f, "b.png"), rgb, 2, 1, &f->log));
+    const uint8_t rgb[2 * 3] = {0, 1, 2, 255, 128, 3};
+    assert_true(wd_png_write(in_folder(f, "b.png"), rgb, 2, 1, &f->log));
     FILE *file = fopen(f->path, "rb");
     uint8_t bytes[256];
     size_t size = fread(bytes, 1, sizeof bytes, file);
     fclose(file);
-    assert_int_equal(bytes[24], 16); /* bit depth */
+    assert_int_equal(bytes[24], 8); /* bit depth */
     assert_non_null(memmem(bytes, size, "sRGB", 4));
     assert_non_null(memmem(bytes, size, "gAMA\x00\x00\xb1\x8f", 8)); /* 45455 */
     static const uint8_t white[] = {'c', 'H', 'R', 'M', 0, 0, 0x7a, 0x26, 0, 0, 0x80, 0x84};
     assert_non_null(memmem(bytes, size, white, sizeof white)); /* 31270, 32900 */
-    struct wd_image8 image;
-    assert_true(wd_png_read(&image, f->path, &f->log));
-    assert_true(image.pixels[0] == 0 && image.pixels[3] == 255 && image.pixels[4] == 128);
-    wd_image8_finish(&image);
 }
 
 static void outputs_that_cannot_be_are_errors(void **state)
@@ -106,7 +102,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(pictures_round_trip, setup, teardown),
-        cmocka_unit_test_setup_teardown(files_say_srgb_and_16_bits_stay, setup, teardown),
+        cmocka_unit_test_setup_teardown(files_say_srgb, setup, teardown),
         cmocka_unit_test_setup_teardown(outputs_that_cannot_be_are_errors, setup, teardown),
         cmocka_unit_test_setup_teardown(full_disk_leaves_the_old_file, setup, teardown),
         cmocka_unit_test_setup_teardown(damaged_files_are_errors, setup, teardown),

@@ -228,9 +228,9 @@ static void unreadable_files_are_errors(void **state)
 {
     struct fixture *f = *state;
     struct wd_log log = {collect, &f->log};
-    assert_false(wd_scene_load(&f->scene, "/nowhere/a.json", &log));
+    assert_false(wd_scene_load_with(&f->scene, "/nowhere/a.json", NULL, &log));
     assert_true(logged(&f->log, "/nowhere/a.json: cannot be opened"));
-    assert_false(wd_scene_load(&f->scene, f->root, &log));
+    assert_false(wd_scene_load_with(&f->scene, f->root, NULL, &log));
     assert_true(logged(&f->log, "is a directory"));
 }
 

@@ -13,6 +13,7 @@
 #include "base/color.h"
 #include "base/memory.h"
 #include "raster.h"
+#include "tree/look_map.h"
 
 enum { SAMPLES = 2, TEXTURE = 512 };
 
@@ -148,6 +149,15 @@ static void print_figures(const struct wd_tree_model *model, double seconds)
            (double)model->leaf_area_m2 / crown);
 }
 
+static void fill_albedo(const struct wd_species *species, uint32_t layer, uint8_t *rgba)
+{
+    struct wd_look_map map = {TEXTURE, rgba, wd_alloc_array((size_t)TEXTURE * TEXTURE, 4)};
+    wd_look_map_fill(&map, species, layer);
+    free(map.detail);
+    for (size_t i = 0; i < (size_t)TEXTURE * TEXTURE; i++)
+        rgba[4 * i + 3] = 255;
+}
+
 int main(int argc, char **argv)
 {
     struct options options = {.params = {.seed = 1}};
@@ -173,8 +183,8 @@ int main(int argc, char **argv)
         print_figures(&model, wd_clock_s() - start);
         struct wd_raster_looks looks = {TEXTURE, wd_alloc(4 * TEXTURE * TEXTURE),
                                         wd_alloc(4 * TEXTURE * TEXTURE), &species};
-        wd_species_bark_texture(&species, TEXTURE, looks.bark);
-        wd_species_leaf_texture(&species, TEXTURE, looks.leaf);
+        fill_albedo(&species, WD_LOOK_BARK, looks.bark);
+        fill_albedo(&species, WD_LOOK_LEAF, looks.leaf);
         struct wd_raster raster;
         wd_raster_init(&raster, 1600 * SAMPLES, 900 * SAMPLES);
         paint_ground(&raster, 850 * SAMPLES);

@@ -3,9 +3,11 @@
 
 static void assert_finite(const struct wd_tree_mesh *mesh)
 {
+    bool finite = true;
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
         for (int axis = 0; axis < 3; axis++)
-            assert_true(isfinite(mesh->vertices[i].position_m[axis]));
+            finite &= isfinite(mesh->vertices[i].position_m[axis]) != 0;
+    assert_true(finite);
 }
 
 /* How far wood reaches from the axis within 5 cm of the ground. */

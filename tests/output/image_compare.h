@@ -1,6 +1,6 @@
-/* compare.h: how far two pictures are apart, for tests and benchmarks. */
-#ifndef WD_OUTPUT_COMPARE_H
-#define WD_OUTPUT_COMPARE_H
+/* image_compare.h: how far two pictures are apart. */
+#ifndef WD_TESTS_OUTPUT_IMAGE_COMPARE_H
+#define WD_TESTS_OUTPUT_IMAGE_COMPARE_H
 
 #include "output/image.h"
 

@@ -1,4 +1,4 @@
-#include "output/compare.h"
+#include "image_compare.h"
 
 #include <math.h>
 #include <stdlib.h>
