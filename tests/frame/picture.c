@@ -44,8 +44,10 @@ static void make_cover(struct wd_world *world)
     world->cover_cell_m = 8;
     world->cover_width = (uint32_t)(wd_terrain_extent_x_m(terrain) / 8) + 1;
     world->cover_height = (uint32_t)(wd_terrain_extent_y_m(terrain) / 8) + 1;
+    const struct wd_scene scene = {0};
+    const struct wd_placement_params params = {.scene = &scene, .terrain = terrain};
     struct wd_ground_input ground;
-    if (!wd_ground_input_init(&ground, terrain, NULL))
+    if (!wd_ground_input_init(&ground, &params))
         abort();
     world->cover = wd_alloc_array((size_t)world->cover_width * world->cover_height, 1);
     for (uint32_t j = 0; j < world->cover_height; j++) {

@@ -76,8 +76,10 @@ static void height_lies_on_two_triangles(void **state)
 
 static float slope_squared(const struct wd_terrain *terrain, double x_m, double y_m)
 {
+    const struct wd_scene scene = {0};
+    const struct wd_placement_params params = {.scene = &scene, .terrain = terrain};
     struct wd_ground_input ground;
-    assert_true(wd_ground_input_init(&ground, terrain, NULL));
+    assert_true(wd_ground_input_init(&ground, &params));
     struct wd_ground_place place = wd_ground_locate(&ground, (int32_t)(x_m * 1000), (int32_t)(y_m * 1000));
     return wd_ground_slope_squared(&ground, place);
 }
