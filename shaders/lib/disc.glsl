@@ -1,20 +1,33 @@
-/* What the normal target holds of a single leaf, or of a continuum's disc of wood: the normal, folded to an octahedron,
- * in R and G; in B what is seen and the share of the sun that its own tree lets through, in DISC_LIT_STEPS. */
+/* What the normal target holds of a single leaf, of bark close by or of a continuum's disc of wood: the normal, folded to
+ * an octahedron, in R and G; in B what is seen and the share of the sun that its own tree lets through, in DISC_LIT_STEPS,
+ * or of bark how much snow stays on its stem, for the normal is its relief's. */
 
 const uint DISC_WOOD = 0u;
 const uint DISC_LEAF_BELOW = 1u; /* a leaf's lower side */
 const uint DISC_LEAF_ABOVE = 2u; /* its upper side, and above this in DISC_MIRRORS_MOST steps the share of what its
                                     wax mirrors that lies beyond its own tree */
 const uint DISC_MIRRORS_MOST = 15u;
+const uint DISC_BARK = DISC_LEAF_ABOVE + DISC_MIRRORS_MOST + 1u; /* of a mesh, in as many steps as 10 bits leave */
+const float DISC_BARK_TOP = 15.0;
 const float DISC_LIT_STEPS = 56.0, DISC_LIT_TOP = 55.0;
 
-vec4 disc_pack(vec3 normal, uint kind, float lit)
+vec2 disc_fold(vec3 normal)
 {
     vec2 e = normal.xy / (abs(normal.x) + abs(normal.y) + abs(normal.z));
     vec2 folded = (1.0 - abs(e.yx)) * vec2(e.x < 0.0 ? -1.0 : 1.0, e.y < 0.0 ? -1.0 : 1.0);
-    e = normal.z < 0.0 ? folded : e;
+    return (normal.z < 0.0 ? folded : e) * 0.5 + 0.5;
+}
+
+vec4 disc_pack(vec3 normal, uint kind, float lit)
+{
     float share = floor(clamp(lit, 0.0, 1.0) * DISC_LIT_TOP + 0.5);
-    return vec4(e * 0.5 + 0.5, (float(kind) * DISC_LIT_STEPS + share) / 1023.0, 0.0);
+    return vec4(disc_fold(normal), (float(kind) * DISC_LIT_STEPS + share) / 1023.0, 0.0);
+}
+
+vec4 disc_pack_bark(vec3 normal, float snow_up)
+{
+    float share = floor(sqrt(snow_up) * DISC_BARK_TOP + 0.5); /* finest for upright stems, which are dark */
+    return vec4(disc_fold(normal), (float(DISC_BARK) * DISC_LIT_STEPS + share) / 1023.0, 0.0);
 }
 
 /* Of a leaf's mesh, whose shade the maps hold. */
@@ -66,4 +79,10 @@ float disc_lit(float told)
 float disc_mirrors(uint kind)
 {
     return float(max(kind, DISC_LEAF_ABOVE) - DISC_LEAF_ABOVE) * (1.0 / float(DISC_MIRRORS_MOST));
+}
+
+float disc_snow_up(float told)
+{
+    float share = (told - float(DISC_BARK) * DISC_LIT_STEPS) * (1.0 / DISC_BARK_TOP);
+    return share * share;
 }

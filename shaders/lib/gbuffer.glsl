@@ -19,11 +19,13 @@ wd_pixel gbuffer_pixel(ivec2 at, float depth)
     pixel_set_normal(pixel, disc ? disc_normal(normal) : normal.xyz * 2.0 - 1.0);
     float told = disc_told(normal);
     uint kind = disc_kind(told);
+    bool bark = disc && kind == DISC_BARK;
     if (disc)
-        pixel.material = kind == DISC_WOOD ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF;
+        pixel.material = bark || kind == DISC_WOOD ? WD_MATERIAL_WOOD : WD_MATERIAL_LEAF;
     else if (ALL_SINGLE)
         pixel.material = pixel.surface != 0u ? WD_MATERIAL_WOOD : WD_MATERIAL_GROUND;
-    pixel.lit = disc ? disc_lit(told) : -1.0;
+    pixel.snow_up = bark ? disc_snow_up(told) : pixel.snow_up;
+    pixel.lit = disc && !bark ? disc_lit(told) : -1.0;
     pixel.above = kind >= DISC_LEAF_ABOVE ? 1.0 : 0.0;
     pixel.mirrors = disc_mirrors(kind);
     pixel_lay_snow(pixel);

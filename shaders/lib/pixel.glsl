@@ -21,6 +21,7 @@ struct wd_pixel {
     float above;      /* 1: the upper side of a disc's leaf */
     float mirrors;    /* share of what its wax mirrors that lies beyond its tree; the rest: the tree's leaves */
     uint surface;     /* tree + 1, or 0 */
+    float snow_up;    /* share of snow that stays on what looks so */
     float snow;       /* share of a tree's surface that lies under snow */
 };
 
@@ -30,6 +31,7 @@ void pixel_set_normal(inout wd_pixel pixel, vec3 mean)
     float length_of_mean = max(length(mean), 1e-4);
     pixel.normal = (mean + vec3(0.0, 0.0, 1e-6)) / length_of_mean;
     pixel.facing = pixel.normal * min(1.005 * length_of_mean, 1.0);
+    pixel.snow_up = wd_snow_up(pixel.normal.z);
 }
 
 /* Metres that a pixel spans where it shows something. */
@@ -44,7 +46,7 @@ void pixel_lay_snow(inout wd_pixel pixel)
     pixel.snow = 0.0;
     if (frame.snow == 0.0 || pixel.surface == 0u || frame.view_mode == WD_MODE_LOD)
         return;
-    pixel.snow = wd_snow_share_on(pixel.rel, pixel.normal, pixel.openness, pixel_size_m(pixel));
+    pixel.snow = wd_snow_share_on(pixel.rel, pixel.snow_up, pixel.openness, pixel_size_m(pixel));
     pixel.albedo = mix(pixel.albedo, WD_SNOW_ALBEDO, pixel.snow);
     pixel.normal = normalize(mix(pixel.normal, vec3(0.0, 0.0, 1.0), 0.5 * pixel.snow));
     pixel.facing = mix(pixel.facing, vec3(0.0, 0.0, length(pixel.facing)), 0.5 * pixel.snow);

@@ -17,6 +17,7 @@ layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 #include "lib/grain.glsl"
 #include "lib/disc.glsl"
 #include "lib/flat_mirrors.glsl"
+#include "shared/snow.h"
 
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_uv;
@@ -107,6 +108,7 @@ void main()
     if (look.a < WD_LOOK_CUT)
         discard;
     wd_surface surface = wd_surface(look.rgb * in_tint.rgb * grain.shade, normalize(in_normal), in_tint.a);
+    float snow_up = wd_snow_up(surface.normal.z);
     if (DETAIL != 0u) {
         float near = 1.0 - smoothstep(RELIEF_WHOLE_M, RELIEF_NONE_M, length(in_place.xyz));
         if (material == WD_MATERIAL_LEAF)
@@ -118,7 +120,7 @@ void main()
         surface.albedo = level_color(push.level) * (0.3 + 0.7 * in_tint.a);
     out_albedo = vec4(surface.albedo, surface.openness);
     out_normal = vec4(surface.normal * 0.5 + 0.5, float(material) / 3.0);
-    if (DETAIL != 0u && material == WD_MATERIAL_LEAF)
-        out_normal = pack_leaf(surface.normal);
+    if (DETAIL != 0u)
+        out_normal = material == WD_MATERIAL_LEAF ? pack_leaf(surface.normal) : disc_pack_bark(surface.normal, snow_up);
     out_surface = in_flat.x;
 }

@@ -116,7 +116,7 @@ static struct wd_vec3 leaf_transmittance(const struct wd_surface *surface,
 static void lay_snow(struct wd_surface *surface, const struct wd_frame_uniforms *frame,
                      float openness, float footprint_m)
 {
-    float share = frame->snow > 0 ? wd_snow_share_on(frame, surface->place, surface->outward,
+    float share = frame->snow > 0 ? wd_snow_share_on(frame, surface->place, wd_snow_up(surface->outward.z),
                                                      openness, footprint_m)
                                   : 0;
     if (share <= 0)

@@ -59,6 +59,9 @@ double wd_species_height_at_age_m(const struct wd_species *species, double age_y
     return g->height_a * wd_dpow(1 - wd_dexp(-g->height_b * age_years), g->height_c);
 }
 
+/* Stem of a free broadleaf over that of others in the open, and the least height per diameter that it makes. */
+static const double FREE_STEM = 1.2, LEAST_SLENDER = 31;
+
 /* Where a rising function of one variable reaches `value`. */
 static double invert(double (*rising)(const struct wd_species *, double),
                      const struct wd_species *species, double value, double low, double high)
@@ -103,12 +106,22 @@ double wd_species_stem_of_height_cm(const struct wd_species *species, double hei
     return stem_cm;
 }
 
+double wd_species_free(const struct wd_species *species, double openness)
+{
+    double beyond = fmin(fmax((openness - 0.4) / (1 - 0.4), 0), 1);
+    bool broad = species->form == WD_FORM_BROADLEAF && !species->model.file && species->clip_box_m[2] == 0;
+    return broad ? beyond * beyond * (3 - 2 * beyond) * fmin(1.6 * (1 - (double)species->apical_dominance), 1) : 0;
+}
+
 double wd_species_open_stem(const struct wd_species *species, double height_m, double openness)
 {
     double typical_m = (double)species->typical_height_m, ratio = (double)species->stem_open;
     if (height_m < typical_m)
         ratio *= fmax(1, wd_species_stem_of_height_cm(species, typical_m) * height_m /
                              (typical_m * wd_species_stem_of_height_cm(species, height_m)));
+    double stoutest = 100 * height_m / (LEAST_SLENDER * wd_species_stem_of_height_cm(species, height_m));
+    double thicker = fmin(fmax(stoutest / ratio, 1), FREE_STEM);
+    ratio *= 1 + (thicker - 1) * wd_species_free(species, openness);
     return 1 + (ratio - 1) * openness;
 }
 

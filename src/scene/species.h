@@ -208,6 +208,9 @@ double wd_species_dbh_cm(const struct wd_species *species, double height_m);
 /* The same for any height: where the curve gives no diameter (just over the height where diameters
  * are taken, and near the greatest height) stems thicken with height. */
 double wd_species_stem_of_height_cm(const struct wd_species *species, double height_m);
+/* How far a broadleaf has grown free of neighbours: 0 up to two fifths open, where they still touch its crown, 1 in the
+ * open; less the more its leader leads. Such trees are broad domes of level limbs on short, stout stems. */
+double wd_species_free(const struct wd_species *species, double openness);
 /* Stem diameter over that of a forest tree of the same height. Trees in the open keep their height
  * per diameter from youth on (30 to 60: Hasenauer, For. Ecol. Manage. 96 (1997) 197-206), while young
  * trees of a forest are rods: below the typical height the ratio grows. */

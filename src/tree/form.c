@@ -13,14 +13,21 @@ static float crown_m(const struct wd_species *species, double dbh_cm)
     return (species->form == WD_FORM_SNAG ? LIVING_CROWN : 1) * (float)wd_species_crown_m(species, dbh_cm);
 }
 
-/* Crowns that no neighbour has touched: cones of conifers, eggs of broadleaves. */
+/* Crowns that no neighbour has touched: cones of conifers, eggs of broadleaves, and domes of old ones in the open. */
 static void shape_crown(struct wd_tree_form *form)
 {
     static const float cone[4] = {1, 0.8f, 0.45f, 0.03f}, egg[4] = {0.8f, 1, 0.66f, 0.06f};
+    static const float dome[4] = {0.9f, 1, 0.86f, 0.2f};
     const float *young = form->species->form == WD_FORM_CONIFER ? cone : egg;
-    for (int i = 0; i < 4; i++)
-        form->crown_shape[i] = wd_mixf(form->species->crown_shape[i], young[i], form->youth);
+    for (int i = 0; i < 4; i++) {
+        float own = form->species->crown_shape[i];
+        float grown = wd_mixf(own, wd_maxf(own, dome[i]), form->free);
+        form->crown_shape[i] = wd_mixf(grown, young[i], form->youth);
+    }
 }
+
+/* Share of its clear stem that a free broadleaf lacks. */
+static const float FREE_LOWER = 0.3f;
 
 struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
                                     const struct wd_grow_params *params)
@@ -34,10 +41,12 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
     if (youth > 0)
         crown = (float)wd_species_young_crown_m(species, (double)height, (double)open, (double)crown);
     crown *= wd_random_range(&random, 0.92f, 1.08f);
+    float free = params->clip ? 0 : (1 - youth) * (float)wd_species_free(species, (double)open);
     float typical_crown = crown_m(species, wd_species_dbh_cm(species, (double)species->typical_height_m));
     float grown = wd_minf(height / species->typical_height_m, 1); /* in the open: clear later */
     float shaded = species->crown_base_forest * wd_mixf(1, YOUNG_CLEAR, youth);
     float clear = wd_mixf(shaded, grown * species->crown_base_open, open);
+    clear *= 1 - FREE_LOWER * free;
     float length = height * (1 - clear) /
                    (species->typical_height_m * (1 - species->crown_base_forest));
     struct wd_tree_form form = {
@@ -48,6 +57,7 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
         .youth = youth,
         .leader = wd_mixf(species->apical_dominance, 1, youth),
         .openness = open,
+        .free = free,
         .detail = params->detail,
         .dbh_m = params->dbh_m,
         .crown_base_m = height * clear * wd_random_range(&random, 0.94f, 1.04f),

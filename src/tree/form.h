@@ -16,6 +16,7 @@ struct wd_tree_form {
     float leader;         /* the species' apical dominance; young trees all have one leader */
     float crown_shape[4]; /* as the species' own */
     float openness;       /* 0 forest-grown .. 1 open-grown */
+    float free;           /* wd_species_free, but for clipped and young trees */
     float detail;
     float dbh_m;
     float crown_base_m;

@@ -194,6 +194,21 @@ static struct wd_vec3 best_direction(const struct wd_skeleton *skeleton,
     return best;
 }
 
+/* Angle of a limb to the stem; `height` is 0 at the crown's foot, 1 where the stem ends. No limb of a young tree rises
+ * beside its leader. Those of a free broadleaf have light from the side: the lowest are nearly level. Cut ones are
+ * level down to the ground. */
+static float limb_angle_deg(const struct wd_tree_form *form, const struct wd_branch_order *spec, float height)
+{
+    float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], height);
+    angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(68, 46, height)), form->youth);
+    angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(78, 40, height)), form->free);
+    return form->clip ? wd_mixf(100, 20, height) : angle;
+}
+
+/* Limbs of a free broadleaf wander less: they bear all that grows on the way to their end, and that weight lets
+ * none rise. */
+#define FREE_WANDER 0.6f
+
 static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order,
                        const struct joint *joint)
 {
@@ -202,18 +217,19 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     struct wd_stem stem = {.order = order, .parent = joint->parent, .key = joint->key,
                         .upturn = spec->upturn, .tip_upturn = spec->tip_upturn,
                         .wander = spec->wander};
+    if (order == 0) {
+        stem.upturn *= 1 - form->free;
+        stem.wander *= wd_mixf(1, FREE_WANDER, form->free);
+    }
     struct wd_vec3 axis;
     const struct wd_branch *parent = &skeleton->branches[joint->parent];
     stem.start = wd_branch_point(skeleton, parent, joint->share, &axis, &stem.parent_node);
     stem.along_m = skeleton->nodes[stem.parent_node].along_m;
-    float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], joint->height);
-    if (order == 0) /* no limb of a young tree rises beside its leader */
-        angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(68, 46, joint->height)), form->youth);
-    if (form->clip && order == 0) /* cut limbs are level down to the ground */
-        angle = wd_mixf(100, 20, joint->height);
+    float angle = order == 0 ? limb_angle_deg(form, spec, joint->height)
+                             : wd_mixf(spec->angle_deg[0], spec->angle_deg[1], joint->height);
     angle *= (float)(WD_PI / 180) * wd_random_range(&random, 0.88f, 1.12f);
     stem.direction = best_direction(skeleton, form, joint, &random, stem.start, axis, angle);
-    struct wd_vec3 ahead = bend_up(stem.direction, 0.3f * spec->upturn * joint->length_m);
+    struct wd_vec3 ahead = bend_up(stem.direction, 0.3f * stem.upturn * joint->length_m);
     stem.length_m = joint->length_m;
     if (!hangs(spec))
         stem.length_m = wd_tree_envelope_reach_m(form, stem.start, ahead, joint->length_m);
@@ -229,6 +245,7 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
 }
 
 #define YOUNG_SPACING 0.65f
+#define FREE_SPACING 1.1f
 
 static float spacing_m(const struct wd_tree_form *form, int order)
 {
@@ -236,8 +253,8 @@ static float spacing_m(const struct wd_tree_form *form, int order)
     double power = form->spread < 1 ? 0.5 : order == 0 ? 0.6 : 0.9;
     double squeeze = wd_dpow((double)form->spread, power);
     float spacing = form->species->orders[order].spacing_m * (float)squeeze;
-    if (order == 0) /* buds all along the leader have shot, and none has died in the shade */
-        spacing *= wd_mixf(1, YOUNG_SPACING, form->youth);
+    if (order == 0) /* buds all along a young leader have shot, and none has died in the shade */
+        spacing *= wd_mixf(1, YOUNG_SPACING, form->youth) * wd_mixf(1, FREE_SPACING, form->free);
     if (form->clip) /* cut shoots branch again: a hedge is as dense as its light allows */
         spacing = wd_minf(spacing, (order == 0 ? 0.03f : 0.05f) * form->crown_radius_m + 0.02f);
     return spacing;

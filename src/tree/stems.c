@@ -3,13 +3,16 @@
 enum { TRUNK_STEPS = 30, STEM_STEPS = 14, PALM_STEPS = 36 };
 #define MAX_REACH 1.9f
 #define LYING_M 0.03f
+/* A free tree's stem goes so much higher before it dissolves: it has limbs from far down on. */
+#define FREE_STEM_END 0.15f
 
 float wd_tree_trunk_end(const struct wd_tree_form *form)
 {
     float leader = form->species->apical_dominance;
     if (form->clip) /* what is cut fills up to the cut */
         return 1;
-    return leader > 0.85f ? 1 : wd_mixf(0.22f + 0.8f * leader, 1, form->youth);
+    float grown = 0.22f + 0.8f * leader + FREE_STEM_END * form->free;
+    return leader > 0.85f ? 1 : wd_mixf(grown, 1, form->youth);
 }
 
 /* The trunk keeps upright as far as it goes. */
