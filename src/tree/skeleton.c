@@ -201,7 +201,7 @@ static float limb_angle_deg(const struct wd_tree_form *form, const struct wd_bra
 {
     float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], height);
     angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(68, 46, height)), form->youth);
-    angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(78, 40, height)), form->free);
+    angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(74, 36, height)), form->free);
     return form->clip ? wd_mixf(100, 20, height) : angle;
 }
 
@@ -245,7 +245,7 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
 }
 
 #define YOUNG_SPACING 0.65f
-#define FREE_SPACING 1.1f
+#define FREE_SPACING 0.7f
 
 static float spacing_m(const struct wd_tree_form *form, int order)
 {
