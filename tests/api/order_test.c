@@ -39,7 +39,9 @@ static void expect_as_alone(struct suite *suite, int shot, int before, const str
     wd_picture_finish(&picture);
 }
 
-/* Each after each other: from every first one to all that come later in the list, and back between them. */
+/* Samples more and fewer, an error bound before and after, another method, another place. */
+static const int order[] = {0, 1, 0, 4, 1, 4, 0, 2, 1, 3, 0};
+
 static void what_was_drawn_before_leaves_no_trace(void **state)
 {
     struct suite *suite = *state;
@@ -48,11 +50,9 @@ static void what_was_drawn_before_leaves_no_trace(void **state)
         assert_int_equal(wd_renderer_set_forest(suite->renderer, suite->forest), WD_OK);
         alone[i] = take(suite, &shots[i]);
     }
-    for (int i = 0; i < SHOTS; i++)
-        for (int j = i + 1; j < SHOTS; j++) {
-            expect_as_alone(suite, i, i ? j - 1 : SHOTS - 1, &alone[i]);
-            expect_as_alone(suite, j, i, &alone[j]);
-        }
+    expect_as_alone(suite, order[0], SHOTS - 1, &alone[order[0]]);
+    for (size_t i = 1; i < sizeof order / sizeof *order; i++)
+        expect_as_alone(suite, order[i], order[i - 1], &alone[order[i]]);
     for (int i = 0; i < SHOTS; i++)
         wd_picture_finish(&alone[i]);
 }
