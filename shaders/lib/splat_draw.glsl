@@ -45,7 +45,7 @@ wd_outline disc_outline(float radius)
 }
 
 /* From this radius on, in pixels, a splat has a leaf's outline. */
-const float LEAF_PX = 1.7;
+const float LEAF_PX = 1.0;
 /* Largest width over length. */
 const float LEAF_WIDTH = 0.5;
 

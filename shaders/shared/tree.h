@@ -165,7 +165,7 @@ WD_STATIC_ASSERT_SIZE(wd_leaf_vertex, 24);
 
 
 /* Twigs of broad leaves are whole nearer than the one, and nothing is drawn as a twig beyond the
- * other; those of needles come at half of either: they are smaller, and many more. */
+ * other; those of needles come at four fifths of either: they are smaller, and many more. */
 #define WD_SPRAY_WHOLE_M 3.5f
 #define WD_SPRAY_NONE_M 5.5f
 
