@@ -75,9 +75,11 @@ static size_t hide_skins(struct text *text, const char *path)
 {
     static const char key[] = "\"skin";
     struct text json = json_of(text, path);
-    char *end = json.bytes + json.size;
     size_t count = 0;
-    for (char *at = json.bytes; at && (at = memmem(at, (size_t)(end - at), key, sizeof key - 1)); at++) {
+    if (!json.bytes)
+        return 0;
+    char *end = json.bytes + json.size;
+    for (char *at = json.bytes; (at = memmem(at, (size_t)(end - at), key, sizeof key - 1)); at++) {
         char *after = at + sizeof key - 1;
         after += after < end && *after == 's';
         if (after == end || *after != '"')
