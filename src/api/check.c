@@ -149,8 +149,8 @@ enum wd_result wd_file_check(const char *path, const char *data_dir, const struc
         wd_error(log, "%s: there is no such file", path);
         return WD_ERROR_INPUT;
     }
-    bool ok = wd_has_ending(path, ".json")        ? check_json(path, data_dir, log)
-              : wd_has_ending(path, ".csv")       ? check_csv(path, log)
+    bool ok = wd_has_ending(path, ".json")     ? check_json(path, data_dir, log)
+              : wd_has_ending(path, ".csv")    ? check_csv(path, log)
               : wd_species_is_model_file(path) ? check_species(path, log)
                                                : check_raster(path, log);
     return ok ? WD_OK : WD_ERROR_INPUT;

@@ -1,7 +1,9 @@
 #include "world/far_sward.h"
 
 #include <math.h>
+#include <stdlib.h>
 
+#include "base/memory.h"
 #include "world/cover.h"
 
 /* The first layer's, where several fade: the ground has one. */
@@ -31,28 +33,37 @@ static bool fades(const struct wd_scene *scene, const struct wd_world *world, si
     return layer < scene->layer_count && scene->layers[layer].fade_far_m[1] > 0;
 }
 
+static void set_albedo(struct wd_far_sward *sward, const struct wd_scene *scene, const double *areas, double all)
+{
+    for (size_t i = 0; i < scene->species_file_count; i++)
+        for (int k = 0; k < 3; k++) {
+            double leaf = (double)(scene->species[i].leaf.color[k] + scene->species[i].leaf.transmittance[k]);
+            sward->albedo[k] += (float)(areas[i] / all * deep_albedo(leaf));
+        }
+}
+
 void wd_far_sward_init(struct wd_world *world, const struct wd_scene *scene)
 {
     struct wd_far_sward *sward = &world->far_sward;
-    double area = 0, fading = 0, sums[3] = {0};
+    double all = 0, fading = 0, *areas = wd_alloc_array(scene->species_file_count + 1, sizeof *areas);
     *sward = (struct wd_far_sward){0};
     for (size_t i = 0; i < world->tree_count; i++) {
         const struct wd_tree *tree = &world->trees[i];
-        double crown_m = WD_TREE_CROWN_M(*tree), own = crown_m * crown_m;
+        double crown_m = (double)WD_TREE_CROWN_M(*tree), own = crown_m * crown_m;
         if ((tree->size & 0xffffu) >= WD_CANOPY_CM)
             continue;
-        area += own;
-        if (!fades(scene, world, i))
-            continue;
-        const struct wd_species *species = &scene->species[WD_TREE_SPECIES(*tree)];
-        fading += own;
-        for (int k = 0; k < 3; k++)
-            sums[k] += own * deep_albedo((double)(species->leaf.color[k] + species->leaf.transmittance[k]));
+        all += own;
+        if (fades(scene, world, i)) {
+            fading += own;
+            areas[WD_TREE_SPECIES(*tree)] += own;
+        }
     }
-    for (int k = 0; k < 3 && fading > 0; k++)
-        sward->albedo[k] = (float)(sums[k] / fading);
-    sward->share = fading > 0 ? (float)(fading / area) : 0;
+    if (fading > 0) {
+        sward->share = (float)(fading / all);
+        set_albedo(sward, scene, areas, fading);
+    }
     set_fade(sward, scene);
+    free(areas);
 }
 
 float wd_sward_layers_at(const struct wd_world *world, double x_m, double y_m)

@@ -145,6 +145,43 @@ static void test_empty(void **state)
     wd_world_finish(&world);
 }
 
+/* Oaks of a layer that fades, spruces of one that does not: the ground is to have the oaks' colour, as far as they cover it. */
+static void test_far_sward(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    small_scene_init(&small);
+    small.species[0].leaf.color[0] = 0.5f;
+    small.species[0].leaf.transmittance[0] = 0.25f; /* a quarter is absorbed */
+    small.species[1].leaf.color[0] = 0.9f;
+    for (int i = 0; i < 2; i++) {
+        struct wd_scene_layer *layer = small_scene_layer(&small);
+        layer->species += i;
+        layer->species_count = 1;
+        layer->height_m[0] = layer->height_m[1] = 1.0f;
+        layer->fade_far_m[0] = i ? 0 : 30;
+        layer->fade_far_m[1] = i ? 0 : 60;
+    }
+    struct wd_world world;
+    assert_true(wd_world_init(&world, &small.scene, &(struct wd_world_params){0}));
+    assert_true(world.tree_count > 1000);
+    double areas[2] = {0};
+    for (size_t i = 0; i < world.tree_count; i++)
+        areas[world.layer_of_tree[i]] += pow(world.trees[i].size >> 16, 2);
+    assert_true(areas[0] > 0 && areas[1] > 0);
+    assert_float_equal(world.far_sward.share, areas[0] / (areas[0] + areas[1]), 1e-6);
+    assert_float_equal(world.far_sward.albedo[0], 1.0 / 3, 1e-5); /* (1 - sqrt 1/4) / (1 + sqrt 1/4) */
+    assert_float_equal(world.far_sward.albedo[1], 0, 1e-6);
+    assert_float_equal(world.far_sward.fade_m[0], 30, 0);
+    assert_float_equal(world.far_sward.fade_m[1], 60, 0);
+    wd_world_finish(&world);
+    small.layers[0].fade_far_m[1] = 0;
+    assert_true(wd_world_init(&world, &small.scene, &(struct wd_world_params){0}));
+    assert_float_equal(world.far_sward.share, 0, 0);
+    assert_float_equal(world.far_sward.fade_m[1], 0, 0);
+    wd_world_finish(&world);
+}
+
 /* One tree with a wide crown in the middle: the cover is its disc. */
 static void test_cover(void **state)
 {
@@ -284,6 +321,7 @@ int main(void)
         cmocka_unit_test(test_seed),
         cmocka_unit_test(test_rules_on_demand),
         cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_far_sward),
         cmocka_unit_test(test_cover),
         cmocka_unit_test(test_dense_cover),
         cmocka_unit_test(test_interruption),
