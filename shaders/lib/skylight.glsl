@@ -2,6 +2,8 @@
  * back from the ground.
  * Expects `frame`, `push` (wd_light_push) and the libraries of gbuffer and crown. */
 
+#include "shared/crown_sky.h"
+
 /* Of the canopy here (forest/canopy_light.h), in layer 0 the roots of the shares of the sky's light from
  * each quarter that reach the ground's herbs, past crowns and hills; in layer 1 those of its base and top,
  * and of the herbs. Where the shader does not say, all light does. */
@@ -37,6 +39,54 @@ float through_herbs(float layers)
     return exp(-layers);
 }
 
+/* What crowns leave the ground about the eye (shared/crown_sky.h): shares of the quarters' light on level ground, and of
+ * their low sky's. `share`: how far that is known. */
+struct wd_floor_sky {
+    float share;
+    vec4 level, low;
+};
+
+const wd_floor_sky NO_FLOOR = wd_floor_sky(0.0, vec4(0.0), vec4(0.0));
+
+#ifdef CROWN_SKY
+/* Between four squares; the roots are mixed. */
+wd_floor_sky floor_sky(vec3 rel)
+{
+    float share = clamp((WD_FLOOR_SKY_FAR_M - length(rel)) / (WD_FLOOR_SKY_FAR_M - WD_FLOOR_SKY_WHOLE_M), 0.0, 1.0);
+    wd_floor_sky left = NO_FLOOR;
+    left.share = push.floor_sky_m > 0.0 ? share : 0.0;
+    if (left.share <= 0.0)
+        return left;
+    vec2 at = (rel.xy + push.camera_m) * (1.0 / WD_FLOOR_SKY_M) - 0.5, low = floor(at);
+    vec2 next = at - low, here = 1.0 - next;
+    for (int i = 0; i < 4; i++) {
+        ivec2 on = ivec2(i & 1, i >> 1), square = ivec2(low) + on;
+        vec2 shares = mix(here, next, vec2(on));
+        uvec4 texel = texelFetch(CROWN_SKY, int(wd_floor_sky_texel(square.x, square.y)));
+        left.level += shares.x * shares.y * unpackUnorm4x8(texel.x);
+        left.low += shares.x * shares.y * unpackUnorm4x8(texel.y);
+    }
+    left.level *= left.level;
+    left.low *= left.low;
+    return left;
+}
+#else
+wd_floor_sky floor_sky(vec3 rel)
+{
+    return NO_FLOOR;
+}
+#endif
+
+wd_floor_sky herbs_floor_sky(wd_crown crown, vec3 rel)
+{
+    float herb = 1.0 - is_tree(crown);
+    wd_floor_sky floor = NO_FLOOR;
+    if (herb > 0.0)
+        floor = floor_sky(rel);
+    floor.share *= herb;
+    return floor;
+}
+
 wd_shelter ground_shelter(wd_pixel pixel)
 {
     vec4 field = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 0.0);
@@ -53,6 +103,14 @@ wd_shelter ground_shelter(wd_pixel pixel)
     shelter.floor_mean = dot(shelter.through, vec4(0.25));
     shelter.under = shelter.beside = log2(shelter.floor_mean);
     shelter.through *= pixel.surface == 0u ? pixel.openness * through_herbs(shelter.herbs) : 1.0;
+    return shelter;
+}
+
+/* The same where the table tells of the place itself what the field does of all about it: of the ground and herbs. */
+wd_shelter floor_shelter(wd_shelter shelter, wd_floor_sky floor, float own)
+{
+    shelter.through = mix(shelter.through, max(floor.level, vec4(1e-3)) * own, floor.share);
+    shelter.under = log2(mix(shelter.floor_mean, dot(max(floor.level, vec4(1e-3)), vec4(0.25)), floor.share));
     return shelter;
 }
 
@@ -204,11 +262,12 @@ vec4 past_edge(vec4 low, vec4 level)
 }
 
 /* Of a place on the ground or beneath crowns. `shelter`: the ground's. */
-vec4 edge_of(wd_pixel pixel, wd_shelter shelter)
+vec4 edge_of(wd_pixel pixel, wd_shelter shelter, wd_floor_sky floor)
 {
     vec4 low = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
-    return past_edge(low * low, shelter.through);
+    return past_edge(mix(low * low, floor.low, floor.share), shelter.through);
 }
+
 
 /* Mean of the quarters' shares by how much light each has. */
 float by_light(vec4 shares, vec4 light)

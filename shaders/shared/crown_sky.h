@@ -1,6 +1,6 @@
 /* crown_sky.h: what a tree's neighbours leave it of the sky, at a grid of places about its crown, for trees
- * near enough to be seen leaf by leaf. Kept in a table of sets: a tree's record number says which set its
- * slot is in, the set's head which slot. */
+ * near enough to be seen leaf by leaf; and what crowns leave the ground about the eye. Kept in a table of sets: a
+ * tree's record number says which set its slot is in, the set's head which slot. Behind the slots lies the ground. */
 #ifndef WD_SHARED_CROWN_SKY_H
 #define WD_SHARED_CROWN_SKY_H
 
@@ -45,12 +45,22 @@ WD_FUNC float wd_crown_sky_share(float height_m, float away_m, float px)
     return WD_CLAMP(WD_MIN(large, near), 0.0f, 1.0f);
 }
 
-/* A crown that hides the sky, or whose sky is asked for. */
-struct wd_sky_crown {
-    int32_t foot_mm[3];
+/* Leaves in which light falls off with the way that it has come. */
+struct wd_sky_ellipsoid {
     float radius_m, half_m; /* half its width and half its height */
     float middle_m;         /* height of its middle over the foot */
     float per_m;            /* extinction */
+};
+#ifdef __STDC_VERSION__
+#define WD_ELLIPSOID_STRUCT struct wd_sky_ellipsoid
+#else
+#define WD_ELLIPSOID_STRUCT wd_sky_ellipsoid
+#endif
+
+/* A crown that hides the sky of others, and of the ground (tree/crown_shade.h). */
+struct wd_sky_crown {
+    int32_t foot_mm[3];
+    WD_ELLIPSOID_STRUCT beside, below;
 };
 
 /* Bearings of rays in radians from east to north: four, then the four across from these. The way on from a crown's
@@ -60,16 +70,43 @@ struct wd_sky_crown {
 #define WD_CROWN_SKY_STEPS 5u
 #define WD_CROWN_SKY_NEXT 1.5f
 
+/* Of a crown or a tile of the ground. */
 struct wd_crown_sky_job {
-    uint32_t crown, slot;
+    int32_t foot_mm[3]; /* of the tree; of the tile's middle */
+    uint32_t crown; /* the tree's own; none: WD_CROWN_SKY_NONE */
+    uint32_t slot;
+    float radius_m, top_m; /* of the places about that: on either side of the foot, and over it */
     float reach_m; /* of its neighbours; less where many stand closer */
     WD_VEC4(ground); /* slopes up to the highest ground along the bearings */
     WD_VEC4(ground_across);
     float rise_m[WD_CROWN_SKY_BEARINGS * WD_CROWN_SKY_STEPS]; /* of the ground over the foot, in the middle of each step */
 };
 
+#define WD_CROWN_SKY_NONE 0xffffffffu
+
+/* The ground about the eye: squares in tiles, each in the place of the table that its coordinates have modulo
+ * WD_FLOOR_SKY_ACROSS. A texel is two words of a square's middle as above, of level ground and of the sky below 30
+ * degrees. */
+#define WD_FLOOR_SKY_ACROSS 128
+#define WD_FLOOR_SKY_M 2.0f /* a square's side */
+#define WD_FLOOR_SKY_TILE 8 /* squares a tile's side */
+#define WD_FLOOR_SKY_TILES (WD_FLOOR_SKY_ACROSS / WD_FLOOR_SKY_TILE)
+#define WD_FLOOR_SKY_TILE_M (WD_FLOOR_SKY_M * WD_FLOOR_SKY_TILE)
+/* Of ground so far off all is known so, and beyond the second nothing. */
+#define WD_FLOOR_SKY_WHOLE_M 80.0f
+#define WD_FLOOR_SKY_FAR_M 108.0f
+#define WD_FLOOR_SKY_OVER_M 0.5f /* of a square's middle over the ground */
+
+WD_FUNC uint32_t wd_floor_sky_texel(int32_t column, int32_t row)
+{
+    const int32_t last = WD_FLOOR_SKY_ACROSS - 1;
+    uint32_t ground = WD_CROWN_SKY_SETS * (1u + WD_CROWN_SKY_SLOTS * WD_CROWN_SKY_TEXELS);
+    return ground + WD_UINT((row & last) * WD_FLOOR_SKY_ACROSS + (column & last));
+}
+
 struct wd_crown_sky_push {
-    uint32_t job_count;
+    uint32_t job_count;  /* of crowns; behind them come */
+    uint32_t tile_count; /* those of tiles */
     int32_t first_column, first_row; /* of the grid: cells count from the world's corner */
     uint32_t columns, rows;
     WD_VEC2(canopy_from_m); /* as in struct wd_light_push */

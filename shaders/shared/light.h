@@ -23,6 +23,7 @@ struct wd_light_push {
     uint32_t level_cards; /* cards show pictures taken level, whatever way the eye looks */
     float pixels_a_radian;
     uint32_t few_tiles;   /* all tiles without water are of WD_TILE_LIST_DRY */
+    float floor_sky_m;    /* within which a table tells what of the sky reaches the ground (shared/crown_sky.h) */
 };
 
 /* Greatest height of a canopy that the image of its light can tell. */

@@ -9,4 +9,7 @@
 #define WD_SKY_RINGS_HIGH 0.148f, 0.317f, 0.535f, 0.0f, 0.0f, 0.0f
 #define WD_SKY_RINGS_LOW 0.0f, 0.0f, 0.0f, 0.30f, 0.34f, 0.36f
 
+/* And of what it sends to level ground, from all of it. */
+#define WD_SKY_RINGS_LEVEL 0.25f, 0.25f, 0.25f, 0.133f, 0.087f, 0.030f
+
 #endif

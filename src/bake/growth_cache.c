@@ -21,7 +21,8 @@ enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD
        SKYLIT = (int)(WD_SKYLIT_PLACES * WD_SKYLIT_KINDS), SKYLIT_AT = SUNLIT_AT + SUNLIT + 2,
        CLOUD_WAX_AT = SKYLIT_AT + SKYLIT,
        NEAR_SHADE_AT = CLOUD_WAX_AT + 2, UPPER_AT = NEAR_SHADE_AT + 5,
-       UPPER = (int)(WD_EYE_RINGS * WD_UPPER_KINDS), FIGURES = UPPER_AT + UPPER + (int)WD_EYE_RINGS,
+       UPPER = (int)(WD_EYE_RINGS * WD_UPPER_KINDS), SHADE_AT = UPPER_AT + UPPER + (int)WD_EYE_RINGS,
+       FIGURES = SHADE_AT + 4,
        SETS = 2 * WD_LEAF_SETS, SET_WORDS = 10, SET_AT = FIGURES + MESHES * MESH_WORDS,
        LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
@@ -139,6 +140,10 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
         figures[UPPER_AT + k] = &model->upper[k / WD_UPPER_KINDS][k % WD_UPPER_KINDS];
     for (size_t k = 0; k < WD_EYE_RINGS; k++)
         figures[UPPER_AT + UPPER + k] = &model->wood_seen[k];
+    figures[SHADE_AT] = &model->shade.radius_m;
+    figures[SHADE_AT + 1] = &model->shade.half_m;
+    figures[SHADE_AT + 2] = &model->shade.middle_m;
+    figures[SHADE_AT + 3] = &model->shade.per_m;
     for (size_t k = 0; k < SKYLIT; k++)
         figures[SKYLIT_AT + k] = &model->skylit[k / WD_SKYLIT_KINDS][k % WD_SKYLIT_KINDS];
 }
@@ -385,6 +390,7 @@ bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_ca
         return false;
     wd_tree_thinning_fit(model);
     wd_tree_mesh_measure_seen(model->seen_m2, &model->full);
+    model->shade = wd_crown_shade_of(&model->full);
     wd_tree_sunlit_fit(model);
     wd_tree_model_drop_leaves(model);
     if (species)

@@ -21,7 +21,7 @@ enum { CELLS_A_SIDE = 384 /* of a square */, MOST_CELLS = 4096 /* a side */, QUA
 enum { RINGS = WD_SKY_RINGS };
 static const float rises[RINGS] = {WD_SKY_RING_SINES};
 static const float highs[RINGS] = {WD_SKY_RINGS_HIGH}, lows[RINGS] = {WD_SKY_RINGS_LOW};
-static const float levels[RINGS] = {0.25f, 0.25f, 0.25f, 0.133f, 0.087f, 0.030f}; /* of what level ground has */
+static const float levels[RINGS] = {WD_SKY_RINGS_LEVEL};
 static const float turns_deg[RINGS] = {-34, 11, -11, 34, -22, 5}; /* off the middles of quarters: at several bearings */
 
 /* Crowns of a cell as a layer of leaves over the ground. */

@@ -302,6 +302,7 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
         return false;
     for (uint32_t i = 0; i < forest->model_count; i++) {
         wd_variant_describe(&forest->host_models[i], params->scene, i, &work->grown[i]);
+        forest->crown_shades[i] = work->grown[i].shade;
         describe_content(work, i);
         forest->falls |= forest->host_models[i].fall_mps > 0.0f;
     }
@@ -328,6 +329,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
     forest->model_count = (uint32_t)scene->species_file_count * forest->variants;
     size_t slots = forest->model_count ? forest->model_count : 1;
     forest->host_models = wd_alloc_array(slots, sizeof *forest->host_models);
+    forest->crown_shades = wd_alloc_array(slots, sizeof *forest->crown_shades);
     forest->model_keys = wd_alloc_array(slots, sizeof *forest->model_keys);
     forest->cache.directory = params->cache_dir ? wd_strdup(params->cache_dir) : NULL;
     wd_shared_log_init(&forest->log, params->log);
@@ -377,6 +379,7 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
     if (forest->card_sampler)
         vkDestroySampler(gpu->device, forest->card_sampler, NULL);
     free(forest->host_models);
+    free(forest->crown_shades);
     free(forest->model_keys);
     free((char *)forest->cache.directory);
     free(forest->host_fades);

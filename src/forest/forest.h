@@ -34,6 +34,7 @@ struct wd_forest_device {
     VkSampler look_sampler, card_sampler, point_sampler; /* point: normals and shadows of cards */
     struct wd_forest_meshes meshes;
     struct wd_model *host_models;
+    struct wd_crown_shade *crown_shades; /* of each */
     uint64_t *model_keys;      /* what names each model's content in the cache */
     struct wd_bake_cache cache;
     struct wd_layer_fade *host_fades;

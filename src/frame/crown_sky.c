@@ -12,19 +12,31 @@
 static const uint32_t crown_sky_comp[] =
 #include "crown_sky.comp.inc"
     ;
+static const uint32_t floor_sky_comp[] =
+#include "floor_sky.comp.inc"
+    ;
 
-enum { SLOTS = WD_CROWN_SKY_SETS * WD_CROWN_SKY_SLOTS, THREADS = 64 };
+enum {
+    SLOTS = WD_CROWN_SKY_SETS * WD_CROWN_SKY_SLOTS,
+    FLOOR_TEXELS = WD_FLOOR_SKY_ACROSS * WD_FLOOR_SKY_ACROSS,
+    TILE_SQUARES = WD_FLOOR_SKY_TILE * WD_FLOOR_SKY_TILE,
+    THREADS = 64,
+};
 
 bool wd_crown_sky_init(struct wd_crown_sky *sky, struct wd_gpu *gpu)
 {
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    const struct wd_compute_params params = {
+    struct wd_compute_params params = {
         .shader = {crown_sky_comp, sizeof crown_sky_comp, "crown_sky_comp"},
-        .bindings = {5, {buffer, buffer, buffer, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, buffer}},
+        .bindings = {5, {buffer, buffer, buffer, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, buffer, buffer}},
         .push_size = sizeof(struct wd_crown_sky_push),
     };
     *sky = (struct wd_crown_sky){0};
-    return wd_pipeline_init_compute(&sky->pipeline, gpu, &params);
+    if (!wd_pipeline_init_compute(&sky->crowns, gpu, &params))
+        return false;
+    params.shader = (struct wd_spirv){floor_sky_comp, sizeof floor_sky_comp, "floor_sky_comp"};
+    params.bindings.count = 6;
+    return wd_pipeline_init_compute(&sky->floor, gpu, &params);
 }
 
 void wd_crown_sky_drop_forest(struct wd_crown_sky *sky, struct wd_gpu *gpu)
@@ -32,9 +44,7 @@ void wd_crown_sky_drop_forest(struct wd_crown_sky *sky, struct wd_gpu *gpu)
     wd_buffer_finish(&sky->table, gpu);
     free(sky->slots);
     free(sky->per_m);
-    sky->slots = NULL;
-    sky->per_m = NULL;
-    sky->told = false;
+    *sky = (struct wd_crown_sky){.crowns = sky->crowns, .floor = sky->floor, .updates = sky->updates};
 }
 
 void wd_crown_sky_finish(struct wd_crown_sky *sky, struct wd_gpu *gpu)
@@ -46,6 +56,7 @@ void wd_crown_sky_finish(struct wd_crown_sky *sky, struct wd_gpu *gpu)
 void wd_crown_sky_forget(struct wd_crown_sky *sky)
 {
     sky->told = false;
+    memset(sky->tiles, 0, sizeof sky->tiles);
     if (sky->slots)
         memset(sky->slots, 0, SLOTS * sizeof *sky->slots);
 }
@@ -90,7 +101,7 @@ static float extinction_of(const struct wd_model *model)
 
 static bool prepare(struct wd_crown_sky *sky, struct wd_cmd *cmd, const struct wd_forest_device *forest)
 {
-    uint64_t texels = forest->world->tree_count ? (uint64_t)SLOTS * WD_CROWN_SKY_TEXELS : 0;
+    uint64_t texels = forest->world->tree_count ? (uint64_t)SLOTS * WD_CROWN_SKY_TEXELS + FLOOR_TEXELS : 0;
     const struct wd_buffer_params params = {
         .name = "sky of crowns",
         .size = (WD_CROWN_SKY_SETS + texels) * 4 * sizeof(uint32_t),
@@ -118,6 +129,10 @@ struct work {
         uint32_t record, slot;
     } *missing; /* by record */
     size_t missing_count, missing_capacity;
+    struct tile {
+        int32_t column, row;
+    } tiles[WD_FLOOR_SKY_TILES * WD_FLOOR_SKY_TILES]; /* of the floor, missing, too */
+    size_t tile_count;
     double low_m[2], high_m[2]; /* about all that are missing, as far as neighbours count */
     struct beside {
         uint32_t record;
@@ -137,6 +152,14 @@ static void place_of(const struct wd_tree *tree, double place_m[2])
     place_m[1] = tree->y_mm * 0.001;
 }
 
+static void widen(struct work *work, const double place_m[2], double by_m)
+{
+    for (int k = 0; k < 2; k++) {
+        work->low_m[k] = fmin(work->low_m[k], place_m[k] - by_m);
+        work->high_m[k] = fmax(work->high_m[k], place_m[k] + by_m);
+    }
+}
+
 /* The tree's slot, or another of its set: the one that was not used for longest, if not by this very update. */
 static void ask_for(struct work *work, uint32_t record)
 {
@@ -153,16 +176,13 @@ static void ask_for(struct work *work, uint32_t record)
     *oldest = (struct wd_crown_sky_slot){record + 1, work->sky->updates};
     double place_m[2];
     place_of(tree_of(work, record), place_m);
-    for (int k = 0; k < 2; k++) {
-        work->low_m[k] = fmin(work->low_m[k], place_m[k] - (double)WD_CROWN_SKY_REACH_M);
-        work->high_m[k] = fmax(work->high_m[k], place_m[k] + (double)WD_CROWN_SKY_REACH_M);
-    }
+    widen(work, place_m, (double)WD_CROWN_SKY_REACH_M);
     *wd_push(work->missing, work->missing_count, work->missing_capacity) =
         (struct new_tree){record, (uint32_t)(oldest - work->sky->slots)};
 }
 
-/* How far off a box of the local frame is that the view may see; infinite: it does not. */
-static float seen_m(const struct work *work, const float min_m[3], const float max_m[3])
+/* How far off a box of the local frame is that the view may see within `most_m`; infinite: it does not. */
+static float seen_m(const struct work *work, const float min_m[3], const float max_m[3], float most_m)
 {
     float min[3], max[3];
     for (int k = 0; k < 3; k++) {
@@ -170,7 +190,7 @@ static float seen_m(const struct work *work, const float min_m[3], const float m
         max[k] = (float)((double)max_m[k] - work->view->eye_m[k]);
     }
     float distance_m = wd_box_distance(min, max);
-    bool out = distance_m > WD_CROWN_SKY_FAR_M || wd_frustum_box(&work->view->frustum, min, max) == WD_OUTSIDE;
+    bool out = distance_m > most_m || wd_frustum_box(&work->view->frustum, min, max) == WD_OUTSIDE;
     return out ? INFINITY : distance_m;
 }
 
@@ -181,7 +201,7 @@ static void ask_if_large(struct work *work, uint32_t record)
     if (height_m < WD_HERB_M)
         return;
     wd_tree_bounds(tree, min_m, max_m);
-    float away_m = seen_m(work, min_m, max_m);
+    float away_m = seen_m(work, min_m, max_m, WD_CROWN_SKY_FAR_M);
     if (away_m < INFINITY && wd_crown_sky_share(height_m, away_m, work->view->pixels_per_radian) > 0)
         ask_for(work, record);
 }
@@ -204,7 +224,7 @@ static void walk(struct work *work, uint32_t index, bool (*enters)(const struct 
 
 static bool is_near(const struct work *work, const struct wd_octant *octant)
 {
-    return seen_m(work, octant->min_m, octant->max_m) < INFINITY;
+    return seen_m(work, octant->min_m, octant->max_m, WD_CROWN_SKY_FAR_M) < INFINITY;
 }
 
 static bool is_beside(const struct work *work, const struct wd_octant *octant)
@@ -235,20 +255,85 @@ static struct wd_sky_crown crown_of(const struct work *work, uint32_t record)
     const struct wd_tree *tree = tree_of(work, record);
     uint32_t index = wd_forest_model_of(work->forest, tree);
     const struct wd_model *model = &work->forest->host_models[index];
+    const struct wd_crown_shade *shade = &work->forest->crown_shades[index];
     struct wd_tree_pose pose = wd_tree_pose_of(*tree, *model);
     float base_m = model->crown_base_m * pose.up, height_m = WD_TREE_HEIGHT_M(*tree);
-    return (struct wd_sky_crown){.foot_mm = {tree->x_mm, tree->y_mm, tree->z_mm},
-                                 .radius_m = fmaxf(0.5f * WD_TREE_CROWN_M(*tree), 0.1f),
-                                 .half_m = fmaxf(0.5f * (height_m - base_m), 0.1f),
-                                 .middle_m = 0.5f * (height_m + base_m),
-                                 .per_m = work->sky->per_m[index] / cbrtf(pose.across * pose.across * pose.up)};
+    float denser = 1 / cbrtf(pose.across * pose.across * pose.up);
+    return (struct wd_sky_crown){
+        .foot_mm = {tree->x_mm, tree->y_mm, tree->z_mm},
+        .beside = {.radius_m = fmaxf(0.5f * WD_TREE_CROWN_M(*tree), 0.1f),
+                   .half_m = fmaxf(0.5f * (height_m - base_m), 0.1f),
+                   .middle_m = 0.5f * (height_m + base_m),
+                   .per_m = work->sky->per_m[index] * denser},
+        .below = {.radius_m = fmaxf(shade->radius_m * pose.across, 0.1f),
+                  .half_m = fmaxf(shade->half_m * pose.up, 0.1f),
+                  .middle_m = shade->middle_m * pose.up,
+                  .per_m = shade->per_m * denser},
+    };
+}
+
+/* --- the floor ----------------------------------------------------------------------------- */
+
+static void middle_of(const struct tile *tile, double place_m[2])
+{
+    place_m[0] = (tile->column + 0.5) * (double)WD_FLOOR_SKY_TILE_M;
+    place_m[1] = (tile->row + 0.5) * (double)WD_FLOOR_SKY_TILE_M;
+}
+
+/* The nearest height where there is no ground. */
+static float height_near(const struct wd_terrain *terrain, double x_m, double y_m)
+{
+    return wd_terrain_height(terrain, fmin(fmax(x_m, 0), wd_terrain_extent_x_m(terrain)),
+                             fmin(fmax(y_m, 0), wd_terrain_extent_y_m(terrain)));
+}
+
+static bool sees_tile(const struct work *work, const struct tile *tile)
+{
+    const struct wd_terrain *terrain = &work->forest->world->terrain;
+    const double half_m = 0.5 * (double)WD_FLOOR_SKY_TILE_M, beside_m = (double)WD_FLOOR_SKY_M;
+    double middle_m[2];
+    float min_m[3], max_m[3];
+    middle_of(tile, middle_m);
+    for (int k = 0; k < 2; k++) {
+        min_m[k] = (float)(middle_m[k] - half_m - beside_m); /* squares beside it are mixed with its */
+        max_m[k] = (float)(middle_m[k] + half_m + beside_m);
+    }
+    min_m[2] = max_m[2] = height_near(terrain, middle_m[0], middle_m[1]);
+    for (int corner = 0; corner < 4; corner++) {
+        float z_m = height_near(terrain, (double)(corner & 1 ? min_m[0] : max_m[0]), (double)(corner & 2 ? min_m[1] : max_m[1]));
+        min_m[2] = fminf(min_m[2], z_m);
+        max_m[2] = fmaxf(max_m[2], z_m);
+    }
+    min_m[2] -= WD_FLOOR_SKY_TILE_M; /* between these places, and plants on it */
+    max_m[2] += WD_FLOOR_SKY_TILE_M;
+    return seen_m(work, min_m, max_m, WD_FLOOR_SKY_FAR_M) < INFINITY;
+}
+
+/* Tiles about the eye that are not known yet. */
+static void ask_for_floor(struct work *work)
+{
+    const int32_t half = WD_FLOOR_SKY_TILES / 2, last = WD_FLOOR_SKY_TILES - 1;
+    const int32_t column = (int32_t)floor(work->view->eye_m[0] / (double)WD_FLOOR_SKY_TILE_M);
+    const int32_t row = (int32_t)floor(work->view->eye_m[1] / (double)WD_FLOOR_SKY_TILE_M);
+    for (int32_t j = row - half; j < row + half; j++)
+        for (int32_t i = column - half; i < column + half; i++) {
+            struct wd_floor_sky_tile *known = &work->sky->tiles[(j & last) * WD_FLOOR_SKY_TILES + (i & last)];
+            const struct tile tile = {i, j};
+            if ((known->known && known->column == i && known->row == j) || !sees_tile(work, &tile))
+                continue;
+            *known = (struct wd_floor_sky_tile){i, j, true};
+            work->tiles[work->tile_count++] = tile;
+            double middle_m[2];
+            middle_of(&tile, middle_m);
+            widen(work, middle_m, (double)(WD_CROWN_SKY_REACH_M + 0.5f * WD_FLOOR_SKY_TILE_M));
+        }
 }
 
 /* --- recording ----------------------------------------------------------------------------- */
 
 struct grid {
     struct wd_crown_sky_push push;
-    struct wd_binding crowns, cells, jobs;
+    struct wd_binding crowns, cells, jobs, rises;
 };
 
 static void lay_out(struct grid *grid, const struct work *work)
@@ -257,6 +342,7 @@ static void lay_out(struct grid *grid, const struct work *work)
     struct wd_crown_sky_push *push = &grid->push;
     *push = (struct wd_crown_sky_push){
         .job_count = (uint32_t)work->missing_count,
+        .tile_count = (uint32_t)work->tile_count,
         .first_column = (int32_t)floor(work->low_m[0] / cell_m),
         .first_row = (int32_t)floor(work->low_m[1] / cell_m),
         .canopy_from_m = {work->forest->canopy_light_from_m[0], work->forest->canopy_light_from_m[1]},
@@ -267,39 +353,40 @@ static void lay_out(struct grid *grid, const struct work *work)
 }
 
 /* Height of the ground over the foot so far off to a side, a unit vector; where there is none as low as that. */
-static double rise_m(const struct wd_terrain *terrain, const struct wd_sky_crown *own, const double toward[2], double way_m)
+static double rise_m(const struct wd_terrain *terrain, const int32_t foot_mm[3], const double toward[2], double way_m)
 {
-    double x_m = own->foot_mm[0] * 0.001 + way_m * toward[0], y_m = own->foot_mm[1] * 0.001 + way_m * toward[1];
+    double x_m = foot_mm[0] * 0.001 + way_m * toward[0], y_m = foot_mm[1] * 0.001 + way_m * toward[1];
     bool out = !wd_terrain_contains(terrain, x_m, y_m);
-    return out ? 0 : (double)wd_terrain_height(terrain, x_m, y_m) - own->foot_mm[2] * 0.001;
+    return out ? 0 : (double)wd_terrain_height(terrain, x_m, y_m) - foot_mm[2] * 0.001;
 }
 
-static float slope_of(const struct wd_terrain *terrain, const struct wd_sky_crown *own, const double toward[2])
+/* `over_m`: of the place that looks, over the foot. */
+static float slope_of(const struct wd_terrain *terrain, const int32_t foot_mm[3], float over_m, const double toward[2])
 {
     static const double FIRST_M = 15, FARTHEST_M = 4000, NEXT = 1.25;
     double most = -1;
     for (double way_m = FIRST_M; way_m < FARTHEST_M; way_m *= NEXT)
-        most = fmax(most, (rise_m(terrain, own, toward, way_m) - (double)own->middle_m) / way_m);
+        most = fmax(most, (rise_m(terrain, foot_mm, toward, way_m) - (double)over_m) / way_m);
     return (float)most;
 }
 
-static void look_round(struct wd_crown_sky_job *job, const struct wd_terrain *terrain, const struct wd_sky_crown *own)
+static void look_round(struct wd_crown_sky_job *job, const struct wd_terrain *terrain, float over_m)
 {
     for (size_t i = 0; i < WD_CROWN_SKY_BEARINGS; i++) {
         double bearing = (double)WD_CROWN_SKY_BEARING((float)i), toward[2] = {cos(bearing), sin(bearing)};
         double way_m = 0.5 * (double)(job->reach_m * (1 + WD_CROWN_SKY_NEXT));
-        (i < 4 ? job->ground : job->ground_across)[i & 3] = slope_of(terrain, own, toward);
+        (i < 4 ? job->ground : job->ground_across)[i & 3] = slope_of(terrain, job->foot_mm, over_m, toward);
         for (size_t k = 0; k < WD_CROWN_SKY_STEPS; k++, way_m *= (double)WD_CROWN_SKY_NEXT)
-            job->rise_m[i * WD_CROWN_SKY_STEPS + k] = (float)rise_m(terrain, own, toward, way_m);
+            job->rise_m[i * WD_CROWN_SKY_STEPS + k] = (float)rise_m(terrain, job->foot_mm, toward, way_m);
     }
 }
 
 /* Neighbours that a job goes through, about: in dense stands little light comes from beyond these. */
 enum { MOST_NEIGHBOURS = 64 };
 
-/* How far the neighbours of a crown reach that count. */
+/* How far neighbours reach that count. */
 static float reach_of(const struct grid *grid, const struct wd_sky_crown *crowns, const uint32_t *first_of,
-                      const struct wd_sky_crown *own)
+                      const int32_t foot_mm[3])
 {
     enum { STEPS = 16 };
     const float most_m = WD_CROWN_SKY_REACH_M;
@@ -308,15 +395,15 @@ static float reach_of(const struct grid *grid, const struct wd_sky_crown *crowns
     for (int k = 0; k < 2; k++) {
         int32_t first = k ? grid->push.first_row : grid->push.first_column;
         int32_t most = (int32_t)(k ? grid->push.rows : grid->push.columns) - 1;
-        float place_m = (float)own->foot_mm[k] * 0.001f;
+        float place_m = (float)foot_mm[k] * 0.001f;
         low[k] = WD_MAX((int32_t)floorf((place_m - most_m) / WD_CROWN_SKY_CELL_M) - first, 0);
         high[k] = WD_MIN((int32_t)floorf((place_m + most_m) / WD_CROWN_SKY_CELL_M) - first, most);
     }
     for (int32_t row = low[1]; row <= high[1]; row++) {
         const uint32_t *cells = first_of + (size_t)row * grid->push.columns;
         for (uint32_t i = cells[low[0]]; i < cells[high[0] + 1]; i++) {
-            float x_m = (float)(crowns[i].foot_mm[0] - own->foot_mm[0]) * 0.001f;
-            float y_m = (float)(crowns[i].foot_mm[1] - own->foot_mm[1]) * 0.001f;
+            float x_m = (float)(crowns[i].foot_mm[0] - foot_mm[0]) * 0.001f;
+            float y_m = (float)(crowns[i].foot_mm[1] - foot_mm[1]) * 0.001f;
             float step = (x_m * x_m + y_m * y_m) * ((float)STEPS / (most_m * most_m));
             if (step < STEPS)
                 within[(int)step]++;
@@ -351,16 +438,42 @@ static void fill(const struct grid *grid, const struct work *work, struct wd_sky
         uint32_t record = work->beside[i].record, at = next[cell_of(grid, &work->beside[i])]++;
         crowns[at] = crown_of(work, record);
         if (job < work->missing_count && work->missing[job].record == record) {
-            jobs[job] = (struct wd_crown_sky_job){.crown = at, .slot = work->missing[job].slot};
+            const struct wd_tree *tree = tree_of(work, record);
+            jobs[job] = (struct wd_crown_sky_job){.foot_mm = {tree->x_mm, tree->y_mm, tree->z_mm}, .crown = at,
+                                                  .slot = work->missing[job].slot,
+                                                  .radius_m = fmaxf(0.5f * WD_TREE_CROWN_M(*tree), 0.1f),
+                                                  .top_m = fmaxf(WD_TREE_HEIGHT_M(*tree), 0.1f)};
             job++;
         }
     }
-    for (job = 0; job < work->missing_count; job++) {
-        const struct wd_sky_crown *own = &crowns[jobs[job].crown];
-        jobs[job].reach_m = reach_of(grid, crowns, first_of, own);
-        look_round(&jobs[job], &work->forest->world->terrain, own);
-    }
     free(next);
+}
+
+/* Of tiles: their middles and, of each, what its squares' middles lie over that. */
+static void fill_floor(const struct work *work, struct wd_crown_sky_job *jobs, float (*rises_m)[TILE_SQUARES])
+{
+    const struct wd_terrain *terrain = &work->forest->world->terrain;
+    for (size_t i = 0; i < work->tile_count; i++) {
+        double middle_m[2];
+        middle_of(&work->tiles[i], middle_m);
+        double foot_m = (double)height_near(terrain, middle_m[0], middle_m[1]);
+        jobs[i] = (struct wd_crown_sky_job){
+            .foot_mm = {(int32_t)lround(middle_m[0] * 1e3), (int32_t)lround(middle_m[1] * 1e3), (int32_t)lround(foot_m * 1e3)},
+            .crown = WD_CROWN_SKY_NONE};
+        for (int square = 0; square < TILE_SQUARES; square++) {
+            double x_m = ((square % WD_FLOOR_SKY_TILE) + 0.5 - 0.5 * WD_FLOOR_SKY_TILE) * (double)WD_FLOOR_SKY_M;
+            double y_m = ((square / WD_FLOOR_SKY_TILE) + 0.5 - 0.5 * WD_FLOOR_SKY_TILE) * (double)WD_FLOOR_SKY_M;
+            rises_m[i][square] = height_near(terrain, middle_m[0] + x_m, middle_m[1] + y_m) - (float)foot_m;
+        }
+    }
+}
+
+static void look_from(const struct grid *grid, const struct work *work, const struct wd_sky_crown *crowns,
+                      const uint32_t *first_of, struct wd_crown_sky_job *job)
+{
+    float over_m = job->crown == WD_CROWN_SKY_NONE ? WD_FLOOR_SKY_OVER_M : crowns[job->crown].beside.middle_m;
+    job->reach_m = reach_of(grid, crowns, first_of, job->foot_mm);
+    look_round(job, &work->forest->world->terrain, over_m);
 }
 
 static void tell_heads(struct wd_crown_sky *sky, struct wd_cmd *cmd)
@@ -377,28 +490,47 @@ static void tell_heads(struct wd_crown_sky *sky, struct wd_cmd *cmd)
     sky->told = true;
 }
 
+static void dispatch(struct wd_cmd *cmd, const struct wd_pipeline *pipeline, const struct grid *grid,
+                     const struct wd_binding *bindings, size_t groups)
+{
+    if (!groups)
+        return;
+    wd_cmd_bind(cmd, pipeline, bindings);
+    wd_cmd_push(cmd, pipeline, &grid->push, sizeof grid->push);
+    wd_cmd_dispatch_1d(cmd, groups);
+}
+
 static void find_missing(struct work *work, struct wd_cmd *cmd)
 {
     struct grid grid;
     walk(work, 0, is_beside, add_beside);
     lay_out(&grid, work);
     size_t cells = (size_t)grid.push.columns * grid.push.rows;
-    struct wd_sky_crown *crowns = wd_cmd_upload(cmd, work->beside_count * sizeof *crowns, &grid.crowns);
+    struct wd_sky_crown *crowns = wd_cmd_upload(cmd, (work->beside_count + 1) * sizeof *crowns, &grid.crowns);
     uint32_t *first_of = wd_cmd_upload(cmd, (cells + 1) * sizeof *first_of, &grid.cells);
-    struct wd_crown_sky_job *jobs = wd_cmd_upload(cmd, work->missing_count * sizeof *jobs, &grid.jobs);
-    if (!crowns || !first_of || !jobs)
+    size_t job_count = work->missing_count + work->tile_count;
+    struct wd_crown_sky_job *jobs = wd_cmd_upload(cmd, job_count * sizeof *jobs, &grid.jobs);
+    float(*rises_m)[TILE_SQUARES] = wd_cmd_upload(cmd, (work->tile_count + 1) * sizeof *rises_m, &grid.rises);
+    if (!crowns || !first_of || !jobs || !rises_m)
         return;
     fill(&grid, work, crowns, first_of, jobs);
+    fill_floor(work, jobs + work->missing_count, rises_m);
+    for (size_t job = 0; job < job_count; job++)
+        look_from(&grid, work, crowns, first_of, &jobs[job]);
     wd_cmd_scope_begin(cmd, "sky of crowns");
     wd_cmd_use_buffer(cmd, &work->sky->table, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {
         grid.crowns, grid.cells, grid.jobs,
         WD_BIND_IMAGE(&work->forest->canopy_light, work->forest->ground.sampler),
-        WD_BIND_BUFFER(&work->sky->table)};
-    wd_cmd_bind(cmd, &work->sky->pipeline, bindings);
-    wd_cmd_push(cmd, &work->sky->pipeline, &grid.push, sizeof grid.push);
-    wd_cmd_dispatch_1d(cmd, (work->missing_count * WD_CROWN_SKY_PLACES + THREADS - 1) / THREADS);
+        WD_BIND_BUFFER(&work->sky->table), grid.rises};
+    dispatch(cmd, &work->sky->crowns, &grid, bindings, (work->missing_count * WD_CROWN_SKY_PLACES + THREADS - 1) / THREADS);
+    dispatch(cmd, &work->sky->floor, &grid, bindings, work->tile_count);
     wd_cmd_scope_end(cmd);
+}
+
+float wd_crown_sky_floor_m(const struct wd_forest_device *forest)
+{
+    return forest->world->octree.count && !forest->world->demand.count ? WD_FLOOR_SKY_FAR_M : 0;
 }
 
 void wd_crown_sky_update(struct wd_crown_sky *sky, struct wd_cmd *cmd, const struct wd_forest_device *forest,
@@ -411,11 +543,14 @@ void wd_crown_sky_update(struct wd_crown_sky *sky, struct wd_cmd *cmd, const str
         return;
     }
     sky->updates++;
-    if (forest->world->octree.count)
+    if (forest->world->octree.count) {
         walk(&work, 0, is_near, ask_if_large);
+        if (wd_crown_sky_floor_m(forest) > 0)
+            ask_for_floor(&work);
+    }
     if (work.missing_count || !sky->told)
         tell_heads(sky, cmd);
-    if (work.missing_count)
+    if (work.missing_count || work.tile_count)
         find_missing(&work, cmd);
     free(work.missing);
     free(work.beside);

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "scene/species.h"
 #include "shared/sunlit.h"
+#include "tree/crown_shade.h"
 #include "tree/leaf_set.h"
 
 /* What a hedge is cut to, in metres from its foot: a box, or the inside of a closed mesh. The foot
@@ -63,6 +64,7 @@ struct wd_tree_model {
     float flatness;      /* mean |z| of leaves' faces: 0.5 of leaves turned every way, 1 of level ones; 0: not known yet */
     float low_sky;       /* how much more of a sky that is brighter low down its leaves let through than of an even one, by
                             how much brighter an upright face's is; 0: not known yet */
+    struct wd_crown_shade shade; /* not known yet: 0 */
     float spray_reach;           /* of wd_spray_share; 0 without twigs */
     struct wd_tree_mesh spray;   /* the twig that each leaf stands for (tree/leaf_spray.h), or
                                     empty where it is one leaf */
