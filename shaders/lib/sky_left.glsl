@@ -44,7 +44,7 @@ void add_crown(inout vec4 depth, inout vec4 across, wd_sky_ellipsoid crown, vec3
     float rise = q.z * ways.up * per_h;
     vec4 one = rise + along, other = rise - along;
     vec4 root = sqrt(max(one * one - ss * qq, vec4(0.0))), root_other = sqrt(max(other * other - ss * qq, vec4(0.0)));
-    float per_way = crown.per_m / ss;
+    float per_way = crown.per_m * exp(crown.steeper * (ways.up - WD_SHADE_SINE)) / ss;
     depth += per_way * (max(root - one, vec4(0.0)) - max(-root - one, vec4(0.0)));
     across += per_way * (max(root_other - other, vec4(0.0)) - max(-root_other - other, vec4(0.0)));
 }
@@ -76,47 +76,13 @@ void add_cells(inout vec4 depth, inout vec4 across, uint job, vec3 place_m, vec2
     }
 }
 
-/* Share of light that comes to the place along a level direction, rising, past the canopy beyond the neighbours: by what
- * of the sky its floors have, whose light came, on average, through the whole layer with a sine of MEAN_RISE. */
-const float MEAN_RISE = 0.67;
-
-float past_canopy(uint job, uint bearing, vec3 from_m, vec2 toward, float rise)
-{
-    float slope = rise * inversesqrt(1.0 - rise * rise), depth = 0.0, way_m = jobs[job].reach_m;
-    for (uint i = 0u; i < WD_CROWN_SKY_STEPS; i++) {
-        float next_m = WD_CROWN_SKY_NEXT * way_m;
-        float over_m = from_m.z - jobs[job].rise_m[bearing * WD_CROWN_SKY_STEPS + i];
-        vec2 at = (from_m.xy + 0.5 * (way_m + next_m) * toward - push.canopy_from_m) * push.canopy_scale;
-        vec4 sky = textureLod(canopy_light, vec3(at, 0.0), 0.0), layer = textureLod(canopy_light, vec3(at, 1.0), 0.0);
-        vec2 layer_m = WD_CANOPY_MOST_M * layer.xy * layer.xy;
-        float met = canopy_above(layer_m, over_m + way_m * slope) - canopy_above(layer_m, over_m + next_m * slope);
-        depth -= met * log(max(dot(sky, 0.25 * sky), 1e-3));
-        way_m = next_m;
-    }
-    return exp(-depth * (MEAN_RISE / rise));
-}
-
-/* `first`: bearing. */
-vec4 past_canopy_along(uint job, uint first, vec3 from_m, ring_ways ways)
-{
-    float per_level = (first == 0u ? 1.0 : -1.0) * inversesqrt(1.0 - ways.up * ways.up);
-    vec4 through;
-    for (uint i = 0u; i < 4u; i++)
-        through[i] = past_canopy(job, first + i, from_m, per_level * vec2(ways.east[i], ways.north[i]), ways.up);
-    return through;
-}
+/* Share of light that comes in along four ways, from the bearing `first` on, past what lies beyond the job's reach. */
+vec4 past_reach(uint job, uint first, vec3 from_m, ring_ways ways);
 
 /* From eight bearings to quarters: those about east are the first of four and the last of the four across. */
 vec4 quarters_of(vec4 one, vec4 other)
 {
     return 0.5 * vec4(one.x + other.w, one.y + one.z, one.w + other.x, other.y + other.z);
-}
-
-/* Whether the ground rises over a ring, softly. */
-vec4 past_ground(vec4 slopes, ring_ways ways)
-{
-    float slope = ways.up * inversesqrt(1.0 - ways.up * ways.up);
-    return 1.0 - smoothstep(slope - 0.08, slope + 0.08, slopes);
 }
 
 /* Shares of an upright face's light from the quarters that come to a place over the job's foot, from above 30 degrees and
@@ -137,11 +103,8 @@ sky_left sky_left_to(uint job, vec3 place_m, vec2 about_m)
         ring_ways ways = ways_of(ring);
         vec4 depth = vec4(0.0), across = vec4(0.0);
         add_cells(depth, across, job, place_m, about_m, ways, clamp(low, ivec2(0), most), clamp(high, ivec2(0), most));
-        vec4 one = exp(-depth) * past_ground(jobs[job].ground, ways);
-        vec4 other = exp(-across) * past_ground(jobs[job].ground_across, ways);
         vec3 from_m = vec3(foot_m, 0.0) + place_m;
-        one *= past_canopy_along(job, 0u, from_m, ways);
-        other *= past_canopy_along(job, 4u, from_m, ways);
+        vec4 one = exp(-depth) * past_reach(job, 0u, from_m, ways), other = exp(-across) * past_reach(job, 4u, from_m, ways);
         vec4 quarters = quarters_of(one, other);
         left.high += HIGH[ring] * quarters;
         left.low += LOW[ring] * quarters;

@@ -5,6 +5,42 @@
 
 layout(local_size_x = 64) in;
 
+/* Share of light that comes to the place along a level direction, rising, past the canopy beyond the neighbours: by what
+ * of the sky its floors have, whose light came, on average, through the whole layer with a sine of MEAN_RISE. */
+const float MEAN_RISE = 0.67;
+
+float past_canopy(uint job, uint bearing, vec3 from_m, vec2 toward, float rise)
+{
+    float slope = rise * inversesqrt(1.0 - rise * rise), depth = 0.0, way_m = jobs[job].reach_m;
+    for (uint i = 0u; i < WD_CROWN_SKY_STEPS; i++) {
+        float next_m = WD_CROWN_SKY_NEXT * way_m;
+        float over_m = from_m.z - jobs[job].rise_m[bearing * WD_CROWN_SKY_STEPS + i];
+        vec2 at = (from_m.xy + 0.5 * (way_m + next_m) * toward - push.canopy_from_m) * push.canopy_scale;
+        vec4 sky = textureLod(canopy_light, vec3(at, 0.0), 0.0), layer = textureLod(canopy_light, vec3(at, 1.0), 0.0);
+        vec2 layer_m = WD_CANOPY_MOST_M * layer.xy * layer.xy;
+        float met = canopy_above(layer_m, over_m + way_m * slope) - canopy_above(layer_m, over_m + next_m * slope);
+        depth -= met * log(max(dot(sky, 0.25 * sky), 1e-3));
+        way_m = next_m;
+    }
+    return exp(-depth * (MEAN_RISE / rise));
+}
+
+/* Whether the ground rises over a ring, softly. */
+vec4 past_ground(vec4 slopes, ring_ways ways)
+{
+    float slope = ways.up * inversesqrt(1.0 - ways.up * ways.up);
+    return 1.0 - smoothstep(slope - 0.08, slope + 0.08, slopes);
+}
+
+vec4 past_reach(uint job, uint first, vec3 from_m, ring_ways ways)
+{
+    float per_level = (first == 0u ? 1.0 : -1.0) * inversesqrt(1.0 - ways.up * ways.up);
+    vec4 through;
+    for (uint i = 0u; i < 4u; i++)
+        through[i] = past_canopy(job, first + i, from_m, per_level * vec2(ways.east[i], ways.north[i]), ways.up);
+    return through * (first == 0u ? past_ground(jobs[job].ground, ways) : past_ground(jobs[job].ground_across, ways));
+}
+
 void main()
 {
     uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;

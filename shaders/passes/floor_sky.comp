@@ -7,6 +7,43 @@ layout(local_size_x = WD_FLOOR_SKY_TILE, local_size_y = WD_FLOOR_SKY_TILE) in;
 
 layout(scalar, set = 0, binding = 5) readonly buffer Rises { float rise_m[]; }; /* of squares over their tile's foot */
 
+/* Quarters of the bearings: those about east are the first and the last. */
+const int QUARTERS[8] = int[](0, 1, 1, 2, 2, 3, 3, 0);
+const float LOW_SINE = 0.5; /* of ways that the field knows as low */
+
+/* What the canopy's field says of the ground there, stems and hills included, of the leaves above the way. */
+vec4 past_reach(uint job, uint first, vec3 from_m, ring_ways ways)
+{
+    float across = (first == 0u ? 1.0 : -1.0) * inversesqrt(1.0 - ways.up * ways.up), reach_m = jobs[job].reach_m;
+    float over_m = reach_m * ways.up * abs(across), layer = ways.up < LOW_SINE ? 3.0 : 2.0;
+    vec4 through;
+    for (uint i = 0u; i < 4u; i++) {
+        vec2 at = from_m.xy + reach_m * across * vec2(ways.east[i], ways.north[i]);
+        at = (at - push.canopy_from_m) * push.canopy_scale;
+        vec2 root_m = textureLod(canopy_light, vec3(at, 1.0), 0.0).xy;
+        float left = textureLod(canopy_light, vec3(at, layer), 0.0)[QUARTERS[first + i]];
+        through[i] = pow(max(left * left, 1e-3), canopy_above(WD_CANOPY_MOST_M * root_m * root_m, over_m));
+    }
+    return through;
+}
+
+/* Within stands the field tells of more than crowns, as the floors of path-traced stands have it: as far as less than half
+ * of the sky comes down to the ground that lies so far off on eight sides. */
+const float STAND_M = 24.0;
+const vec2 OPEN = vec2(0.25, 0.5);
+
+float within_stand(vec2 place_m)
+{
+    float sum = 0.0;
+    for (uint i = 0u; i < 8u; i++) {
+        float bearing = WD_CROWN_SKY_BEARING(float(i));
+        vec2 at = place_m + STAND_M * vec2(cos(bearing), sin(bearing));
+        vec4 root = textureLod(canopy_light, vec3((at - push.canopy_from_m) * push.canopy_scale, 0.0), 0.0);
+        sum += dot(root, 0.25 * root);
+    }
+    return 1.0 - smoothstep(OPEN.x, OPEN.y, sum * (1.0 / 8.0));
+}
+
 void main()
 {
     uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
@@ -17,6 +54,11 @@ void main()
     vec2 aside_m = WD_FLOOR_SKY_M * (vec2(square) + 0.5);
     float over_m = rise_m[tile * WD_FLOOR_SKY_TILE * WD_FLOOR_SKY_TILE + gl_LocalInvocationIndex] + WD_FLOOR_SKY_OVER_M;
     sky_left left = sky_left_to(job, vec3(aside_m, over_m), aside_m);
+    vec2 place_m = vec2(foot_of(job).xy) * 0.001 + aside_m, on_field = (place_m - push.canopy_from_m) * push.canopy_scale;
+    vec4 level = textureLod(canopy_light, vec3(on_field, 0.0), 0.0), low = textureLod(canopy_light, vec3(on_field, 3.0), 0.0);
+    float stand = within_stand(place_m);
+    level = mix(sqrt(left.level), level, stand);
+    low = mix(sqrt(left.low), low, stand);
     ivec2 at = ivec2(round(vec2(foot_of(job).xy) * (0.001 / WD_FLOOR_SKY_M))) + square;
-    table[2u * wd_floor_sky_texel(at.x, at.y)] = uvec2(packUnorm4x8(sqrt(left.level)), packUnorm4x8(sqrt(left.low)));
+    table[2u * wd_floor_sky_texel(at.x, at.y)] = uvec2(packUnorm4x8(level), packUnorm4x8(low));
 }

@@ -49,7 +49,7 @@ WD_FUNC float wd_crown_sky_share(float height_m, float away_m, float px)
 struct wd_sky_ellipsoid {
     float radius_m, half_m; /* half its width and half its height */
     float middle_m;         /* height of its middle over the foot */
-    float per_m;            /* extinction */
+    float per_m, steeper;   /* extinction; see tree/crown_shade.h */
 };
 #ifdef __STDC_VERSION__
 #define WD_ELLIPSOID_STRUCT struct wd_sky_ellipsoid

@@ -12,4 +12,7 @@
 /* And of what it sends to level ground, from all of it. */
 #define WD_SKY_RINGS_LEVEL 0.25f, 0.25f, 0.25f, 0.133f, 0.087f, 0.030f
 
+/* See struct wd_crown_shade. */
+#define WD_SHADE_SINE 0.6f
+
 #endif

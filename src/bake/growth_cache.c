@@ -22,7 +22,7 @@ enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD
        CLOUD_WAX_AT = SKYLIT_AT + SKYLIT,
        NEAR_SHADE_AT = CLOUD_WAX_AT + 2, UPPER_AT = NEAR_SHADE_AT + 5,
        UPPER = (int)(WD_EYE_RINGS * WD_UPPER_KINDS), SHADE_AT = UPPER_AT + UPPER + (int)WD_EYE_RINGS,
-       FIGURES = SHADE_AT + 4,
+       FIGURES = SHADE_AT + 5,
        SETS = 2 * WD_LEAF_SETS, SET_WORDS = 10, SET_AT = FIGURES + MESHES * MESH_WORDS,
        LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
@@ -144,6 +144,7 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
     figures[SHADE_AT + 1] = &model->shade.half_m;
     figures[SHADE_AT + 2] = &model->shade.middle_m;
     figures[SHADE_AT + 3] = &model->shade.per_m;
+    figures[SHADE_AT + 4] = &model->shade.steeper;
     for (size_t k = 0; k < SKYLIT; k++)
         figures[SKYLIT_AT + k] = &model->skylit[k / WD_SKYLIT_KINDS][k % WD_SKYLIT_KINDS];
 }

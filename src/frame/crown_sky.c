@@ -268,7 +268,8 @@ static struct wd_sky_crown crown_of(const struct work *work, uint32_t record)
         .below = {.radius_m = fmaxf(shade->radius_m * pose.across, 0.1f),
                   .half_m = fmaxf(shade->half_m * pose.up, 0.1f),
                   .middle_m = shade->middle_m * pose.up,
-                  .per_m = shade->per_m * denser},
+                  .per_m = shade->per_m * denser,
+                  .steeper = shade->steeper},
     };
 }
 

@@ -6,11 +6,9 @@
 #include "shared/sky_rings.h"
 #include "tree/silhouette.h"
 
-enum { RINGS = WD_SKY_RINGS, PLACES = 8, SIDES = 48, ABOUT = 3 };
+enum { RINGS = WD_SKY_RINGS, CELL = 8 /* pixels */, CELLS = WD_SILHOUETTE / CELL /* a side */ };
 static const double sines[RINGS] = {WD_SKY_RING_SINES}, weights[RINGS] = {WD_SKY_RINGS_LEVEL};
-/* Distances from the axis, in radii of the crown. */
-static const double distances[PLACES] = {0.06, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3, 1.7};
-static const double OVER_M = 0.3;
+static const double OVER_M = 0.3; /* of the places that are shaded, over the foot */
 
 /* --- what the mesh leaves -------------------------------------------------------------------- */
 
@@ -43,101 +41,167 @@ static struct moments moments_of(const struct wd_tree_mesh *mesh)
     return sum;
 }
 
-struct measured {
-    double radius_m;
-    double left[RINGS][PLACES];
+/* Rays toward one ring of the sky, and the share of each cell of a picture of them that passes the mesh. */
+struct ring {
+    struct wd_vec3 right, up, toward;
+    double first_m[2], cell_m; /* middle of the first cell along right and up; a cell's side */
+    double weight;             /* of a cell: by the ground that its rays come down to */
+    float left[CELLS][CELLS];
 };
 
-static bool is_covered(const struct wd_silhouette *view, double x_m, double y_m)
-{
-    const float place[3] = {(float)x_m, (float)y_m, (float)OVER_M};
-    float at[2];
-    wd_silhouette_project(view, place, at);
-    if (!(at[0] >= 0 && at[1] >= 0 && at[0] < WD_SILHOUETTE && at[1] < WD_SILHOUETTE))
-        return false;
-    return view->covered[(int)at[1]][(int)at[0] / 8] >> ((int)at[0] % 8) & 1;
-}
-
-/* Of a circle about the stem, and of two close to it. */
-static double left_of(const struct wd_silhouette *view, double away_m, double step_m)
+static float left_of(const struct wd_silhouette *view, int column, int row)
 {
     int covered = 0;
-    for (int about = 0; about < ABOUT; about++)
-        for (int side = 0; side < SIDES; side++) {
-            double turn = 2 * WD_PI * (side + (double)about / ABOUT) / SIDES;
-            double radius_m = away_m + step_m * (about - 1);
-            covered += is_covered(view, radius_m * wd_dcos(turn), radius_m * wd_dsin(turn));
-        }
-    return 1 - (double)covered / (SIDES * ABOUT);
+    for (int y = row * CELL; y < (row + 1) * CELL; y++)
+        for (int x = column * CELL; x < (column + 1) * CELL; x++)
+            covered += view->covered[y][x / 8] >> (x % 8) & 1;
+    return 1 - (float)covered / (CELL * CELL);
 }
 
-static void measure(struct measured *measured, const struct wd_tree_mesh *mesh)
+static void measure(struct ring rings[RINGS], const struct wd_tree_mesh *mesh)
 {
     struct wd_silhouette views[RINGS];
-    for (int ring = 0; ring < RINGS; ring++) {
-        double level = sqrt(1 - sines[ring] * sines[ring]), turn = 2.39996323 * ring;
-        wd_silhouette_init(&views[ring], mesh, WD_V3((float)(level * wd_dcos(turn)), (float)(level * wd_dsin(turn)),
-                                                     (float)sines[ring]));
+    for (int i = 0; i < RINGS; i++) {
+        double level = sqrt(1 - sines[i] * sines[i]), turn = 2.39996323 * i;
+        wd_silhouette_init(&views[i], mesh, WD_V3((float)(level * wd_dcos(turn)), (float)(level * wd_dsin(turn)),
+                                                  (float)sines[i]));
     }
     wd_silhouette_cover(views, RINGS, mesh, 0, mesh->index_count);
-    for (int ring = 0; ring < RINGS; ring++)
-        for (int i = 0; i < PLACES; i++)
-            measured->left[ring][i] = left_of(&views[ring], distances[i] * measured->radius_m, 0.04 * measured->radius_m);
+    for (int i = 0; i < RINGS; i++) {
+        const struct wd_silhouette *view = &views[i];
+        struct ring *ring = &rings[i];
+        double pixel_m = 1 / (double)view->scale;
+        *ring = (struct ring){.right = view->right, .up = view->up, .toward = view->toward, .cell_m = CELL * pixel_m,
+                              .weight = weights[i] / sines[i]};
+        for (int k = 0; k < 2; k++)
+            ring->first_m[k] = (double)view->low[k] + 0.5 * CELL * pixel_m;
+        for (int row = 0; row < CELLS; row++)
+            for (int column = 0; column < CELLS; column++)
+                ring->left[row][column] = left_of(view, column, row);
+    }
 }
 
 /* --- the fit --------------------------------------------------------------------------------- */
 
-double wd_crown_shade_leaves(const struct wd_crown_shade *shade, int ring, double away_m, double over_m)
+double wd_crown_shade_lets(const struct wd_crown_shade *shade, struct wd_vec3 from, struct wd_vec3 toward)
 {
-    enum { WAYS = 8 }; /* on one side; the other is the same */
-    double rise = sines[ring], level = sqrt(1 - rise * rise), sum = 0;
-    double radius = (double)shade->radius_m, half = (double)shade->half_m;
-    double dx = level / radius, dz = rise / half, ss = dx * dx + dz * dz;
-    double z = (over_m - (double)shade->middle_m) / half, away = away_m / radius;
-    for (int way = 0; way < WAYS; way++) {
-        double along = wd_dcos(WD_PI * (way + 0.5) / WAYS) * away * dx + z * dz;
-        double root2 = along * along - ss * (away * away + z * z - 1);
-        if (root2 <= 0) {
-            sum += 1;
-            continue;
-        }
-        double root = sqrt(root2), way_m = (fmax(root - along, 0) - fmax(-root - along, 0)) / ss;
-        sum += wd_dexp(-(double)shade->per_m * way_m);
+    double per_r = 1 / (double)shade->radius_m, per_h = 1 / (double)shade->half_m;
+    const double p[3] = {(double)from.x * per_r, (double)from.y * per_r, ((double)from.z - (double)shade->middle_m) * per_h};
+    const double d[3] = {(double)toward.x * per_r, (double)toward.y * per_r, (double)toward.z * per_h};
+    double along = p[0] * d[0] + p[1] * d[1] + p[2] * d[2], dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    double root2 = along * along - dd * (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - 1);
+    if (root2 <= 0)
+        return 1;
+    double root = sqrt(root2), way_m = (fmax(root - along, 0) - fmax(-root - along, 0)) / dd;
+    double per_m = (double)shade->per_m * wd_dexp((double)shade->steeper * ((double)toward.z - (double)WD_SHADE_SINE));
+    return wd_dexp(-per_m * way_m);
+}
+
+static double lets_to(const struct wd_crown_shade *shade, const struct ring *ring, int column, int row)
+{
+    struct wd_vec3 at = wd_v3_scale(ring->right, (float)(ring->first_m[0] + column * ring->cell_m));
+    at = wd_v3_mad(at, ring->up, (float)(ring->first_m[1] + row * ring->cell_m));
+    at = wd_v3_mad(at, ring->toward, ((float)OVER_M - at.z) / ring->toward.z);
+    return wd_crown_shade_lets(shade, at, ring->toward);
+}
+
+enum { NUMBERS = 5, STEPS = 16 };
+
+/* Normal equations of a step that brings the numbers' logarithms nearer, and the last one itself. */
+struct normal {
+    double a[NUMBERS][NUMBERS], b[NUMBERS], error;
+};
+
+static struct wd_crown_shade changed(struct wd_crown_shade shade, const double by[NUMBERS])
+{
+    float *numbers[] = {&shade.radius_m, &shade.half_m, &shade.middle_m, &shade.per_m};
+    for (int k = 0; k < NUMBERS - 1; k++)
+        *numbers[k] *= (float)wd_dexp(by[k]);
+    shade.steeper += (float)by[NUMBERS - 1];
+    return shade;
+}
+
+static void add_row(struct normal *normal, double weight, double off, const double slopes[NUMBERS])
+{
+    normal->error += weight * off * off;
+    for (int i = 0; i < NUMBERS; i++) {
+        normal->b[i] -= weight * off * slopes[i];
+        for (int k = 0; k < NUMBERS; k++)
+            normal->a[i][k] += weight * slopes[i] * slopes[k];
     }
-    return sum / WAYS;
 }
 
-static double error_of(const struct wd_crown_shade *shade, const struct measured *measured)
+/* Of single cells and of all together: cells tell the crown's form; what it hides in all, which stands of such trees go
+ * by, they leave too little of, since gaps lie otherwise in each crown. */
+static struct normal normal_of(const struct wd_crown_shade *shade, const struct ring rings[RINGS])
 {
-    double sum = 0;
-    for (int ring = 0; ring < RINGS; ring++)
-        for (int i = 0; i < PLACES; i++) {
-            double left = wd_crown_shade_leaves(shade, ring, distances[i] * measured->radius_m, OVER_M);
-            sum += weights[ring] * (left - measured->left[ring][i]) * (left - measured->left[ring][i]);
-        }
-    return sum;
-}
-
-/* By the steps of a compass, each number in turn, smaller where none brings the fit nearer. */
-static struct wd_crown_shade fit(struct wd_crown_shade shade, const struct measured *measured)
-{
-    enum { NUMBERS = 4, ROUNDS = 40 };
-    double best = error_of(&shade, measured), step = 0.3;
-    for (int round = 0; round < ROUNDS && step > 0.01; round++) {
-        bool nearer = false;
-        for (int k = 0; k < 2 * NUMBERS; k++) {
-            struct wd_crown_shade tried = shade;
-            float factor = (float)(k & 1 ? 1 / (1 + step) : 1 + step);
-            float *numbers[NUMBERS] = {&tried.radius_m, &tried.half_m, &tried.middle_m, &tried.per_m};
-            *numbers[k / 2] *= factor;
-            double error = error_of(&tried, measured);
-            if (error < best) {
-                best = error;
-                shade = tried;
-                nearer = true;
+    static const double WHOLE = 1, APART = 0.01;
+    struct wd_crown_shade beside[NUMBERS];
+    struct normal normal = {0};
+    for (int k = 0; k < NUMBERS; k++) {
+        double by[NUMBERS] = {0};
+        by[k] = APART;
+        beside[k] = changed(*shade, by);
+    }
+    for (const struct ring *ring = rings; ring < rings + RINGS; ring++) {
+        double all = 0, all_slopes[NUMBERS] = {0}, slopes[NUMBERS];
+        for (int cell = 0; cell < CELLS * CELLS; cell++) {
+            int column = cell % CELLS, row = cell / CELLS;
+            double lets = lets_to(shade, ring, column, row), off = lets - (double)ring->left[row][column];
+            for (int k = 0; k < NUMBERS; k++) {
+                slopes[k] = (lets_to(&beside[k], ring, column, row) - lets) / APART;
+                all_slopes[k] += slopes[k];
             }
+            all += off;
+            add_row(&normal, ring->weight, off, slopes);
         }
-        step *= nearer ? 1 : 0.5;
+        add_row(&normal, WHOLE * ring->weight, all, all_slopes);
+    }
+    return normal;
+}
+
+/* Gauss's elimination; the damped matrix is positive definite. */
+static void solve(double x[NUMBERS], const struct normal *normal, double damping)
+{
+    double a[NUMBERS][NUMBERS + 1];
+    for (int i = 0; i < NUMBERS; i++) {
+        for (int k = 0; k < NUMBERS; k++)
+            a[i][k] = normal->a[i][k] * (i == k ? 1 + damping : 1);
+        a[i][i] += 1e-9;
+        a[i][NUMBERS] = normal->b[i];
+    }
+    for (int i = 0; i < NUMBERS; i++)
+        for (int below = i + 1; below < NUMBERS; below++) {
+            double factor = a[below][i] / a[i][i];
+            for (int k = i; k <= NUMBERS; k++)
+                a[below][k] -= factor * a[i][k];
+        }
+    for (int i = NUMBERS - 1; i >= 0; i--) {
+        x[i] = a[i][NUMBERS];
+        for (int k = i + 1; k < NUMBERS; k++)
+            x[i] -= a[i][k] * x[k];
+        x[i] = fmin(fmax(x[i] / a[i][i], -0.5), 0.5);
+    }
+}
+
+/* Levenberg and Marquardt's steps. */
+static struct wd_crown_shade fit(struct wd_crown_shade shade, const struct ring rings[RINGS])
+{
+    struct normal normal = normal_of(&shade, rings);
+    double damping = 0.1;
+    for (int step = 0; step < STEPS; step++) {
+        double by[NUMBERS];
+        solve(by, &normal, damping);
+        struct wd_crown_shade tried = changed(shade, by);
+        struct normal there = normal_of(&tried, rings);
+        bool nearer = there.error < normal.error, settled = fabs(there.error - normal.error) < 1e-3 * normal.error;
+        damping *= nearer ? 0.2 : 8;
+        if (nearer) {
+            shade = tried;
+            normal = there;
+        }
+        if (settled)
+            break;
     }
     return shade;
 }
@@ -152,9 +216,9 @@ struct wd_crown_shade wd_crown_shade_of(const struct wd_tree_mesh *mesh)
     double middle_m = sum.z / sum.area, variance_m2 = fmax(sum.z2 / sum.area - middle_m * middle_m, 0);
     double radius_m = fmax(sqrt(2.5 * sum.r2 / sum.area), 0.05), half_m = fmax(sqrt(5 * variance_m2), 0.05);
     double volume_m3 = 4 / 3.0 * WD_PI * radius_m * radius_m * half_m;
-    struct measured measured = {.radius_m = radius_m};
-    measure(&measured, mesh);
+    struct ring rings[RINGS];
+    measure(rings, mesh);
     const struct wd_crown_shade even = {(float)radius_m, (float)half_m, (float)fmax(middle_m, 0.05),
-                                        (float)(0.25 * sum.area / volume_m3)};
-    return fit(even, &measured);
+                                        (float)(0.25 * sum.area / volume_m3), 0};
+    return fit(even, rings);
 }

@@ -9,15 +9,14 @@
 struct wd_crown_shade {
     float radius_m, half_m; /* half its width and half its height */
     float middle_m;         /* height of its middle over the foot */
-    float per_m;            /* extinction; 0: the tree has no shade */
+    float per_m;            /* extinction, of ways with a sine of WD_SHADE_SINE; 0: the tree has no shade */
+    float steeper;          /* logarithm of how much more of ways so much steeper: leaves that lie flat hide them */
 };
 
-/* Fits it to a tree's mesh, whose bounds are set: shares of the sky that reach level ground, for rings of the sky
- * (shared/sky_rings.h) and distances from the foot. */
+/* Fits it to a tree's mesh, whose bounds are set: to pictures of what lies before six rings of the sky (shared/sky_rings.h). */
 struct wd_crown_shade wd_crown_shade_of(const struct wd_tree_mesh *mesh);
 
-/* What such a crown leaves of a ring of the sky, mean over all sides, to a place so far from its axis, `over_m` over the
- * foot. */
-double wd_crown_shade_leaves(const struct wd_crown_shade *shade, int ring, double away_m, double over_m);
+/* Share of light that comes to a place from a direction, a unit vector; both in the tree's own frame, metres. */
+double wd_crown_shade_lets(const struct wd_crown_shade *shade, struct wd_vec3 from, struct wd_vec3 toward);
 
 #endif
