@@ -11,18 +11,20 @@ layout(scalar, set = 0, binding = 5) readonly buffer Rises { float rise_m[]; }; 
 const int QUARTERS[8] = int[](0, 1, 1, 2, 2, 3, 3, 0);
 const float LOW_SINE = 0.5; /* of ways that the field knows as low */
 
-/* What the canopy's field says of the ground there, stems and hills included, of the leaves above the way. */
+/* What the canopy's field says of the ground there, stems and hills included; of steep ways, of the leaves above them. */
 vec4 past_reach(uint job, uint first, vec3 from_m, ring_ways ways)
 {
     float across = (first == 0u ? 1.0 : -1.0) * inversesqrt(1.0 - ways.up * ways.up), reach_m = jobs[job].reach_m;
-    float over_m = reach_m * ways.up * abs(across), layer = ways.up < LOW_SINE ? 3.0 : 2.0;
+    float over_m = reach_m * ways.up * abs(across);
+    bool low = ways.up < LOW_SINE;
     vec4 through;
     for (uint i = 0u; i < 4u; i++) {
         vec2 at = from_m.xy + reach_m * across * vec2(ways.east[i], ways.north[i]);
         at = (at - push.canopy_from_m) * push.canopy_scale;
         vec2 root_m = textureLod(canopy_light, vec3(at, 1.0), 0.0).xy;
-        float left = textureLod(canopy_light, vec3(at, layer), 0.0)[QUARTERS[first + i]];
-        through[i] = pow(max(left * left, 1e-3), canopy_above(WD_CANOPY_MOST_M * root_m * root_m, over_m));
+        float left = textureLod(canopy_light, vec3(at, low ? 3.0 : 2.0), 0.0)[QUARTERS[first + i]];
+        float above = low ? 1.0 : canopy_above(WD_CANOPY_MOST_M * root_m * root_m, over_m);
+        through[i] = pow(max(left * left, 1e-3), above);
     }
     return through;
 }

@@ -14,15 +14,20 @@ static const struct shot {
     const char *camera, *method;
     uint32_t samples;
     double max_error_px;
+    double aside_m; /* of the camera, east and south */
 } shots[] = {
-    {"over", "continuum", 1, 0}, {"over", "continuum", 4, 0}, {"over", "octree", 1, 0},
-    {"walk", "continuum", 1, 0}, {"over", "continuum", 4, 6},
+    {"over", "continuum", 1, 0, 0}, {"over", "continuum", 4, 0, 0}, {"over", "octree", 1, 0, 0},
+    {"walk", "continuum", 1, 0, 0}, {"over", "continuum", 4, 6, 0}, {"walk", "continuum", 1, 0, 100},
+    {"walk", "continuum", 1, 0, -100},
 };
 enum { SHOTS = sizeof shots / sizeof *shots };
 
 static struct wd_picture take(struct suite *suite, const struct shot *shot)
 {
     struct wd_render_params params = suite_params(suite->forest, shot->camera);
+    params.camera.position_m[0] += shot->aside_m;
+    params.camera.position_m[1] -= shot->aside_m;
+    params.camera.position_m[2] += shot->aside_m != 0 ? 25 : 0; /* the ground may be higher there */
     params.method = shot->method;
     params.samples = shot->samples;
     params.max_error_px = shot->max_error_px;
@@ -39,8 +44,9 @@ static void expect_as_alone(struct suite *suite, int shot, int before, const str
     wd_picture_finish(&picture);
 }
 
-/* Samples more and fewer, an error bound before and after, another method, another place. */
-static const int order[] = {0, 1, 0, 4, 1, 4, 0, 2, 1, 3, 0};
+/* Samples more and fewer, an error bound before and after, another method, other places, some so far apart that one's ground
+ * is kept where the other's was. */
+static const int order[] = {0, 1, 0, 4, 1, 4, 0, 2, 1, 3, 0, 5, 6, 5};
 
 static void what_was_drawn_before_leaves_no_trace(void **state)
 {

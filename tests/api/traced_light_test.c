@@ -112,6 +112,18 @@ static void long_lenses_show_shadows(void **state)
     assert_true(fabs(found.shade_pct) < 10);
 }
 
+/* Ground below an oak in the open, under clouds: the darkest is at the stem, +16 %. +121 where what comes down to the ground is
+ * known of cells of 8 m alone, through which the crown is spread. */
+static void trees_in_the_open_darken_the_ground(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "oak", .trees = "40,40,tree,16\n", .size_m = "[80, 80]", .samples = 8,
+        .keys = "\"openness\": {\"tree\": 1}, \"sky\": {\"cover\": 1}",
+        .camera = "\"position_m\": [40, 20, 5], \"look_at_m\": [40, 40, 0], \"fov_deg\": 30"});
+    assert_true(found.shade_pct > -15 && found.shade_pct < 25);
+}
+
 static const char *const STAND = "26,30,tree,14\n34,30,tree,15\n26,38,tree,13\n34,38,tree,14\n";
 #define AS_CARDS "\"quality\": {\"mesh_distance_m\": 0, \"reduced_distance_m\": 0}"
 #define FROM_AFAR "\"position_m\": [30, -30, 8], \"look_at_m\": [30, 30, 8], \"fov_deg\": 20"
@@ -269,6 +281,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(twigs_throw_their_own_shadows),
         cmocka_unit_test(stems_do_not_shade_themselves),
         cmocka_unit_test(long_lenses_show_shadows),
+        cmocka_unit_test(trees_in_the_open_darken_the_ground),
         cmocka_unit_test(snow_lights_trees_from_below),
         cmocka_unit_test(pale_leaves_light_each_other),
         cmocka_unit_test(tufts_stand_free),
