@@ -1,6 +1,6 @@
 /* What of the sky reaches a place past the crowns beside it: these are ellipsoids of leaves, in which light falls off with
  * the way that it has come (Guerrero 2006, section 5). Beyond a job's reach the canopy's field says what is left. The same
- * whatever else is in the grid. Expects ELLIPSOID: which of a crown's counts. */
+ * whatever else is in the grid. */
 #include "shared/crown_sky.h"
 #include "shared/light.h"
 #include "shared/sky_rings.h"
@@ -34,7 +34,7 @@ ring_ways ways_of(uint ring)
 }
 
 /* Optical depth of a crown along each way. `from_m`: from its middle to the place. */
-void add_crown(inout vec4 depth, inout vec4 across, wd_sky_ellipsoid crown, vec3 from_m, ring_ways ways)
+void add_crown(inout vec4 depth, inout vec4 across, wd_sky_crown crown, vec3 from_m, ring_ways ways)
 {
     float per_r = 1.0 / crown.radius_m, per_h = 1.0 / crown.half_m;
     vec3 q = from_m * vec3(per_r, per_r, per_h);
@@ -64,8 +64,8 @@ void add_cells(inout vec4 depth, inout vec4 across, uint job, vec3 place_m, vec2
         uint first = first_of[uint(row) * push.columns + uint(low.x)];
         uint end = first_of[uint(row) * push.columns + uint(high.x) + 1u];
         for (uint i = first; i < end; i++) {
-            wd_sky_ellipsoid crown = crowns[i].ELLIPSOID;
-            vec3 apart_m = vec3(ivec3(crowns[i].foot_mm[0], crowns[i].foot_mm[1], crowns[i].foot_mm[2]) - foot_mm) * 0.001;
+            wd_sky_crown crown = crowns[i];
+            vec3 apart_m = vec3(ivec3(crown.foot_mm[0], crown.foot_mm[1], crown.foot_mm[2]) - foot_mm) * 0.001;
             vec2 aside_m = apart_m.xy - about_m;
             bool near = dot(aside_m, aside_m) < reach_m * reach_m;
             apart_m.z += crown.middle_m;

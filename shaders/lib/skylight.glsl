@@ -52,9 +52,8 @@ const wd_floor_sky NO_FLOOR = wd_floor_sky(0.0, vec4(0.0), vec4(0.0));
 /* Between four squares; the roots are mixed. */
 wd_floor_sky floor_sky(vec3 rel)
 {
-    float share = clamp((WD_FLOOR_SKY_FAR_M - length(rel)) / (WD_FLOOR_SKY_FAR_M - WD_FLOOR_SKY_WHOLE_M), 0.0, 1.0);
     wd_floor_sky left = NO_FLOOR;
-    left.share = push.floor_sky_m > 0.0 ? share : 0.0;
+    left.share = clamp((1.0 - length(rel) / max(push.floor_sky_m, 0.1)) / (1.0 - WD_FLOOR_SKY_WHOLE), 0.0, 1.0);
     if (left.share <= 0.0)
         return left;
     vec2 at = (rel.xy + push.camera_m) * (1.0 / WD_FLOOR_SKY_M) - 0.5, low = floor(at);

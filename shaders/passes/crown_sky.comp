@@ -1,6 +1,5 @@
 #version 460
 /* What of the sky reaches places about a tree's crown past its neighbours. A thread a place. */
-#define ELLIPSOID beside
 #include "lib/sky_left.glsl"
 
 layout(local_size_x = 64) in;

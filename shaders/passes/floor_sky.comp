@@ -1,6 +1,5 @@
 #version 460
 /* What of the sky crowns leave the ground about the eye (shared/crown_sky.h): a group a tile, a thread a square. */
-#define ELLIPSOID below
 #include "lib/sky_left.glsl"
 
 layout(local_size_x = WD_FLOOR_SKY_TILE, local_size_y = WD_FLOOR_SKY_TILE) in;

@@ -45,22 +45,12 @@ WD_FUNC float wd_crown_sky_share(float height_m, float away_m, float px)
     return WD_CLAMP(WD_MIN(large, near), 0.0f, 1.0f);
 }
 
-/* Leaves in which light falls off with the way that it has come. */
-struct wd_sky_ellipsoid {
-    float radius_m, half_m; /* half its width and half its height */
-    float middle_m;         /* height of its middle over the foot */
-    float per_m, steeper;   /* extinction; see tree/crown_shade.h */
-};
-#ifdef __STDC_VERSION__
-#define WD_ELLIPSOID_STRUCT struct wd_sky_ellipsoid
-#else
-#define WD_ELLIPSOID_STRUCT wd_sky_ellipsoid
-#endif
-
-/* A crown that hides the sky of others, and of the ground (tree/crown_shade.h). */
+/* A crown that hides the sky: an ellipsoid of leaves (tree/crown_shade.h). */
 struct wd_sky_crown {
     int32_t foot_mm[3];
-    WD_ELLIPSOID_STRUCT beside, below;
+    float radius_m, half_m; /* half its width and half its height */
+    float middle_m;         /* height of its middle over the foot */
+    float per_m, steeper;   /* extinction */
 };
 
 /* Bearings of rays in radians from east to north: four, then the four across from these. The way on from a crown's
@@ -92,9 +82,10 @@ struct wd_crown_sky_job {
 #define WD_FLOOR_SKY_TILE 8 /* squares a tile's side */
 #define WD_FLOOR_SKY_TILES (WD_FLOOR_SKY_ACROSS / WD_FLOOR_SKY_TILE)
 #define WD_FLOOR_SKY_TILE_M (WD_FLOOR_SKY_M * WD_FLOOR_SKY_TILE)
-/* Of ground so far off all is known so, and beyond the second nothing. */
-#define WD_FLOOR_SKY_WHOLE_M 80.0f
+/* Ground beyond so many metres, or where a square is less than so many pixels, is not known so; within the share of that all. */
 #define WD_FLOOR_SKY_FAR_M 108.0f
+#define WD_FLOOR_SKY_LEAST_PX 3.0f
+#define WD_FLOOR_SKY_WHOLE 0.74f
 #define WD_FLOOR_SKY_OVER_M 0.5f /* of a square's middle over the ground */
 
 WD_FUNC uint32_t wd_floor_sky_texel(int32_t column, int32_t row)

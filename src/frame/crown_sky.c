@@ -43,7 +43,6 @@ void wd_crown_sky_drop_forest(struct wd_crown_sky *sky, struct wd_gpu *gpu)
 {
     wd_buffer_finish(&sky->table, gpu);
     free(sky->slots);
-    free(sky->per_m);
     *sky = (struct wd_crown_sky){.crowns = sky->crowns, .floor = sky->floor, .updates = sky->updates};
 }
 
@@ -61,44 +60,6 @@ void wd_crown_sky_forget(struct wd_crown_sky *sky)
         memset(sky->slots, 0, SLOTS * sizeof *sky->slots);
 }
 
-/* --- extinction ---------------------------------------------------------------------------- */
-
-/* Share of an ellipsoid's outline that it covers where the way through its middle has an optical depth: ways that go by
- * it at the share r of the outline's radius are sqrt(1 - r^2) as long. */
-static double covered(double depth)
-{
-    if (depth < 1e-3)
-        return depth * 2 / 3;
-    return 1 - 2 * (1 - (1 + depth) * exp(-depth)) / (depth * depth);
-}
-
-static double depth_that_covers(double share)
-{
-    double low = 0, high = 40;
-    for (int i = 0; i < 40; i++) {
-        double middle = 0.5 * (low + high);
-        *(covered(middle) < share ? &low : &high) = middle;
-    }
-    return low;
-}
-
-/* What a crown covers, seen from six elevations, tells how dense its ellipsoid is. */
-static float extinction_of(const struct wd_model *model)
-{
-    enum { SINES = 6 };
-    static const double MOST_COVERED = 0.985;
-    double radius_m = fmax(0.5 * (double)model->crown_m, 0.05);
-    double half_m = fmax(0.5 * (double)(model->height_m - model->crown_base_m), 0.05), sum = 0;
-    for (int i = 0; i < SINES; i++) {
-        double up = (i + 0.5) / SINES, level = sqrt(1 - up * up);
-        double seen_m2 = (double)wd_tree_seen_m2(*model, 1, 1, (float)up);
-        double outline_m2 = 3.14159265358979 * radius_m * hypot(radius_m * up, half_m * level);
-        double middle_m = 2 / hypot(level / radius_m, up / half_m);
-        sum += depth_that_covers(fmin(seen_m2 / outline_m2, MOST_COVERED)) / middle_m;
-    }
-    return (float)(sum / SINES);
-}
-
 static bool prepare(struct wd_crown_sky *sky, struct wd_cmd *cmd, const struct wd_forest_device *forest)
 {
     uint64_t texels = forest->world->tree_count ? (uint64_t)SLOTS * WD_CROWN_SKY_TEXELS + FLOOR_TEXELS : 0;
@@ -113,9 +74,6 @@ static bool prepare(struct wd_crown_sky *sky, struct wd_cmd *cmd, const struct w
     if (!wd_buffer_init(&sky->table, cmd->gpu, &params))
         return false;
     sky->slots = wd_alloc_array(SLOTS, sizeof *sky->slots);
-    sky->per_m = wd_alloc_array(forest->model_count + 1, sizeof *sky->per_m);
-    for (uint32_t i = 0; i < forest->model_count; i++)
-        sky->per_m[i] = extinction_of(&forest->host_models[i]);
     return true;
 }
 
@@ -254,26 +212,24 @@ static struct wd_sky_crown crown_of(const struct work *work, uint32_t record)
 {
     const struct wd_tree *tree = tree_of(work, record);
     uint32_t index = wd_forest_model_of(work->forest, tree);
-    const struct wd_model *model = &work->forest->host_models[index];
     const struct wd_crown_shade *shade = &work->forest->crown_shades[index];
-    struct wd_tree_pose pose = wd_tree_pose_of(*tree, *model);
-    float base_m = model->crown_base_m * pose.up, height_m = WD_TREE_HEIGHT_M(*tree);
-    float denser = 1 / cbrtf(pose.across * pose.across * pose.up);
-    return (struct wd_sky_crown){
-        .foot_mm = {tree->x_mm, tree->y_mm, tree->z_mm},
-        .beside = {.radius_m = fmaxf(0.5f * WD_TREE_CROWN_M(*tree), 0.1f),
-                   .half_m = fmaxf(0.5f * (height_m - base_m), 0.1f),
-                   .middle_m = 0.5f * (height_m + base_m),
-                   .per_m = work->sky->per_m[index] * denser},
-        .below = {.radius_m = fmaxf(shade->radius_m * pose.across, 0.1f),
-                  .half_m = fmaxf(shade->half_m * pose.up, 0.1f),
-                  .middle_m = shade->middle_m * pose.up,
-                  .per_m = shade->per_m * denser,
-                  .steeper = shade->steeper},
-    };
+    struct wd_tree_pose pose = wd_tree_pose_of(*tree, work->forest->host_models[index]);
+    return (struct wd_sky_crown){.foot_mm = {tree->x_mm, tree->y_mm, tree->z_mm},
+                                 .radius_m = fmaxf(shade->radius_m * pose.across, 0.1f),
+                                 .half_m = fmaxf(shade->half_m * pose.up, 0.1f),
+                                 .middle_m = shade->middle_m * pose.up,
+                                 .per_m = shade->per_m / cbrtf(pose.across * pose.across * pose.up),
+                                 .steeper = shade->steeper};
 }
 
 /* --- the floor ----------------------------------------------------------------------------- */
+
+float wd_crown_sky_floor_m(const struct wd_forest_device *forest, const struct wd_view *view)
+{
+    if (!forest->world->octree.count || forest->world->demand.count)
+        return 0;
+    return fminf(WD_FLOOR_SKY_FAR_M, view->pixels_per_radian * (WD_FLOOR_SKY_M / WD_FLOOR_SKY_LEAST_PX));
+}
 
 static void middle_of(const struct tile *tile, double place_m[2])
 {
@@ -307,7 +263,7 @@ static bool sees_tile(const struct work *work, const struct tile *tile)
     }
     min_m[2] -= WD_FLOOR_SKY_TILE_M; /* between these places, and plants on it */
     max_m[2] += WD_FLOOR_SKY_TILE_M;
-    return seen_m(work, min_m, max_m, WD_FLOOR_SKY_FAR_M) < INFINITY;
+    return seen_m(work, min_m, max_m, wd_crown_sky_floor_m(work->forest, work->view)) < INFINITY;
 }
 
 /* Tiles about the eye that are not known yet. */
@@ -472,7 +428,7 @@ static void fill_floor(const struct work *work, struct wd_crown_sky_job *jobs, f
 static void look_from(const struct grid *grid, const struct work *work, const struct wd_sky_crown *crowns,
                       const uint32_t *first_of, struct wd_crown_sky_job *job)
 {
-    float over_m = job->crown == WD_CROWN_SKY_NONE ? WD_FLOOR_SKY_OVER_M : crowns[job->crown].beside.middle_m;
+    float over_m = job->crown == WD_CROWN_SKY_NONE ? WD_FLOOR_SKY_OVER_M : crowns[job->crown].middle_m;
     job->reach_m = reach_of(grid, crowns, first_of, job->foot_mm);
     look_round(job, &work->forest->world->terrain, over_m);
 }
@@ -529,11 +485,6 @@ static void find_missing(struct work *work, struct wd_cmd *cmd)
     wd_cmd_scope_end(cmd);
 }
 
-float wd_crown_sky_floor_m(const struct wd_forest_device *forest)
-{
-    return forest->world->octree.count && !forest->world->demand.count ? WD_FLOOR_SKY_FAR_M : 0;
-}
-
 void wd_crown_sky_update(struct wd_crown_sky *sky, struct wd_cmd *cmd, const struct wd_forest_device *forest,
                          const struct wd_view *view)
 {
@@ -546,7 +497,7 @@ void wd_crown_sky_update(struct wd_crown_sky *sky, struct wd_cmd *cmd, const str
     sky->updates++;
     if (forest->world->octree.count) {
         walk(&work, 0, is_near, ask_if_large);
-        if (wd_crown_sky_floor_m(forest) > 0)
+        if (wd_crown_sky_floor_m(forest, view) > 0)
             ask_for_floor(&work);
     }
     if (work.missing_count || !sky->told)

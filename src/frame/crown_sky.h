@@ -19,7 +19,6 @@ struct wd_crown_sky {
         int32_t column, row; /* counted from the world's corner */
         bool known;
     } tiles[WD_FLOOR_SKY_TILES * WD_FLOOR_SKY_TILES]; /* that the table holds */
-    float *per_m; /* extinction of each model's crown */
     uint64_t updates;
     bool told; /* the table's heads say what slots hold */
 };
@@ -31,8 +30,8 @@ void wd_crown_sky_finish(struct wd_crown_sky *sky, struct wd_gpu *gpu); /* accep
  * trees are that near than a set has slots, those that come last have none. */
 void wd_crown_sky_update(struct wd_crown_sky *sky, struct wd_cmd *cmd, const struct wd_forest_device *forest,
                          const struct wd_view *view);
-/* How far off the table tells what reaches the ground; 0: it does not. */
-float wd_crown_sky_floor_m(const struct wd_forest_device *forest);
+/* How far off the table tells what reaches the ground of the view; 0: it does not. */
+float wd_crown_sky_floor_m(const struct wd_forest_device *forest, const struct wd_view *view);
 /* The device never ran what was recorded: all is found anew. */
 void wd_crown_sky_forget(struct wd_crown_sky *sky);
 /* Forgets what is kept of a forest; no frame that uses it may be in flight. */

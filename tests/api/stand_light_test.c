@@ -126,10 +126,10 @@ static void add_floor(struct sum *sum, const struct wd_picture *picture)
             add(sum, picture, i);
 }
 
-static void look_at_floor(const struct stand *stand, struct sum *drawn, struct sum *traced)
+static void look_at_floor(const struct stand *stand, int places, struct sum *drawn, struct sum *traced)
 {
     paint(stand);
-    for (int place = 0; place < 8; place++) {
+    for (int place = 0; place < places; place++) {
         struct wd_camera camera = camera_at(place);
         struct wd_picture picture = {0}, truth = {0};
         camera.pitch_rad = -1.309;
@@ -147,11 +147,11 @@ static void a_dark_floor_is_as_bright_as_traced(void **state)
 {
     (void)state;
     struct sum drawn = {0}, traced = {0};
-    look_at_floor(&dark, &drawn, &traced);
+    look_at_floor(&dark, 8, &drawn, &traced);
     check_light("floor of a dark stand", &drawn, &traced, 1.15, 1.15);
 }
 
-/* A bright horizon lights it past the plot's edges: 0.83 to 0.94 of the traced; 0.83 in red if leaves of layers are spread
+/* A bright horizon lights it past the plot's edges: 1.02 to 1.04 of the traced; 0.83 in red, at twice as many places, if leaves of layers are spread
  * evenly from base to top and the low sky that comes in is as dim as a closed stand's. */
 static void the_floor_of_a_plot_is_as_bright_as_traced(void **state)
 {
@@ -163,7 +163,7 @@ static void the_floor_of_a_plot_is_as_bright_as_traced(void **state)
         print_message("skipped, there is no %s\n", file);
         skip();
     }
-    look_at_floor(&plot, &drawn, &traced);
+    look_at_floor(&plot, 4, &drawn, &traced);
     check_light("floor of a plot", &drawn, &traced, 1.15, 1.25);
 }
 
@@ -297,22 +297,22 @@ static struct likeness trees_alike(const char *what, struct wd_camera camera_of(
     return found;
 }
 
-/* 0.93 and 0.24; 0.84 and 0.38 where the canopy's field alone tells what neighbours leave of the sky. */
+/* 0.95 and 0.22; 0.77 and 0.44 where the canopy's field alone tells what neighbours leave of the sky. */
 static void a_tree_is_as_dark_as_its_neighbours_make_it(void **state)
 {
     (void)state;
     paint(&cloudy);
-    const struct likeness found = trees_alike("from above", down_at, 16);
+    const struct likeness found = trees_alike("from above", down_at, 8);
     assert_true(found.correlation > 0.89 && found.apart < 0.31);
 }
 
-/* 0.79 and 0.38; 0.72 and 0.44 where the canopy's field tells of what is within 4 m of the eye. */
+/* 0.84 and 0.32; 0.76 and 0.39 by the field alone. */
 static void crowns_about_an_eye_are_as_dark_as_traced(void **state)
 {
     (void)state;
     paint(&cloudy);
-    const struct likeness found = trees_alike("about the eye", among_crowns, 16);
-    assert_true(found.correlation > 0.75 && found.apart < 0.41);
+    const struct likeness found = trees_alike("about the eye", among_crowns, 8);
+    assert_true(found.correlation > 0.80 && found.apart < 0.36);
 }
 
 /* 0.999; 0.978 if discs are as large from below as from above. */

@@ -283,7 +283,7 @@ static struct wd_light_push push_of(const struct wd_light_pass *pass, const stru
         .level_cards = params->level_cards,
         .pixels_a_radian = params->view->pixels_per_radian,
         .few_tiles = has_few_tiles(gpu, params->targets->width, params->targets->height),
-        .floor_sky_m = wd_crown_sky_floor_m(params->forest),
+        .floor_sky_m = wd_crown_sky_floor_m(params->forest, params->view),
         .shafts_m = shafts_m(params->frame),
         .shafts = shafts_of(params->frame),
         .eye_over_ground_m = eye_over_ground_m(params),
