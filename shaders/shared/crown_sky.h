@@ -64,9 +64,10 @@ struct wd_sky_crown {
 struct wd_crown_sky_job {
     int32_t foot_mm[3]; /* of the tree; of the tile's middle */
     uint32_t crown; /* the tree's own; none: WD_CROWN_SKY_NONE */
-    uint32_t slot;
-    float radius_m, top_m; /* of the places about that: on either side of the foot, and over it */
     float reach_m; /* of its neighbours; less where many stand closer */
+    /* the rest of crowns alone: */
+    uint32_t slot;
+    float radius_m, top_m; /* of the places: on either side of the foot, and over it */
     WD_VEC4(ground); /* slopes up to the highest ground along the bearings */
     WD_VEC4(ground_across);
     float rise_m[WD_CROWN_SKY_BEARINGS * WD_CROWN_SKY_STEPS]; /* of the ground over the foot, in the middle of each step */

@@ -248,16 +248,19 @@ static bool sees_tile(const struct work *work, const struct tile *tile)
 {
     const struct wd_terrain *terrain = &work->forest->world->terrain;
     const double half_m = 0.5 * (double)WD_FLOOR_SKY_TILE_M, beside_m = (double)WD_FLOOR_SKY_M;
+    const double extent_m[2] = {wd_terrain_extent_x_m(terrain), wd_terrain_extent_y_m(terrain)};
     double middle_m[2];
     float min_m[3], max_m[3];
     middle_of(tile, middle_m);
     for (int k = 0; k < 2; k++) {
         min_m[k] = (float)(middle_m[k] - half_m - beside_m); /* squares beside it are mixed with its */
         max_m[k] = (float)(middle_m[k] + half_m + beside_m);
+        if (max_m[k] < 0 || (double)min_m[k] > extent_m[k])
+            return false;
     }
     min_m[2] = max_m[2] = height_near(terrain, middle_m[0], middle_m[1]);
     for (int corner = 0; corner < 4; corner++) {
-        float z_m = height_near(terrain, (double)(corner & 1 ? min_m[0] : max_m[0]), (double)(corner & 2 ? min_m[1] : max_m[1]));
+        float z_m = height_near(terrain, (double)(corner & 1 ? min_m : max_m)[0], (double)(corner & 2 ? min_m : max_m)[1]);
         min_m[2] = fminf(min_m[2], z_m);
         max_m[2] = fmaxf(max_m[2], z_m);
     }
@@ -425,14 +428,6 @@ static void fill_floor(const struct work *work, struct wd_crown_sky_job *jobs, f
     }
 }
 
-static void look_from(const struct grid *grid, const struct work *work, const struct wd_sky_crown *crowns,
-                      const uint32_t *first_of, struct wd_crown_sky_job *job)
-{
-    float over_m = job->crown == WD_CROWN_SKY_NONE ? WD_FLOOR_SKY_OVER_M : crowns[job->crown].middle_m;
-    job->reach_m = reach_of(grid, crowns, first_of, job->foot_mm);
-    look_round(job, &work->forest->world->terrain, over_m);
-}
-
 static void tell_heads(struct wd_crown_sky *sky, struct wd_cmd *cmd)
 {
     struct wd_binding from;
@@ -473,7 +468,9 @@ static void find_missing(struct work *work, struct wd_cmd *cmd)
     fill(&grid, work, crowns, first_of, jobs);
     fill_floor(work, jobs + work->missing_count, rises_m);
     for (size_t job = 0; job < job_count; job++)
-        look_from(&grid, work, crowns, first_of, &jobs[job]);
+        jobs[job].reach_m = reach_of(&grid, crowns, first_of, jobs[job].foot_mm);
+    for (size_t job = 0; job < work->missing_count; job++)
+        look_round(&jobs[job], &work->forest->world->terrain, crowns[jobs[job].crown].middle_m);
     wd_cmd_scope_begin(cmd, "sky of crowns");
     wd_cmd_use_buffer(cmd, &work->sky->table, WD_USE_COMPUTE_WRITE);
     const struct wd_binding bindings[] = {
