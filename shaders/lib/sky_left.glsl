@@ -85,12 +85,12 @@ vec4 quarters_of(vec4 one, vec4 other)
     return 0.5 * vec4(one.x + other.w, one.y + one.z, one.w + other.x, other.y + other.z);
 }
 
-/* Shares of an upright face's light from the quarters that come to a place over the job's foot, from above 30 degrees and
- * from below, and of level ground's; neighbours are in reach of `about_m`, aside from the foot. */
+/* Shares of an upright face's light from the quarters, from above 30 degrees and from below, and of level ground's. */
 struct sky_left {
     vec4 high, low, level;
 };
 
+/* At a place over the job's foot; neighbours are in reach of `about_m`, aside from the foot. */
 sky_left sky_left_to(uint job, vec3 place_m, vec2 about_m)
 {
     vec2 foot_m = vec2(foot_of(job).xy) * 0.001;

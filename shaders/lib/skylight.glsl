@@ -76,6 +76,7 @@ wd_floor_sky floor_sky(vec3 rel)
 }
 #endif
 
+/* Of plants as far as they are herbs: what the field says of trees is not the ground's at their stems. */
 wd_floor_sky herbs_floor_sky(wd_crown crown, vec3 rel)
 {
     float herb = 1.0 - is_tree(crown);
@@ -266,7 +267,6 @@ vec4 edge_of(wd_pixel pixel, wd_shelter shelter, wd_floor_sky floor)
     vec4 low = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
     return past_edge(mix(low * low, floor.low, floor.share), shelter.through);
 }
-
 
 /* Mean of the quarters' shares by how much light each has. */
 float by_light(vec4 shares, vec4 light)
