@@ -201,7 +201,7 @@ static bool prepare(struct work *work)
                         "out of memory: there is no room for the paths of %u x %u pixels",
                         params->width, params->height);
     bool ok = wd_trace_scene_init(&work->scene, &reference->models, &forest->scene, &forest->world,
-                                  &work->frame, &reference->log);
+                                  &work->frame, &work->job.view, &reference->log);
     reference->stats.build_s = wd_clock_s() - begin_s;
     return ok;
 }

@@ -33,33 +33,58 @@ static struct wd_vec3 placed(const float m[12], struct wd_vec3 p)
                  m[2] * p.x + m[5] * p.y + m[8] * p.z + m[11]);
 }
 
-/* `scale`: factor on the distance up to which leaves are twigs. */
-static bool is_twig(const struct wd_trace_near_tree *at, const struct wd_tree_model *grown,
-                    uint32_t random, uint32_t leaf, float scale)
+/* A leaf that is a twig where the share of twigs at its distance is over `chance`. */
+struct wd_trace_near_leaf {
+    uint32_t index;
+    float distance_m, chance;
+};
+
+/* Whether the leaf's twig is in the picture, or its shadow may fall on what is as near. */
+static bool matters(const struct wd_trace_near_scene *scene, struct wd_vec3 foot, float twig_m)
 {
-    struct wd_vec3 foot = placed(at->transform, wd_leaf_foot(grown->leaves[leaf], grown->leaf_box));
-    return wd_hash_unit(wd_hash2(leaf, random)) <
-           wd_spray_share(wd_v3_length(foot), scale * grown->spray_reach);
+    const float *sun = scene->frame->sun_direction;
+    struct wd_vec3 shadow = wd_v3_mad(foot, WD_V3(sun[0], sun[1], sun[2]), -WD_SPRAY_NONE_M);
+    return wd_trace_view_sees(scene->view, foot, shadow, twig_m);
 }
 
-static uint64_t count_of(const struct wd_trace_near_tree *at, const struct wd_tree_model *grown,
-                         uint32_t random, float scale)
+static void gather(struct wd_trace_near_tree *at, const struct wd_trace_near_scene *scene)
+{
+    const struct wd_tree *tree = &scene->trees[at->tree];
+    const struct wd_tree_model *grown = &wd_trace_model_of(scene->models, tree)->grown;
+    const float *m = at->transform;
+    float widest = wd_maxf(wd_v3_length(WD_V3(m[0], m[1], m[2])), wd_v3_length(WD_V3(m[6], m[7], m[8])));
+    for (uint32_t i = 0; i < grown->sets[0][WD_SET_LEAVES].leaf_count; i++) {
+        const struct wd_tree_leaf *leaf = &grown->leaves[i];
+        struct wd_vec3 foot = placed(m, wd_leaf_foot(*leaf, grown->leaf_box));
+        float distance_m = wd_v3_length(foot), chance = wd_hash_unit(wd_hash2(i, wd_tree_random(*tree)));
+        if (chance < wd_spray_share(distance_m, grown->spray_reach) &&
+            matters(scene, foot, 2 * widest * wd_leaf_size_m(*leaf, grown->leaf_box)))
+            *wd_push(at->leaves, at->count, at->capacity) = (struct wd_trace_near_leaf){i, distance_m, chance};
+    }
+}
+
+/* `reach`: factor on the distance up to which leaves are twigs. */
+static bool is_twig(const struct wd_trace_near_leaf *leaf, float reach)
+{
+    return leaf->chance < wd_spray_share(leaf->distance_m, reach);
+}
+
+static uint64_t count_of(const struct wd_trace_near_tree *at, float reach)
 {
     uint64_t twigs = 0;
-    for (uint32_t leaf = 0; leaf < grown->sets[0][WD_SET_LEAVES].leaf_count; leaf++)
-        twigs += is_twig(at, grown, random, leaf, scale);
-    return twigs * (grown->spray.index_count / 3);
+    for (size_t i = 0; i < at->count; i++)
+        twigs += is_twig(&at->leaves[i], reach);
+    return twigs;
 }
 
-static uint64_t count_triangles(const struct wd_trace_near *near,
-                                const struct wd_trace_models *models, const struct wd_tree *trees,
+static uint64_t count_triangles(const struct wd_trace_near *near, const struct wd_trace_near_scene *scene,
                                 float scale)
 {
     uint64_t sum = 0;
     for (size_t i = 0; i < near->count; i++) {
         const struct wd_trace_near_tree *at = &near->trees[i];
-        const struct wd_tree *tree = &trees[at->tree];
-        sum += count_of(at, &wd_trace_model_of(models, tree)->grown, wd_tree_random(*tree), scale);
+        const struct wd_tree_model *grown = &wd_trace_model_of(scene->models, &scene->trees[at->tree])->grown;
+        sum += count_of(at, scale * grown->spray_reach) * (grown->spray.index_count / 3);
     }
     return sum;
 }
@@ -115,7 +140,7 @@ static void add_triangles(struct wd_tree_mesh *mesh, const uint32_t *indices, ui
 
 /* Leaves stand after wood in the full mesh, one after another; flowers after them. */
 static void make_mesh(struct wd_tree_mesh *mesh, const struct wd_trace_near_tree *at,
-                      const struct wd_tree_model *grown, uint32_t random, float scale)
+                      const struct wd_tree_model *grown, float reach)
 {
     const struct wd_tree_mesh *full = &grown->full;
     const struct wd_leaf_set *set = &grown->sets[0][WD_SET_LEAVES];
@@ -125,31 +150,37 @@ static void make_mesh(struct wd_tree_mesh *mesh, const struct wd_trace_near_tree
     mesh->wood_index_count = full->wood_index_count;
     add_triangles(mesh, full->indices, full->wood_index_count);
     uint32_t next = full->wood_index_count;
+    const struct wd_trace_near_leaf *near = at->leaves, *end = near + at->count;
     for (uint32_t leaf = 0; leaf < set->leaf_count; leaf++, next += set->index_count) {
-        if (is_twig(at, grown, random, leaf, scale))
+        bool candidate = near < end && near->index == leaf;
+        if (candidate && is_twig(near, reach))
             add_twig(mesh, grown, leaf);
         else
             add_triangles(mesh, full->indices + next, set->index_count);
+        near += candidate;
     }
     add_triangles(mesh, full->indices + next, full->index_count - next);
 }
 
-void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_models *models,
-                         const struct wd_tree *trees)
+void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_near_scene *scene)
 {
     float scale = 1;
-    while (count_triangles(near, models, trees, scale) > MOST_TRIANGLES)
+    for (size_t i = 0; i < near->count; i++)
+        gather(&near->trees[i], scene);
+    while (count_triangles(near, scene, scale) > MOST_TRIANGLES)
         scale *= 0.9f;
     for (size_t i = 0; i < near->count; i++) {
         struct wd_trace_near_tree *at = &near->trees[i];
-        const struct wd_tree *tree = &trees[at->tree];
-        const struct wd_trace_model *model = wd_trace_model_of(models, tree);
-        if (count_of(at, &model->grown, wd_tree_random(*tree), scale) == 0)
-            continue;
-        at->model = wd_alloc(sizeof *at->model);
-        *at->model = (struct wd_trace_model){.model = model->model, .look = model->look};
-        make_mesh(&at->model->grown.full, at, &model->grown, wd_tree_random(*tree), scale);
-        wd_trace_model_build(at->model, models->device);
+        const struct wd_trace_model *model = wd_trace_model_of(scene->models, &scene->trees[at->tree]);
+        float reach = scale * model->grown.spray_reach;
+        if (count_of(at, reach) > 0) {
+            at->model = wd_alloc(sizeof *at->model);
+            *at->model = (struct wd_trace_model){.model = model->model, .look = model->look};
+            make_mesh(&at->model->grown.full, at, &model->grown, reach);
+            wd_trace_model_build(at->model, scene->models->device);
+        }
+        free(at->leaves);
+        at->leaves = NULL;
     }
 }
 

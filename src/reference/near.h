@@ -4,11 +4,15 @@
 #define WD_REFERENCE_NEAR_H
 
 #include "reference/models.h"
+#include "reference/view.h"
+#include "shared/frame.h"
 
 struct wd_trace_near_tree {
     uint32_t tree;                 /* index */
     float transform[12];           /* of the model into the frame of rays: columns x, y, z, translation */
-    struct wd_trace_model *model;  /* its own; NULL where none of its leaves is near after all */
+    struct wd_trace_near_leaf *leaves; /* in the order of their indices */
+    size_t count, capacity;
+    struct wd_trace_model *model;  /* its own; NULL where none of its leaves is a twig after all */
 };
 
 struct wd_trace_near {
@@ -20,10 +24,16 @@ struct wd_trace_near {
 bool wd_trace_near_add(struct wd_trace_near *near, const struct wd_trace_model *model,
                        const struct wd_tree *tree, uint32_t index, const float transform[12]);
 
-/* Makes the meshes and scenes of the trees added: leaves of models[] that are near are twigs, the same that
- * pictures are drawn with, and fewer where all of them were too many triangles. `trees`: of the world. */
-void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_models *models,
-                         const struct wd_tree *trees);
+struct wd_trace_near_scene {
+    const struct wd_trace_models *models;
+    const struct wd_tree *trees; /* of the world */
+    const struct wd_trace_view *view;
+    const struct wd_frame_uniforms *frame;
+};
+
+/* Makes the meshes and scenes of the trees added: leaves that are near, and are in the picture or throw their shadow
+ * there, are twigs, the same that pictures are drawn with, and fewer where all of them were too many triangles. */
+void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_near_scene *scene);
 void wd_trace_near_finish(struct wd_trace_near *near); /* accepts {0} */
 
 /* A tree's own model, or NULL. Thread-safe. */

@@ -8,7 +8,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "tree/vec.h"
-#include "world/surroundings.h"
 
 /* Samples a tile takes in one go: few enough that all tiles keep about the same number. */
 enum { SAMPLES_PER_PASS = 4 };
@@ -36,33 +35,6 @@ void wd_trace_sums_finish(struct wd_trace_sums *sums)
     free(sums->radiance);
     free(sums->tile_samples);
     *sums = (struct wd_trace_sums){0};
-}
-
-/* --- the view ------------------------------------------------------------------------------ */
-
-struct wd_trace_view wd_trace_view_of(const struct wd_camera *camera, uint32_t width,
-                                      uint32_t height)
-{
-    double right[3], forward[3], up[3];
-    wd_camera_axes(camera, right, forward, up);
-    double half_height = tan(camera->fov_rad * 0.5), half_width = half_height * width / height;
-    struct wd_trace_view view = {.width = width, .height = height};
-    view.right = WD_V3(right[0] * half_width, right[1] * half_width, right[2] * half_width);
-    view.up = WD_V3(up[0] * half_height, up[1] * half_height, up[2] * half_height);
-    view.forward = WD_V3(forward[0], forward[1], forward[2]);
-    return view;
-}
-
-float wd_trace_pixel_rad(const struct wd_trace_view *view)
-{
-    return 2 * wd_v3_length(view->up) / (float)view->height;
-}
-
-/* Through a place in the picture, in pixels from its upper left corner; 1 m along the view axis. */
-static struct wd_vec3 view_ray(const struct wd_trace_view *view, float x, float y)
-{
-    float across = 2 * x / (float)view->width - 1, down = 2 * y / (float)view->height - 1;
-    return wd_v3_mad(wd_v3_mad(view->forward, view->right, across), view->up, -down);
 }
 
 /* A place on the lens, evenly over its disc. */
@@ -116,7 +88,7 @@ static void trace_pixel(struct pass *pass, uint32_t x, uint32_t y, uint32_t from
         wd_sampler_next(&sampler, place);
         if (pass->job->middles)
             place[0] = place[1] = 0.5f;
-        struct wd_vec3 ray = view_ray(view, (float)x + place[0], (float)y + place[1]);
+        struct wd_vec3 ray = wd_trace_view_ray(view, (float)x + place[0], (float)y + place[1]);
         struct wd_vec3 eye = {0, 0, 0};
         if (view->lens_m > 0) {
             eye = lens_place(view, &sampler);
@@ -205,7 +177,7 @@ static void layer_pixel(const struct pass *pass, uint32_t x, uint32_t y)
     const struct wd_tracer *tracer = pass->job->tracer;
     const struct wd_world *world = tracer->scene->world;
     struct wd_picture *picture = pass->picture;
-    struct wd_vec3 through = view_ray(&pass->job->view, (float)x + 0.5f, (float)y + 0.5f);
+    struct wd_vec3 through = wd_trace_view_ray(&pass->job->view, (float)x + 0.5f, (float)y + 0.5f);
     struct wd_trace_ray ray = {{0, 0, 0}, wd_v3_unit(through), INFINITY};
     struct wd_trace_hit hit = wd_trace_nearest(tracer->scene, &ray);
     size_t pixel = (size_t)y * pass->job->view.width + x;

@@ -4,6 +4,7 @@
 #define WD_REFERENCE_RENDER_H
 
 #include "reference/path.h"
+#include "reference/view.h"
 #include "weald/renderer.h"
 
 enum { WD_TRACE_TILE = 16 };
@@ -18,17 +19,6 @@ struct wd_trace_sums {
 /* False where there is no memory for so many pixels: then it is {0}. */
 bool wd_trace_sums_init(struct wd_trace_sums *sums, uint32_t width, uint32_t height);
 void wd_trace_sums_finish(struct wd_trace_sums *sums);
-
-struct wd_trace_view {
-    struct wd_vec3 right, up, forward; /* to the picture's right and upper edge; of unit length */
-    uint32_t width, height;
-    float lens_m, focus_m; /* radius of the lens, distance of what is sharp; 0: a pinhole */
-};
-/* The view through a camera; its place is the origin, its lens a pinhole. */
-struct wd_trace_view wd_trace_view_of(const struct wd_camera *camera, uint32_t width,
-                                      uint32_t height);
-/* Angle that a pixel in the picture's middle spans. */
-float wd_trace_pixel_rad(const struct wd_trace_view *view);
 
 struct wd_trace_job {
     const struct wd_tracer *tracer;

@@ -91,9 +91,10 @@ const struct wd_trace_model *wd_trace_scene_model(const struct wd_trace_scene *s
     return own ? own : wd_trace_model_of(scene->models, &scene->world->trees[tree]);
 }
 
-static void place_near_trees(struct wd_trace_scene *scene)
+static void place_near_trees(struct wd_trace_scene *scene, const struct wd_trace_view *view)
 {
-    wd_trace_near_build(&scene->near, scene->models, scene->world->trees);
+    const struct wd_trace_near_scene about = {scene->models, scene->world->trees, view, scene->frame};
+    wd_trace_near_build(&scene->near, &about);
     for (size_t i = 0; i < scene->near.count; i++) {
         const struct wd_trace_near_tree *at = &scene->near.trees[i];
         add_instance(scene, at->tree, wd_trace_scene_model(scene, at->tree)->scene, at->transform);
@@ -102,7 +103,8 @@ static void place_near_trees(struct wd_trace_scene *scene)
 
 bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_models *models,
                          const struct wd_scene *description, const struct wd_world *world,
-                         const struct wd_frame_uniforms *frame, const struct wd_log *log)
+                         const struct wd_frame_uniforms *frame, const struct wd_trace_view *view,
+                         const struct wd_log *log)
 {
     RTCDevice device = models->device;
     double origin_m[3];
@@ -119,7 +121,7 @@ bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_mod
     rtcAttachGeometryByID(scene->top, scene->ground.geometry, (unsigned)world->tree_count);
     for (size_t i = 0; i < world->tree_count; i++)
         place_tree(scene, i);
-    place_near_trees(scene);
+    place_near_trees(scene, view);
     rtcCommitScene(scene->top);
     enum RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_NONE)

@@ -28,12 +28,13 @@ struct wd_trace_hit {
 };
 
 /* Places every tree as it stands at frame->time_s: leaning in the wind, without flutter; leaves that
- * fall are where they have come to; leaves next to the eye are the twigs that they stand for. Layers
- * that show only in part at the tree's distance show that share of their trees. All arguments must
- * outlive the result and must not move. */
+ * fall are where they have come to; leaves next to the eye that the view holds, or shadows of, are the twigs that they
+ * stand for. Layers that show only in part at the tree's distance show that share of their trees. All arguments but
+ * the view must outlive the result and must not move. */
 bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_models *models,
                          const struct wd_scene *description, const struct wd_world *world,
-                         const struct wd_frame_uniforms *frame, const struct wd_log *log);
+                         const struct wd_frame_uniforms *frame, const struct wd_trace_view *view,
+                         const struct wd_log *log);
 void wd_trace_scene_finish(struct wd_trace_scene *scene); /* accepts {0} */
 
 /* The model that rays meet of a tree: its variant's, or its own where it is near. Thread-safe. */

@@ -97,9 +97,10 @@ void made_scene_set_look(struct made_scene *made, uint8_t value, uint8_t detail)
 
 void made_scene_build(struct made_scene *made)
 {
+    const struct wd_trace_view view = wd_trace_view_of(&(struct wd_camera){.fov_rad = 0.9}, 48, 32);
     wd_trace_model_build(&made->model, made->models.device);
     assert_true(wd_trace_scene_init(&made->traced, &made->models, &made->scene, &made->world,
-                                    &made->frame, NULL));
+                                    &made->frame, &view, NULL));
 }
 
 struct wd_vec3 made_scene_look(const struct made_scene *made, struct wd_vec3 direction,

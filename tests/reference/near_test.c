@@ -1,6 +1,8 @@
 /* Leaves next to the eye are the twigs that they stand for, others are as the model has them. */
 #include "made_scene.h"
 
+#include <math.h>
+
 #include "reference/surface.h"
 #include "tree/vec.h"
 
@@ -70,8 +72,34 @@ static void leaves_by_the_eye_are_twigs(void **state)
     made_scene_finish(&made);
 }
 
+/* What a picture does not show is as the model has it, so that what it shows can all be twigs: of trees behind
+ * and beside the eye only what throws its shadow ahead of it is. */
+static void twigs_are_where_the_picture_shows_them(void **state)
+{
+    (void)state;
+    static const float sun_y[] = {0, -0.97f, 0.97f};
+    static const float behind_m[] = {LEAF_M, TWIG_M, LEAF_M}, beside_m[] = {LEAF_M, TWIG_M, LEAF_M};
+    for (int i = 0; i < 3; i++) {
+        struct made_scene made;
+        struct wd_tree_leaf leaf;
+        make_model(&made, &leaf);
+        made.frame.sun_direction[1] = sun_y[i];
+        made.frame.sun_direction[2] = sqrtf(1 - sun_y[i] * sun_y[i]);
+        made_scene_add_tree(&made, 0, -2, -0.5);
+        made_scene_add_tree(&made, 3, 0, -0.5);
+        made_scene_add_tree(&made, 0, 2, -0.5);
+        made_scene_build(&made);
+        assert_float_equal(height_at(&made, &made.trees[0], 0), behind_m[i], 1e-3);
+        assert_float_equal(height_at(&made, &made.trees[1], 0), beside_m[i], 1e-3);
+        assert_float_equal(height_at(&made, &made.trees[2], 0), TWIG_M, 1e-3);
+        wd_tree_mesh_finish(&made.model.grown.spray);
+        made_scene_finish(&made);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(leaves_by_the_eye_are_twigs)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(leaves_by_the_eye_are_twigs),
+                                       cmocka_unit_test(twigs_are_where_the_picture_shows_them)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
