@@ -1,5 +1,6 @@
 #include "reference/near.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,10 +54,14 @@ static void gather(struct wd_trace_near_tree *at, const struct wd_trace_near_sce
     const struct wd_tree_model *grown = &wd_trace_model_of(scene->models, tree)->grown;
     const float *m = at->transform;
     float widest = wd_maxf(wd_v3_length(WD_V3(m[0], m[1], m[2])), wd_v3_length(WD_V3(m[6], m[7], m[8])));
+    float reach_m = WD_SPRAY_NONE_M * grown->spray_reach;
     for (uint32_t i = 0; i < grown->sets[0][WD_SET_LEAVES].leaf_count; i++) {
         const struct wd_tree_leaf *leaf = &grown->leaves[i];
         struct wd_vec3 foot = placed(m, wd_leaf_foot(*leaf, grown->leaf_box));
-        float distance_m = wd_v3_length(foot), chance = wd_hash_unit(wd_hash2(i, wd_tree_random(*tree)));
+        float square = wd_v3_dot(foot, foot);
+        if (square > reach_m * reach_m)
+            continue;
+        float distance_m = sqrtf(square), chance = wd_hash_unit(wd_hash2(i, wd_tree_random(*tree)));
         if (chance < wd_spray_share(distance_m, grown->spray_reach) &&
             matters(scene, foot, 2 * widest * wd_leaf_size_m(*leaf, grown->leaf_box)))
             *wd_push(at->leaves, at->count, at->capacity) = (struct wd_trace_near_leaf){i, distance_m, chance};
