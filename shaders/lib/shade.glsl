@@ -11,6 +11,7 @@ const float PER_PI = 0.318309886;
 #include "lib/skylight.glsl"
 #include "lib/crown_sky.glsl"
 #include "lib/haze.glsl"
+#include "lib/sward.glsl"
 
 /* --- leaves --------------------------------------------------------------------------------- */
 
@@ -102,29 +103,6 @@ float wax_ahead(float cosine)
     return (1.0 - WD_WAX) * wd_grazing(sqrt(max(0.5 + 0.5 * cosine, 0.0)));
 }
 
-/* Light of a layer's leaves whose way up through others is `over` times the mean way to the next one:
- * the even sky's share that comes down (the exponential integral E2, within 3%). */
-float through_layer(float over)
-{
-    return exp(-1.95 * pow(over, 0.75));
-}
-
-/* Skylight that the wax of a sward's blades mirrors toward the eye, over a white wall's: as much from
- * every side, and from the horizon ahead the more, the flatter the eye's ray. The integral over blades of
- * every direction, under an even sky, gave 0.023 (1 - sine)^2 for that, half of what a wall before such a
- * sky would get. `open`: share of the sky that reaches the sward; `low`: of the low sky of each quarter, which a
- * flat ray goes on to where a meadow lies before a lake; in stands gaps below crowns let it through, too. */
-vec3 sward_sheen(vec3 direction, float over, float open, vec4 low)
-{
-    vec3 ahead = vec3(direction.xy * inversesqrt(dot(direction.xy, direction.xy) + 1e-6), 0.0);
-    float flat_on = 1.0 - min(abs(direction.z), 1.0);
-    vec3 horizon = SKY_EVEN(frame.sky_form, ahead) + SKY_ODD(frame.sky_form, ahead);
-    vec4 toward = max(vec4(ahead.xy, -ahead.xy), vec4(0.0));
-    float open_ahead = max(dot(low, toward * toward), open);
-    return 0.5 * WD_WAX * through_layer(over) * open * frame.sky_irradiance
-           + 0.26 * flat_on * flat_on * flat_on * exp(-over) * open_ahead * max(horizon, vec3(0.0));
-}
-
 /* What light meets at a pixel. */
 struct wd_place {
     vec3 rel;           /* where it is taken to be */
@@ -145,6 +123,7 @@ struct wd_place {
     float waxed;        /* share of upper sides among leaves seen, */
     vec2 waxed_lit;     /* and among those that reflect the sun and the sky's light */
     float body;         /* share of the light from within that their wax lets out toward the eye */
+    float sky;          /* factor on the sky's light */
     float sward;        /* 1: a blade in a sward, */
     float over;         /* under so many layers of others */
 };
@@ -166,18 +145,10 @@ wd_place ground_place(wd_pixel pixel)
     place.coat = 0.0;
     place.waxed = 0.0;
     place.waxed_lit = vec2(0.0);
-    place.body = 1.0;
+    place.body = place.sky = 1.0;
     place.sward = 0.0;
     place.over = 0.0;
     return place;
-}
-
-/* The ground by itself sees 0.85 of the sky and more; a sward that takes of that takes of the sun, too,
- * where the map does not hold its blades. */
-float through_sward(float openness, uint cascade)
-{
-    float beam = 0.67 / max(frame.sun_direction.z, 0.05);
-    return pow(min(openness * (1.0 / 0.85), 1.0), cascade < WD_LEAF_CASCADES ? 0.5 * beam : beam);
 }
 
 /* Share of a leaf's shade that a shadow map of such texels tells: those wider than leaves mix what is lit
@@ -522,10 +493,6 @@ void light_disc(inout wd_place place, wd_pixel pixel, wd_crown crown, wd_lit_lea
     place.coat = leaf_coat_around(abs(dot(pixel.normal, pixel.direction)), leaf_roughness(model));
 }
 
-/* Blades in a sward bend over, and hide one another's lower sides: share of upper ones among those that are seen, and
- * that reflect. */
-const float BLADES_BEND = 0.85, BLADES_LIT = 0.95;
-
 /* A pixel of many leaves has the mean colour of the sides that are seen: of these, upper ones, which are less pale, reflect
  * most of what comes from above. By the albedo of a lower side goes what it lets through, too, less the more it is the
  * paler in green (look maps). */
@@ -585,13 +552,6 @@ wd_place wood_place(wd_pixel pixel, wd_crown crown, vec2 curve, float free, vec2
     return place;
 }
 
-/* A sward's top is not level: under a low sun tufts stand before one another, which cards do not show.
- * Fitted to path-traced meadows under suns of 16, 24 and 45 degrees. */
-float sward_tufts_lit()
-{
-    return mix(0.4, 1.0, smoothstep(0.2, 0.75, frame.sun_direction.z));
-}
-
 /* Leaves of herbs lie in one another's shade and flat, where those of crowns lie every way: so much of what the wax
  * of many would mirror goes on to the eye, of the sky, and of the sun where no table tells it. By path-traced ferns and
  * tufts that stand free. */
@@ -646,6 +606,8 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     place.waxed = mix(0.5 + 0.5 * eye.z, BLADES_BEND, sward);
     place.body = 1.0 - WAX_CLOUD * place.waxed * (1.0 - sward);
     place.sward = sward;
+    vec2 top = sward_disc_light(disc ? 0.5 * pixel_size_m(pixel) / crown.radii_m.z : 0.0, eye);
+    place.sky = disc ? mix(1.0, top.y, sward) : 1.0;
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
     place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WD_WAX * 0.39;
@@ -663,6 +625,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     vec2 in_stands = mix(vec2(1.0), STAND_DISC_SUN, is_tree(crown));
     vec2 on_discs = vec2(hot, sunlit.x) * mix(in_stands, free_disc_light(eye, crown, model).xy, free);
     light_disc(place, pixel, crown, model, free, on_discs, cascade);
+    place.own *= mix(1.0, top.x, sward);
     tell_sides(place, pixel, model, upper);
     know_petals(place, pixel, model);
     return place;
@@ -786,7 +749,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     vec3 mirrored = mirrored_by_leaf(pixel, around, mirror, blade, sun_share);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),
                      sward_sheen(pixel.direction, place.over, shelter.floor_mean, alone.low), place.sward);
-    vec3 skylit = past.y * (around.front * within_sky + sheen * place.waxed + around.back * transmitted);
+    vec3 skylit = past.y * place.sky * (around.front * within_sky + sheen * place.waxed + around.back * transmitted);
     float over_hills = mix(OVER_HILLS, 1.0, ground_share), leaf_way = place.own * past_trees;
     float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(shelter) : 1.0);
     float by_crown = min(sky_about_sun(alone) * wd_skylit_above(pixel.openness), 1.0);
