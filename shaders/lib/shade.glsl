@@ -606,8 +606,8 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     place.waxed = mix(0.5 + 0.5 * eye.z, BLADES_BEND, sward);
     place.body = 1.0 - WAX_CLOUD * place.waxed * (1.0 - sward);
     place.sward = sward;
-    vec2 top = sward_disc_light(disc ? 0.5 * pixel_size_m(pixel) / crown.radii_m.z : 0.0, eye);
-    place.sky = disc ? mix(1.0, top.y, sward) : 1.0;
+    vec2 blade_light = sward_light(disc ? pixel_size_m(pixel) : 0.0, 2.0 * crown.radii_m.z, eye);
+    place.sky = pixel.lit >= 0.0 ? mix(1.0, blade_light.y, sward) : 1.0;
     place.over = wd_crown_per_m(crown.radii_m) /* of cards, which are flat: in the middle */
                  * (card ? crown.radii_m.z : sward_depth_m(crown, place.rel));
     place.gloss = leaf_gloss(pixel, leaf_roughness(model), near) + WD_WAX * 0.39;
@@ -625,7 +625,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     vec2 in_stands = mix(vec2(1.0), STAND_DISC_SUN, is_tree(crown));
     vec2 on_discs = vec2(hot, sunlit.x) * mix(in_stands, free_disc_light(eye, crown, model).xy, free);
     light_disc(place, pixel, crown, model, free, on_discs, cascade);
-    place.own *= mix(1.0, top.x, sward);
+    place.own *= mix(1.0, blade_light.x, sward);
     tell_sides(place, pixel, model, upper);
     know_petals(place, pixel, model);
     return place;

@@ -11,8 +11,9 @@ float through_layer(float over)
 /* Skylight that the wax of a sward's blades mirrors toward the eye, over a white wall's: as much from
  * every side, and from the horizon ahead the more, the flatter the eye's ray. The integral over blades of
  * every direction, under an even sky, gave 0.023 (1 - sine)^2 for that, half of what a wall before such a
- * sky would get. `open`: share of the sky that reaches the sward; `low`: of the low sky of each quarter, which a
- * flat ray goes on to where a meadow lies before a lake; in stands gaps below crowns let it through, too. */
+ * sky would get; beside path-traced meadows it is four times as much. `open`: share of the sky that reaches the sward;
+ * `low`: of the low sky of each quarter, which a flat ray goes on to where a meadow lies before a lake; in stands gaps
+ * below crowns let it through, too. */
 vec3 sward_sheen(vec3 direction, float over, float open, vec4 low)
 {
     vec3 ahead = vec3(direction.xy * inversesqrt(dot(direction.xy, direction.xy) + 1e-6), 0.0);
@@ -21,7 +22,7 @@ vec3 sward_sheen(vec3 direction, float over, float open, vec4 low)
     vec4 toward = max(vec4(ahead.xy, -ahead.xy), vec4(0.0));
     float open_ahead = max(dot(low, toward * toward), open);
     return 0.5 * WD_WAX * through_layer(over) * open * frame.sky_irradiance
-           + 0.26 * flat_on * flat_on * flat_on * exp(-over) * open_ahead * max(horizon, vec3(0.0));
+           + 0.2 * flat_on * flat_on * exp(-over) * open_ahead * max(horizon, vec3(0.0));
 }
 
 /* The ground by itself sees 0.85 of the sky and more; a sward that takes of that takes of the sun, too,
@@ -44,13 +45,15 @@ float sward_tufts_lit()
 }
 
 /* Where discs are wider than the gaps between tufts an eye sees those of the sward's top before all others, which is
- * lighter than the sides of tufts that it would see, and by nothing in the shade of its neighbours; narrow ones lie
- * deeper than the blades. Factors on a disc's light of the sun and of the sky. `wide`: of a pixel, over the sward's
- * height. By path-traced meadows from 1.7 and 7 m, through lenses of 40 and 14 degrees, under clouds and under suns
- * from three sides. */
-vec2 sward_disc_light(float wide, vec3 eye)
+ * lighter than the sides of tufts that it would see, and by nothing in the shade of its neighbours. Blades and narrow
+ * discs of low swards have less of the sky than they should, not those of reeds. Factors on their light of the sun and
+ * of the sky; `wide_m`: of a disc's pixel, 0 of blades. By path-traced meadows from 1.7 and 7 m, through lenses of 40
+ * and 14 degrees, under clouds and under suns from three sides, and beds of reeds. */
+vec2 sward_light(float wide_m, float tall_m, vec3 eye)
 {
-    float with_light = smoothstep(-0.9, 0.5, dot(eye, frame.sun_direction));
-    float sun = 0.26 * with_light * smoothstep(0.0, 0.25, wide) * (1.0 - smoothstep(0.2, 0.45, eye.z));
-    return vec2(1.0 - sun, mix(1.17, 0.6, smoothstep(0.0, 0.9, wide)));
+    float wide = wide_m / tall_m, with_light = smoothstep(-0.9, 0.5, dot(eye, frame.sun_direction));
+    float sun = mix(0.32, 0.2, smoothstep(0.3, 1.2, wide)) * smoothstep(0.0, 0.15, wide);
+    sun *= with_light * (1.0 - smoothstep(0.25, 0.6, eye.z));
+    float narrow = mix(1.17, 1.0, smoothstep(0.4, 0.8, tall_m));
+    return vec2(1.0 - sun, mix(narrow, 0.6, smoothstep(0.0, 0.9, wide)));
 }

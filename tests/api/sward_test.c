@@ -1,4 +1,4 @@
-/* Grasses that close over the ground shade one another, tall ones, too. */
+/* Grasses that close over the ground shade one another, tall ones, too, near and far. */
 #include <stdio.h>
 
 #include "suite.h"
@@ -23,6 +23,22 @@ static const char *write_reeds(const char *spacing_m)
     return suite_path(&suite, "reeds.json");
 }
 
+/* A meadow that a standing eye sees from 16 m off to 45. */
+static const char *write_meadow(const char *light)
+{
+    char text[2048];
+    snprintf(text, sizeof text,
+             "{\"name\": \"meadow\", \"variants\": 2, \"terrain\": {\"kind\": \"flat\", \"size_m\": [60, 60]},\n"
+             " \"species\": {\"meadow\": \"%s/species/meadow.json\"},\n"
+             " \"layers\": [{\"species\": \"meadow\", \"spacing_m\": 0.9, \"height_m\": [0.15, 0.35]}],\n"
+             " \"time\": {\"date\": \"2024-05-30\"}, %s, \"wind\": {\"speed_mps\": 0},\n"
+             " \"cameras\": [{\"name\": \"over\", \"position_m\": [30, 3, 1.7], \"pitch_deg\": -4,\n"
+             "               \"fov_deg\": 4}]}",
+             suite.root, light);
+    assert_true(suite_write(&suite, "meadow.json", text));
+    return suite_path(&suite, "meadow.json");
+}
+
 static double mean_green(const struct wd_picture *picture)
 {
     double sum = 0;
@@ -41,9 +57,9 @@ static double traced(const struct wd_forest *forest, const struct wd_render_para
 }
 
 /* Light of a method's picture over that of the path-traced one, less 1, in percent. */
-static void expect_light(const char *spacing_m, const char *method, double most_pct)
+static void expect_light(const char *scene, const char *what, const char *method, double most_pct)
 {
-    struct wd_forest *forest = suite_forest(&suite, write_reeds(spacing_m));
+    struct wd_forest *forest = suite_forest(&suite, scene);
     struct wd_picture picture = {0};
     assert_non_null(forest);
     assert_int_equal(wd_renderer_set_forest(suite.renderer, forest), WD_OK);
@@ -55,7 +71,7 @@ static void expect_light(const char *spacing_m, const char *method, double most_
     render.layers = WD_LAYER_COLOR;
     assert_int_equal(wd_renderer_render(suite.renderer, &render, &picture), WD_OK);
     double pct = 100 * (mean_green(&picture) / traced(forest, &render) - 1);
-    print_message("reeds every %s m, %s: %+.1f %%\n", spacing_m, method, pct);
+    print_message("%s, %s: %+.1f %%\n", what, method, pct);
     assert_true(pct > -most_pct && pct < most_pct);
     wd_picture_finish(&picture);
     assert_int_equal(wd_renderer_set_forest(suite.renderer, suite.forest), WD_OK);
@@ -66,14 +82,23 @@ static void expect_light(const char *spacing_m, const char *method, double most_
 static void dense_reeds_shade_one_another(void **state)
 {
     (void)state;
-    expect_light("0.45", "continuum", 15);
-    expect_light("0.45", "octree", 20);
+    expect_light(write_reeds("0.45"), "reeds every 0.45 m", "continuum", 15);
+    expect_light(write_reeds("0.45"), "reeds every 0.45 m", "octree", 20);
 }
 
 static void tufts_stand_free(void **state)
 {
     (void)state;
-    expect_light("1.5", "continuum", 15);
+    expect_light(write_reeds("1.5"), "reeds every 1.5 m", "continuum", 15);
+}
+
+/* -5 and +11 % (-12 and +25 % where discs have the light of the blades that they stand for, whatever stands beside
+ * those). */
+static void far_meadows_are_as_bright_as_traced(void **state)
+{
+    (void)state;
+    expect_light(write_meadow("\"sky\": {\"cover\": 1}"), "meadow under clouds", "continuum", 10);
+    expect_light(write_meadow("\"sun\": {\"azimuth_deg\": 180, \"elevation_deg\": 35}"), "meadow in the sun", "continuum", 15);
 }
 
 int main(int argc, char **argv)
@@ -81,6 +106,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(dense_reeds_shade_one_another),
         cmocka_unit_test(tufts_stand_free),
+        cmocka_unit_test(far_meadows_are_as_bright_as_traced),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;
