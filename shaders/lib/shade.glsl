@@ -217,7 +217,7 @@ float clear_of_crown_m(wd_crown crown)
 
 /* Whether it stands free, and each quarter of its sky where the crown is not before it. Low plants close over the
  * ground, of which that knows nothing. */
-wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter shelter, wd_floor_sky floor, float free)
+wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter shelter, wd_floor_sky on_floor, float free)
 {
     float height_m = pixel.rel.z - crown.foot_z;
     vec2 center = crown.center_rel.xy + push.camera_m, corner = vec2(clear_of_crown_m(crown));
@@ -226,10 +226,10 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     vec4 low = vec4(canopy_light_near(center + corner, 3).xy, canopy_light_near(center - corner, 3).zw);
     wd_alone alone = NOT_ALONE;
     float herbs = through_herbs(herbs_above(shelter, height_m));
-    vec4 floor_high = max(floor.level - LOW_OF_LEVEL * floor.low, 0.0) / (1.0 - LOW_OF_LEVEL);
-    alone.beside = mix(field * field, floor.level, floor.share) * herbs;
-    alone.high = mix(high * high, floor_high, floor.share) * herbs;
-    alone.low = mix(low * low, floor.low, floor.share) * herbs;
+    vec4 floor_high = max(on_floor.level - LOW_OF_LEVEL * on_floor.low, 0.0) / (1.0 - LOW_OF_LEVEL);
+    alone.beside = mix(field * field, on_floor.level, on_floor.share) * herbs;
+    alone.high = mix(high * high, floor_high, on_floor.share) * herbs;
+    alone.low = mix(low * low, on_floor.low, on_floor.share) * herbs;
     alone.share = free * crown.told;
     alone.outside = mix(1.0, eye_outside(crown, -pixel.direction), crown.told);
     alone.lets.xy = mix(vec2(pixel.openness), skylit.xy * wd_skylit_above(pixel.openness), alone.outside);
@@ -238,7 +238,7 @@ wd_alone crown_alone(wd_pixel pixel, wd_crown crown, vec4 skylit, wd_shelter she
     float base_m = max(crown.center_rel.z - crown.radii_m.z - crown.foot_z, 0.1);
     float below = mix(1.0, 1.0 - smoothstep(0.5 * base_m, base_m, height_m), is_tree(crown));
     alone.beneath = below * (1.0 - alone.leaf);
-    alone.edge = edge_of(pixel, shelter, floor) * alone.beneath;
+    alone.edge = edge_of(pixel, shelter, on_floor) * alone.beneath;
     return alone;
 }
 
@@ -663,6 +663,12 @@ vec3 mirrored_by_leaf(wd_pixel pixel, wd_around around, vec3 mirror, vec3 blade,
  * species under five suns and the gallery's hedge rows. */
 const float OWN_OF_ONE_LEAF = 0.8;
 
+/* Upright ground is where the world is cut off. */
+bool is_curtain(wd_pixel pixel)
+{
+    return pixel.surface == 0u && abs(pixel.normal.z) < 0.01;
+}
+
 /* `sun_share` is what of the sun reaches the place, `ground_share` what the ground leaves of it. */
 vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share)
 {
@@ -691,9 +697,9 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         skylit *= leaf && is_level_picture(pixel) ? mix(vec4(1.0), open_to_eye(model_at, mixed), is_tree(crown)) : vec4(1.0);
         float free = stands_free(crown);
         crown.told = tables_hold(crown, free, shelter.herbs);
-        wd_floor_sky floor = herbs_floor_sky(crown, pixel.rel);
-        shelter = floor_shelter(shelter, floor, 1.0);
-        alone = crown_alone(pixel, crown, skylit, shelter, floor, free);
+        wd_floor_sky on_floor = herbs_floor_sky(crown, pixel.rel);
+        shelter = floor_shelter(shelter, on_floor, 1.0);
+        alone = crown_alone(pixel, crown, skylit, shelter, on_floor, free);
         mixed.opposite *= alone.share;
         mixed.eye = leaf ? mixed.eye : mixed.wood_eye;
         vec2 sunlit = sunlit_of(model_at, mixed);
@@ -708,9 +714,10 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
         facing = mix(facing, leaves_seen(-pixel.direction), alone.share * place.cloud);
     } else {
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, 0.0);
-        wd_floor_sky floor = floor_sky(pixel.rel);
-        shelter = floor_shelter(shelter, floor, pixel.openness * through_herbs(shelter.herbs));
-        alone.edge = edge_of(pixel, shelter, floor);
+        wd_floor_sky on_floor = floor_sky(pixel.rel);
+        on_floor.share *= is_curtain(pixel) ? 0.0 : 1.0; /* whose squares nobody has asked for */
+        shelter = floor_shelter(shelter, on_floor, pixel.openness * through_herbs(shelter.herbs));
+        alone.edge = edge_of(pixel, shelter, on_floor);
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);
     }
@@ -743,8 +750,7 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     alone.scattered *= sunlight() * (place.about * ground_share * scatters);
     vec3 mirror = wax_mirror(pixel.direction, pixel.normal);
     wd_around around = light_around(facing, mirror, shelter, ground_share, past_trees, alone, -pixel.direction.z);
-    /* Upright ground is where the world is cut off: before it lies bright haze, as the path tracer has it. */
-    if (pixel.surface == 0u && abs(pixel.normal.z) < 0.01)
+    if (is_curtain(pixel)) /* before it lies bright haze, as the path tracer has it */
         around.front += 0.5 * frame.sky_irradiance;
     vec3 mirrored = mirrored_by_leaf(pixel, around, mirror, blade, sun_share);
     vec3 sheen = mix(place.coat * (one_leaf ? mirrored : around.front),

@@ -20,7 +20,7 @@ vec2 canopy_at(vec2 place_m)
 /* What comes down to a place among leaves. */
 struct wd_shelter {
     vec4 through;     /* the share of the sky's quarters that no leaf stops */
-    float floor_mean; /* the mean of that on the ground */
+    float floor_mean; /* the mean of that on the ground all about, as the canopy's field has it */
     float under;      /* log2 of the share that leaves of the stand over the place let down */
     float beside;     /* the same, of all leaves that lie higher: what a level way meets sooner */
     vec2 layer_m;     /* base and top of the stand's leaves over the ground */
@@ -80,11 +80,11 @@ wd_floor_sky floor_sky(vec3 rel)
 wd_floor_sky herbs_floor_sky(wd_crown crown, vec3 rel)
 {
     float herb = 1.0 - is_tree(crown);
-    wd_floor_sky floor = NO_FLOOR;
+    wd_floor_sky on_floor = NO_FLOOR;
     if (herb > 0.0)
-        floor = floor_sky(rel);
-    floor.share *= herb;
-    return floor;
+        on_floor = floor_sky(rel);
+    on_floor.share *= herb;
+    return on_floor;
 }
 
 wd_shelter ground_shelter(wd_pixel pixel)
@@ -106,11 +106,13 @@ wd_shelter ground_shelter(wd_pixel pixel)
     return shelter;
 }
 
-/* The same where the table tells of the place itself what the field does of all about it: of the ground and herbs. */
-wd_shelter floor_shelter(wd_shelter shelter, wd_floor_sky floor, float own)
+/* The same where the table tells of the place itself what the field does of all about it: of the ground and herbs.
+ * `own`: share of the place's own openness and herbs. */
+wd_shelter floor_shelter(wd_shelter shelter, wd_floor_sky on_floor, float own)
 {
-    shelter.through = mix(shelter.through, max(floor.level, vec4(1e-3)) * own, floor.share);
-    shelter.under = log2(mix(shelter.floor_mean, dot(max(floor.level, vec4(1e-3)), vec4(0.25)), floor.share));
+    vec4 level = max(on_floor.level, vec4(1e-3));
+    shelter.through = mix(shelter.through, level * own, on_floor.share);
+    shelter.under = log2(mix(shelter.floor_mean, dot(level, vec4(0.25)), on_floor.share));
     return shelter;
 }
 
@@ -262,10 +264,10 @@ vec4 past_edge(vec4 low, vec4 level)
 }
 
 /* Of a place on the ground or beneath crowns. `shelter`: the ground's. */
-vec4 edge_of(wd_pixel pixel, wd_shelter shelter, wd_floor_sky floor)
+vec4 edge_of(wd_pixel pixel, wd_shelter shelter, wd_floor_sky on_floor)
 {
     vec4 low = CANOPY_LIGHT_AT(canopy_at(pixel.rel.xy + push.camera_m), 3.0);
-    return past_edge(mix(low * low, floor.low, floor.share), shelter.through);
+    return past_edge(mix(low * low, on_floor.low, on_floor.share), shelter.through);
 }
 
 /* Mean of the quarters' shares by how much light each has. */

@@ -54,6 +54,6 @@ vec2 sward_light(float wide_m, float tall_m, vec3 eye)
     float wide = wide_m / tall_m, with_light = smoothstep(-0.9, 0.5, dot(eye, frame.sun_direction));
     float sun = mix(0.32, 0.2, smoothstep(0.3, 1.2, wide)) * smoothstep(0.0, 0.15, wide);
     sun *= with_light * (1.0 - smoothstep(0.25, 0.6, eye.z));
-    float narrow = mix(1.17, 1.0, smoothstep(0.4, 0.8, tall_m));
+    float narrow = mix(1.12, 1.0, smoothstep(0.4, 0.8, tall_m));
     return vec2(1.0 - sun, mix(narrow, 0.6, smoothstep(0.0, 0.9, wide)));
 }

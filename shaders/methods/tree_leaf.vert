@@ -51,7 +51,7 @@ float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
     float far_m = length(at_m);
     float sine = SHADOW != 0u ? frame.sun_direction.z : at_m.z / far_m;
     float sprays = wd_spray_share(far_m, max(push.spray_reach, 1e-6));
-    bool twig = LISTED != 0u && wd_hash_unit(wd_hash2(index, wd_tree_random(tree))) < sprays;
+    bool twig = LISTED != 0u && wd_spray_chance(index, wd_tree_random(tree)) < sprays;
     float share = wd_leaf_stand(push.leaf_m * pose.across * push.pixels_per_radian / far_m,
                                 push.leaf_most, pose.across);
     bool thin = float(index) >= share * float(push.leaf_count);

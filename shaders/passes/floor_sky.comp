@@ -4,7 +4,7 @@
 
 layout(local_size_x = WD_FLOOR_SKY_TILE, local_size_y = WD_FLOOR_SKY_TILE) in;
 
-layout(scalar, set = 0, binding = 5) readonly buffer Rises { float rise_m[]; }; /* of squares over their tile's foot */
+layout(scalar, set = 0, binding = 5) readonly buffer Rises { float square_rise_m[]; }; /* over their tile's foot */
 
 /* Quarters of the bearings: those about east are the first and the last. */
 const int QUARTERS[8] = int[](0, 1, 1, 2, 2, 3, 3, 0);
@@ -53,10 +53,13 @@ void main()
     uint job = push.job_count + tile;
     ivec2 square = ivec2(gl_LocalInvocationID.xy) - WD_FLOOR_SKY_TILE / 2; /* from the tile's middle */
     vec2 aside_m = WD_FLOOR_SKY_M * (vec2(square) + 0.5);
-    float over_m = rise_m[tile * WD_FLOOR_SKY_TILE * WD_FLOOR_SKY_TILE + gl_LocalInvocationIndex] + WD_FLOOR_SKY_OVER_M;
+    float rise_m = square_rise_m[tile * WD_FLOOR_SKY_TILE * WD_FLOOR_SKY_TILE + gl_LocalInvocationIndex];
+    float over_m = rise_m + WD_FLOOR_SKY_OVER_M;
     sky_left left = sky_left_to(job, vec3(aside_m, over_m), aside_m);
-    vec2 place_m = vec2(foot_of(job).xy) * 0.001 + aside_m, on_field = (place_m - push.canopy_from_m) * push.canopy_scale;
-    vec4 level = textureLod(canopy_light, vec3(on_field, 0.0), 0.0), low = textureLod(canopy_light, vec3(on_field, 3.0), 0.0);
+    vec2 place_m = vec2(foot_of(job).xy) * 0.001 + aside_m;
+    vec2 on_field = (place_m - push.canopy_from_m) * push.canopy_scale;
+    vec4 level = textureLod(canopy_light, vec3(on_field, 0.0), 0.0);
+    vec4 low = textureLod(canopy_light, vec3(on_field, 3.0), 0.0);
     float stand = within_stand(place_m);
     level = mix(sqrt(left.level), level, stand);
     low = mix(sqrt(left.low), low, stand);

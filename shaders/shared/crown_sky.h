@@ -52,6 +52,7 @@ struct wd_sky_crown {
     float middle_m;         /* height of its middle over the foot */
     float per_m, steeper;   /* extinction */
 };
+WD_STATIC_ASSERT_SIZE(wd_sky_crown, 32);
 
 /* Bearings of rays in radians from east to north: four, then the four across from these. The way on from a crown's
  * reach goes in steps, each half as long again as the one before. */
@@ -72,18 +73,20 @@ struct wd_crown_sky_job {
     WD_VEC4(ground_across);
     float rise_m[WD_CROWN_SKY_BEARINGS * WD_CROWN_SKY_STEPS]; /* of the ground over the foot, in the middle of each step */
 };
+WD_STATIC_ASSERT_SIZE(wd_crown_sky_job, 224);
 
 #define WD_CROWN_SKY_NONE 0xffffffffu
 
 /* The ground about the eye: squares in tiles, each in the place of the table that its coordinates have modulo
- * WD_FLOOR_SKY_ACROSS. A texel is two words of a square's middle as above, of level ground and of the sky below 30
- * degrees. */
+ * WD_FLOOR_SKY_ACROSS. A texel's first two words are of a square's middle, as above: of level ground and of the
+ * sky below 30 degrees. */
 #define WD_FLOOR_SKY_ACROSS 128
 #define WD_FLOOR_SKY_M 2.0f /* a square's side */
 #define WD_FLOOR_SKY_TILE 8 /* squares a tile's side */
 #define WD_FLOOR_SKY_TILES (WD_FLOOR_SKY_ACROSS / WD_FLOOR_SKY_TILE)
 #define WD_FLOOR_SKY_TILE_M (WD_FLOOR_SKY_M * WD_FLOOR_SKY_TILE)
-/* Ground beyond so many metres, or where a square is less than so many pixels, is not known so; within the share of that all. */
+/* Ground beyond so many metres, or where a square is less than so many pixels, has no part in it; all has within this
+ * share of that way. */
 #define WD_FLOOR_SKY_FAR_M 108.0f
 #define WD_FLOOR_SKY_LEAST_PX 3.0f
 #define WD_FLOOR_SKY_WHOLE 0.74f
@@ -104,5 +107,6 @@ struct wd_crown_sky_push {
     WD_VEC2(canopy_from_m); /* as in struct wd_light_push */
     WD_VEC2(canopy_scale);
 };
+WD_STATIC_ASSERT_SIZE(wd_crown_sky_push, 40);
 
 #endif

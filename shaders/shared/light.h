@@ -5,7 +5,7 @@
 #include "shared/types.h"
 
 struct wd_light_push {
-    WD_VEC2(camera_m);   /* local; for places in the field of shadow heights only */
+    WD_VEC2(camera_m);   /* local; for places in the maps and tables below */
     float sun_cell_m;    /* of that field */
     float sun_soft_m;    /* half the height over which its shadows fade */
     uint32_t sun_width, sun_height;
@@ -25,6 +25,7 @@ struct wd_light_push {
     uint32_t few_tiles;   /* all tiles without water are of WD_TILE_LIST_DRY */
     float floor_sky_m;    /* within which a table tells what of the sky reaches the ground (shared/crown_sky.h) */
 };
+WD_STATIC_ASSERT_SIZE(wd_light_push, 100);
 
 /* Greatest height of a canopy that the image of its light can tell. */
 #define WD_CANOPY_MOST_M 128.0f

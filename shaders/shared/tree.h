@@ -177,6 +177,12 @@ WD_FUNC float wd_spray_share(float distance_m, float reach)
     return t < 0.0f ? 0.0f : (t > 1.0f ? 1.0f : t);
 }
 
+/* Those are twigs for which it is less; `random`: the tree's. */
+WD_FUNC float wd_spray_chance(uint32_t leaf, uint32_t random)
+{
+    return wd_hash_unit(wd_hash2(leaf, random));
+}
+
 /* Layers of a species' looks. */
 #define WD_LOOK_BARK 0
 #define WD_LOOK_LEAF 1

@@ -89,7 +89,7 @@ struct work {
     size_t missing_count, missing_capacity;
     struct tile {
         int32_t column, row;
-    } tiles[WD_FLOOR_SKY_TILES * WD_FLOOR_SKY_TILES]; /* of the floor, missing, too */
+    } tiles[WD_FLOOR_SKY_TILES * WD_FLOOR_SKY_TILES]; /* of the floor, that are missing, too */
     size_t tile_count;
     double low_m[2], high_m[2]; /* about all that are missing, as far as neighbours count */
     struct beside {
@@ -237,13 +237,6 @@ static void middle_of(const struct tile *tile, double place_m[2])
     place_m[1] = (tile->row + 0.5) * (double)WD_FLOOR_SKY_TILE_M;
 }
 
-/* The nearest height where there is no ground. */
-static float height_near(const struct wd_terrain *terrain, double x_m, double y_m)
-{
-    return wd_terrain_height(terrain, fmin(fmax(x_m, 0), wd_terrain_extent_x_m(terrain)),
-                             fmin(fmax(y_m, 0), wd_terrain_extent_y_m(terrain)));
-}
-
 static bool sees_tile(const struct work *work, const struct tile *tile)
 {
     const struct wd_terrain *terrain = &work->forest->world->terrain;
@@ -258,9 +251,10 @@ static bool sees_tile(const struct work *work, const struct tile *tile)
         if (max_m[k] < 0 || (double)min_m[k] > extent_m[k])
             return false;
     }
-    min_m[2] = max_m[2] = height_near(terrain, middle_m[0], middle_m[1]);
+    min_m[2] = max_m[2] = wd_terrain_height(terrain, middle_m[0], middle_m[1]);
     for (int corner = 0; corner < 4; corner++) {
-        float z_m = height_near(terrain, (double)(corner & 1 ? min_m : max_m)[0], (double)(corner & 2 ? min_m : max_m)[1]);
+        const float *x_m = corner & 1 ? min_m : max_m, *y_m = corner & 2 ? min_m : max_m;
+        float z_m = wd_terrain_height(terrain, (double)x_m[0], (double)y_m[1]);
         min_m[2] = fminf(min_m[2], z_m);
         max_m[2] = fmaxf(max_m[2], z_m);
     }
@@ -416,14 +410,14 @@ static void fill_floor(const struct work *work, struct wd_crown_sky_job *jobs, f
     for (size_t i = 0; i < work->tile_count; i++) {
         double middle_m[2];
         middle_of(&work->tiles[i], middle_m);
-        double foot_m = (double)height_near(terrain, middle_m[0], middle_m[1]);
+        double foot_m = (double)wd_terrain_height(terrain, middle_m[0], middle_m[1]);
         jobs[i] = (struct wd_crown_sky_job){
             .foot_mm = {(int32_t)lround(middle_m[0] * 1e3), (int32_t)lround(middle_m[1] * 1e3), (int32_t)lround(foot_m * 1e3)},
             .crown = WD_CROWN_SKY_NONE};
         for (int square = 0; square < TILE_SQUARES; square++) {
             double x_m = ((square % WD_FLOOR_SKY_TILE) + 0.5 - 0.5 * WD_FLOOR_SKY_TILE) * (double)WD_FLOOR_SKY_M;
             double y_m = ((square / WD_FLOOR_SKY_TILE) + 0.5 - 0.5 * WD_FLOOR_SKY_TILE) * (double)WD_FLOOR_SKY_M;
-            rises_m[i][square] = height_near(terrain, middle_m[0] + x_m, middle_m[1] + y_m) - (float)foot_m;
+            rises_m[i][square] = wd_terrain_height(terrain, middle_m[0] + x_m, middle_m[1] + y_m) - (float)foot_m;
         }
     }
 }

@@ -82,7 +82,7 @@ static void gather_leaf(struct gather *gather, const struct wd_tree_draw *draw,
     float square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
     if (square > WD_SPRAY_NONE_M * WD_SPRAY_NONE_M * bearer->reach * bearer->reach)
         return;
-    float distance_m = sqrtf(square), chance = wd_hash_unit(wd_hash2(index, wd_tree_random(*tree)));
+    float distance_m = sqrtf(square), chance = wd_spray_chance(index, wd_tree_random(*tree));
     if (chance >= wd_spray_share(distance_m, bearer->reach))
         return;
     float reach = 2 * wd_leaf_size_m(*leaf, *bearer->box) * fmaxf(pose->across, pose->up), min[3], max[3];

@@ -40,11 +40,14 @@ struct wd_trace_near_leaf {
     float distance_m, chance;
 };
 
-/* Whether the leaf's twig is in the picture, or its shadow may fall on what is as near. */
-static bool matters(const struct wd_trace_near_scene *scene, struct wd_vec3 foot, float twig_m)
+/* Whether the leaf's twig is in the picture, or its shadow where it falls on what is no farther off than leaves that
+ * are twigs, on the other side of the eye, too. */
+static bool matters(const struct wd_trace_near_scene *scene, struct wd_vec3 foot, float twig_m, float reach_m)
 {
-    const float *sun = scene->frame->sun_direction;
-    struct wd_vec3 shadow = wd_v3_mad(foot, WD_V3(sun[0], sun[1], sun[2]), -WD_SPRAY_NONE_M);
+    const struct wd_frame_uniforms *frame = scene->frame;
+    const float *sun = frame->sun_direction, *light = frame->sun_irradiance;
+    float shadow_m = wd_max3f(light[0], light[1], light[2]) > 0 ? 2 * reach_m : 0;
+    struct wd_vec3 shadow = wd_v3_mad(foot, WD_V3(sun[0], sun[1], sun[2]), -shadow_m);
     return wd_trace_view_sees(scene->view, foot, shadow, twig_m);
 }
 
@@ -61,9 +64,9 @@ static void gather(struct wd_trace_near_tree *at, const struct wd_trace_near_sce
         float square = wd_v3_dot(foot, foot);
         if (square > reach_m * reach_m)
             continue;
-        float distance_m = sqrtf(square), chance = wd_hash_unit(wd_hash2(i, wd_tree_random(*tree)));
+        float distance_m = sqrtf(square), chance = wd_spray_chance(i, wd_tree_random(*tree));
         if (chance < wd_spray_share(distance_m, grown->spray_reach) &&
-            matters(scene, foot, 2 * widest * wd_leaf_size_m(*leaf, grown->leaf_box)))
+            matters(scene, foot, 2 * widest * wd_leaf_size_m(*leaf, grown->leaf_box), reach_m))
             *wd_push(at->leaves, at->count, at->capacity) = (struct wd_trace_near_leaf){i, distance_m, chance};
     }
 }

@@ -8,11 +8,11 @@
 #include "shared/frame.h"
 
 struct wd_trace_near_tree {
-    uint32_t tree;                 /* index */
-    float transform[12];           /* of the model into the frame of rays: columns x, y, z, translation */
+    uint32_t tree;       /* index */
+    float transform[12]; /* of the model into the frame of rays: columns x, y, z, translation */
     struct wd_trace_near_leaf *leaves; /* in the order of their indices */
     size_t count, capacity;
-    struct wd_trace_model *model;  /* its own; NULL where none of its leaves is a twig after all */
+    struct wd_trace_model *model; /* its own; NULL where none of its leaves is a twig after all */
 };
 
 struct wd_trace_near {
@@ -31,8 +31,9 @@ struct wd_trace_near_scene {
     const struct wd_frame_uniforms *frame;
 };
 
-/* Makes the meshes and scenes of the trees added: leaves that are near, and are in the picture or throw their shadow
- * there, are twigs, the same that pictures are drawn with, and fewer where all of them were too many triangles. */
+/* Makes the meshes and scenes of the trees added: leaves that are near, and are in the picture or throw their shadow on
+ * what is near there, are twigs, by the rule that pictures are drawn with; fewer, the nearest, where all of them were
+ * more than four million triangles (pictures: WD_SPRAY_BUDGET of methods/spray_draw.h). */
 void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_near_scene *scene);
 void wd_trace_near_finish(struct wd_trace_near *near); /* accepts {0} */
 

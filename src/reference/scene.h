@@ -28,7 +28,7 @@ struct wd_trace_hit {
 };
 
 /* Places every tree as it stands at frame->time_s: leaning in the wind, without flutter; leaves that
- * fall are where they have come to; leaves next to the eye that the view holds, or shadows of, are the twigs that they
+ * fall are where they have come to; leaves near the eye that are in view, or whose shadows are, are the twigs that they
  * stand for. Layers that show only in part at the tree's distance show that share of their trees. All arguments but
  * the view must outlive the result and must not move. */
 bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_models *models,

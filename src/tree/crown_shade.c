@@ -23,7 +23,7 @@ static void add_triangle(struct moments *sum, const struct wd_tree_mesh *mesh, c
     for (int k = 0; k < 3; k++)
         p[k] = wd_v3_of(mesh->vertices[corners[k]].position_m);
     struct wd_vec3 middle = wd_v3_scale(wd_v3_add(p[0], wd_v3_add(p[1], p[2])), 1 / 3.0f);
-    double area = (double)wd_v3_length(wd_v3_cross(wd_v3_sub(p[1], p[0]), wd_v3_sub(p[2], p[0])));
+    double area = 0.5 * (double)wd_v3_length(wd_v3_cross(wd_v3_sub(p[1], p[0]), wd_v3_sub(p[2], p[0])));
     double z = (double)middle.z;
     sum->area += area;
     sum->z += area * z;
@@ -83,10 +83,11 @@ static void measure(struct ring rings[RINGS], const struct wd_tree_mesh *mesh)
 
 /* --- the fit --------------------------------------------------------------------------------- */
 
-double wd_crown_shade_lets(const struct wd_crown_shade *shade, struct wd_vec3 from, struct wd_vec3 toward)
+double wd_crown_shade_transmittance(const struct wd_crown_shade *shade, struct wd_vec3 from, struct wd_vec3 toward)
 {
     double per_r = 1 / (double)shade->radius_m, per_h = 1 / (double)shade->half_m;
-    const double p[3] = {(double)from.x * per_r, (double)from.y * per_r, ((double)from.z - (double)shade->middle_m) * per_h};
+    double over_m = (double)from.z - (double)shade->middle_m;
+    const double p[3] = {(double)from.x * per_r, (double)from.y * per_r, over_m * per_h};
     const double d[3] = {(double)toward.x * per_r, (double)toward.y * per_r, (double)toward.z * per_h};
     double along = p[0] * d[0] + p[1] * d[1] + p[2] * d[2], dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     double root2 = along * along - dd * (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - 1);
@@ -102,7 +103,7 @@ static double lets_to(const struct wd_crown_shade *shade, const struct ring *rin
     struct wd_vec3 at = wd_v3_scale(ring->right, (float)(ring->first_m[0] + column * ring->cell_m));
     at = wd_v3_mad(at, ring->up, (float)(ring->first_m[1] + row * ring->cell_m));
     at = wd_v3_mad(at, ring->toward, ((float)OVER_M - at.z) / ring->toward.z);
-    return wd_crown_shade_lets(shade, at, ring->toward);
+    return wd_crown_shade_transmittance(shade, at, ring->toward);
 }
 
 enum { NUMBERS = 5, STEPS = 16 };
@@ -131,11 +132,11 @@ static void add_row(struct normal *normal, double weight, double off, const doub
     }
 }
 
-/* Of single cells and of all together: cells tell the crown's form; what it hides in all, which stands of such trees go
- * by, they leave too little of, since gaps lie otherwise in each crown. */
+/* Of single cells, which tell the crown's form, and of all together: gaps lie otherwise in each crown, so that cells alone
+ * would have it hide too little as a whole, and stands of such trees with it. */
 static struct normal normal_of(const struct wd_crown_shade *shade, const struct ring rings[RINGS])
 {
-    static const double WHOLE = 1, APART = 0.01;
+    static const double APART = 0.01;
     struct wd_crown_shade beside[NUMBERS];
     struct normal normal = {0};
     for (int k = 0; k < NUMBERS; k++) {
@@ -155,12 +156,16 @@ static struct normal normal_of(const struct wd_crown_shade *shade, const struct 
             all += off;
             add_row(&normal, ring->weight, off, slopes);
         }
-        add_row(&normal, WHOLE * ring->weight, all, all_slopes);
+        add_row(&normal, ring->weight, all, all_slopes);
     }
     return normal;
 }
 
-/* Gauss's elimination; the damped matrix is positive definite. */
+/* No number changes more in a step. */
+static const double MOST_STEP = 0.5;
+
+/* Gaussian elimination; the damped matrix is positive definite. A number that would change more is held, and those
+ * before it follow from that. */
 static void solve(double x[NUMBERS], const struct normal *normal, double damping)
 {
     double a[NUMBERS][NUMBERS + 1];
@@ -180,11 +185,11 @@ static void solve(double x[NUMBERS], const struct normal *normal, double damping
         x[i] = a[i][NUMBERS];
         for (int k = i + 1; k < NUMBERS; k++)
             x[i] -= a[i][k] * x[k];
-        x[i] = fmin(fmax(x[i] / a[i][i], -0.5), 0.5);
+        x[i] = fmin(fmax(x[i] / a[i][i], -MOST_STEP), MOST_STEP);
     }
 }
 
-/* Levenberg and Marquardt's steps. */
+/* Levenberg-Marquardt. */
 static struct wd_crown_shade fit(struct wd_crown_shade shade, const struct ring rings[RINGS])
 {
     struct normal normal = normal_of(&shade, rings);
@@ -206,8 +211,8 @@ static struct wd_crown_shade fit(struct wd_crown_shade shade, const struct ring 
     return shade;
 }
 
-/* An even ellipsoid's variance of height is a fifth of half its height squared, its mean squared distance from the axis two
- * fifths of its radius squared; half of its leaves' area stands across a ray. */
+/* An even ellipsoid's variance of height is a fifth of half its height squared, its mean squared distance from the axis
+ * two fifths of its radius squared; half of its leaves' area stands across a ray. */
 struct wd_crown_shade wd_crown_shade_of(const struct wd_tree_mesh *mesh)
 {
     struct moments sum = moments_of(mesh);
@@ -219,6 +224,6 @@ struct wd_crown_shade wd_crown_shade_of(const struct wd_tree_mesh *mesh)
     struct ring rings[RINGS];
     measure(rings, mesh);
     const struct wd_crown_shade even = {(float)radius_m, (float)half_m, (float)fmax(middle_m, 0.05),
-                                        (float)(0.25 * sum.area / volume_m3), 0};
+                                        (float)(0.5 * sum.area / volume_m3), 0};
     return fit(even, rings);
 }

@@ -2,8 +2,10 @@
 /* Every struct that C and GLSL share, so that the compiled module tells its offsets. */
 #include "shared/bake.h"
 #include "shared/card_soup.h"
+#include "shared/crown_sky.h"
 #include "shared/forest.h"
 #include "shared/frame.h"
+#include "shared/light.h"
 
 layout(scalar, binding = 0) buffer Trees { wd_packed_tree tree; };
 layout(scalar, binding = 1) buffer Vertices { wd_tree_vertex vertex; };
@@ -27,6 +29,10 @@ layout(scalar, binding = 18) buffer MeshPushes { wd_mesh_push mesh_push; };
 layout(scalar, binding = 19) buffer SprayPushes { wd_spray_push spray_push; };
 layout(scalar, binding = 20) buffer Blocks { wd_tree_block block; };
 layout(scalar, binding = 21) buffer BakePushes { wd_bake_push bake; };
+layout(scalar, binding = 22) buffer Crowns { wd_sky_crown crown; };
+layout(scalar, binding = 23) buffer Jobs { wd_crown_sky_job job; };
+layout(scalar, binding = 24) buffer SkyPushes { wd_crown_sky_push sky; };
+layout(scalar, binding = 25) buffer LightPushes { wd_light_push light; };
 
 void main()
 {
@@ -34,5 +40,6 @@ void main()
               + instance.tree + push.level
               + frame.width + chunk.first_tree + card.turn + corner.card + uint(cull.plane[0].x)
               + soup.variants + draw.index_count + leaf.turn + spray.leaf
-              + packed.xy + form.kind + mesh_push.forms + spray_push.tree.level + bake.width;
+              + packed.xy + form.kind + mesh_push.forms + spray_push.tree.level + bake.width
+              + uint(crown.foot_mm[0]) + job.slot + sky.columns + light.variants;
 }

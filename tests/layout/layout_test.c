@@ -10,8 +10,10 @@
 
 #include "shared/bake.h"
 #include "shared/card_soup.h"
+#include "shared/crown_sky.h"
 #include "shared/forest.h"
 #include "shared/frame.h"
+#include "shared/light.h"
 
 static const uint32_t words[] =
 #include "layout.comp.inc"
@@ -76,6 +78,18 @@ static const struct member members[] = {
     M(wd_draw_indexed, index_count), M(wd_draw_indexed, instance_count),
     M(wd_draw_indexed, first_index), M(wd_draw_indexed, vertex_offset),
     M(wd_draw_indexed, first_instance),
+    M(wd_sky_crown, foot_mm), M(wd_sky_crown, radius_m), M(wd_sky_crown, half_m), M(wd_sky_crown, middle_m),
+    M(wd_sky_crown, per_m), M(wd_sky_crown, steeper),
+    M(wd_crown_sky_job, foot_mm), M(wd_crown_sky_job, crown), M(wd_crown_sky_job, reach_m), M(wd_crown_sky_job, slot),
+    M(wd_crown_sky_job, radius_m), M(wd_crown_sky_job, top_m), M(wd_crown_sky_job, ground),
+    M(wd_crown_sky_job, ground_across), M(wd_crown_sky_job, rise_m),
+    M(wd_crown_sky_push, job_count), M(wd_crown_sky_push, tile_count), M(wd_crown_sky_push, first_column),
+    M(wd_crown_sky_push, first_row), M(wd_crown_sky_push, columns), M(wd_crown_sky_push, rows),
+    M(wd_crown_sky_push, canopy_from_m), M(wd_crown_sky_push, canopy_scale),
+#define L(name) M(wd_light_push, name)
+    L(camera_m), L(sun_cell_m), L(sun_soft_m), L(sun_width), L(sun_height), L(variants), L(tile_columns), L(tile_rows),
+    L(is_sea), L(has_rivers), L(extent_m), L(canopy_from_m), L(canopy_scale), L(has_overlay), L(eye_over_ground_m),
+    L(shafts_m), L(shafts), L(level_cards), L(pixels_a_radian), L(few_tiles), L(floor_sky_m),
 #define F(name) M(wd_frame_uniforms, name)
     F(clip_from_rel), F(rel_from_clip), F(previous_clip_from_rel), F(steady_clip_from_rel),
     F(shadow_from_rel), F(cascades), F(camera_mm),

@@ -77,20 +77,27 @@ static void leaves_by_the_eye_are_twigs(void **state)
 static void twigs_are_where_the_picture_shows_them(void **state)
 {
     (void)state;
-    static const float sun_y[] = {0, -0.97f, 0.97f};
-    static const float behind_m[] = {LEAF_M, TWIG_M, LEAF_M}, beside_m[] = {LEAF_M, TWIG_M, LEAF_M};
-    for (int i = 0; i < 3; i++) {
+    static const struct {
+        struct wd_vec3 sun; /* toward it */
+        float behind_m, beside_m;
+    } cases[] = {{{0, 0, 1}, LEAF_M, LEAF_M},
+                 {{0, -0.97f, 0.243f}, TWIG_M, TWIG_M},
+                 {{0, 0.97f, 0.243f}, LEAF_M, LEAF_M},
+                 {{0.97f, 0, 0.243f}, LEAF_M, TWIG_M}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct made_scene made;
         struct wd_tree_leaf leaf;
         make_model(&made, &leaf);
-        made.frame.sun_direction[1] = sun_y[i];
-        made.frame.sun_direction[2] = sqrtf(1 - sun_y[i] * sun_y[i]);
+        made.frame.sun_direction[0] = cases[i].sun.x;
+        made.frame.sun_direction[1] = cases[i].sun.y;
+        made.frame.sun_direction[2] = cases[i].sun.z;
+        made.frame.sun_irradiance[1] = 1;
         made_scene_add_tree(&made, 0, -2, -0.5);
-        made_scene_add_tree(&made, 3, 0, -0.5);
+        made_scene_add_tree(&made, 3, 1, -0.5);
         made_scene_add_tree(&made, 0, 2, -0.5);
         made_scene_build(&made);
-        assert_float_equal(height_at(&made, &made.trees[0], 0), behind_m[i], 1e-3);
-        assert_float_equal(height_at(&made, &made.trees[1], 0), beside_m[i], 1e-3);
+        assert_float_equal(height_at(&made, &made.trees[0], 0), cases[i].behind_m, 1e-3);
+        assert_float_equal(height_at(&made, &made.trees[1], 0), cases[i].beside_m, 1e-3);
         assert_float_equal(height_at(&made, &made.trees[2], 0), TWIG_M, 1e-3);
         wd_tree_mesh_finish(&made.model.grown.spray);
         made_scene_finish(&made);

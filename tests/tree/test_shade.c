@@ -31,7 +31,7 @@ static double kept_m2(const struct wd_crown_shade *shade, const struct wd_tree_m
     double slope = (double)(ray.x / ray.z), rise = (double)ray.z, sum = 0;
     for (double x = -wide_m - 2 * tall_m * slope; x < wide_m; x += step_m / rise)
         for (double y = -wide_m; y < wide_m; y += step_m)
-            sum += 1 - wd_crown_shade_lets(shade, WD_V3((float)x, (float)y, 0), ray);
+            sum += 1 - wd_crown_shade_transmittance(shade, WD_V3((float)x, (float)y, 0), ray);
     return sum * step_m * step_m;
 }
 
@@ -65,7 +65,7 @@ static double sky_at(const struct wd_crown_shade *shade, float away_m)
     double sum = 0;
     for (int side = 0; side < SIDES; side++) {
         double turn = WD_PI * (side + 0.5) / SIDES;
-        sum += wd_crown_shade_lets(shade, WD_V3(away_m, 0, 0.5f),
+        sum += wd_crown_shade_transmittance(shade, WD_V3(away_m, 0, 0.5f),
                                    WD_V3(0.8f * (float)wd_dcos(turn), 0.8f * (float)wd_dsin(turn), 0.6f));
     }
     return sum / SIDES;
@@ -94,7 +94,7 @@ static void add_square(struct wd_tree_mesh *mesh, float half_m, float z_m)
     wd_tree_mesh_add_triangle(mesh, first + 1, first + 3, first + 2);
 }
 
-static void nothing_and_boards_have_numbers(void **state)
+static void degenerate_meshes_have_finite_shades(void **state)
 {
     (void)state;
     struct wd_tree_mesh mesh = {0};
@@ -114,7 +114,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ellipsoids_hide_as_much_sky_as_crowns),
         cmocka_unit_test(shade_is_deepest_at_the_stem),
-        cmocka_unit_test(nothing_and_boards_have_numbers),
+        cmocka_unit_test(degenerate_meshes_have_finite_shades),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
