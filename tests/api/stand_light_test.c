@@ -151,8 +151,8 @@ static void a_dark_floor_is_as_bright_as_traced(void **state)
     check_light("floor of a dark stand", &drawn, &traced, 1.15, 1.15);
 }
 
-/* A bright horizon lights it past the plot's edges: 1.02 to 1.04 of the traced; 0.83 in red, at twice as many places, if leaves of layers are spread
- * evenly from base to top and the low sky that comes in is as dim as a closed stand's. */
+/* A bright horizon lights it past the plot's edges: 1.02 to 1.04 of the traced; 0.83 in red, at twice as many places, if
+ * leaves of layers are spread evenly from base to top and the low sky that comes in is as dim as a closed stand's. */
 static void the_floor_of_a_plot_is_as_bright_as_traced(void **state)
 {
     (void)state;
