@@ -253,8 +253,8 @@ static bool sees_tile(const struct work *work, const struct tile *tile)
     }
     min_m[2] = max_m[2] = wd_terrain_height(terrain, middle_m[0], middle_m[1]);
     for (int corner = 0; corner < 4; corner++) {
-        const float *x_m = corner & 1 ? min_m : max_m, *y_m = corner & 2 ? min_m : max_m;
-        float z_m = wd_terrain_height(terrain, (double)x_m[0], (double)y_m[1]);
+        float x_m = corner & 1 ? min_m[0] : max_m[0], y_m = corner & 2 ? min_m[1] : max_m[1];
+        float z_m = wd_terrain_height(terrain, (double)x_m, (double)y_m);
         min_m[2] = fminf(min_m[2], z_m);
         max_m[2] = fmaxf(max_m[2], z_m);
     }
