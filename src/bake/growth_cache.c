@@ -12,10 +12,10 @@
 #include "tree/sunlit.h"
 #include "tree/thinning.h"
 
-/* A kept model: words, then the wood of the full mesh and of the reduced one and the twig, each as
+/* A kept model: words, then the wood of the full mesh and of the reduced one and the two of the twig, each as
  * vertices and indices, then the leaves and the forms of their sets, packed by meshoptimizer's codecs
  * (the sequence codec keeps the order of indices). */
-enum { MESHES = 3, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD_LEAF_GROWTHS,
+enum { MESHES = 4, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD_LEAF_GROWTHS,
        SUNLIT_AT = 7 + 7 + BOUNDS + GROWTHS + WD_GAIN_SIDES,
        SUNLIT = (int)(WD_SUNLIT_PLACES * WD_SUNLIT_KINDS),
        SKYLIT = (int)(WD_SKYLIT_PLACES * WD_SKYLIT_KINDS), SKYLIT_AT = SUNLIT_AT + SUNLIT + 2,
@@ -154,6 +154,7 @@ static void meshes_of(struct wd_tree_mesh *meshes[MESHES], struct wd_tree_model 
     meshes[0] = &model->full;
     meshes[1] = &model->reduced;
     meshes[2] = &model->spray;
+    meshes[3] = &model->spray_shade;
 }
 
 static uint32_t bits_of(float value)
@@ -369,8 +370,10 @@ static bool load_model(struct wd_tree_model *model, struct wd_bake_cache *cache,
         for (int i = 0; i < MESHES && ok; i++)
             ok = unpack_mesh(meshes[i], block.bytes + 4 * (FIGURES + i * MESH_WORDS), &block);
         ok = ok && unpack_leaves(model, &block);
-        if (ok)
+        if (ok) {
             wd_tree_mesh_update_bounds(&model->spray);
+            wd_tree_mesh_update_bounds(&model->spray_shade);
+        }
     }
     free(block.bytes);
     if (!ok)

@@ -180,6 +180,7 @@ static void place_model(struct building *building, uint32_t index)
     }
     describe_leaves(meshes->ranges[index], model);
     place_mesh(building, &twig->mesh, &model->spray);
+    place_mesh(building, &twig->shade, &model->spray_shade);
     twig->first_leaf = (uint32_t)building->leaves;
     twig->leaf_count = model->leaf_count + model->flower_count;
     twig->box = model->leaf_box;
@@ -238,6 +239,7 @@ static void fill_model(struct building *building, uint32_t index)
         }
     }
     fill_mesh(building, &twig->mesh, &model->spray);
+    fill_mesh(building, &twig->shade, &model->spray_shade);
     if (twig->leaf_count)
         memcpy(meshes->host_leaves + twig->first_leaf, model->leaves,
                twig->leaf_count * sizeof *model->leaves);

@@ -41,6 +41,7 @@ struct wd_mesh_range {
 /* The leaves of one model, and the twig that each stands for. */
 struct wd_twig_range {
     struct wd_mesh_range mesh;       /* index_count 0: they are single leaves */
+    struct wd_mesh_range shade;      /* the same for shadow maps */
     uint32_t first_leaf, leaf_count; /* flowers included; first: a multiple of WD_MESH_ALIGNMENT */
     struct wd_leaf_box box;
     float reach; /* of wd_spray_share; 0 without twigs */

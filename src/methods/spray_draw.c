@@ -47,6 +47,11 @@ bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu, en
     return wd_pipeline_init_graphics(pipeline, gpu, &params);
 }
 
+static const struct wd_mesh_range *twig_mesh(const struct wd_tree_draw *draw, const struct wd_twig_range *range)
+{
+    return draw->pass == WD_PASS_SHADOW ? &range->shade : &range->mesh;
+}
+
 /* What it takes to show a leaf in view as a twig. */
 struct candidate {
     float distance_m, reach, chance; /* shown where the share at this distance is over `chance` */
@@ -107,7 +112,7 @@ static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, 
     const struct wd_tree *tree = &forest->world->trees[tree_index];
     const struct wd_twig_range *range = &forest->meshes.twigs[model];
     const struct bearer bearer = {.index = tree_index,
-                                  .triangles = range->mesh.index_count / 3,
+                                  .triangles = twig_mesh(draw, range)->index_count / 3,
                                   .reach = gather->scale * range->reach,
                                   .box = &range->box,
                                   .stand = wd_stand_of(draw, tree_index)};
@@ -124,7 +129,7 @@ static void draw_range(const struct wd_tree_draw *draw, const struct wd_twig_ran
                        const struct gather *gather)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const struct wd_mesh_range *mesh = &range->mesh;
+    const struct wd_mesh_range *mesh = twig_mesh(draw, range);
     struct wd_binding instances;
     void *memory = wd_cmd_upload(draw->cmd, gather->count * sizeof *gather->items, &instances);
     if (!memory)

@@ -274,6 +274,7 @@ static void build_spray(struct wd_tree_model *model, const struct wd_foliage *fo
     if (foliage->count == 0)
         return;
     wd_leaf_spray_mesh(&model->spray, species, wd_foliage_mean_m(foliage));
+    wd_leaf_spray_shade_mesh(&model->spray_shade, species, wd_foliage_mean_m(foliage));
     if (model->spray.index_count > 0)
         model->spray_reach = species->leaf.shape == WD_LEAF_NEEDLES ? 0.8f : 1;
 }
@@ -361,6 +362,7 @@ void wd_tree_model_finish(struct wd_tree_model *model)
         wd_tree_mesh_finish(&model->full);
         wd_tree_mesh_finish(&model->reduced);
         wd_tree_mesh_finish(&model->spray);
+        wd_tree_mesh_finish(&model->spray_shade);
         for (int i = 0; i < 2 * WD_LEAF_SETS; i++)
             wd_leaf_set_finish(&model->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS]);
         free(model->leaves);

@@ -10,6 +10,7 @@ struct spray {
     struct wd_random random;
     float size_m;
     float needle_width_m;
+    bool shade; /* it only throws its shadow */
 };
 
 /* Adds a leaf scaled and turned: its foot at place->foot, its length times place->length. */
@@ -125,9 +126,11 @@ static void add_needles(struct spray *spray, const struct wd_species *species, f
     int count = gather_bearers(species, &spray->random, bearers), n = 0;
     float real_m = 0.01f * species->leaf.width_cm, length_m = 0.01f * species->leaf.length_cm;
     float whole_m2 = area * spray->size_m * spray->size_m;
-    float wanted = fminf(2 * whole_m2 / (length_m * real_m), WD_SPRAY_TRIANGLES - 50);
+    float most = spray->shade ? WD_SPRAY_SHADE_TRIANGLES : WD_SPRAY_TRIANGLES;
+    float wanted = fminf(2 * whole_m2 / (length_m * real_m), most - 50);
     /* where there are not triangles enough, needles grow wider */
-    spray->needle_width_m = fminf(2 * whole_m2 / (length_m * wanted), 2.5f * real_m);
+    float widest_m = spray->shade ? length_m : 2.5f * real_m;
+    spray->needle_width_m = fminf(2 * whole_m2 / (length_m * wanted), widest_m);
     bool tufts = species->leaf.needles == WD_NEEDLES_TUFTS;
     int bundle = species->leaf.needles == WD_NEEDLES_FASCICLES ? (int)species->leaf.bundle : 1;
     float whole = 0;
@@ -183,21 +186,39 @@ static void pack(struct wd_tree_mesh *mesh, const struct wd_leaf_template *twig,
                                   twig->indices[i + 2]);
 }
 
-void wd_leaf_spray_mesh(struct wd_tree_mesh *mesh, const struct wd_species *species, float size_m)
+static void make(struct wd_tree_mesh *mesh, const struct wd_species *species, struct spray *spray)
 {
-    struct spray spray = {.random = wd_random_of(0x5b4a, 1), .size_m = size_m};
-    struct wd_leaf_template leaf;
-    wd_leaf_template_init(&leaf, species, WD_LEAF_AS_NEAR, 0);
-    float area = wd_leaf_template_area(&leaf), real_m = 0.01f * species->leaf.length_cm;
-    int count = (int)(size_m * size_m / (real_m * real_m) + 0.5f);
-    int most = WD_SPRAY_TRIANGLES / (int)(leaf.index_count / 3 + 1);
+    struct wd_leaf_template near, kite;
+    wd_leaf_template_init(&near, species, WD_LEAF_AS_NEAR, 0);
+    wd_leaf_template_init(&kite, species, WD_LEAF_AS_KITE, 0);
+    float real_m = 0.01f * species->leaf.length_cm;
+    int count = (int)(spray->size_m * spray->size_m / (real_m * real_m) + 0.5f);
+    int most = WD_SPRAY_TRIANGLES / (int)(near.index_count / 3 + 1);
     most = most < WD_SPRIG_LEAVES ? most : WD_SPRIG_LEAVES;
     if (species->leaf.shape == WD_LEAF_NEEDLES)
-        add_needles(&spray, species, area);
-    else if ((count > 1 && most > 1) || has_finer_outline(species, &leaf))
-        add_leaves(&spray, species, &leaf, count < most ? count : most);
-    pack(mesh, &spray.twig, species);
+        add_needles(spray, species, wd_leaf_template_area(&near));
+    else if ((count > 1 && most > 1) || has_finer_outline(species, &near))
+        add_leaves(spray, species, spray->shade ? &kite : &near, count < most ? count : most);
+    pack(mesh, &spray->twig, species);
     wd_tree_mesh_update_bounds(mesh);
-    wd_leaf_template_finish(&leaf);
-    wd_leaf_template_finish(&spray.twig);
+    wd_leaf_template_finish(&near);
+    wd_leaf_template_finish(&kite);
+    wd_leaf_template_finish(&spray->twig);
+}
+
+static struct spray spray_of(float size_m, bool shade)
+{
+    return (struct spray){.random = wd_random_of(0x5b4a, 1), .size_m = size_m, .shade = shade};
+}
+
+void wd_leaf_spray_mesh(struct wd_tree_mesh *mesh, const struct wd_species *species, float size_m)
+{
+    struct spray spray = spray_of(size_m, false);
+    make(mesh, species, &spray);
+}
+
+void wd_leaf_spray_shade_mesh(struct wd_tree_mesh *mesh, const struct wd_species *species, float size_m)
+{
+    struct spray spray = spray_of(size_m, true);
+    make(mesh, species, &spray);
 }

@@ -5,12 +5,16 @@
 #include "scene/species.h"
 #include "tree/mesh.h"
 
-enum { WD_SPRAY_TRIANGLES = 1500 }; /* at most */
+/* Triangles of a twig at most, as it is seen and as it throws its shadow. */
+enum { WD_SPRAY_TRIANGLES = 1500, WD_SPRAY_SHADE_TRIANGLES = 150 };
 
 /* Makes the twig for drawn leaves `size_m` long: leaves or needles of their real size with the
  * drawn one's area in all, with lobes and teeth, and their wood. Positions are in units of size_m in the leaf's frame (x
  * across, y along, z above), tints of leaves white, of wood the twig's; kind's flexibility is what
  * is added to the leaf's own. Empty where a drawn leaf is a single leaf or frond in full already. */
 void wd_leaf_spray_mesh(struct wd_tree_mesh *mesh, const struct wd_species *species, float size_m);
+/* The same twig for shadow maps, whose texels are wider than needles and teeth: leaves as kites in the same places,
+ * fewer and wider needles, of the same area in all. */
+void wd_leaf_spray_shade_mesh(struct wd_tree_mesh *mesh, const struct wd_species *species, float size_m);
 
 #endif

@@ -72,6 +72,7 @@ static void assert_same_model(const struct wd_tree_model *a, const struct wd_tre
     assert_same_mesh(&a->full, &b->full);
     assert_same_mesh(&a->reduced, &b->reduced);
     assert_same_mesh(&a->spray, &b->spray);
+    assert_same_mesh(&a->spray_shade, &b->spray_shade);
     assert_int_equal(a->leaf_count, b->leaf_count);
     assert_int_equal(a->flower_count, b->flower_count);
     assert_memory_equal(a->leaves, b->leaves, a->leaf_count * sizeof *a->leaves);

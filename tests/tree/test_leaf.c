@@ -281,11 +281,15 @@ static void twigs_keep_the_area(void **state)
     static const char *const names[] = {"oak", "beech", "birch", "spruce", "pine"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct wd_species species = test_species(&arena, names[i]);
-        struct wd_tree_mesh spray = {0};
+        struct wd_tree_mesh spray = {0}, shade = {0};
         wd_leaf_spray_mesh(&spray, &species, 0.25f);
         assert_in_range(spray.index_count / 3, 20, WD_SPRAY_TRIANGLES);
         assert_float_equal(spray_leaf_area(&spray) / (double)wd_leaf_unit_area(&species), 1, 0.2);
+        wd_leaf_spray_shade_mesh(&shade, &species, 0.25f);
+        assert_in_range(shade.index_count / 3, 10, WD_SPRAY_SHADE_TRIANGLES);
+        assert_float_equal(spray_leaf_area(&shade) / (double)wd_leaf_unit_area(&species), 1, 0.2);
         wd_tree_mesh_finish(&spray);
+        wd_tree_mesh_finish(&shade);
     }
     wd_arena_finish(&arena);
 }
