@@ -81,15 +81,18 @@ WD_FUNC float wd_sample_footprint(uint32_t samples)
 
 /* Under trees leaves, in meadows blades; `shade` as in wd_soil_albedo. */
 WD_FUNC WD_STRUCT wd_ground_strewn wd_ground_strewn_at(WD_FRAME_IN float east_m, float north_m,
-                                                       float shade, float footprint_m)
+                                                       float shade, WD_STRUCT wd_ground_noise n,
+                                                       float footprint_m)
 {
     WD_STRUCT wd_strewn things;
     bool leaves = shade > 0.5f;
     things.bits = 6;
     things.layers = WD_STREWN_SHOWN && footprint_m < WD_STREWN_NONE_M ? 4 : 0;
-    things.half_length = leaves ? 0.55f : 0.75f;
-    things.half_width = leaves ? 0.30f : 0.065f;
-    things.chance = leaves ? 0.8f : 0.95f;
+    things.half_length = leaves ? 0.70f : 0.75f;
+    things.half_width = leaves ? 0.38f : 0.065f;
+    things.least = leaves ? 0.5f : 0.7f;
+    things.chance = leaves ? WD_CLAMP(0.8f + 0.5f * n.small_ + 0.25f * n.fine, 0.3f, 1.0f) : 0.95f;
+    things.twigs = leaves ? 0.05f : 0.0f;
     things.salt = leaves ? 31u : 32u;
     WD_STRUCT wd_ground_strewn strewn;
     strewn.hit = wd_strewn_at(WD_FRAME_PASS east_m, north_m, things);
@@ -118,7 +121,7 @@ WD_FUNC WD_VECTOR wd_rock_albedo(WD_FRAME_IN float height_m, WD_STRUCT wd_ground
 
 /* Leaves and blades lie aslant and take less light than level ground, and their earth is another. With these factors on
  * them ground is on the whole as bright and of the same colour, however much of them a pixel shows. */
-#define WD_LEAVES_EVEN WD_V3(1.056f, 1.082f, 1.081f)
+#define WD_LEAVES_EVEN WD_V3(1.162f, 1.215f, 1.267f)
 #define WD_BLADES_EVEN WD_V3(0.994f, 1.042f, 1.015f)
 
 /* Meadow: dry on shoulders and knolls, lush in hollows; blades and the thatch between them near the
@@ -145,13 +148,14 @@ WD_FUNC WD_VECTOR wd_grass_albedo(WD_FRAME_IN float height_m, float steep,
  * mean over all is the litter's. */
 WD_FUNC WD_VECTOR wd_leaf_litter(WD_FRAME_IN WD_STRUCT wd_strewn_hit hit)
 {
-    float bright = 0.62f + 1.1f * hit.random * hit.random;
-    WD_VECTOR warm = WD_V3(1.08f, 0.98f, 0.86f), pale = WD_V3(0.98f, 1.02f, 1.12f);
+    float bright = 0.72f + 0.7f * hit.random * hit.random;
+    WD_VECTOR warm = WD_V3(1.12f, 0.97f, 0.78f), pale = WD_V3(0.96f, 1.02f, 1.10f);
     WD_VECTOR hue = wd_v3_mix(warm, pale, wd_fract(hit.random * 7.0f));
     bright *= 1.0f - 0.5f * hit.depth + 0.25f * WD_SMOOTH(0.8f, 1.0f, hit.rib);
     WD_VECTOR leaf = wd_v3_scale(wd_v3_mul(WD_FRAME_V3(litter), hue), 1.30f * bright);
     WD_VECTOR earth = wd_v3_scale(wd_v3_mix(WD_FRAME_V3(litter), WD_FRAME_V3(soil), 0.4f), 0.55f);
-    return hit.rank > 0.0f ? leaf : earth;
+    leaf = hit.twig ? wd_v3_scale(earth, 1.3f) : leaf;
+    return wd_v3_scale(hit.rank > 0.0f ? leaf : earth, 1.0f - 0.32f * hit.shade);
 }
 
 /* Under trees: needles and leaves, moss and low herbs in some hollows, bare earth between. */
@@ -259,7 +263,7 @@ WD_FUNC WD_STRUCT wd_ground_look wd_ground_cover(WD_FRAME_IN WD_VECTOR rel, floa
     WD_STRUCT wd_ground_noise n = wd_ground_noise_at(WD_FRAME_PASS rel.x, rel.y, footprint_m);
     float floor_share = wd_floor_share(cover, woods, n);
     WD_STRUCT wd_ground_strewn strewn =
-        wd_ground_strewn_at(WD_FRAME_PASS rel.x, rel.y, floor_share, footprint_m);
+        wd_ground_strewn_at(WD_FRAME_PASS rel.x, rel.y, floor_share, n, footprint_m);
     float steep = WD_SQRT(slope_east * slope_east + slope_north * slope_north);
     float snow = wd_snow_share(WD_FRAME_PASS height_m, steep, n);
     WD_VECTOR albedo = wd_ground_albedo(WD_FRAME_PASS height_m, above_water_m, steep, cover,

@@ -5,14 +5,18 @@
 
 #include "shared/noise.h"
 
-/* Flat things of one kind: lens-shaped, pointed at both ends. Lengths are shares of a cell; a thing
- * reaches at most half a cell into the next ones. */
+/* A thing reaches at most half a cell into the next ones: its half length, as a share of a cell. */
+#define WD_STREWN_REACH 0.75f
+
+/* Flat things of one kind: lens-shaped, pointed at both ends, with twigs among them. Lengths are shares of a cell. */
 struct wd_strewn {
     int32_t bits;       /* a cell is 2^bits mm */
     int32_t layers;     /* one thing a cell in each; 0: none */
-    float half_length;  /* at most 0.75 */
+    float half_length;  /* at most WD_STREWN_REACH */
     float half_width;
+    float least;        /* size of the smallest, of the largest's */
     float chance;       /* that a cell has one */
+    float twigs;        /* share of them that is twigs */
     uint32_t salt;
 };
 
@@ -22,6 +26,9 @@ struct wd_strewn_hit {
     float depth;       /* 0 the uppermost layer .. 1 the lowest */
     float random;      /* of the thing, 0..1 */
     float rib;         /* 1 on its middle line .. 0 at its edge */
+    float shade;       /* 0 .. 1 right beside a thing that lies higher, and in the crack below it */
+    float shade_rank;  /* of that thing */
+    bool twig;
     float tilt_east, tilt_north; /* slope of its surface */
 };
 
@@ -36,19 +43,30 @@ WD_FUNC WD_STRUCT wd_strewn_hit wd_strewn_cell(WD_STRUCT wd_strewn_hit hit,
     float x = at.east - WD_FLOAT(east) - 0.25f - WD_FLOAT(h & 255u) * (0.5f / 255.0f);
     float y = at.north - WD_FLOAT(north) - 0.25f - WD_FLOAT(h >> 8 & 255u) * (0.5f / 255.0f);
     float turn = WD_FLOAT(h >> 16 & 255u) * (6.2831853f / 256.0f);
-    float size = 0.7f + WD_FLOAT(h >> 24) * (0.3f / 255.0f);
+    float size = WD_MIX(things.least, 1.0f, WD_FLOAT(h >> 24) * (1.0f / 255.0f));
+    float lot = WD_FLOAT(g >> 8 & 255u) * (1.0f / 255.0f); /* of all cells those below `chance` have one */
+    bool twig = lot < things.twigs;
+    float half_length = twig ? WD_STREWN_REACH : things.half_length * size;
+    float half_width = twig ? 0.045f * size : things.half_width * size;
     float c = WD_COS(turn), s = WD_SIN(turn);
-    float along = (c * x + s * y) / (things.half_length * size);
-    float across = (c * y - s * x) / (things.half_width * size);
+    float along = (c * x + s * y) / half_length;
+    float across = (c * y - s * x) / half_width;
     /* bent to one side, as few leaves lie straight */
     across += (WD_FLOAT(g & 255u) * (1.0f / 255.0f) - 0.5f) * 0.8f * (along * along - 0.3f);
     float inside = 1.0f - along * along - WD_ABS(across);
-    bool there = WD_FLOAT(g >> 8 & 255u) * (1.0f / 255.0f) < things.chance;
+    bool there = lot < things.chance;
     float rank = WD_FLOAT(layer) + 0.5f + WD_FLOAT(h & 0xffffu) * (0.5f / 65536.0f);
+    float beside = WD_CLAMP(1.0f + 0.8f * inside, 0.0f, 1.0f);
+    if (inside <= 0.0f && there && rank > hit.rank && beside > hit.shade) {
+        hit.shade = beside;
+        hit.shade_rank = rank;
+    }
     if (inside > 0.0f && there && rank > hit.rank) {
         float lean = (WD_FLOAT(g >> 16 & 255u) * (1.0f / 255.0f) - 0.5f) * 0.9f;
         float curl = across * 0.55f + lean;
         hit.rank = rank;
+        hit.shade = hit.shade_rank > rank ? hit.shade : 0.0f;
+        hit.twig = twig;
         hit.depth = 1.0f - WD_FLOAT(layer + 1) / WD_FLOAT(things.layers);
         hit.random = WD_FLOAT(g >> 24) * (1.0f / 255.0f);
         hit.rib = 1.0f - WD_MIN(WD_ABS(across) / (1.0f - along * along), 1.0f);
@@ -62,7 +80,8 @@ WD_FUNC WD_STRUCT wd_strewn_hit wd_strewn_at(WD_FRAME_IN float east_m, float nor
                                              WD_STRUCT wd_strewn things)
 {
     WD_STRUCT wd_strewn_hit hit;
-    hit.rank = hit.random = hit.rib = hit.tilt_east = hit.tilt_north = 0.0f;
+    hit.rank = hit.random = hit.rib = hit.shade = hit.shade_rank = hit.tilt_east = hit.tilt_north = 0.0f;
+    hit.twig = false;
     hit.depth = 1.0f;
     for (int32_t layer = 0; layer < things.layers; layer++) {
         /* each grid lies shifted, so that no cell's edge shows through */
