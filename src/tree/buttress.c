@@ -1,5 +1,7 @@
 #include "tree/buttress.h"
 
+#include "tree/skeleton.h"
+
 /* Vertices of a fin and the valley before it: a blade, or as few as show it, a wedge from valley to valley. */
 enum { BLADE_VERTICES = 5, WEDGE_VERTICES = 2, LEAST_BLADED = 12, LEAST_WEDGED = 5 };
 /* Fins that climb less of a tree are none. */
@@ -55,4 +57,66 @@ void wd_buttress_outline(const struct wd_tree_form *form, float z_m, float radiu
     share_d = (double)share;
     place[0] = (float)(ct + (fin_x - ct) * share_d);
     place[1] = (float)(st + (fin_y - st) * share_d);
+}
+
+/* Stems thinner than the first have a round flare, from the second on lobes are whole. */
+static const float LOBED_FROM_M = 0.12f, LOBED_WHOLE_M = 0.4f;
+
+static float lobe_strength(const struct wd_tree_form *form, float dbh_m)
+{
+    const struct wd_species *species = form->species;
+    bool tree = species->form == WD_FORM_BROADLEAF || species->form == WD_FORM_CONIFER ||
+                species->form == WD_FORM_SNAG;
+    bool fins = species->buttress.count > 0 && species->buttress.height >= LEAST_HEIGHT;
+    if (!tree || fins || species->root_flare <= 1)
+        return 0;
+    return (1 - form->youth) * wd_smoothf(LOBED_FROM_M, LOBED_WHOLE_M, dbh_m);
+}
+
+struct wd_root_lobes wd_root_lobes_of(const struct wd_tree_form *form, float dbh_m)
+{
+    struct wd_root_lobes lobes = {.strength = lobe_strength(form, dbh_m), .dbh_m = dbh_m};
+    if (lobes.strength <= 0)
+        return lobes;
+    uint32_t key = wd_hash2(form->key, 0x2007);
+    lobes.count = 4 + (int)(2.4f * wd_hash_unit(key) + 1.3f * wd_smoothf(0.4f, 1, dbh_m));
+    for (int i = 0; i < lobes.count; i++) {
+        uint32_t own = wd_hash2(key, (uint32_t)i);
+        float jitter = 0.55f * (wd_hash_unit(own) - 0.5f);
+        float turn = ((float)i + jitter) / (float)lobes.count + wd_hash_unit(wd_hash1(key));
+        lobes.turn[i] = floorf(WD_LOBE_PLACES * turn) / WD_LOBE_PLACES;
+        lobes.low[i] = 0.6f + 0.65f * wd_hash_unit(wd_hash2(own, 1));
+        lobes.high[i] = lobes.low[i] * (0.4f + wd_hash_unit(wd_hash2(own, 2)));
+    }
+    return lobes;
+}
+
+void wd_root_lobes_at(const struct wd_root_lobes *lobes, float turn, float *low, float *high)
+{
+    double square = (double)(lobes->count * lobes->count), sum_low = 0, sum_high = 0;
+    for (int i = 0; i < lobes->count; i++) {
+        double off = wd_dcos(2 * WD_PI * (double)(turn - lobes->turn[i])) - 1;
+        /* bells around a circle (von Mises), wider above */
+        sum_low += (double)lobes->low[i] * wd_dexp(0.6 * square * off);
+        sum_high += (double)lobes->high[i] * wd_dexp(0.28 * square * off);
+    }
+    *low = (float)sum_low;
+    *high = (float)sum_high;
+}
+
+/* Ridges fade more slowly than the flare as a whole, and so hollows run up between them; near the ground roots
+ * run out. */
+struct wd_root_shape wd_root_shape_at(const struct wd_root_lobes *lobes, const struct wd_tree_form *form,
+                                      float z_m)
+{
+    struct wd_root_shape shape = {.flare = wd_root_flare(form, lobes->dbh_m, z_m)};
+    if (lobes->strength <= 0)
+        return shape;
+    float height = wd_maxf(z_m / lobes->dbh_m, -0.1f), up = wd_smoothf(0.1f, 1.1f, height);
+    float lobed = lobes->strength * shape.flare * (1 - wd_smoothf(1, 2.2f, height));
+    float most = form->species->root_flare - 1;
+    float toe = 0.5f * lobes->strength * most * (float)wd_dexp(-(double)height / 0.16);
+    shape.low = (1 - up) * 1.7f * lobed + toe;
+    shape.high = up * 2.6f * lobed + 0.012f * lobes->strength;
+    return shape;
 }

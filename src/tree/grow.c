@@ -34,8 +34,8 @@ static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton 
     if (form->species->form == WD_FORM_FALLING)
         return; /* leaves in the air: what they have come from stands elsewhere */
     float least = form->species->leaf.shape == WD_LEAF_NEEDLES ? 0.0055f : 0;
-    struct wd_wood_style style = {least * fminf(form->scale, 1), 1, 12};
-    wd_wood_style_fit(&style, skeleton, form->species,
+    struct wd_wood_style style = {least * fminf(form->scale, 1), 1, 12, 32};
+    wd_wood_style_fit(&style, skeleton, form,
                       (size_t)(FULL_WOOD_TRIANGLES * form->detail) + LEAST_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     wd_twigs_mesh(mesh, foliage, form, &full_twigs);
@@ -49,8 +49,8 @@ static void build_reduced_wood(struct wd_tree_mesh *mesh, const struct wd_skelet
 {
     if (form->species->form == WD_FORM_FALLING)
         return;
-    struct wd_wood_style style = {0.002f, 4, 5};
-    wd_wood_style_fit(&style, skeleton, form->species, REDUCED_WOOD_TRIANGLES);
+    struct wd_wood_style style = {0.002f, 4, 5, 16};
+    wd_wood_style_fit(&style, skeleton, form, REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     wd_twigs_mesh(mesh, foliage, form, &reduced_twigs);
     wd_stipes_mesh(mesh, foliage, form);

@@ -9,6 +9,7 @@ struct wd_wood_style {
     float least_radius_m; /* branches thinner than this at their base are left out */
     int node_step;        /* 1: a ring at every node; n: at every n-th and at the ends */
     int most_sides;       /* of the trunk; thinner branches have fewer, down to 3 */
+    int foot_sides;       /* of a trunk's foot with root lobes: 32, 16, or 0 for a round flare */
 };
 
 /* Appends the wood. `crown` gives the sky openness of each place (its light already swept). */
@@ -19,6 +20,6 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
 /* Leaves out the thinnest branches until the rest has no more than `triangles`. Stems are never left
  * out: where they alone are too much they get fewer sides and rings. */
 void wd_wood_style_fit(struct wd_wood_style *style, const struct wd_skeleton *skeleton,
-                       const struct wd_species *species, size_t triangles);
+                       const struct wd_tree_form *form, size_t triangles);
 
 #endif

@@ -52,13 +52,33 @@ static void check_model(const struct wd_species *species, const struct wd_tree_m
         print_error("%s %g m: reduced %g m\n", species->name, (double)height_m,
                     (double)model->reduced.max_m[2]);
     assert_float_equal(model->reduced.max_m[2] / height_m, 1, 0.06);
-    if (!(model->full.min_m[2] <= -0.0005f && model->full.min_m[2] >= -0.4f))
+    /* to where roots end on a slope of twenty degrees: those of a stem of a metre reach 1.25 m out */
+    float deepest = fmaxf(0.375f * (species->buttress.count ? species->buttress.reach : 1.25f) * model->dbh_m, 0.4f);
+    if (!(model->full.min_m[2] <= -0.0005f && model->full.min_m[2] >= -deepest))
         print_error("%s %g m: lowest %g m\n", species->name, (double)height_m,
                     (double)model->full.min_m[2]);
-    assert_true(model->full.min_m[2] <= -0.0005f && model->full.min_m[2] >= -0.4f);
+    assert_true(model->full.min_m[2] <= -0.0005f && model->full.min_m[2] >= -deepest);
     assert_true(!leafy || model->crown_radius_m > 0.02f * height_m);
     assert_true(model->crown_radius_m < 2 * height_m);
     assert_true(model->crown_base_m >= 0 && model->crown_base_m < height_m);
+}
+
+/* Where the plane at height z cuts a triangle of wood: from where its edge goes down to where one goes up. */
+static bool cut_at(const struct wd_tree_mesh *mesh, uint32_t triangle, double z, double from[2], double to[2])
+{
+    int count = 0;
+    for (uint32_t k = 0; k < 3; k++) {
+        const float *a = mesh->vertices[mesh->indices[triangle + k]].position_m;
+        const float *b = mesh->vertices[mesh->indices[triangle + (k + 1) % 3]].position_m;
+        if (((double)a[2] < z) == ((double)b[2] < z))
+            continue;
+        double t = (z - (double)a[2]) / ((double)b[2] - (double)a[2]);
+        double *cut = (double)a[2] < z ? to : from;
+        for (int axis = 0; axis < 2; axis++)
+            cut[axis] = (double)a[axis] + t * ((double)b[axis] - (double)a[axis]);
+        count++;
+    }
+    return count == 2;
 }
 
 /* Diameter of the circle with the area that the plane at height z cuts from the wood around the
@@ -66,24 +86,10 @@ static void check_model(const struct wd_species *species, const struct wd_tree_m
  * cuts adds one side of the outline. */
 static double diameter_at(const struct wd_tree_mesh *mesh, double z)
 {
-    double area = 0;
-    for (uint32_t i = 0; i < mesh->wood_index_count; i += 3) {
-        double cut[2][2];
-        int count = 0, up = 0;
-        for (uint32_t k = 0; k < 3; k++) {
-            const float *a = mesh->vertices[mesh->indices[i + k]].position_m;
-            const float *b = mesh->vertices[mesh->indices[i + (k + 1) % 3]].position_m;
-            if (((double)a[2] < z) == ((double)b[2] < z))
-                continue;
-            double t = (z - (double)a[2]) / ((double)b[2] - (double)a[2]);
-            for (int axis = 0; axis < 2; axis++)
-                cut[count][axis] = (double)a[axis] + t * ((double)b[axis] - (double)a[axis]);
-            up = (double)a[2] < z ? count : up;
-            count++;
-        }
-        if (count == 2) /* the outline runs from where the triangle's edge goes down to up */
-            area += 0.5 * (cut[1 - up][0] * cut[up][1] - cut[up][0] * cut[1 - up][1]);
-    }
+    double area = 0, from[2], to[2];
+    for (uint32_t i = 0; i < mesh->wood_index_count; i += 3)
+        if (cut_at(mesh, i, z, from, to))
+            area += 0.5 * (from[0] * to[1] - from[1] * to[0]);
     return 2 * sqrt(fabs(area) / 3.14159265);
 }
 
@@ -154,6 +160,188 @@ static void wood_faces_outward(void **state)
 {
     (void)state;
     for_all(check_winding);
+}
+
+struct outline {
+    double mean_m, least_m, most_m; /* radius around the stem's middle */
+    int ridges;                     /* a tenth farther out than what lies between them */
+};
+
+enum { MOST_CUTS = 512 };
+
+static int by_turn(const void *a, const void *b)
+{
+    const double *left = a, *right = b;
+    return (left[0] > right[0]) - (left[0] < right[0]);
+}
+
+static int ridges_of(double places[][2], int count)
+{
+    int ridges = 0, most = 0;
+    for (int i = 0; i < count; i++)
+        most = places[i][1] > places[most][1] ? i : most;
+    double high = places[most][1], low = high;
+    bool down = false;
+    for (int i = 1; i <= count; i++) { /* from the highest around to it again */
+        double radius = places[(most + i) % count][1];
+        low = fmin(low, radius);
+        high = fmax(high, radius);
+        if (!down && radius < high / 1.1) {
+            ridges++;
+            down = true;
+            low = radius;
+        } else if (down && radius > 1.1 * low) {
+            down = false;
+            high = radius;
+        }
+    }
+    return ridges;
+}
+
+/* Below the crown. */
+static struct outline outline_at(const struct wd_tree_mesh *mesh, double z)
+{
+    double middle[2] = {0}, length = 0, from[2], to[2], places[MOST_CUTS][2];
+    struct outline outline = {.least_m = 1e9};
+    int count = 0;
+    for (uint32_t i = 0; i < mesh->wood_index_count; i += 3)
+        if (cut_at(mesh, i, z, from, to)) {
+            double side = hypot(to[0] - from[0], to[1] - from[1]);
+            length += side;
+            for (int axis = 0; axis < 2; axis++)
+                middle[axis] += 0.5 * side * (from[axis] + to[axis]);
+        }
+    for (int axis = 0; axis < 2; axis++)
+        middle[axis] /= length;
+    double around = 0;
+    for (uint32_t i = 0; i < mesh->wood_index_count; i += 3) {
+        if (!cut_at(mesh, i, z, from, to))
+            continue;
+        for (int axis = 0; axis < 2; axis++) {
+            from[axis] -= middle[axis];
+            to[axis] -= middle[axis];
+        }
+        double one = hypot(from[0], from[1]), other = hypot(to[0], to[1]);
+        double turn = fabs(atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]));
+        outline.mean_m += 0.5 * turn * (one + other);
+        around += turn;
+        outline.least_m = fmin(outline.least_m, one);
+        outline.most_m = fmax(outline.most_m, one);
+        assert_true(count < MOST_CUTS);
+        places[count][0] = atan2(from[1], from[0]);
+        places[count++][1] = one;
+    }
+    outline.mean_m /= around;
+    qsort(places, (size_t)count, sizeof *places, by_turn);
+    outline.ridges = ridges_of(places, count);
+    return outline;
+}
+
+static bool same_place(const struct wd_tree_vertex *a, const struct wd_tree_vertex *b)
+{
+    return memcmp(a->position_m, b->position_m, sizeof a->position_m) == 0;
+}
+
+/* Every edge of the foot between the heights has a triangle at either side, and each vertex is as square to its
+ * triangles as such large ones allow. */
+static void check_foot_surface(const struct wd_tree_mesh *mesh, float from_m, float to_m)
+{
+    uint32_t end = 0;
+    while (end < mesh->wood_index_count && mesh->vertices[mesh->indices[end]].position_m[2] < 2 * to_m)
+        end += 3;
+    double sum = 0, worst = 0;
+    int count = 0;
+    for (uint32_t i = 0; i < end; i++) {
+        const struct wd_tree_vertex *v = &mesh->vertices[mesh->indices[i]];
+        const struct wd_tree_vertex *next = &mesh->vertices[mesh->indices[i / 3 * 3 + (i + 1) % 3]];
+        if (v->position_m[2] < from_m || v->position_m[2] > to_m || next->position_m[2] < from_m)
+            continue;
+        double face[3] = {0};
+        float normal[3];
+        int beside = 0;
+        for (uint32_t t = 0; t < end; t += 3) {
+            const struct wd_tree_vertex *c[3];
+            double a[3], b[3];
+            bool meets = false;
+            for (uint32_t k = 0; k < 3; k++)
+                c[k] = &mesh->vertices[mesh->indices[t + k]];
+            for (uint32_t k = 0; k < 3; k++) {
+                meets |= same_place(c[k], v);
+                beside += same_place(c[k], next) && same_place(c[(k + 1) % 3], v);
+                a[k] = (double)(c[1]->position_m[k] - c[0]->position_m[k]);
+                b[k] = (double)(c[2]->position_m[k] - c[0]->position_m[k]);
+            }
+            for (uint32_t k = 0; k < 3 && meets; k++)
+                face[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        }
+        assert_int_equal(beside, 1);
+        wd_unpack_normal(v->normal, normal);
+        double size = sqrt(face[0] * face[0] + face[1] * face[1] + face[2] * face[2]), dot = 0;
+        for (int k = 0; k < 3; k++)
+            dot += (double)normal[k] * face[k] / size;
+        double off = acos(fmin(dot, 1)) * 57.29578;
+        sum += off;
+        worst = fmax(worst, off);
+        count++;
+    }
+    print_message("  normals off by %.1f degrees, %.1f at most\n", sum / count, worst);
+    assert_true(count > 100);
+    assert_true(sum / count < 2.5 && worst < 9);
+}
+
+static void roots_run_out_from_old_stems(void **state)
+{
+    static const char *const names[] = {"beech", "oak", "maple", "spruce"};
+    struct wd_arena arena = {0};
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        for (uint32_t seed = 1; seed <= 3; seed++) {
+            struct wd_species species = test_species(&arena, names[i]);
+            struct wd_grow_params params = {.seed = seed, .height_m = 30, .dbh_m = 0.6f};
+            struct wd_tree_model model;
+            assert_true(wd_tree_grow(&model, &species, &params, NULL));
+            double dbh = (double)model.dbh_m;
+            for (int level = 0; level < 2; level++) {
+                const struct wd_tree_mesh *mesh = level ? &model.reduced : &model.full;
+                struct outline ground = outline_at(mesh, 0.001), chest = outline_at(mesh, 1.3);
+                struct outline above = outline_at(mesh, 2.4 * dbh);
+                print_message("%s: %d ridges, %.2f to %.2f of the stem, %.2f on average, above %.3f\n", names[i],
+                              ground.ridges, ground.least_m / chest.mean_m, ground.most_m / chest.mean_m,
+                              ground.mean_m / chest.mean_m, above.most_m / above.least_m);
+                assert_in_range(ground.ridges, level ? 2 : 3, 7);
+                assert_true(ground.most_m > 1.35 * ground.least_m);
+                assert_true(above.most_m < 1.15 * above.least_m);
+                assert_float_equal(ground.mean_m / chest.mean_m / (double)species.root_flare, 1, 0.03);
+            }
+            check_foot_surface(&model.full, 0.03f * model.dbh_m, 2 * model.dbh_m); /* above what the ground hides */
+            wd_tree_model_finish(&model);
+        }
+    wd_arena_finish(&arena);
+}
+
+static void saplings_and_palms_have_round_feet(void **state)
+{
+    static const struct {
+        const char *name;
+        float height_m;
+    } cases[] = {{"beech", 3}, {"oak", 4}, {"coconut", 14}, {"spruce", 2}};
+    struct wd_arena arena = {0};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct wd_species species = test_species(&arena, cases[i].name);
+        struct wd_tree_model model = test_grow_tree(&species, 3, cases[i].height_m, 0);
+        float least = 1e9f, most = 0;
+        for (uint32_t k = 0; k < model.full.vertex_count; k++) {
+            const float *p = model.full.vertices[k].position_m;
+            if (fabsf(p[2]) > 1e-5f || model.full.vertices[k].kind & WD_VERTEX_LEAF)
+                continue;
+            least = fminf(least, hypotf(p[0], p[1]));
+            most = fmaxf(most, hypotf(p[0], p[1]));
+        }
+        assert_true(most > 0 && most < 1.06f * least);
+        wd_tree_model_finish(&model);
+    }
+    wd_arena_finish(&arena);
 }
 
 static void budgets_of_mature_trees_hold(void **state)
@@ -407,6 +595,8 @@ int main(void)
         cmocka_unit_test(models_are_sound),
         cmocka_unit_test(stems_are_as_thick_as_asked),
         cmocka_unit_test(wood_faces_outward),
+        cmocka_unit_test(roots_run_out_from_old_stems),
+        cmocka_unit_test(saplings_and_palms_have_round_feet),
         cmocka_unit_test(budgets_of_mature_trees_hold),
         cmocka_unit_test(any_prefix_of_leaves_is_fair),
         cmocka_unit_test(reduced_mesh_keeps_area_and_coverage),

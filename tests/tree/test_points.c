@@ -44,9 +44,9 @@ static void fit_gains(struct sampled *sampled)
     wd_tree_points_finish(&kinds[1]);
 }
 
-static void sample_species(struct sampled *sampled, const char *name)
+static void sample_species(struct sampled *sampled, const char *name, uint32_t seed)
 {
-    const struct wd_grow_params params = {.seed = 3, .openness = 0.4f};
+    const struct wd_grow_params params = {.seed = seed, .openness = 0.4f};
     *sampled = (struct sampled){0};
     sampled->species = test_species(&sampled->arena, name);
     assert_true(wd_tree_grow(&sampled->model, &sampled->species, &params, NULL));
@@ -69,18 +69,22 @@ static struct sampled samples[SPECIES_COUNT];
 static struct sampled *sampled_of(int species)
 {
     if (!samples[species].points.count)
-        sample_species(&samples[species], test_species_names[species]);
+        sample_species(&samples[species], test_species_names[species], 3);
     return &samples[species];
+}
+
+static void finish_sample(struct sampled *sampled)
+{
+    wd_tree_points_finish(&sampled->points);
+    wd_tree_model_finish(&sampled->model);
+    wd_arena_finish(&sampled->arena);
 }
 
 static int finish_samples(void **state)
 {
     (void)state;
-    for (int s = 0; s < SPECIES_COUNT; s++) {
-        wd_tree_points_finish(&samples[s].points);
-        wd_tree_model_finish(&samples[s].model);
-        wd_arena_finish(&samples[s].arena);
-    }
+    for (int s = 0; s < SPECIES_COUNT; s++)
+        finish_sample(&samples[s]);
     return 0;
 }
 
@@ -335,18 +339,26 @@ static void cover(const struct sampled *sampled, size_t first, size_t count, dou
     free(hit);
 }
 
-/* Of few discs of bark those are seen that stick out of the leaves (128 of an oak: 0.88 of their openness is right). Where
- * thin wood is all the wood, it needs no gain of its own. */
+/* Of few discs of bark those are seen that stick out of the leaves (128 of an oak, level: in the mean 0.93 of their
+ * openness is right, of single ones 0.85 to 1.07). Where thin wood is all the wood, it needs no gain of its own. */
 static void few_discs_show_open_wood(void **state)
 {
+    enum { OAKS = 10 };
+    float light = 0, thin[2] = {0};
     (void)state;
-    struct sampled *oak = sampled_of(0);
-    assert_string_equal(oak->species.name, "oak");
-    fit_gains(oak);
-    for (int side = 0; side < 2; side++) {
-        assert_true(oak->fits.wood_light.gains[side][4] < 0.95f);
-        assert_float_equal(oak->fits.thin[side], 1, 0.1f);
+    for (uint32_t seed = 3; seed < 3 + OAKS; seed++) {
+        struct sampled oak;
+        sample_species(&oak, "oak", seed);
+        fit_gains(&oak);
+        light += oak.fits.wood_light.gains[0][4] / OAKS;
+        for (int side = 0; side < 2; side++)
+            thin[side] += oak.fits.thin[side] / OAKS;
+        finish_sample(&oak);
     }
+    print_message("light %.3f, thin wood %.3f and %.3f\n", (double)light, (double)thin[0], (double)thin[1]);
+    assert_true(light < 0.95f);
+    assert_float_equal(thin[0], 1, 0.1f);
+    assert_float_equal(thin[1], 1, 0.1f);
 }
 
 static void discs_cover_what_the_mesh_covers(void **state)
