@@ -29,18 +29,19 @@ static float wrap(float x, int period)
 static struct bark_point fissured(uint32_t key, float u, float v, float scale_cm)
 {
     int across = repeats(WD_BARK_TILE_WIDTH_M, scale_cm), along = across / 7 < 2 ? 2 : across / 7;
+    float tall = (float)across * WD_BARK_TILE_HEIGHT_M / ((float)along * WD_BARK_TILE_WIDTH_M);
     float bend = 1.5f * (wd_tile_fractal(key, u, v, 5, 2) - 0.5f) +
                  0.5f * (wd_tile_fractal(key ^ 0x77, u, v, 30, 9) - 0.5f);
     float row = 2.5f * wd_tile_noise(key ^ 0x51, u * (float)across, 0, across, 1);
     uint32_t plate = 0;
-    float edge = wd_tile_cells(key ^ 0xf15, wrap(u * (float)across + bend, across),
-                               wrap(v * (float)along + row, along), across, along, &plate);
+    float joint = wd_tile_joint(key ^ 0xf15, wrap(u * (float)across + bend, across),
+                                wrap(v * (float)along + row, along), across, along, tall, &plate);
     float rough = wd_tile_fractal(key ^ 0x9, u, v, 48, 16);
     float fine = wd_tile_fractal(key ^ 0x19, u, v, 160, 40);
-    float ridge = wd_smoothf(0.0f, 0.5f, edge + 0.5f * (rough - 0.5f));
+    float ridge = wd_smoothf(0.02f, 0.36f, joint + 0.3f * (rough - 0.5f));
     float depth_m = 0.0032f * scale_cm;
-    return (struct bark_point){ridge, 0.55f + 0.45f * rough + 0.4f * fine +
-                                          0.1f * wd_hash_unit(plate), 0,
+    return (struct bark_point){ridge, 0.5f + 0.45f * rough + 0.4f * fine +
+                                          0.2f * wd_hash_unit(plate), 0,
                                depth_m * (ridge * (0.8f + 0.2f * rough) + 0.16f * fine), 0.9f};
 }
 

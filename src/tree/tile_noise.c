@@ -1,5 +1,7 @@
 #include "tree/tile_noise.h"
 
+#include <math.h>
+
 #include "shared/hash.h"
 #include "tree/four.h"
 
@@ -90,4 +92,30 @@ float wd_tile_cells(uint32_t key, float x, float y, int nx, int ny, uint32_t *wh
             }
         }
     return sqrtf(second) - sqrtf(first);
+}
+
+float wd_tile_joint(uint32_t key, float x, float y, int nx, int ny, float tall, uint32_t *which)
+{
+    enum { AROUND = 9 };
+    float at[AROUND][2], nearest = 1e9f, joint = 1e9f;
+    int cx = floor_int(x), cy = floor_int(y), own = 0;
+    for (int k = 0; k < AROUND; k++) {
+        int i = cx + k % 3 - 1, j = cy + k / 3 - 1;
+        uint32_t h = wd_hash3(key, wrapped(i, nx), wrapped(j, ny));
+        at[k][0] = (float)i + 0.15f + 0.7f * wd_hash_unit(h) - x;
+        at[k][1] = (float)j + 0.15f + 0.7f * wd_hash_unit(wd_hash1(h)) - y;
+        float d = at[k][0] * at[k][0] + at[k][1] * at[k][1];
+        if (d < nearest) {
+            nearest = d;
+            own = k;
+            *which = h;
+        }
+    }
+    for (int k = 0; k < AROUND; k++) {
+        float a = at[k][0] - at[own][0], b = at[k][1] - at[own][1];
+        float off = 0.5f * (a * (at[k][0] + at[own][0]) + b * (at[k][1] + at[own][1]));
+        if (k != own) /* the joint is a x + b y = off; a step along a plate is `tall` widths long */
+            joint = fminf(joint, off / sqrtf(a * a + b * b / (tall * tall)));
+    }
+    return joint;
 }

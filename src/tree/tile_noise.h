@@ -14,4 +14,8 @@ float wd_tile_fractal(uint32_t key, float u, float v, int nx, int ny);
  * the joints between plates. *which names the plate. */
 float wd_tile_cells(uint32_t key, float x, float y, int nx, int ny, uint32_t *which);
 
+/* The same plates where cells are `tall` times as tall as wide: distance to the nearest joint, in widths, so that
+ * joints are as wide along plates as across them. */
+float wd_tile_joint(uint32_t key, float x, float y, int nx, int ny, float tall, uint32_t *which);
+
 #endif

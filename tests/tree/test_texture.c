@@ -3,6 +3,7 @@
 #include "base/color.h"
 #include "tree/leaf_outline.h"
 #include "tree/look_map.h"
+#include "tree/tile_noise.h"
 
 enum { SIZE = 128, TEXELS = SIZE * SIZE };
 
@@ -49,6 +50,26 @@ static void mean_linear(double mean[3])
 }
 
 /* Each pattern with the scales and colours of every fourth species. */
+/* A step away from a joint takes one as far from it, along plates as well as across. */
+static void joints_are_as_wide_along_plates(void **state)
+{
+    enum { ACROSS = 40, ALONG = 5, PLACES = 20000 };
+    const float tall = 5.7f, step = 1e-3f;
+    int far = 0;
+    (void)state;
+    for (uint32_t i = 0; i < PLACES; i++) {
+        float x = ACROSS * wd_hash_unit(wd_hash2(i, 1)), y = ALONG * wd_hash_unit(wd_hash2(i, 2));
+        uint32_t plate, beside;
+        float here = wd_tile_joint(7, x, y, ACROSS, ALONG, tall, &plate);
+        float right = wd_tile_joint(7, x + step, y, ACROSS, ALONG, tall, &beside) - here;
+        float up = wd_tile_joint(7, x, y + step / tall, ACROSS, ALONG, tall, &beside) - here;
+        assert_true(here >= 0 && here < 4);
+        far += fabsf(hypotf(right, up) / step - 1) > 0.05f;
+    }
+    print_message("%d of %d places near where the nearest joint changes\n", far, PLACES);
+    assert_true(far < PLACES / 50); /* where two joints are as far, the nearest changes */
+}
+
 static void bark_tiles(void **state)
 {
     (void)state;
@@ -234,6 +255,7 @@ static void outlines_are_simple_and_of_leaf_area(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(joints_are_as_wide_along_plates),
         cmocka_unit_test(bark_tiles),
         cmocka_unit_test(maps_keep_the_species_colours),
         cmocka_unit_test(leaf_colour_is_albedo_over_the_mean_tint),
