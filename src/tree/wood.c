@@ -138,7 +138,7 @@ static int trunk_rings(const struct wd_skeleton *skeleton, const struct wd_branc
                        const struct wd_tree_form *form, const struct foot *foot, int node_step,
                        struct ring *rings)
 {
-    struct ring nodes[MAX_RINGS];
+    struct ring nodes[MAX_RINGS] = {0};
     int node_count = gather_rings(skeleton, trunk, node_step, nodes), count = 0;
     float dbh = foot->lobes.dbh_m, top = nodes[foot->sides ? node_count - 1 : 1].center_m.z;
     for (int i = 0; i < foot->count; i++) {

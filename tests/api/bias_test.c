@@ -36,8 +36,8 @@ static const struct row {
     {"species/grass.json", 0, {{"full", {-1.5, 1.5}, {-1.5, 2}, true}}},
     /* tufts that stand free have their models' tables, and are as wide as they grew: -12.9 otherwise, +0.2 */
     {"species/grass.json", 2, {{"zfield", {-2, 1.5}, {-1.5, 2.5}, true}}},
-    /* discs of wood show less of the white stem than they would: +8.3 otherwise. How much is fitted to each model by some
-       pictures, and chance is large: of five pairs of birches the light is -8.6 (this one), -8.1, -4.0, -2.5 and +2.1 */
+    /* discs of wood show less of the white stem than they would: +8.3 otherwise. Pairs of models differ: -8.6 (these two),
+       -8.1, -4.0, -2.5 and +2.1; ten at once -3.0, and -2.2 while feet were round, when these two had +0.9 */
     {"species/birch.json", 3, {{"splats", {-2, 2}, {-10.5, -6.5}, true}}},
     /* what shows leaves from above shows those that are the more open: +8.3 and +6.8 otherwise, -2.1 and -2.8 */
     {"species/spruce.json", 2, {{"views", {-1.5, 2}, {-3.5, -0.5}, true}, {"zfield", {2, 4}, {-4.5, -1}, true}}},
