@@ -57,7 +57,7 @@ static void print_species(const struct wd_species_info *species, const struct st
 
 static void print_trees(const struct wd_forest *forest, const struct wd_forest_info *info)
 {
-    printf("\ntrees       %llu in %u layers and %u inventories; means of height and crown\n",
+    printf("\ntrees       %llu in %u layers and %u inventories; stems a hectare of all ground, means of height and crown\n",
            (unsigned long long)info->tree_count, info->layer_count, info->inventory_count);
     struct stand *stands = survey(forest, info);
     struct wd_species_info species;

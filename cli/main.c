@@ -155,23 +155,27 @@ static enum cli_status run_command(const struct cli_command *command, int word_c
     return status;
 }
 
-int main(int argc, char **argv)
+static enum cli_status run(int word_count, char **words)
 {
-    if (argc < 2) {
+    if (word_count < 1) {
         cli_help_program(stderr);
         return CLI_USAGE;
     }
-    if (!strcmp(argv[1], "--version")) {
+    if (!strcmp(words[0], "--version")) {
         puts("weald " WEALD_VERSION);
         return CLI_OK;
     }
-    if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help")) {
+    if (!strcmp(words[0], "--help") || !strcmp(words[0], "-h") || !strcmp(words[0], "help")) {
         cli_help_program(stdout);
         return CLI_OK;
     }
-    const struct cli_command *command = cli_command_find(argv[1]);
-    enum cli_status status =
-        command ? run_command(command, argc - 2, argv + 2) : complain_command(argv[1]);
+    const struct cli_command *command = cli_command_find(words[0]);
+    return command ? run_command(command, word_count - 1, words + 1) : complain_command(words[0]);
+}
+
+int main(int argc, char **argv)
+{
+    enum cli_status status = run(argc - 1, argv + 1);
     if (fflush(stdout) || ferror(stdout)) {
         perror("weald: standard output");
         return CLI_FAILED;

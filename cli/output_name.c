@@ -16,7 +16,7 @@ static bool ends_with(const char *path, const char *ending)
 
 enum cli_output_kind cli_output_kind(const char *path)
 {
-    bool numbered = strchr(path, '%') != NULL;
+    bool numbered = wd_film_is_numbered(path);
     if (ends_with(path, ".png"))
         return numbered ? CLI_OUTPUT_NUMBERED_PNG : CLI_OUTPUT_PNG;
     if (ends_with(path, ".exr"))

@@ -37,7 +37,7 @@ enum wd_result wd_film_open(struct wd_film **result, const struct wd_film_params
     *result = NULL;
     if (!wd_given(params, log) || !wd_given(params->path, log))
         return WD_ERROR_INPUT;
-    if (!wd_film_has_ending(params->path) && !strchr(params->path, '%')) {
+    if (!wd_film_has_ending(params->path) && !wd_film_is_numbered(params->path)) {
         wd_error(log,
                  "%s: films end in .mp4, .m4v, .mov or .mkv, numbered pictures have %%d or %%05d in "
                  "their name",

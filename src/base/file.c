@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
+#include <pwd.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -103,7 +104,13 @@ char *wd_cache_directory(void)
     if (cache && cache[0] == '/')
         return wd_format("%s/weald", cache);
     const char *home = getenv("HOME");
-    return wd_format("%s/.cache/weald", home && home[0] == '/' ? home : "/tmp");
+    char names[1024];
+    struct passwd user, *found = NULL;
+    if ((!home || home[0] != '/') && getpwuid_r(getuid(), &user, names, sizeof names, &found) == 0 && found)
+        home = user.pw_dir;
+    if (home && home[0] == '/')
+        return wd_format("%s/.cache/weald", home);
+    return wd_format("/tmp/weald-%ld", (long)getuid()); /* not a name that users share */
 }
 
 char *wd_temporary_name(const char *path)

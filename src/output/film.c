@@ -1,5 +1,6 @@
 #include "output/film.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,17 +33,36 @@ static size_t conversion(const char *percent, unsigned *digits)
     return percent[1 + zeros + wide] == 'd' ? 2 + zeros + wide : 0;
 }
 
+/* Where the number stands in the last part of a path: '%', digits and a letter; NULL without one. Any other '%' stands
+ * for itself. */
+static const char *number_in(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *at = slash ? slash + 1 : path;
+    while ((at = strchr(at, '%'))) {
+        size_t digits = strspn(at + 1, "0123456789");
+        if (isalpha((unsigned char)at[1 + digits]))
+            return at;
+        at++;
+    }
+    return NULL;
+}
+
 bool wd_film_has_ending(const char *path)
 {
     return path && container(path);
 }
 
+bool wd_film_is_numbered(const char *path)
+{
+    return path && number_in(path);
+}
+
 bool wd_film_sequence_check(const char *path, const struct wd_log *log)
 {
-    const char *percent = strchr(path, '%'), *slash = strrchr(path, '/');
+    const char *percent = number_in(path);
     unsigned digits;
     size_t length = percent ? conversion(percent, &digits) : 0;
-    if (length == 0 || strchr(percent + 1, '%') || (slash && slash > percent))
+    if (length == 0 || number_in(percent + 1))
         return wd_error(log,
                         "%s: not a name for a sequence of frames; give one number, like "
                         "frame-%%05d.png",
@@ -97,7 +117,7 @@ static bool check_film(const struct wd_film_writer_params *params, const struct 
 bool wd_film_writer_check(const struct wd_film_writer_params *params, const struct wd_log *log)
 {
     return wd_film_shape_check(params, log) &&
-           (strchr(params->path, '%') ? check_sequence(params->path, log) : check_film(params, log));
+           (number_in(params->path) ? check_sequence(params->path, log) : check_film(params, log));
 }
 
 static bool open_encoder(struct wd_film_writer *film, const struct wd_film_writer_params *params,
@@ -121,7 +141,7 @@ bool wd_film_writer_open(struct wd_film_writer *film, const struct wd_film_write
     *film = (struct wd_film_writer){0};
     if (!wd_film_writer_check(params, log))
         return false;
-    if (strchr(params->path, '%'))
+    if (number_in(params->path))
         film->pattern = wd_strdup(params->path);
     else if (!open_encoder(film, params, log))
         return false;
@@ -133,7 +153,7 @@ bool wd_film_writer_open(struct wd_film_writer *film, const struct wd_film_write
 /* The pattern is the user's: its number is put in by hand, never by printf of foreign text. */
 char *wd_film_frame_name(const char *pattern, uint64_t frame)
 {
-    const char *percent = strchr(pattern, '%');
+    const char *percent = number_in(pattern);
     unsigned digits;
     size_t length = conversion(percent, &digits);
     char number[32];
@@ -144,7 +164,7 @@ char *wd_film_frame_name(const char *pattern, uint64_t frame)
 
 bool wd_film_frame_number(const char *pattern, const char *name, uint64_t *frame)
 {
-    const char *percent = strchr(pattern, '%'), *slash = strrchr(pattern, '/');
+    const char *percent = number_in(pattern), *slash = strrchr(pattern, '/');
     const char *begin = slash ? slash + 1 : pattern;
     size_t before = (size_t)(percent - begin);
     char *end;

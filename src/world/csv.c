@@ -94,6 +94,18 @@ static void skip_blank_lines(struct wd_csv *csv)
     }
 }
 
+/* Programs of tables tell one another the delimiter by a line before the header: "sep=;". 0: there is none. */
+static char skip_separator_line(struct wd_csv *csv)
+{
+    if (csv->end - csv->at < 6 || strncasecmp(csv->at, "sep=", 4) != 0 || !strchr("\r\n", csv->at[5]))
+        return 0;
+    char separator = csv->at[4];
+    csv->at += csv->at[5] == '\r' ? 7 : 6;
+    csv->at = csv->at < csv->end ? csv->at : csv->end;
+    csv->next_line++;
+    return separator;
+}
+
 /* Unquotes a field in place; `*at` is left behind its closing quote. */
 static bool read_quoted(struct wd_csv *csv, char **at, char **last)
 {
@@ -201,9 +213,12 @@ bool wd_csv_open(struct wd_csv *csv, const char *path, const char *delimiter,
     csv->end = csv->text + size;
     if (size >= 3 && memcmp(csv->text, "\xef\xbb\xbf", 3) == 0)
         csv->at += 3;
-    if (check_encoding(path, csv->text, size, log) && choose_delimiter(csv, delimiter) &&
-        read_header(csv))
-        return true;
+    if (check_encoding(path, csv->text, size, log)) {
+        const char told[] = {skip_separator_line(csv), 0};
+        bool given = delimiter && *delimiter;
+        if (choose_delimiter(csv, given ? delimiter : told) && read_header(csv))
+            return true;
+    }
     wd_csv_close(csv);
     return false;
 }
@@ -216,14 +231,26 @@ void wd_csv_close(struct wd_csv *csv)
     *csv = (struct wd_csv){0};
 }
 
+/* Spreadsheets write the rows below a table that are formatted but empty. */
+static bool is_empty_row(const struct wd_csv *csv, size_t count)
+{
+    for (size_t i = 0; i < count && i < csv->column_count; i++)
+        if (*csv->fields[i])
+            return false;
+    return count > 1 && count <= csv->column_count;
+}
+
 enum wd_csv_row wd_csv_next(struct wd_csv *csv)
 {
-    skip_blank_lines(csv);
-    if (csv->at >= csv->end)
-        return WD_CSV_END;
-    size_t count = read_row(csv, csv->fields, csv->column_count);
-    if (count == 0)
-        return WD_CSV_ERROR;
+    size_t count;
+    do {
+        skip_blank_lines(csv);
+        if (csv->at >= csv->end)
+            return WD_CSV_END;
+        count = read_row(csv, csv->fields, csv->column_count);
+        if (count == 0)
+            return WD_CSV_ERROR;
+    } while (is_empty_row(csv, count));
     if (count == csv->column_count)
         return WD_CSV_ROW;
     const char *name = csv->delimiter == '\t' ? "tab" : (const char[]){csv->delimiter, 0};

@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -21,6 +22,7 @@ struct reader {
     struct wd_species_names names;
     const struct wd_log *log;
     uint64_t first_invalid_line, zero_sizes;
+    uint64_t *dead_rows; /* by wanted->dead */
 };
 
 static bool is_dead(const struct reader *reader)
@@ -32,9 +34,57 @@ static bool is_dead(const struct reader *reader)
     if (wanted->dead_count == 0)
         return strcasecmp(status, "dead") == 0;
     for (size_t i = 0; i < wanted->dead_count; i++)
-        if (strcasecmp(status, wanted->dead[i]) == 0)
+        if (strcasecmp(status, wanted->dead[i]) == 0) {
+            reader->dead_rows[i]++;
             return true;
+        }
     return false;
+}
+
+/* Nothing is taken away by a word that is misspelt. */
+static void warn_of_no_dead(const struct reader *reader)
+{
+    const struct wd_scene_inventory *wanted = reader->inventory->wanted;
+    for (size_t i = 0; i < wanted->dead_count && reader->columns.status >= 0; i++)
+        if (reader->dead_rows[i] == 0)
+            wd_warn(reader->log, "%s: no row has the status \"%s\" in column %s, so none is left out by it; is "
+                    "the word in \"dead\" right?", reader->csv.path, wanted->dead[i],
+                    reader->csv.header[reader->columns.status]);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of the trees that have it; 0 where none does. `offset`: of the size in the tree. */
+static float median(const struct wd_inventory *inventory, size_t offset)
+{
+    float *sizes = wd_alloc_array(inventory->count + 1, sizeof *sizes), middle;
+    size_t count = 0;
+    for (size_t i = 0; i < inventory->count; i++) {
+        memcpy(&sizes[count], (const char *)&inventory->trees[i] + offset, sizeof *sizes);
+        count += sizes[count] > 0.0f;
+    }
+    qsort(sizes, count, sizeof *sizes, by_size);
+    middle = count ? sizes[count / 2] : 0.0f;
+    free(sizes);
+    return middle;
+}
+
+/* Stems of forests are 15 to 250 times as long as they are thick, and few plots have a median of more than 1.6 m. */
+static void warn_of_dbh_unit(const struct reader *reader)
+{
+    float dbh_cm = median(reader->inventory, offsetof(struct wd_inventory_tree, dbh_cm));
+    float height_m = median(reader->inventory, offsetof(struct wd_inventory_tree, height_m));
+    float slender = height_m > 0.0f ? 100.0f * height_m / dbh_cm : 100.0f;
+    bool thick = dbh_cm > 160.0f || slender < 12.0f, thin = dbh_cm < 0.9f || slender > 1000.0f;
+    if (reader->columns.dbh_told || dbh_cm <= 0.0f || !(thick || thin))
+        return;
+    wd_warn(reader->log, "%s: column %s names no unit and counts as cm: half of the stems would be %s than %.3g cm; "
+            "if it is in %s, say \"dbh_unit\": \"%s\"", reader->csv.path, reader->csv.header[reader->columns.dbh],
+            thick ? "thicker" : "thinner", (double)dbh_cm, thick ? "mm" : "metres", thick ? "mm" : "m");
 }
 
 enum wd_csv_value wd_inventory_read_size(const struct wd_csv *csv, const struct wd_inventory_columns *columns,
@@ -157,6 +207,8 @@ static bool read_rows(struct reader *reader)
     if (reader->zero_sizes > 0)
         wd_warn(reader->log, "%s: %" PRIu64 " sizes are 0 and count as not measured",
                 reader->csv.path, reader->zero_sizes);
+    warn_of_no_dead(reader);
+    warn_of_dbh_unit(reader);
     if (reader->inventory->count == 0)
         return wd_error(reader->log, "%s: no living tree with a position among %" PRIu64 " rows",
                         reader->csv.path, report->rows);
@@ -169,11 +221,13 @@ bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *sc
     *inventory = (struct wd_inventory){.wanted = &scene->inventories[index]};
     inventory->path = wd_path_beside(scene->path, inventory->wanted->file);
     struct reader reader = {.inventory = inventory, .log = log};
+    reader.dead_rows = wd_alloc_array(inventory->wanted->dead_count + 1, sizeof *reader.dead_rows);
     reader.names = (struct wd_species_names){.scene = scene, .wanted = inventory->wanted};
     bool ok = wd_csv_open(&reader.csv, inventory->path, inventory->wanted->delimiter, log) &&
               wd_inventory_find_columns(&reader.columns, &reader.csv, inventory->wanted, log) &&
               wd_inventory_check_frame(&reader.columns, &reader.csv, inventory->wanted, log) &&
               check_species_column(&reader, scene) && read_rows(&reader);
+    free(reader.dead_rows);
     wd_csv_close(&reader.csv);
     wd_species_names_finish(&reader.names);
     if (!ok)

@@ -52,6 +52,7 @@ bool wd_world_make_terrain(struct wd_terrain *terrain, const struct wd_inventory
 struct wd_inventory_columns {
     int x, y, species, dbh, height, crown, id, status;
     double dbh_cm, height_m, crown_m; /* of one unit */
+    bool dbh_told;                    /* its unit, by the scene or the column's name */
 };
 bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struct wd_csv *csv,
                                const struct wd_scene_inventory *wanted, const struct wd_log *log);

@@ -8,16 +8,17 @@
 /* In plain words; a unit may follow each. */
 static const char *const x_names[] = {"x", "east", "easting", "x_utm", "utm_x", "utm_e", "gx", "px",
                                       "xcoord", "x_coord", "coord_x", "point_x", "lon", "long",
-                                      "longitude", NULL};
+                                      "longitude", "rechtswert", NULL};
 static const char *const y_names[] = {"y", "north", "northing", "y_utm", "utm_y", "utm_n", "gy", "py",
                                       "ycoord", "y_coord", "coord_y", "point_y", "lat", "latitude",
-                                      NULL};
+                                      "hochwert", NULL};
 static const char *const species_names[] = {"species", "sp", "spp", "species_name", "taxon",
                                             "scientific_name", "latin", "latin_name",
-                                            "tree_species", NULL};
+                                            "tree_species", "baumart", NULL};
 static const char *const dbh_names[] = {"dbh", "d", "bhd", "d130", "d1_3", "d_b_h", "diam", "diameter",
                                         "stem_diameter", NULL};
-static const char *const height_names[] = {"height", "h", "ht", "total_height", "tree_height", NULL};
+static const char *const height_names[] = {"height", "h", "ht", "total_height", "tree_height",
+                                           "hoehe", "h\303\266he", "hauteur", NULL};
 static const char *const crown_names[] = {"crown_diameter", "crown", "crown_width", "crown_d", NULL};
 static const char *const status_names[] = {"status", "state", "condition", NULL};
 static const char *const id_names[] = {NULL};
@@ -78,7 +79,7 @@ static bool reads_as(const char *name, size_t length, const char *plain)
         if (gap && *plain++ != '_')
             return false;
         gap = false;
-        if (*plain == 0 || tolower((unsigned char)*at) != *plain++)
+        if (*plain == 0 || tolower((unsigned char)*at) != (unsigned char)*plain++)
             return false;
     }
     return *plain == 0;
@@ -190,16 +191,38 @@ static bool need(const struct wd_csv *csv, const char *what, int column, const s
     return false;
 }
 
+static bool is_used(const struct wd_inventory_columns *columns, size_t column)
+{
+    const int used[] = {columns->x, columns->y, columns->species, columns->dbh, columns->height, columns->crown,
+                        columns->id, columns->status};
+    for (size_t i = 0; i < sizeof used / sizeof *used; i++)
+        if (used[i] == (int)column)
+            return true;
+    return false;
+}
+
+/* A size that no column was recognised for, where one begins with what such a column may be called: the years of
+ * several measurements, as in DBH_2015, leave open which is meant. */
+static void warn_of_like(const struct wd_csv *csv, const struct wd_inventory_columns *columns, const struct wish *wish,
+                         const struct wd_log *log)
+{
+    for (size_t i = 0; i < csv->column_count; i++)
+        for (const char *const *usual = wish->usual; *usual; usual++)
+            if (strlen(*usual) > 1 && strncasecmp(csv->header[i], *usual, strlen(*usual)) == 0 && !is_used(columns, i)) {
+                wd_warn(log, "%s:1: no column was recognised for the trees' %s; if %s is, say so: \"columns\": "
+                        "{\"%s\": \"%s\"}", csv->path, wish->what, csv->header[i], wish->what, csv->header[i]);
+                return;
+            }
+}
+
 /* A file of places alone is as it is meant; other columns may well hold the sizes. */
 static void warn_of_no_sizes(const struct wd_csv *csv, const struct wd_inventory_columns *columns,
                              const struct wd_log *log)
 {
-    const int used[] = {columns->x, columns->y, columns->species, columns->crown, columns->id,
-                        columns->status};
-    size_t count = 0;
-    for (size_t i = 0; i < sizeof used / sizeof *used; i++)
-        count += used[i] >= 0;
-    if (columns->dbh >= 0 || columns->height >= 0 || count >= csv->column_count)
+    bool others = false;
+    for (size_t i = 0; i < csv->column_count; i++)
+        others |= !is_used(columns, i);
+    if (columns->dbh >= 0 || columns->height >= 0 || !others)
         return;
     char *names = wd_csv_names(csv);
     wd_warn(log, "%s:1: neither a stem diameter nor a height was recognised, so heights are made up; if "
@@ -249,6 +272,13 @@ bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struc
     if (!check_apart(columns, csv, log))
         return false;
     warn_of_no_sizes(csv, columns, log);
+    for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++)
+        if (*wishes[i].column < 0 && (columns->dbh >= 0 || columns->height >= 0) &&
+            (wishes[i].column == &columns->dbh || wishes[i].column == &columns->height))
+            warn_of_like(csv, columns, &wishes[i].wish, log);
+    size_t length;
+    columns->dbh_told = wanted->dbh_unit ||
+                        (columns->dbh >= 0 && unit_of_name(csv->header[columns->dbh], dbh_units, &length));
     return find_unit(csv, "dbh_unit", wanted->dbh_unit, columns->dbh, dbh_units, log, &columns->dbh_cm) &&
            find_unit(csv, "height_unit", wanted->height_unit, columns->height, height_units, log,
                      &columns->height_m) &&

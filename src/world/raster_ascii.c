@@ -54,8 +54,19 @@ static bool is_key(const char *word)
 /* Commas may stand for points. */
 static bool is_number(const char *word)
 {
-    return strspn(word, "0123456789.,+-eE") == strlen(word) ? strpbrk(word, "0123456789") != NULL
-                                                            : strcasestr(word, "nan") || strcasestr(word, "inf");
+    return strspn(word, "0123456789.,+-eE") == strlen(word) && strpbrk(word, "0123456789");
+}
+
+/* Of these GDAL makes 0 in a grid that it takes for one of whole numbers. */
+static bool is_no_finite_number(const char *word)
+{
+    return strcasestr(word, "nan") || strcasestr(word, "inf");
+}
+
+static bool is_of_whole_numbers(const struct wd_raster_source *source)
+{
+    GDALDataType type = GDALGetRasterDataType(GDALGetRasterBand(source->dataset, 1));
+    return type != GDT_Float32 && type != GDT_Float64;
 }
 
 static bool check_cells(struct words *words, const struct wd_raster_source *source, const struct wd_log *log)
@@ -65,7 +76,10 @@ static bool check_cells(struct words *words, const struct wd_raster_source *sour
     while (there && is_key(words->word))
         there = next_word(words) && next_word(words);
     for (; there; there = next_word(words)) {
-        if (!is_number(words->word))
+        if (is_no_finite_number(words->word) && is_of_whole_numbers(source))
+            return wd_error(log, "%s:%llu: \"%s\" in a grid of whole numbers; write the number that NODATA_value "
+                            "names for cells without one", source->path, (unsigned long long)words->line, words->word);
+        if (!is_number(words->word) && !is_no_finite_number(words->word))
             return wd_error(log, "%s:%llu: \"%s\" is no number; wanted is one for each of the %d x %d cells",
                             source->path, (unsigned long long)words->line, words->word, source->width,
                             source->height);

@@ -148,6 +148,7 @@ static void frames_are_known_by_their_names(void **state)
         const char *pattern, *name;
         long frame; /* -1: none */
     } cases[] = {{"a/f-%03d.png", "f-002.png", 2},  {"f-%d.png", "f-12.png", 12},
+                 {"50% out/f-%d.png", "f-12.png", 12}, {"90%-%d.png", "90%-7.png", 7},
                  {"f-%03d.png", "f-1002.png", 1002}, {"f-%3d.png", "f-  7.png", 7},
                  {"f-%03d.png", "f-2.png", -1},      {"f-%d.png", "f-012.png", -1},
                  {"f-%d.png", "f-.png", -1},         {"f-%d.png", "f-+1.png", -1},
@@ -175,7 +176,8 @@ static void names_and_sizes_are_checked(void **state)
         {{"/tmp/a.avi", 64, 48}, "films are .mp4, .m4v, .mov or .mkv"},
         {{"/tmp/%s.png", 64, 48}, "not a name for a sequence"},
         {{"/tmp/%d-%d.png", 64, 48}, "not a name for a sequence"},
-        {{"/tmp/%d/a.png", 64, 48}, "not a name for a sequence"},
+        {{"/tmp/%d/a.png", 64, 48}, "films are .mp4"},
+        {{"/tmp/%d/%q.png", 64, 48}, "not a name for a sequence"},
         {{"/tmp/%03d.mp4", 64, 48}, "frames of a film are .png files"},
         {{"/tmp/%999999d.png", 64, 48}, "not a name for a sequence"},
         {{"/nowhere/at/all/a.mp4", 64, 48}, "No such file or directory"},

@@ -78,6 +78,7 @@ static void test_delimiters(void **state)
         char found;
     } cases[] = {
         {"a,b\n1,2", NULL, ','},   {"a;b;c,d\n1;2;3", NULL, ';'}, {"a\tb\n1\t2\n", NULL, '\t'},
+        {"sep=|\r\na|b\r\n1|2\n", NULL, '|'}, {"sep=;\na;b\n1;2\n;\n;\n", NULL, ';'},
         {"a|b\n1|2\n", "|", '|'},  {"a\tb\n1\t2\n", "tab", '\t'}, {"\"a;b\",c\n1,2\n", NULL, ','},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

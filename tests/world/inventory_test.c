@@ -526,6 +526,39 @@ static void test_no_sizes(void **state)
     assert_null(strstr(captured.others, "neither"));
 }
 
+/* Said of `text` by the way, as if it held trees of oak. */
+static const char *said_of(const char *text, struct small_scene *small)
+{
+    struct wd_world world;
+    write_file(text);
+    make_or_fail(small, &world);
+    wd_world_finish(&world);
+    return captured.others;
+}
+
+static void test_sizes_that_are_not_meant_so(void **state)
+{
+    (void)state;
+    static const char *dead[] = {"felled", "gone"};
+    struct small_scene small;
+    small_scene_init(&small);
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    assert_said(said_of("x,y,dbh,height\n10,10,320,19\n20,20,410,22\n", &small),
+                "inventory_test.csv: column dbh names no unit and counts as cm: half of the stems would be thicker "
+                "than 410 cm; if it is in mm, say \"dbh_unit\": \"mm\"");
+    assert_said(said_of("x,y,dbh\n10,10,0.32\n20,20,0.41\n", &small), "if it is in metres, say \"dbh_unit\": \"m\"");
+    assert_null(strstr(said_of("x,y,dbh,height\n10,10,32,19\n20,20,1,2\n", &small), "names no unit"));
+    assert_null(strstr(said_of("x,y,dbh_mm,height\n10,10,320,19\n", &small), "names no unit"));
+    assert_said(said_of("x,y,DBH_2015,DBH_2020,Height\n10,10,30,31,19\n", &small),
+                "no column was recognised for the trees' dbh; if DBH_2015 is, say so: \"columns\": {\"dbh\": \"DBH_2015\"}");
+    assert_null(strstr(said_of("x,y,BHD,H\303\266he\n10,10,30,19\n", &small), "no column"));
+    inventory->dead = dead;
+    inventory->dead_count = 2;
+    const char *said = said_of("x,y,dbh,status\n10,10,30,felled\n20,20,30,alive\n", &small);
+    assert_said(said, "no row has the status \"gone\" in column status");
+    assert_null(strstr(said, "\"felled\""));
+}
+
 static void test_degrees_as_metres(void **state)
 {
     (void)state;
@@ -703,6 +736,7 @@ int main(void)
         cmocka_unit_test(test_one_column_for_two),
         cmocka_unit_test(test_units_said_twice),
         cmocka_unit_test(test_no_sizes),
+        cmocka_unit_test(test_sizes_that_are_not_meant_so),
         cmocka_unit_test(test_degrees_as_metres),
         cmocka_unit_test(test_wrong_column),
         cmocka_unit_test(test_unmapped_species),

@@ -333,7 +333,8 @@ static void pictures_without_a_position_get_one_from_the_cell(void **state)
 static void text_holds_what_its_header_says(void **state)
 {
     (void)state;
-    static const char *const cells[][2] = {{"1 2 3\n4 5 nan\n", NULL},
+    static const char *const cells[][2] = {{"1.5 2 3\n4 5 nan\n", NULL},
+                                           {"1 2 3\n4 5 nan\n", "grid.asc:7: \"nan\" in a grid of whole numbers"},
                                            {"1,5 -2e0 3\r\n4 5 6", NULL},
                                            {"1 2 3\n4 x 6\n", "grid.asc:7: \"x\" is no number"},
                                            {"1 2 3\n4 5 6\n7 8 9\n", "grid.asc: has 9 numbers; its header says 3 x 2"},
