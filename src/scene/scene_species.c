@@ -168,8 +168,8 @@ static bool take_inventories(struct loader *loader, const struct wd_scene *scene
         for (size_t j = 0; j < inventory->species_count; j++)
             ok = want(loader, inventory->species[j].value, &map, inventory->species[j].name) && ok;
         if (ok && loader->count == 0)
-            ok = wd_keys_error(&here, NULL, "names no species; say which its trees are: "
-                               "\"species\": { \"*\": \"oak\" }");
+            ok = wd_keys_error(&here, NULL, "names no species; say which species the names in its file are: "
+                               "\"species\": { \"Picea abies\": \"spruce\", \"*\": \"oak\" }, \"*\" for all others");
     }
     return ok;
 }

@@ -73,6 +73,7 @@ struct wd_species_names {
     struct wd_species_name {
         char *name;
         int species; /* -1: not found */
+        bool any;    /* as "*" says */
         uint64_t count, line; /* rows that have it, and the first of them */
     } *names;
     size_t count, capacity;

@@ -30,15 +30,18 @@ static int scene_species(const struct wd_scene *scene, const char *name)
     return -1;
 }
 
-static int look_up(const struct wd_species_names *names, const char *name)
+/* `any`: it has no name of its own there. */
+static int look_up(const struct wd_species_names *names, const char *name, bool *any)
 {
     const char *mapped = mapped_name(names->wanted, name);
+    *any = false;
     if (mapped)
         return wd_scene_find_species(names->scene, mapped);
     int species = *name ? scene_species(names->scene, name) : -1;
     if (species >= 0)
         return species;
     mapped = mapped_name(names->wanted, "*");
+    *any = mapped != NULL;
     return mapped ? wd_scene_find_species(names->scene, mapped) : -1;
 }
 
@@ -49,9 +52,10 @@ size_t wd_species_names_find(struct wd_species_names *names, const char *name, u
             names->names[i].count++;
             return i;
         }
-    int species = look_up(names, name);
+    bool any;
+    int species = look_up(names, name, &any);
     struct wd_species_name *added = wd_push(names->names, names->count, names->capacity);
-    *added = (struct wd_species_name){wd_strdup(name), species, 1, line};
+    *added = (struct wd_species_name){wd_strdup(name), species, any, 1, line};
     return names->count - 1;
 }
 
@@ -63,29 +67,52 @@ static int most_frequent_first(const void *first, const void *second)
     return strcmp(a->name, b->name);
 }
 
+/* Names, the most frequent first, with their counts; free() it. */
+static char *listed(struct wd_species_name *of, size_t count, size_t most)
+{
+    char *list = wd_strdup("");
+    qsort(of, count, sizeof *of, most_frequent_first);
+    for (size_t i = 0; i < count && i < most; i++) {
+        char *longer = wd_format("%s%s\"%s\" (%" PRIu64 ", from line %" PRIu64 ")", list, i ? ", " : "",
+                                 *of[i].name ? of[i].name : "(empty)", of[i].count, of[i].line);
+        free(list);
+        list = longer;
+    }
+    char *all = wd_format("%s%s", list, count > most ? ", ..." : "");
+    free(list);
+    return all;
+}
+
+/* What "*" stands for is told, as several species may have become one. */
+static void tell_any(const struct wd_species_names *names, const char *path, const struct wd_log *log)
+{
+    struct wd_species_name *any = wd_alloc_array(names->count + 1, sizeof *any);
+    size_t count = 0;
+    for (size_t i = 0; i < names->count; i++)
+        if (names->names[i].any && *names->names[i].name)
+            any[count++] = names->names[i];
+    char *list = listed(any, count, 5);
+    if (count > 0)
+        wd_info(log, "inventory %s: \"*\" stands for %zu species, all drawn as %s: %s", path, count,
+                names->scene->species_files[any[0].species].name, list);
+    free(list);
+    free(any);
+}
+
 bool wd_species_names_check(const struct wd_species_names *names, const char *path, const char *column,
                             const struct wd_log *log)
 {
-    enum { MOST_LISTED = 20 };
-    struct wd_species_name *missing = wd_alloc_array(names->count, sizeof *missing);
+    struct wd_species_name *missing = wd_alloc_array(names->count + 1, sizeof *missing);
     size_t count = 0;
     for (size_t i = 0; i < names->count; i++)
         if (names->names[i].species < 0)
             missing[count++] = names->names[i];
-    qsort(missing, count, sizeof *missing, most_frequent_first);
-    char *list = wd_strdup("");
-    for (size_t i = 0; i < count && i < MOST_LISTED; i++) {
-        char *longer = wd_format("%s%s\"%s\" (%" PRIu64 ", from line %" PRIu64 ")", list, i ? ", " : "",
-                                 *missing[i].name ? missing[i].name : "(empty)", missing[i].count,
-                                 missing[i].line);
-        free(list);
-        list = longer;
-    }
+    char *list = listed(missing, count, 20);
     if (count > 0)
         wd_error(log, "%s:%" PRIu64 ": column %s: %zu species names are not mapped to a species of the scene: "
-                 "%s%s; name each in \"species\", or \"*\" for any other", path, missing[0].line, column,
-                 count, list,
-                 count > MOST_LISTED ? ", ..." : "");
+                 "%s; name each in \"species\", or \"*\" for any other", path, missing[0].line, column, count, list);
+    else
+        tell_any(names, path, log);
     free(list);
     free(missing);
     return count == 0;
