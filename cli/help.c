@@ -126,7 +126,7 @@ void cli_help_manual(FILE *to)
         "3: there is no display for a window. 130: stopped by Ctrl\\-C; finished frames of a film\n"
         "are kept.\n"
         ".SH FILES\n"
-        ".I $XDG_CACHE_HOME/weald\n(or ~/.cache/weald) holds what was made from trees once.\n"
+        ".I $XDG_CACHE_HOME/weald\n(or ~/.cache/weald, without a home /tmp/weald-UID) holds what was made from trees once.\n"
         "It may be deleted at any time.\n",
         to);
 }

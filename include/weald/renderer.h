@@ -212,8 +212,8 @@ enum wd_result wd_picture_write(const struct wd_picture *picture, const char *pa
 struct wd_film;
 /* Whether a name ends as that of a film in one file. NULL does not. */
 bool wd_film_has_ending(const char *path);
-/* Whether a name is that of numbered pictures: a number like %d or %05d in its last part, behind which a letter
- * tells it from other uses of "%". NULL is not. */
+/* Whether a name is meant as that of numbered pictures: in its last part a letter follows a "%" and its digits, as in
+ * %d and %05d; any other letter is refused when the film is opened. NULL is not. */
 bool wd_film_is_numbered(const char *path);
 #define WD_LEAST_FRAMES_PER_SECOND 0.01
 #define WD_MOST_FRAMES_PER_SECOND 1000.0

@@ -16,7 +16,7 @@ struct wd_strewn {
     float half_width;
     float least;        /* size of the smallest, of the largest's */
     float chance;       /* that a cell has one */
-    float twigs;        /* share of them that is twigs */
+    float twigs;        /* that it is a twig; below `chance` */
     uint32_t salt;
 };
 

@@ -104,12 +104,12 @@ char *wd_cache_directory(void)
     if (cache && cache[0] == '/')
         return wd_format("%s/weald", cache);
     const char *home = getenv("HOME");
-    char names[1024];
+    char names[16384];
     struct passwd user, *found = NULL;
-    if ((!home || home[0] != '/') && getpwuid_r(getuid(), &user, names, sizeof names, &found) == 0 && found)
-        home = user.pw_dir;
     if (home && home[0] == '/')
         return wd_format("%s/.cache/weald", home);
+    if (getpwuid_r(getuid(), &user, names, sizeof names, &found) == 0 && found && access(user.pw_dir, W_OK) == 0)
+        return wd_format("%s/.cache/weald", user.pw_dir);
     return wd_format("/tmp/weald-%ld", (long)getuid()); /* not a name that users share */
 }
 

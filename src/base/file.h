@@ -23,7 +23,8 @@ bool wd_make_directories(const char *path, const struct wd_log *log);
  * absolute names stay. free() it. */
 char *wd_path_beside(const char *base_file, const char *name);
 
-/* Directory for cached bakes: $XDG_CACHE_HOME/weald or ~/.cache/weald. free() it. */
+/* Directory for cached bakes: $XDG_CACHE_HOME/weald or ~/.cache/weald; without a home that can be written to
+ * /tmp/weald-UID. free() it. */
 char *wd_cache_directory(void);
 
 /* An output that appears whole or not at all: written beside `target` under a temporary name,

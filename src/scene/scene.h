@@ -85,7 +85,7 @@ struct wd_scene_layer {
 enum wd_outside_rule { WD_OUTSIDE_DROP, WD_OUTSIDE_KEEP, WD_OUTSIDE_ERROR };
 struct wd_scene_inventory {
     const char *file;
-    const char *delimiter;   /* NULL: found out from the header row (, ; tab) */
+    const char *delimiter;   /* NULL: by a line sep=; or the header row (, ; tab) */
     struct {
         const char *x, *y, *species, *dbh, *height, *crown_diameter, *id, *status;
     } columns;               /* NULL: found out from usual names */

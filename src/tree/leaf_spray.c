@@ -126,11 +126,13 @@ static void add_needles(struct spray *spray, const struct wd_species *species, f
     int count = gather_bearers(species, &spray->random, bearers), n = 0;
     float real_m = 0.01f * species->leaf.width_cm, length_m = 0.01f * species->leaf.length_cm;
     float whole_m2 = area * spray->size_m * spray->size_m;
-    float most = spray->shade ? WD_SPRAY_SHADE_TRIANGLES : WD_SPRAY_TRIANGLES;
-    float wanted = fminf(2 * whole_m2 / (length_m * real_m), most - 50);
+    float wanted = fminf(2 * whole_m2 / (length_m * real_m), WD_SPRAY_TRIANGLES - 50), seen = wanted;
     /* where there are not triangles enough, needles grow wider */
-    float widest_m = spray->shade ? length_m : 2.5f * real_m;
-    spray->needle_width_m = fminf(2 * whole_m2 / (length_m * wanted), widest_m);
+    spray->needle_width_m = fminf(2 * whole_m2 / (length_m * wanted), 2.5f * real_m);
+    if (spray->shade) {
+        wanted = fminf(wanted, WD_SPRAY_SHADE_TRIANGLES - 50);
+        spray->needle_width_m *= seen / wanted;
+    }
     bool tufts = species->leaf.needles == WD_NEEDLES_TUFTS;
     int bundle = species->leaf.needles == WD_NEEDLES_FASCICLES ? (int)species->leaf.bundle : 1;
     float whole = 0;

@@ -125,7 +125,9 @@ static struct ring trunk_ring(const struct ring *nodes, int count, float z)
     float share = (z - low->center_m.z) / wd_maxf(high->center_m.z - low->center_m.z, 0.01f);
     float up = wd_clampf(share, 0, 1);
     struct ring ring = *low;
-    ring.center_m = wd_v3_mix(low->center_m, high->center_m, wd_clampf(share, -1, 1));
+    ring.center_m = wd_v3_mix(low->center_m, high->center_m, up);
+    if (share < 0)
+        ring.center_m.z = z;
     ring.radius_m = wd_mixf(low->radius_m, high->radius_m, up);
     ring.flexibility = wd_mixf(low->flexibility, high->flexibility, up);
     ring.along_m = z;
@@ -453,7 +455,7 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
             add_branch(&tube, skeleton, &skeleton->branches[b], style);
 }
 
-/* At most: rings that would fold are left out. */
+/* Rings that would fold are left out; ends that are broken or thick, of snags and coconuts, take two more a side. */
 static size_t branch_triangles(const struct wd_skeleton *skeleton, const struct wd_branch *branch,
                                const struct wd_species *species, const struct foot *foot,
                                const struct wd_wood_style *style)

@@ -9,7 +9,7 @@ struct wd_wood_style {
     float least_radius_m; /* branches thinner than this at their base are left out */
     int node_step;        /* 1: a ring at every node; n: at every n-th and at the ends */
     int most_sides;       /* of the trunk; thinner branches have fewer, down to 3 */
-    int foot_sides;       /* of a trunk's foot with root lobes: 32, 16, or 0 for a round flare */
+    int foot_sides;       /* of a trunk's foot with root lobes: 32 or 16; with fewer the flare is round */
 };
 
 /* Appends the wood. `crown` gives the sky openness of each place (its light already swept). */

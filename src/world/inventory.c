@@ -3,7 +3,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -33,12 +32,13 @@ static bool is_dead(const struct reader *reader)
     const char *status = reader->csv.fields[reader->columns.status];
     if (wanted->dead_count == 0)
         return strcasecmp(status, "dead") == 0;
+    bool dead = false;
     for (size_t i = 0; i < wanted->dead_count; i++)
         if (strcasecmp(status, wanted->dead[i]) == 0) {
             reader->dead_rows[i]++;
-            return true;
+            dead = true;
         }
-    return false;
+    return dead;
 }
 
 /* Nothing is taken away by a word that is misspelt. */
@@ -58,33 +58,43 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Of the trees that have it; 0 where none does. `offset`: of the size in the tree. */
-static float median(const struct wd_inventory *inventory, size_t offset)
+static float middle_of(float *sizes, size_t count)
 {
-    float *sizes = wd_alloc_array(inventory->count + 1, sizeof *sizes), middle;
-    size_t count = 0;
-    for (size_t i = 0; i < inventory->count; i++) {
-        memcpy(&sizes[count], (const char *)&inventory->trees[i] + offset, sizeof *sizes);
-        count += sizes[count] > 0.0f;
-    }
     qsort(sizes, count, sizeof *sizes, by_size);
-    middle = count ? sizes[count / 2] : 0.0f;
+    return count ? sizes[count / 2] : 0.0f;
+}
+
+/* Medians of diameters, and of heights over diameters where a tree has both; 0 where none has. */
+static void measure(const struct wd_inventory *inventory, float *dbh_cm, float *slender)
+{
+    float *sizes = wd_alloc_array(inventory->count + 1, sizeof *sizes);
+    size_t count = 0;
+    for (size_t i = 0; i < inventory->count; i++)
+        if (inventory->trees[i].dbh_cm > 0.0f)
+            sizes[count++] = inventory->trees[i].dbh_cm;
+    *dbh_cm = middle_of(sizes, count);
+    count = 0;
+    for (size_t i = 0; i < inventory->count; i++)
+        if (inventory->trees[i].dbh_cm > 0.0f && inventory->trees[i].height_m > 0.0f)
+            sizes[count++] = 100.0f * inventory->trees[i].height_m / inventory->trees[i].dbh_cm;
+    *slender = middle_of(sizes, count);
     free(sizes);
-    return middle;
 }
 
 /* Stems of forests are 15 to 250 times as long as they are thick, and few plots have a median of more than 1.6 m. */
 static void warn_of_dbh_unit(const struct reader *reader)
 {
-    float dbh_cm = median(reader->inventory, offsetof(struct wd_inventory_tree, dbh_cm));
-    float height_m = median(reader->inventory, offsetof(struct wd_inventory_tree, height_m));
-    float slender = height_m > 0.0f ? 100.0f * height_m / dbh_cm : 100.0f;
-    bool thick = dbh_cm > 160.0f || slender < 12.0f, thin = dbh_cm < 0.9f || slender > 1000.0f;
+    float dbh_cm, slender;
+    measure(reader->inventory, &dbh_cm, &slender);
+    bool thick = slender > 0.0f ? slender < 12.0f : dbh_cm > 160.0f;
+    bool thin = slender > 0.0f ? slender > 1000.0f : dbh_cm < 0.9f;
     if (reader->columns.dbh_told || dbh_cm <= 0.0f || !(thick || thin))
         return;
-    wd_warn(reader->log, "%s: column %s names no unit and counts as cm: half of the stems would be %s than %.3g cm; "
-            "if it is in %s, say \"dbh_unit\": \"%s\"", reader->csv.path, reader->csv.header[reader->columns.dbh],
-            thick ? "thicker" : "thinner", (double)dbh_cm, thick ? "mm" : "metres", thick ? "mm" : "m");
+    char *shape = slender > 0.0f ? wd_format(" and %.3g times as long as thick", (double)slender) : wd_strdup("");
+    wd_warn(reader->log, "%s: column %s names no unit and counts as cm: the middle one of the stems would be %.3g cm "
+            "thick%s; if it is in %s, say \"dbh_unit\": \"%s\"", reader->csv.path,
+            reader->csv.header[reader->columns.dbh], (double)dbh_cm, shape, thick ? "mm" : "metres", thick ? "mm" : "m");
+    free(shape);
 }
 
 enum wd_csv_value wd_inventory_read_size(const struct wd_csv *csv, const struct wd_inventory_columns *columns,

@@ -18,7 +18,7 @@ static const char *const species_names[] = {"species", "sp", "spp", "species_nam
 static const char *const dbh_names[] = {"dbh", "d", "bhd", "d130", "d1_3", "d_b_h", "diam", "diameter",
                                         "stem_diameter", NULL};
 static const char *const height_names[] = {"height", "h", "ht", "total_height", "tree_height",
-                                           "hoehe", "h\303\266he", "hauteur", NULL};
+                                           "hoehe", "h\303\266he", "h\303\226he", "ho\314\210he", "hauteur", NULL};
 static const char *const crown_names[] = {"crown_diameter", "crown", "crown_width", "crown_d", NULL};
 static const char *const status_names[] = {"status", "state", "condition", NULL};
 static const char *const id_names[] = {NULL};

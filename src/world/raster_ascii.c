@@ -78,7 +78,8 @@ static bool check_cells(struct words *words, const struct wd_raster_source *sour
     for (; there; there = next_word(words)) {
         if (is_no_finite_number(words->word) && is_of_whole_numbers(source))
             return wd_error(log, "%s:%llu: \"%s\" in a grid of whole numbers; write the number that NODATA_value "
-                            "names for cells without one", source->path, (unsigned long long)words->line, words->word);
+                            "names for cells without one (add NODATA_value -9999 to the header where there is no such line)",
+                            source->path, (unsigned long long)words->line, words->word);
         if (!is_number(words->word) && !is_no_finite_number(words->word))
             return wd_error(log, "%s:%llu: \"%s\" is no number; wanted is one for each of the %d x %d cells",
                             source->path, (unsigned long long)words->line, words->word, source->width,

@@ -285,11 +285,16 @@ static void twigs_keep_the_area(void **state)
         wd_leaf_spray_mesh(&spray, &species, 0.25f);
         assert_in_range(spray.index_count / 3, 20, WD_SPRAY_TRIANGLES);
         assert_float_equal(spray_leaf_area(&spray) / (double)wd_leaf_unit_area(&species), 1, 0.2);
-        wd_leaf_spray_shade_mesh(&shade, &species, 0.25f);
-        assert_in_range(shade.index_count / 3, 10, WD_SPRAY_SHADE_TRIANGLES);
-        assert_float_equal(spray_leaf_area(&shade) / (double)wd_leaf_unit_area(&species), 1, 0.2);
         wd_tree_mesh_finish(&spray);
-        wd_tree_mesh_finish(&shade);
+        for (int k = 0; k < 4; k++) {
+            const float sizes_m[] = {0.1f, 0.25f, 0.4f, 0.7f};
+            wd_leaf_spray_mesh(&spray, &species, sizes_m[k]);
+            wd_leaf_spray_shade_mesh(&shade, &species, sizes_m[k]);
+            assert_true(shade.index_count <= spray.index_count && shade.index_count / 3 <= WD_SPRAY_SHADE_TRIANGLES);
+            assert_float_equal(spray_leaf_area(&shade) / spray_leaf_area(&spray), 1, 0.08);
+            wd_tree_mesh_finish(&spray);
+            wd_tree_mesh_finish(&shade);
+        }
     }
     wd_arena_finish(&arena);
 }

@@ -49,7 +49,6 @@ static void mean_linear(double mean[3])
         mean[k] /= weight;
 }
 
-/* Each pattern with the scales and colours of every fourth species. */
 /* A step away from a joint takes one as far from it, along plates as well as across. */
 static void joints_are_as_wide_along_plates(void **state)
 {
@@ -70,6 +69,7 @@ static void joints_are_as_wide_along_plates(void **state)
     assert_true(far < PLACES / 50); /* where two joints are as far, the nearest changes */
 }
 
+/* Each pattern with the scales and colours of every fourth species. */
 static void bark_tiles(void **state)
 {
     (void)state;

@@ -544,10 +544,11 @@ static void test_sizes_that_are_not_meant_so(void **state)
     small_scene_init(&small);
     struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
     assert_said(said_of("x,y,dbh,height\n10,10,320,19\n20,20,410,22\n", &small),
-                "inventory_test.csv: column dbh names no unit and counts as cm: half of the stems would be thicker "
-                "than 410 cm; if it is in mm, say \"dbh_unit\": \"mm\"");
+                "inventory_test.csv: column dbh names no unit and counts as cm: the middle one of the stems would be "
+                "410 cm thick and 5.94 times as long as thick; if it is in mm, say \"dbh_unit\": \"mm\"");
     assert_said(said_of("x,y,dbh\n10,10,0.32\n20,20,0.41\n", &small), "if it is in metres, say \"dbh_unit\": \"m\"");
     assert_null(strstr(said_of("x,y,dbh,height\n10,10,32,19\n20,20,1,2\n", &small), "names no unit"));
+    assert_null(strstr(said_of("x,y,dbh,height\n10,10,32,\n20,20,,1.1\n", &small), "names no unit"));
     assert_null(strstr(said_of("x,y,dbh_mm,height\n10,10,320,19\n", &small), "names no unit"));
     assert_said(said_of("x,y,DBH_2015,DBH_2020,Height\n10,10,30,31,19\n", &small),
                 "no column was recognised for the trees' dbh; if DBH_2015 is, say so: \"columns\": {\"dbh\": \"DBH_2015\"}");
