@@ -115,7 +115,7 @@ static float depth_m(const struct foot *foot, const struct wd_species *species)
     return wd_maxf(least, wd_minf(0.37f * reach * dbh, MOST_DEPTH_M));
 }
 
-/* Between the nodes of a trunk, and straight down from its first. */
+/* Between the nodes of a trunk, and below its first by as much as the way to the second at most. */
 static struct ring trunk_ring(const struct ring *nodes, int count, float z)
 {
     int i = 0;
@@ -125,9 +125,7 @@ static struct ring trunk_ring(const struct ring *nodes, int count, float z)
     float share = (z - low->center_m.z) / wd_maxf(high->center_m.z - low->center_m.z, 0.01f);
     float up = wd_clampf(share, 0, 1);
     struct ring ring = *low;
-    ring.center_m = wd_v3_mix(low->center_m, high->center_m, up);
-    if (share < 0)
-        ring.center_m.z = z;
+    ring.center_m = wd_v3_mix(low->center_m, high->center_m, wd_clampf(share, -1, 1));
     ring.radius_m = wd_mixf(low->radius_m, high->radius_m, up);
     ring.flexibility = wd_mixf(low->flexibility, high->flexibility, up);
     ring.along_m = z;
