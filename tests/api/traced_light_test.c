@@ -141,8 +141,8 @@ static void snow_lights_trees_from_below(void **state)
     assert_true(found.trees_pct > 12 && found.trees_pct < 22);
 }
 
-/* Maples in October, under clouds: +3 % (six such stands 3 to 8, +6.5 in the mean, +6.3 while feet were round); where those of open stands scatter as an even layer of leaves five less (measured
- * when it was +2). */
+/* Maples in October, under clouds: +3 % (six such stands 3 to 8, +6.5 in the mean, +6.3 while feet were round); where those
+ * of open stands scatter as an even layer of leaves five less (measured when it was +2). */
 static void pale_leaves_light_each_other(void **state)
 {
     (void)state;
