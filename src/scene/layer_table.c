@@ -104,7 +104,8 @@ static const struct wd_key inventory_keys[] = {
     {"file", WD_KEY_STRING, INVENTORY(file), .doc = "CSV file with a header row, beside the scene.",
      .flags = WD_KEY_REQUIRED},
     {"delimiter", WD_KEY_STRING, INVENTORY(delimiter),
-     .doc = "One character between columns; where absent that of a first line like sep=;, else found out from the header row."},
+     .doc = "One character between columns; where absent that of a first line like sep=;, else found out from "
+            "the header row."},
     {"columns", WD_KEY_OBJECT, INVENTORY(columns), .table = &column_table,
      .doc = "Names of the columns; found out from usual names where absent."},
     {"dbh_unit", WD_KEY_STRING, INVENTORY(dbh_unit), .choices = dbh_units,

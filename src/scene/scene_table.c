@@ -79,7 +79,8 @@ static const struct wd_key sun_keys[] = {
             "clock is given.", .flags = WD_KEY_NAN_IF_ABSENT},
     {"elevation_deg", WD_KEY_DOUBLE, IN(sun, elevation_deg), -90, 90,
      .doc = "Height of the sun above the horizon in degrees; 35 where neither it nor a clock is "
-            "given. Far below the horizon (-9.5) a full moon stands in its place, 35 degrees high on the other side.", .flags = WD_KEY_NAN_IF_ABSENT},
+            "given. Far below the horizon (-9.5) a full moon stands in its place, 35 degrees high on the other side.",
+     .flags = WD_KEY_NAN_IF_ABSENT},
     {"angular_diameter_deg", WD_KEY_DOUBLE, IN(sun, angular_diameter_deg), 0, 20, "0.53",
      "Width of the sun's disc in degrees; softens shadows."},
     {"strength", WD_KEY_DOUBLE, IN(sun, strength), 0, 1000, "1", "1: the sun of a clear day."},
