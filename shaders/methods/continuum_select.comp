@@ -212,10 +212,10 @@ uint item_count(uint count)
     return (count + WD_ITEM_SPLATS - 1u) / WD_ITEM_SPLATS;
 }
 
-wd_splat_item item_at(uint slot, uint count, uint i)
+wd_splat_item item_at(uint slot, uint begin, uint count, uint i)
 {
-    uint begin = i * WD_ITEM_SPLATS;
-    return wd_splat_item(slot, min(count - begin, WD_ITEM_SPLATS) | i << 16);
+    uint before = i * WD_ITEM_SPLATS;
+    return wd_splat_item(slot, min(count - before, WD_ITEM_SPLATS) | (begin + before) << 10);
 }
 
 void add_splats(uint slot, uint count)
@@ -228,14 +228,14 @@ void add_splats(uint slot, uint count)
     }
     uint wanted = item_count(count), first = atomicAdd(counts.items, wanted);
     for (uint i = 0u; i < wanted && first + i < view.item_capacity; i++)
-        items[first + i] = item_at(slot, count, i);
+        items[first + i] = item_at(slot, 0u, count, i);
 }
 
-void add_wood(uint slot, uint count)
+void add_wood(uint slot, uint begin, uint count)
 {
-    uint wanted = item_count(count), first = atomicAdd(counts.wood_items, wanted);
+    uint wanted = item_count(count), first = wanted > 0u ? atomicAdd(counts.wood_items, wanted) : 0u;
     for (uint i = 0u; i < wanted && first + i < view.item_capacity; i++)
-        wood_items[first + i] = item_at(slot, count, i);
+        wood_items[first + i] = item_at(slot, begin, count, i);
 }
 
 /* One entry of wd_point_gain's tables. */
@@ -287,18 +287,36 @@ uint lower_tint(uint model, float count, float sine)
     return packUnorm4x8(vec4(model_vec3(model, WD_WORD_LOWER_OVER_UPPER) * 0.25, light * 0.5));
 }
 
+/* Triangles of wood with the far stem. */
+uint far_wood(uint model)
+{
+    return model_word(model, WD_WORD_WOOD_COUNT) - model_word(model, WD_WORD_WOOD_STEM);
+}
+
 /* Triangles of wood for a tree that tall: few of the largest while it is small. In a cascade twigs, which
  * discs stand for then, are lost in the penumbra. */
 uint wood_triangles(uint model, float tall_px)
 {
     tall_px *= ORTHOGRAPHIC != 0u ? 0.5 : 1.0;
-    return min(uint(tall_px * tall_px * 0.006 + tall_px), model_word(model, WD_WORD_WOOD_COUNT));
+    return min(uint(tall_px * tall_px * 0.006 + tall_px), far_wood(model));
+}
+
+/* Of all triangles that a small tree may have, the first so many; the far stem is among them, for which large trees
+ * have the stem. */
+void add_share_of_wood(uint slot, uint model, uint triangles, float share)
+{
+    uint stem = model_word(model, WD_WORD_WOOD_STEM), far_stem = model_word(model, WD_WORD_WOOD_FAR_STEM);
+    uint wanted = uint(ceil(share * float(triangles)));
+    bool near = triangles >= 2u * stem;
+    add_wood(slot, 0u, near ? min(wanted * stem / max(far_stem, 1u), stem) : 0u);
+    uint begin = near ? far_stem : 0u;
+    add_wood(slot, stem + begin, max(wanted, begin) - begin);
 }
 
 /* Discs stand for the wood that is not there as triangles, of which few large ones are most: its share. */
 float wood_missing(uint model, uint triangles)
 {
-    uint all = model_word(model, WD_WORD_WOOD_COUNT);
+    uint all = far_wood(model);
     float first = max(float(wd_first_wood(all)), 1.0);
     float times = pow(float(triangles) / first, model_float(model, WD_WORD_WOOD_FALLS));
     return triangles >= all ? 0.0 : pow(max(model_float(model, WD_WORD_THIN_SHARE), 1e-3), times);
@@ -449,7 +467,7 @@ void select_tree(uint index, float share, uint place)
     store_tree(slot, splats);
     add_splats(slot, uint(ceil(shown * each * float(strata))));
     if (wood)
-        add_wood(slot, uint(ceil(wd_near_wood(shown) * float(triangles))));
+        add_share_of_wood(slot, model_index, triangles, wd_near_wood(shown));
 }
 
 /* How many times over a cluster's crowns may cover what is seen of it: what lies deeper is hidden all

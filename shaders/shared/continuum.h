@@ -90,14 +90,16 @@ struct wd_splat_model {
     float finer;                          /* 1 .. 4: plants of few triangles are drawn as if they
                                              were so many times as near */
     uint32_t wood_first;                  /* place of the first triangle among all corners */
-    uint32_t wood_count, wood_corners;    /* triangles, those that show most first */
+    uint32_t wood_count, wood_corners;    /* triangles: of the stem, of its likeness for small trees, and all others; of
+                                             each those that show most first */
+    uint32_t wood_stem, wood_far_stem;    /* so many of the former two; 0: the stem is among the others */
     float leaf_past_bark;                 /* factor on leaves' gains where these are all the wood */
     float thin_share;                     /* of the bark that is seen: what the first wd_first_wood triangles do not show */
     float thin_wood;                      /* factor on the gains of discs of wood that stand for as much */
 };
-WD_STATIC_ASSERT_SIZE(wd_splat_model, 700);
+WD_STATIC_ASSERT_SIZE(wd_splat_model, 708);
 /* Its words, to be fetched one by one. */
-#define WD_SPLAT_MODEL_WORDS 175u
+#define WD_SPLAT_MODEL_WORDS 177u
 #define WD_WORD_WOOD_GAINS 0u
 #define WD_WORD_LEAF_GAINS 36u
 #define WD_WORD_LIGHT_GAINS 72u
@@ -114,9 +116,11 @@ WD_STATIC_ASSERT_SIZE(wd_splat_model, 700);
 #define WD_WORD_FINER 168u
 #define WD_WORD_WOOD_FIRST 169u
 #define WD_WORD_WOOD_COUNT 170u
-#define WD_WORD_LEAF_PAST_BARK 172u
-#define WD_WORD_THIN_SHARE 173u
-#define WD_WORD_THIN_WOOD 174u
+#define WD_WORD_WOOD_STEM 172u
+#define WD_WORD_WOOD_FAR_STEM 173u
+#define WD_WORD_LEAF_PAST_BARK 174u
+#define WD_WORD_THIN_SHARE 175u
+#define WD_WORD_THIN_WOOD 176u
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u
@@ -144,7 +148,8 @@ WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
  * leaves come in by noise while all splats stand, then the splats thin out. */
 #define WD_NEAR_REACH 1.25f
 
-/* So many of a model's triangles of wood are the first: the largest few, whose share of the bark is known. */
+/* So many of the triangles of wood that small trees have are the first: the largest few, whose share of the bark is
+ * known. */
 WD_FUNC uint32_t wd_first_wood(uint32_t count)
 {
     return count / 2u < 38u ? count / 2u : 38u;
@@ -295,10 +300,10 @@ struct wd_cascade_push {
 /* Splats of its strata in turn, or triangles of its wood. */
 struct wd_splat_item {
     uint32_t tree;  /* index of a wd_splat_tree */
-    uint32_t parts; /* bits 0..15: their count; 16..31: the first, in WD_ITEM_SPLATS */
+    uint32_t parts; /* bits 0..9: their count, WD_ITEM_SPLATS at most; 10..31: the first */
 };
 WD_STATIC_ASSERT_SIZE(wd_splat_item, 8);
-#define WD_ITEM_FIRST(item) (((item).parts >> 16) * WD_ITEM_SPLATS)
-#define WD_ITEM_COUNT(item) ((item).parts & 0xffffu)
+#define WD_ITEM_FIRST(item) ((item).parts >> 10)
+#define WD_ITEM_COUNT(item) ((item).parts & 0x3ffu)
 
 #endif

@@ -12,10 +12,10 @@
 #include "tree/sunlit.h"
 #include "tree/thinning.h"
 
-/* A kept model: words, then the wood of the full mesh and of the reduced one and the two of the twig, each as
+/* A kept model: words, then the wood of the full mesh, of the reduced one, its far stem and the two of the twig, each as
  * vertices and indices, then the leaves and the forms of their sets, packed by meshoptimizer's codecs
  * (the sequence codec keeps the order of indices). */
-enum { MESHES = 4, MESH_WORDS = 5, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD_LEAF_GROWTHS,
+enum { MESHES = 5, MESH_WORDS = 6, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD_LEAF_GROWTHS,
        SUNLIT_AT = 7 + 7 + BOUNDS + GROWTHS + WD_GAIN_SIDES,
        SUNLIT = (int)(WD_SUNLIT_PLACES * WD_SUNLIT_KINDS),
        SKYLIT = (int)(WD_SKYLIT_PLACES * WD_SKYLIT_KINDS), SKYLIT_AT = SUNLIT_AT + SUNLIT + 2,
@@ -153,8 +153,9 @@ static void meshes_of(struct wd_tree_mesh *meshes[MESHES], struct wd_tree_model 
 {
     meshes[0] = &model->full;
     meshes[1] = &model->reduced;
-    meshes[2] = &model->spray;
-    meshes[3] = &model->spray_shade;
+    meshes[2] = &model->far_stem;
+    meshes[3] = &model->spray;
+    meshes[4] = &model->spray_shade;
 }
 
 static uint32_t bits_of(float value)
@@ -230,6 +231,7 @@ static void pack_mesh(struct block *block, uint8_t *words, const struct wd_tree_
     wd_cache_put_word(words, 0, mesh->vertex_count);
     wd_cache_put_word(words, 1, mesh->index_count);
     wd_cache_put_word(words, 2, mesh->wood_index_count);
+    wd_cache_put_word(words, 5, mesh->stem_index_count);
     wd_cache_put_word(words, 3, (uint32_t)pack_vertices(block, mesh->vertices, mesh->vertex_count,
                                                sizeof *mesh->vertices));
     wd_cache_put_word(words, 4, (uint32_t)pack_indices(block, mesh->indices, mesh->index_count));
@@ -245,7 +247,8 @@ static bool unpack_mesh(struct wd_tree_mesh *mesh, const uint8_t *words, struct 
     mesh->vertex_count = mesh->vertex_capacity = vertices;
     mesh->index_count = mesh->index_capacity = indices;
     mesh->wood_index_count = wd_cache_get_word(words, 2);
-    return mesh->indices && mesh->wood_index_count <= indices;
+    mesh->stem_index_count = wd_cache_get_word(words, 5);
+    return mesh->indices && mesh->wood_index_count <= indices && mesh->stem_index_count <= mesh->wood_index_count;
 }
 
 static void pack_set(struct block *block, uint8_t *words, const struct wd_leaf_set *set)

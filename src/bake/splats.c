@@ -201,22 +201,63 @@ static float triangle_middle(struct wd_tree_point *point, const struct wd_tree_m
     return 0.5f * twice;
 }
 
-/* Those of which most is seen of the full mesh's tree come first. */
-static void order_wood(struct sized *order, uint32_t count, const struct wd_tree_model *model,
-                       const struct wd_tree_sides *sides)
+/* The triangles of wood, `order` of them, as struct wd_splat_model counts them. */
+struct wood {
+    struct wd_tree_mesh mesh;
+    struct sized *order;
+    uint32_t count, stem, far_stem;
+};
+
+static void append_mesh(struct wd_tree_mesh *to, const struct wd_tree_mesh *from, uint32_t first, uint32_t end,
+                        uint32_t vertex)
 {
+    for (uint32_t i = first; i < end; i++)
+        to->indices[to->index_count++] = vertex + from->indices[i];
+}
+
+/* Of the reduced mesh, and of the far stem. */
+static void gather_wood(struct wood *wood, const struct wd_tree_model *model)
+{
+    const struct wd_tree_mesh *reduced = &model->reduced, *far_stem = &model->far_stem;
+    struct wd_tree_mesh *mesh = &wood->mesh;
+    uint32_t stem = far_stem->index_count ? reduced->stem_index_count : 0;
+    *wood = (struct wood){.stem = stem / 3, .far_stem = far_stem->index_count / 3};
+    wd_tree_mesh_reserve(mesh, reduced->vertex_count + far_stem->vertex_count + 1,
+                         reduced->wood_index_count + far_stem->index_count + 3);
+    for (uint32_t i = 0; i < reduced->vertex_count; i++)
+        wd_tree_mesh_add_vertex(mesh, &reduced->vertices[i]);
+    for (uint32_t i = 0; i < far_stem->vertex_count; i++)
+        wd_tree_mesh_add_vertex(mesh, &far_stem->vertices[i]);
+    append_mesh(mesh, reduced, 0, stem, 0);
+    append_mesh(mesh, far_stem, 0, far_stem->index_count, reduced->vertex_count);
+    append_mesh(mesh, reduced, stem, reduced->wood_index_count, 0);
+    wood->count = mesh->index_count / 3;
+}
+
+/* Those of which most is seen of the full mesh's tree come first. */
+static void order_wood(struct wood *wood, const struct wd_tree_sides *sides)
+{
+    uint32_t count = wood->count;
     struct wd_tree_points middles = {.points = wd_alloc_array(count + 1, sizeof *middles.points),
                                      .count = count};
     float *shares = wd_alloc_array(count + 1, sizeof *shares);
+    struct sized *order = wood->order = wd_alloc_array(count + 1, sizeof *order);
     for (uint32_t i = 0; i < count; i++)
-        order[i] = (struct sized){
-            triangle_middle(&middles.points[i], &model->reduced, model->reduced.indices + 3 * i), i};
+        order[i] = (struct sized){triangle_middle(&middles.points[i], &wood->mesh, wood->mesh.indices + 3 * i), i};
     wd_tree_points_seen(shares, &middles, sides);
     for (uint32_t i = 0; i < count; i++)
         order[i].area *= fmaxf(shares[i], LEAST_SEEN);
-    qsort(order, count, sizeof *order, larger_first);
+    const uint32_t ends[] = {wood->stem, wood->stem + wood->far_stem, count};
+    for (uint32_t k = 0, from = 0; k < 3; from = ends[k++])
+        qsort(order + from, ends[k] - from, sizeof *order, larger_first);
     wd_tree_points_finish(&middles);
     free(shares);
+}
+
+static void wood_finish(struct wood *wood)
+{
+    wd_tree_mesh_finish(&wood->mesh);
+    free(wood->order);
 }
 
 /* Square roots of a vertex's factors, in bytes; openness as it is. */
@@ -236,10 +277,11 @@ static struct wd_splat_corner wood_corner(const struct wd_splat_model *model,
 }
 
 /* Corners of the triangles in their order, each once. */
-static void fill_wood_triangles(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
-                                const struct sized *order)
+static void fill_wood_triangles(struct wd_splats *splats, const struct wood *wood)
 {
     struct wd_splat_model *model = &splats->model;
+    const struct wd_tree_mesh *mesh = &wood->mesh;
+    const struct sized *order = wood->order;
     uint32_t *number = wd_alloc_array(mesh->vertex_count + 1, sizeof *number); /* 0: not yet */
     for (uint32_t i = 0; i < model->wood_count; i++)
         for (int k = 0; k < 3; k++) {
@@ -261,15 +303,17 @@ static void fill_wood_triangles(struct wd_splats *splats, const struct wd_tree_m
 /* What so many times the first triangles leave says how fast that falls. */
 enum { TELLS_FALL = 6 };
 
-static void make_wood(struct wd_splats *splats, const struct wd_tree_mesh *mesh,
-                      const struct sized *order)
+static void make_wood(struct wd_splats *splats, const struct wood *wood)
 {
     const uint32_t most = (1u << WD_WOOD_BITS) / 3 - 1; /* that can be named; what shows least goes */
-    uint32_t count = mesh->wood_index_count / 3, first = wd_first_wood(count);
-    splats->model.wood_count = count < most ? count : most;
+    const struct sized *order = wood->order + wood->stem;
+    uint32_t count = wood->count - wood->stem, first = wd_first_wood(count);
+    splats->model.wood_count = wood->count < most ? wood->count : most;
+    splats->model.wood_stem = wood->stem;
+    splats->model.wood_far_stem = wood->far_stem;
     splats->wood = wd_alloc_array(splats->model.wood_count, sizeof *splats->wood);
     splats->corners = wd_alloc_array(3 * (size_t)splats->model.wood_count, sizeof *splats->corners);
-    fill_wood_triangles(splats, mesh, order);
+    fill_wood_triangles(splats, wood);
     float all = 0, large = 0, more = 0;
     for (uint32_t i = 0; i < count; i++) {
         all += order[i].area;
@@ -380,16 +424,16 @@ static void keep_thin(bool *keep, const struct wd_tree_points *points,
     free(corners);
 }
 
-/* `wood` gets the points of all of it, the stratum's first half, `thin` those of the other. */
+/* `all` gets the points of all of it, the stratum's first half, `thin` those of the other. */
 static void fill_wood_halves(struct wd_splats *splats, const struct wd_tree_points *points,
-                             const struct wd_tree_model *model, const struct wd_tree_sides *sides,
-                             const struct sized *order, struct wd_tree_points *wood, struct wd_tree_points *thin)
+                             const struct wood *wood, const struct wd_tree_sides *sides,
+                             struct wd_tree_points *all, struct wd_tree_points *thin)
 {
     bool *keep = wd_alloc_array(points->count, sizeof *keep);
-    uint32_t first = wd_first_wood(model->reduced.wood_index_count / 3);
+    uint32_t first = wd_first_wood(wood->count - wood->stem);
     keep_seen(keep, points, sides);
-    fill_wood(splats, 0, points, keep, wood);
-    keep_thin(keep, points, &model->reduced, order, first);
+    fill_wood(splats, 0, points, keep, all);
+    keep_thin(keep, points, &wood->mesh, wood->order + wood->stem, first);
     if (!fill_wood(splats, 1, points, keep, thin)) {
         keep_seen(keep, points, sides);
         fill_wood(splats, 1, points, keep, thin);
@@ -430,15 +474,15 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
                        const struct wd_tree_model *model)
 {
     size_t leaf_count = (size_t)WD_LEAF_STRATA * WD_STRATUM_SPLATS;
-    uint32_t triangles = model->reduced.wood_index_count / 3;
     struct wd_tree_points discs[3] = {room_for(WD_WOOD_SPLATS), room_for(leaf_count), room_for(WD_WOOD_SPLATS)};
-    struct sized *order = wd_alloc_array(triangles + 1, sizeof *order);
     struct wd_tree_sides sides;
+    struct wood wood;
     wd_tree_sides_init(&sides, &model->full);
-    order_wood(order, triangles, model, &sides);
-    make_wood(splats, &model->reduced, order);
+    gather_wood(&wood, model);
+    order_wood(&wood, &sides);
+    make_wood(splats, &wood);
     fill_leaves(splats, points, &discs[1]);
-    fill_wood_halves(splats, points, model, &sides, order, &discs[0], &discs[2]);
+    fill_wood_halves(splats, points, &wood, &sides, &discs[0], &discs[2]);
     light_discs(splats, points, &model->full, discs);
     struct wd_disc_fit fits;
     const float stratum = 1.0f / WD_SPLAT_STRATA;
@@ -460,7 +504,7 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     for (int class = 0; class < 3; class++)
         wd_tree_points_finish(&discs[class]);
     wd_tree_sides_finish(&sides);
-    free(order);
+    wood_finish(&wood);
 }
 
 /* --- the whole --------------------------------------------------------------------------- */

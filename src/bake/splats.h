@@ -15,11 +15,11 @@ struct wd_splats {
     uint32_t *looks; /* parallel, see shared/continuum.h; as is: */
     uint32_t *lit;   /* ways of shared/sun_ways.h that the tree leaves open, a bit each */
     struct wd_splat_corner *corners; /* model.wood_corners */
-    uint64_t *wood;                  /* model.wood_count triangles of them, large ones first */
+    uint64_t *wood;                  /* model.wood_count triangles of them */
     struct wd_splat_model model;     /* model.wood_first is 0 */
 };
 
-/* Makes them of the model's points and the wood of its reduced mesh. Where leaves or wood are
+/* Makes them of the model's points, the wood of its reduced mesh and the far stem. Where leaves or wood are
  * missing their strata hold what there is. False, logged, for a tree without surface. */
 bool wd_splats_init(struct wd_splats *splats, const struct wd_tree_model *model,
                     const struct wd_point_look *look, const struct wd_log *log);

@@ -30,6 +30,8 @@ WORD_IS(grain, WD_WORD_GRAIN);
 WORD_IS(finer, WD_WORD_FINER);
 WORD_IS(wood_first, WD_WORD_WOOD_FIRST);
 WORD_IS(wood_count, WD_WORD_WOOD_COUNT);
+WORD_IS(wood_stem, WD_WORD_WOOD_STEM);
+WORD_IS(wood_far_stem, WD_WORD_WOOD_FAR_STEM);
 WORD_IS(leaf_past_bark, WD_WORD_LEAF_PAST_BARK);
 WORD_IS(thin_share, WD_WORD_THIN_SHARE);
 WORD_IS(thin_wood, WD_WORD_THIN_WOOD);

@@ -44,14 +44,19 @@ static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton 
 }
 
 /* The thickest branches that the budget allows, with few sides and a ring at every third node. */
-static void build_reduced_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
+static void build_reduced_wood(struct wd_tree_model *model, const struct wd_skeleton *skeleton,
                           const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
+    struct wd_tree_mesh *mesh = &model->reduced;
     if (form->species->form == WD_FORM_FALLING)
         return;
     struct wd_wood_style style = {0.002f, 4, 5, 16};
     wd_wood_style_fit(&style, skeleton, form, REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
+    const struct wd_wood_style few = {INFINITY, style.node_step, style.most_sides, 0};
+    if (mesh->stem_index_count)
+        wd_wood_mesh(&model->far_stem, skeleton, form, &foliage->crown, &few);
+    model->far_stem.wood_index_count = model->far_stem.index_count;
     wd_twigs_mesh(mesh, foliage, form, &reduced_twigs);
     wd_stipes_mesh(mesh, foliage, form);
     mesh->wood_index_count = mesh->index_count;
@@ -297,6 +302,7 @@ static void finish_model(struct wd_tree_model *model, const struct wd_skeleton *
     float factor = form->clip ? 1 : form->height_m / top;
     scale_mesh(&model->full, factor);
     scale_mesh(&model->reduced, factor);
+    scale_mesh(&model->far_stem, factor);
     wd_leaf_box_scale(&model->leaf_box, factor);
     model->leaf_area_m2 = factor * factor * foliage->area_m2;
     wd_tree_model_add_leaves(model);
@@ -341,7 +347,7 @@ bool wd_tree_grow(struct wd_tree_model *model, const struct wd_species *species,
     fit_height(&skeleton, &foliage, &form);
     wd_skeleton_set_radii(&skeleton, &form);
     build_full_wood(&model->full, &skeleton, &foliage, &form);
-    build_reduced_wood(&model->reduced, &skeleton, &foliage, &form);
+    build_reduced_wood(model, &skeleton, &foliage, &form);
     pack_leaves(model, &foliage, species);
     wd_foliage_sets(model->sets[0], &foliage, species);
     model->flower_count = model->sets[0][WD_SET_FLOWERS].leaf_count; /* more than fit are left out */
@@ -361,6 +367,7 @@ void wd_tree_model_finish(struct wd_tree_model *model)
     if (!model->borrowed) {
         wd_tree_mesh_finish(&model->full);
         wd_tree_mesh_finish(&model->reduced);
+        wd_tree_mesh_finish(&model->far_stem);
         wd_tree_mesh_finish(&model->spray);
         wd_tree_mesh_finish(&model->spray_shade);
         for (int i = 0; i < 2 * WD_LEAF_SETS; i++)

@@ -15,6 +15,7 @@ struct wd_tree_mesh {
     uint32_t vertex_count, vertex_capacity;
     uint32_t index_count, index_capacity; /* three a triangle */
     uint32_t wood_index_count;            /* indices [0, wood_index_count) are wood */
+    uint32_t stem_index_count;            /* the first of them: a stem with root lobes */
     float min_m[3], max_m[3];             /* bounds, set by wd_tree_mesh_update_bounds */
     float reach_m;                        /* from the z axis to the farthest vertex, likewise */
 };

@@ -142,6 +142,7 @@ void wd_tree_model_fit_openness(struct wd_tree_model *model)
     fill_curve(curve, bands, find_bands(bands, &tally));
     turn_mesh(&model->full, curve);
     turn_mesh(&model->reduced, curve);
+    turn_mesh(&model->far_stem, curve);
     for (uint32_t i = 0; model->leaves && i < model->leaf_count + model->flower_count; i++)
         turn_tint(&model->leaves[i].tint, curve);
 }

@@ -448,9 +448,13 @@ void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
     struct wd_bark_tint bark = wd_bark_tint_of(form->species);
     struct foot foot = foot_of(skeleton, form, style);
     struct tube tube = {.mesh = mesh, .form = form, .crown = crown, .bark = &bark, .foot = &foot};
-    for (size_t b = 0; b < skeleton->branch_count; b++)
+    for (size_t b = 0; b < skeleton->branch_count; b++) {
+        bool first = mesh->index_count == 0;
         if (is_drawn(skeleton, &skeleton->branches[b], style))
             add_branch(&tube, skeleton, &skeleton->branches[b], style);
+        if (first && tube.trunk && foot.sides)
+            mesh->stem_index_count = mesh->index_count;
+    }
 }
 
 /* Rings that would fold are left out; ends that are broken or thick, of snags and coconuts, take two more a side. */
