@@ -100,6 +100,7 @@ struct wd_tree_leaf {
 };
 WD_STATIC_ASSERT_SIZE(wd_tree_leaf, 24);
 #define WD_LEAF_FORM(leaf) ((leaf).shading >> 30)
+#define WD_LEAF_FORMS 4 /* that it can tell apart */
 #define WD_LEAF_ARCH(leaf) (WD_FLOAT(((leaf).shading >> 24) & 63u) * (1.0f / 63.0f))
 #define WD_LEAF_FLEXIBILITY(leaf) (((leaf).shading >> 16) & 0xffu)
 

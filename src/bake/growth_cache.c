@@ -24,10 +24,9 @@ enum { MESHES = 5, MESH_WORDS = 6, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD
        UPPER = (int)(WD_EYE_RINGS * WD_UPPER_KINDS), SHADE_AT = UPPER_AT + UPPER + (int)WD_EYE_RINGS,
        FIGURES = SHADE_AT + 5,
        SETS = 2 * WD_LEAF_SETS, SET_WORDS = 10, SET_AT = FIGURES + MESHES * MESH_WORDS,
-       LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 3 };
+       LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 4 };
 static const size_t MAX_MODEL_BYTES = (size_t)512 << 20;
 static const uint32_t MAX_VERTICES = 1u << 26;
-static const uint32_t MAX_FORMS = 4; /* that a leaf can name */
 
 /* --- keys -------------------------------------------------------------------------------- */
 
@@ -280,7 +279,7 @@ static bool unpack_set(struct wd_leaf_set *set, const uint8_t *words, struct blo
         .arch_range = float_of(wd_cache_get_word(words, 6)),
         .grain = float_of(wd_cache_get_word(words, 9)),
     };
-    if (set->forms > MAX_FORMS || set->corner_count > MAX_VERTICES || set->leaf_count > leaves ||
+    if (set->forms > WD_LEAF_FORMS || set->corner_count > MAX_VERTICES || set->leaf_count > leaves ||
         (set->leaf_count && !set->forms))
         return false;
     set->corners = unpack_vertices(block, wd_cache_get_word(words, 7),
@@ -329,6 +328,7 @@ static void store_model(struct wd_bake_cache *cache, uint64_t key, struct wd_tre
         pack_mesh(&block, block.bytes + 4 * (FIGURES + i * MESH_WORDS), meshes[i]);
     wd_cache_put_word(block.bytes, LEAVES, model->leaf_count);
     wd_cache_put_word(block.bytes, LEAVES + 1, model->flower_count);
+    wd_cache_put_word(block.bytes, LEAVES + 3, model->spray_forms);
     wd_cache_put_word(block.bytes, LEAVES + 2,
              (uint32_t)pack_vertices(&block, model->leaves, model->leaf_count + model->flower_count,
                                      sizeof *model->leaves));
@@ -349,7 +349,9 @@ static bool unpack_leaves(struct wd_tree_model *model, struct block *block)
                                     sizeof *model->leaves);
     model->leaf_count = leaves;
     model->flower_count = flowers;
-    bool ok = model->leaves != NULL;
+    model->spray_forms = wd_cache_get_word(words, LEAVES + 3);
+    bool twigs = model->spray.index_count > 0;
+    bool ok = model->leaves && model->spray_forms <= WD_LEAF_FORMS && twigs == (model->spray_forms > 0);
     for (int i = 0; i < SETS && ok; i++)
         ok = unpack_set(&model->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS],
                         words + 4 * (SET_AT + i * SET_WORDS), block,

@@ -147,11 +147,11 @@ static float mean_leaf_m(const struct wd_tree_model *model)
     return (float)(sum / (double)model->leaf_count);
 }
 
-/* How leaves of a model's meshes thin out with distance: fronds keep their form. */
+/* How leaves of a model's meshes thin out with distance: fronds do not. */
 static void describe_leaves(struct wd_mesh_range ranges[2], const struct wd_tree_model *model)
 {
     struct wd_mesh_range *full = &ranges[WD_LEVEL_MESH], *reduced = &ranges[WD_LEVEL_REDUCED];
-    if (!model->leaf_count || model->spray.index_count == 0)
+    if (!model->leaf_count || model->spray_forms != 1)
         return;
     full->leaf_count = model->leaf_count;
     float leaf_m = mean_leaf_m(model);
@@ -185,6 +185,7 @@ static void place_model(struct building *building, uint32_t index)
     twig->leaf_count = model->leaf_count + model->flower_count;
     twig->box = model->leaf_box;
     twig->reach = model->spray_reach;
+    twig->forms = model->spray_forms;
     building->leaves += aligned(twig->leaf_count);
 }
 

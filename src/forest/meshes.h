@@ -44,7 +44,8 @@ struct wd_twig_range {
     struct wd_mesh_range shade;      /* the same for shadow maps */
     uint32_t first_leaf, leaf_count; /* flowers included; first: a multiple of WD_MESH_ALIGNMENT */
     struct wd_leaf_box box;
-    float reach; /* of wd_spray_share; 0 without twigs */
+    float reach;    /* of wd_spray_share; 0 without twigs */
+    uint32_t forms; /* in either mesh, one after another; 0 without twigs */
 };
 
 struct wd_forest_meshes {

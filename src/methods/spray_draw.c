@@ -112,7 +112,7 @@ static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, 
     const struct wd_tree *tree = &forest->world->trees[tree_index];
     const struct wd_twig_range *range = &forest->meshes.twigs[model];
     const struct bearer bearer = {.index = tree_index,
-                                  .triangles = twig_mesh(draw, range)->index_count / 3,
+                                  .triangles = twig_mesh(draw, range)->index_count / range->forms / 3,
                                   .reach = gather->scale * range->reach,
                                   .box = &range->box,
                                   .stand = wd_stand_of(draw, tree_index)};
@@ -125,6 +125,21 @@ static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, 
         gather_leaf(gather, draw, &bearer, &forest->meshes.host_leaves[range->first_leaf + i], i);
 }
 
+/* Puts the gathered in order of their forms, of which `counts` get how many there are. */
+static void deal_forms(struct wd_spray_instance *to, uint32_t counts[WD_LEAF_FORMS], const struct wd_tree_draw *draw,
+                       const struct wd_twig_range *range, const struct gather *gather)
+{
+    const struct wd_tree_leaf *leaves = draw->forest->meshes.host_leaves + range->first_leaf;
+    for (uint32_t form = 0; form < range->forms; form++) {
+        counts[form] = 0;
+        for (size_t i = 0; i < gather->count; i++)
+            if (WD_LEAF_FORM(leaves[gather->items[i].leaf]) % range->forms == form) {
+                *to++ = gather->items[i];
+                counts[form]++;
+            }
+    }
+}
+
 static void draw_range(const struct wd_tree_draw *draw, const struct wd_twig_range *range,
                        const struct gather *gather)
 {
@@ -134,7 +149,8 @@ static void draw_range(const struct wd_tree_draw *draw, const struct wd_twig_ran
     void *memory = wd_cmd_upload(draw->cmd, gather->count * sizeof *gather->items, &instances);
     if (!memory)
         return;
-    memcpy(memory, gather->items, gather->count * sizeof *gather->items);
+    uint32_t counts[WD_LEAF_FORMS];
+    deal_forms(memory, counts, draw, range, gather);
     const struct wd_binding bindings[] = {
         draw->uniforms,
         WD_BIND_BUFFER(&forest->trees),
@@ -157,11 +173,15 @@ static void draw_range(const struct wd_tree_draw *draw, const struct wd_twig_ran
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
     wd_cmd_bind_indices_of(draw->cmd, &forest->meshes.indices, mesh->index_type);
-    wd_cmd_draw_indexed(draw->cmd,
-                        &(VkDrawIndexedIndirectCommand){mesh->index_count, (uint32_t)gather->count,
-                                                        mesh->first_index, 0, 0});
-    draw->stats->draw_calls++;
-    draw->stats->triangles += (uint64_t)mesh->index_count / 3 * gather->count;
+    uint32_t indices = mesh->index_count / range->forms;
+    for (uint32_t form = 0, first = 0; form < range->forms; first += counts[form++]) {
+        if (!counts[form])
+            continue;
+        wd_cmd_draw_indexed(draw->cmd, &(VkDrawIndexedIndirectCommand){indices, counts[form],
+                                                                       mesh->first_index + form * indices, 0, first});
+        draw->stats->draw_calls++;
+    }
+    draw->stats->triangles += (uint64_t)indices / 3 * gather->count;
 }
 
 static bool has_sprays(const struct wd_tree_draw *draw, const struct wd_mesh_batch *batch)

@@ -92,7 +92,7 @@ static uint64_t count_triangles(const struct wd_trace_near *near, const struct w
     for (size_t i = 0; i < near->count; i++) {
         const struct wd_trace_near_tree *at = &near->trees[i];
         const struct wd_tree_model *grown = &wd_trace_model_of(scene->models, &scene->trees[at->tree])->grown;
-        sum += count_of(at, scale * grown->spray_reach) * (grown->spray.index_count / 3);
+        sum += count_of(at, scale * grown->spray_reach) * (grown->spray.index_count / grown->spray_forms / 3);
     }
     return sum;
 }
@@ -115,8 +115,10 @@ static void add_twig(struct wd_tree_mesh *mesh, const struct wd_tree_model *grow
     struct wd_vec3 shading = wd_leaf_shading(from->shading);
     struct wd_leaf_axes axes = wd_leaf_axes_of(from->turn);
     float size_m = wd_leaf_size_m(*from, grown->leaf_box);
-    uint32_t first = mesh->vertex_count;
-    for (uint32_t i = 0; i < twig->vertex_count; i++) {
+    uint32_t form = WD_LEAF_FORM(*from) % grown->spray_forms;
+    uint32_t vertices = twig->vertex_count / grown->spray_forms, indices = twig->index_count / grown->spray_forms;
+    uint32_t first = mesh->vertex_count - form * vertices; /* of the first form's, were it there */
+    for (uint32_t i = form * vertices; i < (form + 1) * vertices; i++) {
         struct wd_tree_vertex vertex = twig->vertices[i];
         float n[3];
         wd_unpack_normal(vertex.normal, n);
@@ -134,7 +136,7 @@ static void add_twig(struct wd_tree_mesh *mesh, const struct wd_tree_model *grow
         vertex.tint = tinted(vertex.tint, blade ? from->tint : from->tint | 0xffffffu);
         wd_tree_mesh_add_vertex(mesh, &vertex);
     }
-    for (uint32_t i = 0; i < twig->index_count; i += 3)
+    for (uint32_t i = form * indices; i < (form + 1) * indices; i += 3)
         wd_tree_mesh_add_triangle(mesh, first + twig->indices[i], first + twig->indices[i + 1],
                                   first + twig->indices[i + 2]);
 }

@@ -280,8 +280,10 @@ static void build_spray(struct wd_tree_model *model, const struct wd_foliage *fo
         return;
     wd_leaf_spray_mesh(&model->spray, species, wd_foliage_mean_m(foliage));
     wd_leaf_spray_shade_mesh(&model->spray_shade, species, wd_foliage_mean_m(foliage));
-    if (model->spray.index_count > 0)
-        model->spray_reach = species->leaf.shape == WD_LEAF_NEEDLES ? 0.8f : 1;
+    if (model->spray.index_count == 0)
+        return;
+    model->spray_reach = species->leaf.shape == WD_LEAF_NEEDLES ? 0.8f : 1;
+    model->spray_forms = wd_leaf_spray_forms(species);
 }
 
 /* Leaves of the reduced mesh get the size with which it covers as much as the full one. */

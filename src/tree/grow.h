@@ -70,6 +70,7 @@ struct wd_tree_model {
     float spray_reach;           /* of wd_spray_share; 0 without twigs */
     struct wd_tree_mesh spray;   /* the twig that each leaf stands for (tree/leaf_spray.h), or
                                     empty where it is one leaf */
+    uint32_t spray_forms;        /* in that mesh and the next, one after another; 0 without twigs */
     struct wd_tree_mesh spray_shade; /* the same for shadow maps */
     float height_m;       /* of the highest point */
     float crown_radius_m; /* mean horizontal reach of the crown */

@@ -1,7 +1,7 @@
 #include "tree/leaf_parts.h"
 
 /* More leaflets than this are drawn as kites, fewer with their outline. */
-enum { OUTLINED_LEAFLETS = 16, AXIS_PIECES = 6, BLADE_PIECES = 4, PINNULES = 9 };
+enum { OUTLINED_LEAFLETS = 16, AXIS_PIECES = 6, BLADE_PIECES = 4, PINNULES = 9, NEAR_PINNULES = 12 };
 
 /* The leaf's axis: an arc in the plane of y and z that bends down by `arch` radians in all, and
  * aside by `sway` of its length toward the tip. */
@@ -60,17 +60,67 @@ static float leaflet_share(const struct wd_species *species, float t)
     return 0.55f + 0.45f * (float)wd_dsin(WD_PI * (0.12 + 0.76 * (double)t));
 }
 
+/* Where a pinnule is: `half` of its foot along the midrib. */
+struct pinnule {
+    struct wd_vec3 foot, out, across, above;
+    float reach, half;
+};
+
+/* A point at share y of its reach; pinnules are vaulted, and their ends hang. */
+static uint32_t add_pinnule_corner(struct wd_leaf_template *leaf, const struct pinnule *at, float x, float y)
+{
+    struct wd_vec3 p = wd_v3_mad(at->foot, at->out, y * at->reach);
+    p = wd_v3_mad(p, at->across, x * at->half);
+    p = wd_v3_mad(p, at->above, (0.7f * y - 0.35f * y * y) * at->reach - 0.3f * x * x * at->half);
+    struct wd_vec3 n = wd_v3_mad(at->above, at->out, 0.7f * y - 0.9f);
+    n = wd_v3_mad(n, at->across, 0.7f * x);
+    return wd_leaf_add_corner(leaf, p, wd_v3_unit(n), 0.5f + 0.5f * x, y, wd_mixf(0.3f, 1, y));
+}
+
+/* Oblong, its end rounded and bent toward the pinna's tip. */
+static void add_pinnule(struct wd_leaf_template *leaf, const struct pinnule *at, float forward)
+{
+    uint32_t foot[2] = {add_pinnule_corner(leaf, at, -0.9f, 0), add_pinnule_corner(leaf, at, 0.9f, 0)};
+    uint32_t end[2] = {add_pinnule_corner(leaf, at, -0.8f, 0.72f), add_pinnule_corner(leaf, at, 0.8f, 0.72f)};
+    uint32_t tip = add_pinnule_corner(leaf, at, 0.3f * forward, 1);
+    wd_leaf_add_triangle(leaf, foot[0], foot[1], end[1]);
+    wd_leaf_add_triangle(leaf, foot[0], end[1], end[0]);
+    wd_leaf_add_triangle(leaf, end[0], end[1], tip);
+}
+
 /* A pinna: small leaves left and right of its midrib. */
 static void add_pinna(struct wd_leaf_template *leaf, const struct wd_blade_place *place)
 {
     for (int i = 0; i < 2 * PINNULES; i++) {
         float t = ((float)(i / 2) + 0.3f) / PINNULES, side = i & 1 ? -1.0f : 1.0f;
-        float reach = place->width * (0.68f - 0.38f * t);
+        float reach = place->width * (0.58f - 0.32f * t);
         float foot = place->length / PINNULES * 1.5f; /* grown together */
         struct wd_vec3 p = wd_v3_mad(place->foot, place->along, t * place->length);
         p = wd_v3_mad(p, place->above, -0.08f * t * t * place->length);
         struct wd_vec3 out = wd_v3_mad(wd_v3_scale(place->across, side), place->along, 0.35f);
         wd_leaf_add_needle(leaf, p, wd_v3_unit(out), wd_v3_scale(place->along, -side), reach, foot);
+    }
+}
+
+/* The same from near, on its midrib. */
+static void add_near_pinna(struct wd_leaf_template *leaf, const struct wd_blade_place *place)
+{
+    struct wd_vec3 end = wd_v3_mad(place->foot, place->along, place->length);
+    wd_leaf_add_stalk(leaf, place->foot, wd_v3_mad(end, place->above, -0.08f * place->length), place->across,
+                      0.07f * place->width);
+    for (int i = 0; i < 2 * NEAR_PINNULES; i++) {
+        float t = ((float)(i / 2) + 0.3f) / NEAR_PINNULES, side = i & 1 ? -1.0f : 1.0f;
+        struct wd_vec3 p = wd_v3_mad(place->foot, place->along, t * place->length);
+        struct wd_vec3 out = wd_v3_unit(wd_v3_mad(wd_v3_scale(place->across, side), place->along, 0.35f));
+        const struct pinnule at = {
+            .foot = wd_v3_mad(p, place->above, -0.08f * t * t * place->length),
+            .out = out,
+            .across = wd_v3_scale(place->along, -side),
+            .above = wd_v3_unit(wd_v3_cross(wd_v3_scale(place->along, -side), out)),
+            .reach = 0.53f * place->width * (1 - 0.85f * t * t * t),
+            .half = 0.5f * place->length / NEAR_PINNULES,
+        };
+        add_pinnule(leaf, &at, -side);
     }
 }
 
@@ -111,7 +161,9 @@ static void add_leaflet(struct wd_leaf_template *leaf, const struct wd_species *
                         const struct wd_leaf_outline *outline,
                         const struct wd_blade_place *place, struct wd_random *random)
 {
-    if (species->leaf.compound == WD_COMPOUND_BIPINNATE)
+    if (species->leaf.compound == WD_COMPOUND_BIPINNATE && outline == wd_leaf_outline_near(species))
+        add_near_pinna(leaf, place);
+    else if (species->leaf.compound == WD_COMPOUND_BIPINNATE)
         add_pinna(leaf, place);
     else if (species->leaf.shape == WD_LEAF_BLADE)
         add_strap(leaf, place, random);

@@ -155,6 +155,11 @@ static void add_needles(struct spray *spray, const struct wd_species *species, f
 
 /* --- the whole --------------------------------------------------------------------------- */
 
+uint32_t wd_leaf_spray_forms(const struct wd_species *species)
+{
+    return species->leaf.compound == WD_COMPOUND_BIPINNATE ? WD_LEAF_VARIANTS : 1;
+}
+
 /* Whether a single leaf has lobes or teeth that trees' meshes leave out. */
 static bool has_finer_outline(const struct wd_species *species,
                               const struct wd_leaf_template *near)
@@ -188,11 +193,17 @@ static void pack(struct wd_tree_mesh *mesh, const struct wd_leaf_template *twig,
                                   twig->indices[i + 2]);
 }
 
-static void make(struct wd_tree_mesh *mesh, const struct wd_species *species, struct spray *spray)
+/* A leaf as shadows show it: two triangles, or a frond's pinnae. */
+static enum wd_leaf_form shade_form(const struct wd_species *species)
 {
-    struct wd_leaf_template near, kite;
-    wd_leaf_template_init(&near, species, WD_LEAF_AS_NEAR, 0);
-    wd_leaf_template_init(&kite, species, WD_LEAF_AS_KITE, 0);
+    return wd_leaf_spray_forms(species) > 1 ? WD_LEAF_AS_BLADE : WD_LEAF_AS_KITE;
+}
+
+static void make_form(struct spray *spray, const struct wd_species *species, uint32_t variant)
+{
+    struct wd_leaf_template near, shade;
+    wd_leaf_template_init(&near, species, WD_LEAF_AS_NEAR, variant);
+    wd_leaf_template_init(&shade, species, shade_form(species), variant);
     float real_m = 0.01f * species->leaf.length_cm;
     int count = (int)(spray->size_m * spray->size_m / (real_m * real_m) + 0.5f);
     int most = WD_SPRAY_TRIANGLES / (int)(near.index_count / 3 + 1);
@@ -200,11 +211,17 @@ static void make(struct wd_tree_mesh *mesh, const struct wd_species *species, st
     if (species->leaf.shape == WD_LEAF_NEEDLES)
         add_needles(spray, species, wd_leaf_template_area(&near));
     else if ((count > 1 && most > 1) || has_finer_outline(species, &near))
-        add_leaves(spray, species, spray->shade ? &kite : &near, count < most ? count : most);
+        add_leaves(spray, species, spray->shade ? &shade : &near, count < most ? count : most);
+    wd_leaf_template_finish(&near);
+    wd_leaf_template_finish(&shade);
+}
+
+static void make(struct wd_tree_mesh *mesh, const struct wd_species *species, struct spray *spray)
+{
+    for (uint32_t i = 0; i < wd_leaf_spray_forms(species); i++)
+        make_form(spray, species, i);
     pack(mesh, &spray->twig, species);
     wd_tree_mesh_update_bounds(mesh);
-    wd_leaf_template_finish(&near);
-    wd_leaf_template_finish(&kite);
     wd_leaf_template_finish(&spray->twig);
 }
 

@@ -8,6 +8,10 @@
 /* Triangles of a twig at most, as it is seen and as it throws its shadow. */
 enum { WD_SPRAY_TRIANGLES = 1500, WD_SPRAY_SHADE_TRIANGLES = 150 };
 
+/* Of ferns each of the forms of its fronds has a near form; of others all twigs are alike. Forms have as many corners
+ * and triangles each and stand one after another in the meshes below. */
+uint32_t wd_leaf_spray_forms(const struct wd_species *species);
+
 /* Makes the twig for drawn leaves `size_m` long: leaves or needles of their real size with the
  * drawn one's area in all, with lobes and teeth, and their wood. Positions are in units of size_m in the leaf's frame (x
  * across, y along, z above), tints of leaves white, of wood the twig's; kind's flexibility is what

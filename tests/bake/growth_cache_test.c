@@ -80,7 +80,7 @@ static void assert_same_model(const struct wd_tree_model *a, const struct wd_tre
     for (int i = 0; i < 2 * WD_LEAF_SETS; i++)
         assert_true(a->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS].grain ==
                     b->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS].grain);
-    assert_true(a->leaf_count > 0 && a->spray_reach == b->spray_reach);
+    assert_true(a->leaf_count > 0 && a->spray_reach == b->spray_reach && a->spray_forms == b->spray_forms);
     assert_true(a->height_m == b->height_m && a->crown_radius_m == b->crown_radius_m);
     assert_true(a->crown_base_m == b->crown_base_m && a->dbh_m == b->dbh_m);
     assert_true(a->age_years == b->age_years && a->leaf_area_m2 == b->leaf_area_m2);

@@ -25,6 +25,7 @@ static void make_model(struct made_scene *made, struct wd_tree_leaf *leaf)
     grown->leaves = leaf;
     grown->leaf_count = 1;
     grown->spray_reach = 1;
+    grown->spray_forms = 1;
     grown->sets[0][WD_SET_LEAVES] =
         (struct wd_leaf_set){.corner_count = 4, .index_count = 6, .leaf_count = 1};
     made_scene_add_quad(made, WD_V3(-0.25f, -0.25f, 0.5f), WD_V3(0.5f, 0, 0), WD_V3(0, 0.5f, 0),

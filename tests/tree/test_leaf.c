@@ -299,19 +299,57 @@ static void twigs_keep_the_area(void **state)
     wd_arena_finish(&arena);
 }
 
-/* Near, a leaf of its real size is itself with all its lobes; a frond is whole at any distance. */
+/* Near, a leaf of its real size is itself with all its lobes; a palm's frond is whole at any distance. */
 static void a_leaf_of_its_real_size_needs_no_twig(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    struct wd_species oak = test_species(&arena, "oak"), fern = test_species(&arena, "fern");
+    struct wd_species oak = test_species(&arena, "oak"), palm = test_species(&arena, "coconut");
     struct wd_tree_mesh spray = {0}, frond = {0};
     wd_leaf_spray_mesh(&spray, &oak, 0.01f * oak.leaf.length_cm);
     assert_int_equal(spray.index_count / 3, 28);
     assert_float_equal(spray_leaf_area(&spray) / (double)wd_leaf_unit_area(&oak), 1, 1e-3);
-    wd_leaf_spray_mesh(&frond, &fern, 0.01f * fern.leaf.length_cm);
+    wd_leaf_spray_mesh(&frond, &palm, 0.01f * palm.leaf.length_cm);
     assert_int_equal(frond.index_count, 0);
     wd_tree_mesh_finish(&spray);
+    wd_arena_finish(&arena);
+}
+
+/* Near, each of a fern's fronds has pinnules with a vault and slits between them, along the same midribs and of the
+ * same area as far off, and throws the shadow of what it is far off. */
+static void a_frond_has_a_near_form_of_each_of_its_forms(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    struct wd_species fern = test_species(&arena, "fern");
+    struct wd_tree_mesh near = {0}, shade = {0};
+    wd_leaf_spray_mesh(&near, &fern, 0.01f * fern.leaf.length_cm);
+    wd_leaf_spray_shade_mesh(&shade, &fern, 0.01f * fern.leaf.length_cm);
+    assert_int_equal(wd_leaf_spray_forms(&fern), WD_LEAF_VARIANTS);
+    assert_int_equal(near.vertex_count % WD_LEAF_VARIANTS, 0);
+    for (uint32_t i = 0; i < WD_LEAF_VARIANTS; i++) {
+        struct wd_leaf_template far;
+        wd_leaf_template_init(&far, &fern, WD_LEAF_AS_BLADE, i);
+        struct wd_tree_mesh part = near;
+        uint32_t corners = near.vertex_count / WD_LEAF_VARIANTS;
+        part.indices += i * (near.index_count / WD_LEAF_VARIANTS);
+        part.index_count /= WD_LEAF_VARIANTS;
+        for (uint32_t k = 0; k < part.index_count; k++)
+            assert_in_range(part.indices[k], i * corners, (i + 1) * corners - 1);
+        assert_true(part.index_count > 2 * far.index_count);
+        assert_float_equal(spray_leaf_area(&part) / (double)wd_leaf_template_area(&far), 1, 0.02);
+        assert_int_equal(shade.vertex_count, WD_LEAF_VARIANTS * far.corner_count);
+        for (uint32_t k = 0; k < 14; k++) { /* of its midrib */
+            const float *seen = near.vertices[i * corners + k].position_m;
+            const float *shown = shade.vertices[i * far.corner_count + k].position_m;
+            struct wd_vec3 p = far.corners[k].p;
+            assert_float_equal(wd_v3_length(wd_v3_sub(wd_v3_of(seen), p)), 0, 0.04f);
+            assert_float_equal(wd_v3_length(wd_v3_sub(wd_v3_of(shown), p)), 0, 1e-6f);
+        }
+        wd_leaf_template_finish(&far);
+    }
+    wd_tree_mesh_finish(&near);
+    wd_tree_mesh_finish(&shade);
     wd_arena_finish(&arena);
 }
 
@@ -443,6 +481,7 @@ int main(void)
         cmocka_unit_test(leaves_of_large_trees_stay_small),
         cmocka_unit_test(twigs_keep_the_area),
         cmocka_unit_test(a_leaf_of_its_real_size_needs_no_twig),
+        cmocka_unit_test(a_frond_has_a_near_form_of_each_of_its_forms),
         cmocka_unit_test(packed_leaves_stand_where_they_grew),
         cmocka_unit_test(packed_vertices_stay_in_their_box),
         cmocka_unit_test(leaves_come_from_their_places),
