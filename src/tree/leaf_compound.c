@@ -117,7 +117,7 @@ static void add_near_pinna(struct wd_leaf_template *leaf, const struct wd_blade_
             .out = out,
             .across = wd_v3_scale(place->along, -side),
             .above = wd_v3_unit(wd_v3_cross(wd_v3_scale(place->along, -side), out)),
-            .reach = 0.53f * place->width * (1 - 0.85f * t * t * t),
+            .reach = 0.474f * place->width * (1 - 0.85f * t * t * t),
             .half = 0.5f * place->length / NEAR_PINNULES,
         };
         add_pinnule(leaf, &at, -side);

@@ -343,7 +343,7 @@ static void a_frond_has_a_near_form_of_each_of_its_forms(void **state)
             const float *seen = near.vertices[i * corners + k].position_m;
             const float *shown = shade.vertices[i * far.corner_count + k].position_m;
             struct wd_vec3 p = far.corners[k].p;
-            assert_float_equal(wd_v3_length(wd_v3_sub(wd_v3_of(seen), p)), 0, 0.04f);
+            assert_float_equal(wd_v3_length(wd_v3_sub(wd_v3_of(seen), p)), 0, 0.01f);
             assert_float_equal(wd_v3_length(wd_v3_sub(wd_v3_of(shown), p)), 0, 1e-6f);
         }
         wd_leaf_template_finish(&far);
