@@ -715,8 +715,9 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     } else {
         haze_end = wd_haze_place(shelter.beside, shelter.layer_m, 0.0);
         wd_floor_sky on_floor = floor_sky(pixel.rel);
-        on_floor.share *= is_curtain(pixel) ? 0.0 : 1.0; /* whose squares nobody has asked for */
-        shelter = floor_shelter(shelter, on_floor, pixel.openness * through_herbs(shelter.herbs));
+        if (is_curtain(pixel)) /* whose squares nobody has asked for */
+            on_floor = NO_FLOOR;
+        shelter = floor_shelter(shelter, on_floor, on_floor.stems * pixel.openness * through_herbs(shelter.herbs));
         alone.edge = edge_of(pixel, shelter, on_floor);
         place.own = through_sward(pixel.openness, cascade);
         place.sheet = dot(pixel.normal, frame.sun_direction) > 0.0 ? pixel.normal : vec3(0.0);

@@ -40,15 +40,22 @@ float through_herbs(float layers)
 }
 
 /* What crowns leave the ground about the eye (shared/crown_sky.h): shares of the quarters' light on level ground, and of
- * their low sky's. `share`: how far that is known. */
+ * their low sky's. `share`: how far that is known. `stems`: what those beside the place leave of it. */
 struct wd_floor_sky {
     float share;
     vec4 level, low;
+    float stems;
 };
 
-const wd_floor_sky NO_FLOOR = wd_floor_sky(0.0, vec4(0.0), vec4(0.0));
+const wd_floor_sky NO_FLOOR = wd_floor_sky(0.0, vec4(0.0), vec4(0.0), 1.0);
 
 #ifdef CROWN_SKY
+float stem_hides(uint stem, vec2 from_middle_m)
+{
+    vec2 apart_m = vec2(WD_STEM_EAST_M(stem), WD_STEM_NORTH_M(stem)) - from_middle_m;
+    return stem != 0u ? wd_stem_hides(length(apart_m), WD_STEM_M(stem)) : 0.0;
+}
+
 /* Between four squares; the roots are mixed. */
 wd_floor_sky floor_sky(vec3 rel)
 {
@@ -58,15 +65,18 @@ wd_floor_sky floor_sky(vec3 rel)
         return left;
     vec2 at = (rel.xy + push.camera_m) * (1.0 / WD_FLOOR_SKY_M) - 0.5, low = floor(at);
     vec2 next = at - low, here = 1.0 - next;
+    float hidden = 0.0;
     for (int i = 0; i < 4; i++) {
         ivec2 on = ivec2(i & 1, i >> 1), square = ivec2(low) + on;
-        vec2 shares = mix(here, next, vec2(on));
+        vec2 shares = mix(here, next, vec2(on)), from_m = WD_FLOOR_SKY_M * (next - vec2(on));
         uvec4 texel = texelFetch(CROWN_SKY, int(wd_floor_sky_texel(square.x, square.y)));
+        hidden = max(hidden, max(stem_hides(texel.z, from_m), stem_hides(texel.w, from_m)));
         left.level += shares.x * shares.y * unpackUnorm4x8(texel.x);
         left.low += shares.x * shares.y * unpackUnorm4x8(texel.y);
     }
     left.level *= left.level;
     left.low *= left.low;
+    left.stems = 1.0 - left.share * hidden;
     return left;
 }
 #else

@@ -303,6 +303,7 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     for (uint32_t i = 0; i < forest->model_count; i++) {
         wd_variant_describe(&forest->host_models[i], params->scene, i, &work->grown[i]);
         forest->crown_shades[i] = work->grown[i].shade;
+        forest->stems_m[i] = 0.5f * work->grown[i].dbh_m;
         describe_content(work, i);
         forest->falls |= forest->host_models[i].fall_mps > 0.0f;
     }
@@ -330,6 +331,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
     size_t slots = forest->model_count ? forest->model_count : 1;
     forest->host_models = wd_alloc_array(slots, sizeof *forest->host_models);
     forest->crown_shades = wd_alloc_array(slots, sizeof *forest->crown_shades);
+    forest->stems_m = wd_alloc_array(slots, sizeof *forest->stems_m);
     forest->model_keys = wd_alloc_array(slots, sizeof *forest->model_keys);
     forest->cache.directory = params->cache_dir ? wd_strdup(params->cache_dir) : NULL;
     wd_shared_log_init(&forest->log, params->log);
@@ -380,6 +382,7 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
         vkDestroySampler(gpu->device, forest->card_sampler, NULL);
     free(forest->host_models);
     free(forest->crown_shades);
+    free(forest->stems_m);
     free(forest->model_keys);
     free((char *)forest->cache.directory);
     free(forest->host_fades);

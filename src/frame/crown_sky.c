@@ -219,7 +219,8 @@ static struct wd_sky_crown crown_of(const struct work *work, uint32_t record)
                                  .half_m = fmaxf(shade->half_m * pose.up, 0.1f),
                                  .middle_m = shade->middle_m * pose.up,
                                  .per_m = shade->per_m / cbrtf(pose.across * pose.across * pose.up),
-                                 .steeper = shade->steeper};
+                                 .steeper = shade->steeper,
+                                 .stem_m = work->forest->stems_m[index] * pose.across};
 }
 
 /* --- the floor ----------------------------------------------------------------------------- */

@@ -25,13 +25,13 @@ static const struct row {
     struct bound bounds[MOST_FORMS];
 } rows[] = {
     /* cards: +5.9 (+2.3 while needles lacked the wax of sides that they do not show, and had the bark's colour: docs/trees.md);
-       discs: -3.3 (-0.7 by means about each step of the table in place of least squares, by which six species are nearer) */
+       discs: 0.0 (-3.3 while their first triangles of wood were a small part of a stem with root lobes) */
     {"species/pine.json",
      2,
      {{"full", {-0.5, 2.5}, {-2, 1}, false},
       {"reduced", {-0.5, 2.5}, {-2.5, 1}, true},
       {"cards", {-1, 2}, {4, 8}, true},
-      {"splats", {-2, 1}, {-4, -2}, true}}},
+      {"splats", {-2, 1}, {-1, 1.5}, true}}},
     /* plumes let as little through as blades: +13.3 otherwise, +0.1 */
     {"species/grass.json", 0, {{"full", {-1.5, 1.5}, {-1.5, 2}, true}}},
     /* tufts that stand free have their models' tables, and are as wide as they grew: -12.9 otherwise, +0.2 */
