@@ -45,20 +45,10 @@ float within_stand(vec2 place_m)
     return 1.0 - smoothstep(OPEN.x, OPEN.y, sum * (1.0 / 8.0));
 }
 
-/* Stems about the square: the two nearest, and what all of them hide of the sky in the mean of its places. */
-struct square_stems {
-    uvec2 nearest;
-    float hide;
-};
-
-const int PLACES = 4; /* each way */
-
-square_stems stems_about(uint job, vec2 aside_m)
+/* The two stems that stand nearest to the square's middle. */
+uvec2 stems_about(uint job, vec2 aside_m)
 {
-    square_stems stems = square_stems(uvec2(0u), 0.0);
-    float hidden[PLACES * PLACES];
-    for (int k = 0; k < PLACES * PLACES; k++)
-        hidden[k] = 0.0;
+    uvec2 nearest = uvec2(0u);
     vec2 nearest_m = vec2(WD_STEM_FAR_M), middle_m = vec2(foot_of(job).xy) * 0.001 + aside_m;
     ivec2 first = ivec2(push.first_column, push.first_row), most = ivec2(push.columns, push.rows) - 1;
     ivec2 low = clamp(ivec2(floor((middle_m - WD_STEM_FAR_M) / WD_CROWN_SKY_CELL_M)) - first, ivec2(0), most);
@@ -69,25 +59,15 @@ square_stems stems_about(uint job, vec2 aside_m)
             wd_sky_crown crown = crowns[i];
             vec2 apart_m = vec2(ivec2(crown.foot_mm[0], crown.foot_mm[1]) - foot_of(job).xy) * 0.001 - aside_m;
             float away_m = length(apart_m);
-            if (away_m >= WD_STEM_FAR_M)
+            if (away_m >= nearest_m.y || crown.stem_m <= 0.0)
                 continue;
-            for (int k = 0; k < PLACES * PLACES; k++) {
-                vec2 place = (vec2(k % PLACES, k / PLACES) + 0.5) / float(PLACES) - 0.5;
-                hidden[k] = max(hidden[k], wd_stem_hides(length(apart_m - WD_FLOOR_SKY_M * place), crown.stem_m));
-            }
             uint packed = wd_stem_pack(apart_m.x, apart_m.y, crown.stem_m);
-            if (away_m < nearest_m.x) {
-                stems.nearest = uvec2(packed, stems.nearest.x);
-                nearest_m = vec2(away_m, nearest_m.x);
-            } else if (away_m < nearest_m.y) {
-                stems.nearest.y = packed;
-                nearest_m.y = away_m;
-            }
+            bool nearer = away_m < nearest_m.x;
+            nearest = nearer ? uvec2(packed, nearest.x) : uvec2(nearest.x, packed);
+            nearest_m = nearer ? vec2(away_m, nearest_m.x) : vec2(nearest_m.x, away_m);
         }
     }
-    for (int k = 0; k < PLACES * PLACES; k++)
-        stems.hide += hidden[k] * (1.0 / float(PLACES * PLACES));
-    return stems;
+    return nearest;
 }
 
 void main()
@@ -106,11 +86,10 @@ void main()
     vec4 level = textureLod(canopy_light, vec3(on_field, 0.0), 0.0);
     vec4 low = textureLod(canopy_light, vec3(on_field, 3.0), 0.0);
     float stand = within_stand(place_m);
-    square_stems stems = stems_about(job, aside_m);
-    level = mix(sqrt(left.level), level * inversesqrt(1.0 - min(stems.hide, 0.5)), stand);
+    level = mix(sqrt(left.level), level, stand);
     low = mix(sqrt(left.low), low, stand);
     ivec2 at = ivec2(round(vec2(foot_of(job).xy) * (0.001 / WD_FLOOR_SKY_M))) + square;
     uint texel = 2u * wd_floor_sky_texel(at.x, at.y);
     table[texel] = uvec2(packUnorm4x8(level), packUnorm4x8(low));
-    table[texel + 1u] = stems.nearest;
+    table[texel + 1u] = stems_about(job, aside_m);
 }

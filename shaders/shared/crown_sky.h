@@ -80,8 +80,7 @@ WD_STATIC_ASSERT_SIZE(wd_crown_sky_job, 224);
 
 /* The ground about the eye: squares in tiles, each in the place of the table that its coordinates have modulo
  * WD_FLOOR_SKY_ACROSS. A texel's first two words are of a square's middle, as above: of level ground and of the
- * sky below 30 degrees; within stands less what stems about it hide in the mean. The others name the two stems that
- * stand nearest. */
+ * sky below 30 degrees. The others name the two stems that stand nearest. */
 #define WD_FLOOR_SKY_ACROSS 128
 #define WD_FLOOR_SKY_M 2.0f /* a square's side */
 #define WD_FLOOR_SKY_TILE 8 /* squares a tile's side */
@@ -112,7 +111,7 @@ WD_FUNC uint32_t wd_stem_pack(float east_m, float north_m, float stem_m)
 #define WD_STEM_M(word) (WD_FLOAT((word) >> 22) * (WD_STEM_MOST_M / 1023.0f))
 
 /* Share of an even sky's light on level ground that an upright stem hides, so far from its axis: asin(r / d) / pi, and
- * what roots hide beside it. Nothing from the second reach on, where the canopy's field has it in the mean. */
+ * what roots hide beside it. Less from the first reach on, nothing from the second. */
 #define WD_STEM_ROOTS_HIDE 0.25f
 #define WD_STEM_ROOTS_END 2.6f /* radii */
 #define WD_STEM_REACH_M 1.0f

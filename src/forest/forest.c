@@ -291,6 +291,14 @@ static bool make_lit_models(struct preparation *work, struct wd_gpu *gpu)
     return ok;
 }
 
+/* Half its thickness; 0 of what stands on many thin ones or on none. */
+static float stem_m(const struct wd_scene *scene, uint32_t model, const struct wd_tree_model *grown)
+{
+    enum wd_species_form form = wd_variant_species(scene, model).form;
+    bool stem = form == WD_FORM_BROADLEAF || form == WD_FORM_CONIFER || form == WD_FORM_PALM || form == WD_FORM_SNAG;
+    return stem ? 0.5f * grown->dbh_m : 0;
+}
+
 static bool prepare(struct preparation *work, struct wd_gpu *gpu)
 {
     struct wd_forest_device *forest = work->forest;
@@ -303,7 +311,7 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     for (uint32_t i = 0; i < forest->model_count; i++) {
         wd_variant_describe(&forest->host_models[i], params->scene, i, &work->grown[i]);
         forest->crown_shades[i] = work->grown[i].shade;
-        forest->stems_m[i] = 0.5f * work->grown[i].dbh_m;
+        forest->stems_m[i] = stem_m(params->scene, i, &work->grown[i]);
         describe_content(work, i);
         forest->falls |= forest->host_models[i].fall_mps > 0.0f;
     }

@@ -112,9 +112,8 @@ static void long_lenses_show_shadows(void **state)
     assert_true(fabs(found.shade_pct) < 10);
 }
 
-/* Ground below an oak in the open, under clouds: the darkest is at the stem, +28 %, six oaks +33, and +18 while feet were
- * round: what lies between roots has less of the sky than pictures know. +121 where what comes down to the ground is
- * known of cells of 8 m alone, through which the crown is spread. */
+/* Ground below an oak in the open, under clouds: the darkest is at the stem, +27 %, six oaks +33, and +18 while feet were
+ * round; +121 where what comes down to the ground is known of cells of 8 m alone, through which the crown is spread. */
 static void trees_in_the_open_darken_the_ground(void **state)
 {
     (void)state;
