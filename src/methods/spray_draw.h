@@ -6,8 +6,8 @@
 
 bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tree_pass pass);
 
-/* Factor on the reach of twigs, so that those in view, or that shade what is, have at most WD_SPRAY_BUDGET
- * triangles. It follows the camera without jumps larger than one twig. */
+/* Factor on the reach of twigs: less for pictures of few samples, and so much that those in view, or that shade what is,
+ * have at most WD_SPRAY_BUDGET triangles. It follows the camera without jumps larger than one twig. */
 #define WD_SPRAY_BUDGET 1500000
 float wd_spray_scale(const struct wd_tree_draw *draw, const struct wd_selection *selection);
 
