@@ -53,7 +53,7 @@ const wd_floor_sky NO_FLOOR = wd_floor_sky(0.0, vec4(0.0), vec4(0.0), 1.0);
 float stem_hides(uint stem, vec2 from_middle_m)
 {
     vec2 apart_m = vec2(WD_STEM_EAST_M(stem), WD_STEM_NORTH_M(stem)) - from_middle_m;
-    return stem != 0u ? wd_stem_hides(length(apart_m), WD_STEM_M(stem)) : 0.0;
+    return stem != 0u ? wd_stem_hides(length(apart_m), WD_STEM_RADIUS_M(stem)) : 0.0;
 }
 
 /* Between four squares; the roots are mixed. */
@@ -76,7 +76,7 @@ wd_floor_sky floor_sky(vec3 rel)
     }
     left.level *= left.level;
     left.low *= left.low;
-    left.stems = 1.0 - left.share * hidden;
+    left.stems = 1.0 - hidden;
     return left;
 }
 #else

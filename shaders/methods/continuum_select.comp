@@ -293,7 +293,7 @@ uint far_wood(uint model)
     return model_word(model, WD_WORD_WOOD_COUNT) - model_word(model, WD_WORD_WOOD_STEM);
 }
 
-/* Triangles of wood for a tree that tall: few of the largest while it is small. In a cascade twigs, which
+/* Triangles of wood for a tree that tall: few of the first while it is small. In a cascade twigs, which
  * discs stand for then, are lost in the penumbra. */
 uint wood_triangles(uint model, float tall_px)
 {
@@ -302,12 +302,13 @@ uint wood_triangles(uint model, float tall_px)
 }
 
 /* Of all triangles that a small tree may have, the first so many; the far stem is among them, for which large trees
- * have the stem. */
-void add_share_of_wood(uint slot, uint model, uint triangles, float share)
+ * have the stem, each from another size on. */
+void add_share_of_wood(uint slot, uint model, uint triangles, float share, uint random)
 {
     uint stem = model_word(model, WD_WORD_WOOD_STEM), far_stem = model_word(model, WD_WORD_WOOD_FAR_STEM);
     uint wanted = uint(ceil(share * float(triangles)));
-    bool near = triangles >= 2u * stem;
+    float enough = min(float(stem) * (1.6 + 0.8 * wd_hash_unit(random)), float(far_wood(model)));
+    bool near = float(triangles) >= enough;
     add_wood(slot, 0u, near ? min(wanted * stem / max(far_stem, 1u), stem) : 0u);
     uint begin = near ? far_stem : 0u;
     add_wood(slot, stem + begin, max(wanted, begin) - begin);
@@ -467,7 +468,7 @@ void select_tree(uint index, float share, uint place)
     store_tree(slot, splats);
     add_splats(slot, uint(ceil(shown * each * float(strata))));
     if (wood)
-        add_share_of_wood(slot, model_index, triangles, wd_near_wood(shown));
+        add_share_of_wood(slot, model_index, triangles, wd_near_wood(shown), random);
 }
 
 /* How many times over a cluster's crowns may cover what is seen of it: what lies deeper is hidden all

@@ -57,8 +57,8 @@ float settle_leaf(uint index, vec3 foot_m, wd_tree tree, uint model)
     bool thin = float(index) >= share * float(push.leaf_count);
     float grown = inversesqrt(share) * (FALLS != 0u ? 1.0 : leaf_growth(model, share, sine));
     grown = thin ? 0.0 : grown;
-    grown = twig ? 0.0 : grown;
-    return push.leaf_count != 0u ? grown : 1.0;
+    grown = push.leaf_count != 0u ? grown : 1.0; /* fronds do not thin out */
+    return twig ? 0.0 : grown;
 }
 
 void main()

@@ -45,11 +45,11 @@ float within_stand(vec2 place_m)
     return 1.0 - smoothstep(OPEN.x, OPEN.y, sum * (1.0 / 8.0));
 }
 
-/* The two stems that stand nearest to the square's middle. */
+/* The two stems in reach that hide most of the square's middle's sky. */
 uvec2 stems_about(uint job, vec2 aside_m)
 {
-    uvec2 nearest = uvec2(0u);
-    vec2 nearest_m = vec2(WD_STEM_FAR_M), middle_m = vec2(foot_of(job).xy) * 0.001 + aside_m;
+    uvec2 first_two = uvec2(0u);
+    vec2 most_wide = vec2(0.0), middle_m = vec2(foot_of(job).xy) * 0.001 + aside_m;
     ivec2 first = ivec2(push.first_column, push.first_row), most = ivec2(push.columns, push.rows) - 1;
     ivec2 low = clamp(ivec2(floor((middle_m - WD_STEM_FAR_M) / WD_CROWN_SKY_CELL_M)) - first, ivec2(0), most);
     ivec2 high = clamp(ivec2(floor((middle_m + WD_STEM_FAR_M) / WD_CROWN_SKY_CELL_M)) - first, ivec2(0), most);
@@ -59,15 +59,16 @@ uvec2 stems_about(uint job, vec2 aside_m)
             wd_sky_crown crown = crowns[i];
             vec2 apart_m = vec2(ivec2(crown.foot_mm[0], crown.foot_mm[1]) - foot_of(job).xy) * 0.001 - aside_m;
             float away_m = length(apart_m);
-            if (away_m >= nearest_m.y || crown.stem_m <= 0.0)
+            float wide = crown.stem_radius_m / max(away_m, max(crown.stem_radius_m, 1e-3));
+            if (away_m >= WD_STEM_FAR_M || wide <= most_wide.y)
                 continue;
-            uint packed = wd_stem_pack(apart_m.x, apart_m.y, crown.stem_m);
-            bool nearer = away_m < nearest_m.x;
-            nearest = nearer ? uvec2(packed, nearest.x) : uvec2(nearest.x, packed);
-            nearest_m = nearer ? vec2(away_m, nearest_m.x) : vec2(nearest_m.x, away_m);
+            uint packed = wd_stem_pack(apart_m.x, apart_m.y, crown.stem_radius_m);
+            bool widest = wide > most_wide.x;
+            first_two = widest ? uvec2(packed, first_two.x) : uvec2(first_two.x, packed);
+            most_wide = widest ? vec2(wide, most_wide.x) : vec2(most_wide.x, wide);
         }
     }
-    return nearest;
+    return first_two;
 }
 
 void main()

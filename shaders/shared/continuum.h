@@ -148,8 +148,8 @@ WD_STATIC_ASSERT_SIZE(wd_cluster, 32);
  * leaves come in by noise while all splats stand, then the splats thin out. */
 #define WD_NEAR_REACH 1.25f
 
-/* So many of the triangles of wood that small trees have are the first: the largest few, whose share of the bark is
- * known. */
+/* So many of the triangles of wood that small trees have are the first: some of the far stem's, whose share of the
+ * bark is known. */
 WD_FUNC uint32_t wd_first_wood(uint32_t count)
 {
     return count / 2u < 38u ? count / 2u : 38u;

@@ -51,7 +51,7 @@ struct wd_sky_crown {
     float radius_m, half_m; /* half its width and half its height */
     float middle_m;         /* height of its middle over the foot */
     float per_m, steeper;   /* extinction */
-    float stem_m;           /* half its stem's thickness at breast height */
+    float stem_radius_m;    /* at breast height; 0: none that counts */
 };
 WD_STATIC_ASSERT_SIZE(wd_sky_crown, 36);
 
@@ -80,7 +80,7 @@ WD_STATIC_ASSERT_SIZE(wd_crown_sky_job, 224);
 
 /* The ground about the eye: squares in tiles, each in the place of the table that its coordinates have modulo
  * WD_FLOOR_SKY_ACROSS. A texel's first two words are of a square's middle, as above: of level ground and of the
- * sky below 30 degrees. The others name the two stems that stand nearest. */
+ * sky below 30 degrees. The others name the two stems that hide most of its sky. */
 #define WD_FLOOR_SKY_ACROSS 128
 #define WD_FLOOR_SKY_M 2.0f /* a square's side */
 #define WD_FLOOR_SKY_TILE 8 /* squares a tile's side */
@@ -98,9 +98,9 @@ WD_STATIC_ASSERT_SIZE(wd_crown_sky_job, 224);
 #define WD_STEM_STEPS (1023.0f / WD_STEM_FAR_M)
 #define WD_STEM_MOST_M 2.0f
 
-WD_FUNC uint32_t wd_stem_pack(float east_m, float north_m, float stem_m)
+WD_FUNC uint32_t wd_stem_pack(float east_m, float north_m, float stem_radius_m)
 {
-    uint32_t thick = WD_UINT(WD_CLAMP(stem_m / WD_STEM_MOST_M, 0.001f, 1.0f) * 1023.0f + 0.5f);
+    uint32_t thick = WD_UINT(WD_CLAMP(stem_radius_m / WD_STEM_MOST_M, 0.001f, 1.0f) * 1023.0f + 0.5f);
     uint32_t east = WD_UINT((WD_CLAMP(east_m, -WD_STEM_FAR_M, WD_STEM_FAR_M) + WD_STEM_FAR_M) * WD_STEM_STEPS + 0.5f);
     uint32_t north = WD_UINT((WD_CLAMP(north_m, -WD_STEM_FAR_M, WD_STEM_FAR_M) + WD_STEM_FAR_M) * WD_STEM_STEPS + 0.5f);
     return east | north << 11 | thick << 22;
@@ -108,7 +108,7 @@ WD_FUNC uint32_t wd_stem_pack(float east_m, float north_m, float stem_m)
 
 #define WD_STEM_EAST_M(word) (WD_FLOAT((word) & 0x7ffu) / WD_STEM_STEPS - WD_STEM_FAR_M)
 #define WD_STEM_NORTH_M(word) (WD_FLOAT(((word) >> 11) & 0x7ffu) / WD_STEM_STEPS - WD_STEM_FAR_M)
-#define WD_STEM_M(word) (WD_FLOAT((word) >> 22) * (WD_STEM_MOST_M / 1023.0f))
+#define WD_STEM_RADIUS_M(word) (WD_FLOAT((word) >> 22) * (WD_STEM_MOST_M / 1023.0f))
 
 /* Share of an even sky's light on level ground that an upright stem hides, so far from its axis: asin(r / d) / pi, and
  * what roots hide beside it. Less from the first reach on, nothing from the second. */
@@ -117,11 +117,12 @@ WD_FUNC uint32_t wd_stem_pack(float east_m, float north_m, float stem_m)
 #define WD_STEM_REACH_M 1.0f
 #define WD_STEM_NO_REACH_M 2.0f
 
-WD_FUNC float wd_stem_hides(float away_m, float stem_m)
+WD_FUNC float wd_stem_hides(float away_m, float stem_radius_m)
 {
-    float x = WD_MIN(stem_m / WD_MAX(away_m, 1e-3f), 1.0f), xx = x * x, x4 = xx * xx;
+    float x = WD_MIN(stem_radius_m / WD_MAX(away_m, 1e-3f), 1.0f), xx = x * x, x4 = xx * xx;
     float hides = x * (0.3183f + 0.0531f * xx + 0.0239f * x4) + 0.1047f * x4 * x4 * x4;
-    float roots = WD_CLAMP((WD_STEM_ROOTS_END * stem_m - away_m) / ((WD_STEM_ROOTS_END - 1.0f) * stem_m + 1e-4f), 0.0f, 1.0f);
+    float end_m = WD_STEM_ROOTS_END * stem_radius_m;
+    float roots = WD_CLAMP((end_m - away_m) / (end_m - stem_radius_m + 1e-4f), 0.0f, 1.0f);
     float fade = WD_CLAMP((WD_STEM_NO_REACH_M - away_m) / (WD_STEM_NO_REACH_M - WD_STEM_REACH_M), 0.0f, 1.0f);
     return (hides + WD_STEM_ROOTS_HIDE * roots) * fade * fade * (3.0f - 2.0f * fade);
 }

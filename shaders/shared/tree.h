@@ -166,8 +166,8 @@ WD_STATIC_ASSERT_SIZE(wd_leaf_vertex, 24);
 
 
 /* Twigs of broad leaves are whole nearer than the one, and nothing is drawn as a twig beyond the
- * other; those of needles come at four fifths of either: they are smaller, and many more. Pictures of one sample have
- * them nearer (methods/spray_draw.h). */
+ * other; those of needles come at four fifths of either: they are smaller, and many more. Pictures of few samples
+ * have them nearer (methods/spray_draw.h). */
 #define WD_SPRAY_WHOLE_M 6.5f
 #define WD_SPRAY_NONE_M 9.5f
 

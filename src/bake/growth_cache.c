@@ -339,6 +339,18 @@ static void store_model(struct wd_bake_cache *cache, uint64_t key, struct wd_tre
     free(block.bytes);
 }
 
+/* Whether a mesh can hold so many forms one after another. */
+static bool forms_fit(const struct wd_tree_mesh *mesh, uint32_t forms)
+{
+    if (forms == 0 || forms > WD_LEAF_FORMS)
+        return forms == 0 && mesh->index_count == 0;
+    uint32_t vertices = mesh->vertex_count / forms, indices = mesh->index_count / forms;
+    bool ok = vertices * forms == mesh->vertex_count && indices * forms == mesh->index_count && indices % 3 == 0;
+    for (uint32_t i = 0; i < mesh->index_count && ok; i++)
+        ok = mesh->indices[i] / vertices == i / indices;
+    return ok;
+}
+
 static bool unpack_leaves(struct wd_tree_model *model, struct block *block)
 {
     const uint8_t *words = block->bytes;
@@ -350,8 +362,8 @@ static bool unpack_leaves(struct wd_tree_model *model, struct block *block)
     model->leaf_count = leaves;
     model->flower_count = flowers;
     model->spray_forms = wd_cache_get_word(words, LEAVES + 3);
-    bool twigs = model->spray.index_count > 0;
-    bool ok = model->leaves && model->spray_forms <= WD_LEAF_FORMS && twigs == (model->spray_forms > 0);
+    bool ok = model->leaves && forms_fit(&model->spray, model->spray_forms) &&
+              forms_fit(&model->spray_shade, model->spray_forms);
     for (int i = 0; i < SETS && ok; i++)
         ok = unpack_set(&model->sets[i / WD_LEAF_SETS][i % WD_LEAF_SETS],
                         words + 4 * (SET_AT + i * SET_WORDS), block,
@@ -376,6 +388,7 @@ static bool load_model(struct wd_tree_model *model, struct wd_bake_cache *cache,
             ok = unpack_mesh(meshes[i], block.bytes + 4 * (FIGURES + i * MESH_WORDS), &block);
         ok = ok && unpack_leaves(model, &block);
         if (ok) {
+            wd_tree_mesh_update_bounds(&model->far_stem);
             wd_tree_mesh_update_bounds(&model->spray);
             wd_tree_mesh_update_bounds(&model->spray_shade);
         }

@@ -209,10 +209,10 @@ struct wood {
 };
 
 static void append_mesh(struct wd_tree_mesh *to, const struct wd_tree_mesh *from, uint32_t first, uint32_t end,
-                        uint32_t vertex)
+                        uint32_t first_vertex)
 {
     for (uint32_t i = first; i < end; i++)
-        to->indices[to->index_count++] = vertex + from->indices[i];
+        to->indices[to->index_count++] = first_vertex + from->indices[i];
 }
 
 /* Of the reduced mesh, and of the far stem. */
@@ -234,7 +234,7 @@ static void gather_wood(struct wood *wood, const struct wd_tree_model *model)
     wood->count = mesh->index_count / 3;
 }
 
-/* Those of which most is seen of the full mesh's tree come first. */
+/* Of each of the three parts those of which most is seen of the full mesh's tree come first. */
 static void order_wood(struct wood *wood, const struct wd_tree_sides *sides)
 {
     uint32_t count = wood->count;
@@ -588,7 +588,9 @@ bool wd_splats_load(struct wd_splats *splats, struct wd_bake_cache *cache, uint6
     bool found = block && size >= sizeof splats->model;
     if (found)
         memcpy(&splats->model, block, sizeof splats->model);
-    found = found && size == kept_bytes(&splats->model);
+    const struct wd_splat_model *kept = &splats->model;
+    found = found && size == kept_bytes(kept) && kept->wood_stem <= kept->wood_count &&
+            kept->wood_far_stem <= kept->wood_count - kept->wood_stem && !kept->wood_stem == !kept->wood_far_stem;
     if (found) {
         allocate(splats);
         copy_parts(splats, block + sizeof splats->model, true);

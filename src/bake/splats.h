@@ -1,4 +1,4 @@
-/* splats.h: a tree as discs and, of its wood, as triangles, both in an order that any part of suits. */
+/* splats.h: a tree as discs, in an order that any part of suits, and of its wood as triangles, the first of which do. */
 #ifndef WD_BAKE_SPLATS_H
 #define WD_BAKE_SPLATS_H
 

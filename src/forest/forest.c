@@ -291,12 +291,13 @@ static bool make_lit_models(struct preparation *work, struct wd_gpu *gpu)
     return ok;
 }
 
-/* Half its thickness; 0 of what stands on many thin ones or on none. */
-static float stem_m(const struct wd_scene *scene, uint32_t model, const struct wd_tree_model *grown)
+/* 0 of what stands on many thin stems or on none, and of artists' models, which may be clumps. */
+static float find_stem_radius_m(const struct wd_scene *scene, uint32_t model, const struct wd_tree_model *grown)
 {
-    enum wd_species_form form = wd_variant_species(scene, model).form;
+    const struct wd_species species = wd_variant_species(scene, model);
+    enum wd_species_form form = species.form;
     bool stem = form == WD_FORM_BROADLEAF || form == WD_FORM_CONIFER || form == WD_FORM_PALM || form == WD_FORM_SNAG;
-    return stem ? 0.5f * grown->dbh_m : 0;
+    return stem && !species.imported ? 0.5f * grown->dbh_m : 0;
 }
 
 static bool prepare(struct preparation *work, struct wd_gpu *gpu)
@@ -311,7 +312,7 @@ static bool prepare(struct preparation *work, struct wd_gpu *gpu)
     for (uint32_t i = 0; i < forest->model_count; i++) {
         wd_variant_describe(&forest->host_models[i], params->scene, i, &work->grown[i]);
         forest->crown_shades[i] = work->grown[i].shade;
-        forest->stems_m[i] = stem_m(params->scene, i, &work->grown[i]);
+        forest->stem_radii_m[i] = find_stem_radius_m(params->scene, i, &work->grown[i]);
         describe_content(work, i);
         forest->falls |= forest->host_models[i].fall_mps > 0.0f;
     }
@@ -339,7 +340,7 @@ bool wd_forest_device_init(struct wd_forest_device *forest, struct wd_gpu *gpu,
     size_t slots = forest->model_count ? forest->model_count : 1;
     forest->host_models = wd_alloc_array(slots, sizeof *forest->host_models);
     forest->crown_shades = wd_alloc_array(slots, sizeof *forest->crown_shades);
-    forest->stems_m = wd_alloc_array(slots, sizeof *forest->stems_m);
+    forest->stem_radii_m = wd_alloc_array(slots, sizeof *forest->stem_radii_m);
     forest->model_keys = wd_alloc_array(slots, sizeof *forest->model_keys);
     forest->cache.directory = params->cache_dir ? wd_strdup(params->cache_dir) : NULL;
     wd_shared_log_init(&forest->log, params->log);
@@ -390,7 +391,7 @@ void wd_forest_device_finish(struct wd_forest_device *forest, struct wd_gpu *gpu
         vkDestroySampler(gpu->device, forest->card_sampler, NULL);
     free(forest->host_models);
     free(forest->crown_shades);
-    free(forest->stems_m);
+    free(forest->stem_radii_m);
     free(forest->model_keys);
     free((char *)forest->cache.directory);
     free(forest->host_fades);

@@ -35,7 +35,7 @@ struct wd_forest_device {
     struct wd_forest_meshes meshes;
     struct wd_model *host_models;
     struct wd_crown_shade *crown_shades; /* of each */
-    float *stems_m; /* half the thickness of each one's stem at breast height */
+    float *stem_radii_m; /* of each one's stem at breast height; 0: none that counts */
     uint64_t *model_keys;      /* what names each model's content in the cache */
     struct wd_bake_cache cache;
     struct wd_layer_fade *host_fades;

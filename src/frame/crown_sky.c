@@ -220,7 +220,7 @@ static struct wd_sky_crown crown_of(const struct work *work, uint32_t record)
                                  .middle_m = shade->middle_m * pose.up,
                                  .per_m = shade->per_m / cbrtf(pose.across * pose.across * pose.up),
                                  .steeper = shade->steeper,
-                                 .stem_m = work->forest->stems_m[index] * pose.across};
+                                 .stem_radius_m = work->forest->stem_radii_m[index] * pose.across};
 }
 
 /* --- the floor ----------------------------------------------------------------------------- */

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "frame/uniforms.h"
@@ -215,18 +214,18 @@ static const float ROUGH_REACH = 0.58f;
 
 float wd_spray_scale(const struct wd_tree_draw *draw, const struct wd_selection *selection)
 {
-    struct gather gather = {.scale = 1, .weigh = true};
+    float most = draw->view->samples < WD_FINE_SAMPLES ? ROUGH_REACH : 1, scale = 1;
+    struct gather gather = {.scale = most, .weigh = true};
     for (size_t i = 0; i < selection->batch_count; i++)
         gather_batch(&gather, draw, selection, &selection->batches[i]);
-    float most = draw->view->samples < WD_FINE_SAMPLES ? ROUGH_REACH : 1, scale = most;
-    if (triangles_at(&gather, most) > WD_SPRAY_BUDGET) {
+    if (triangles_at(&gather, 1) > WD_SPRAY_BUDGET) {
         scale = 0;
-        for (float step = 0.5f * most; step > 1e-4f; step *= 0.5f)
+        for (float step = 0.5f; step > 1e-4f; step *= 0.5f)
             if (triangles_at(&gather, scale + step) <= WD_SPRAY_BUDGET)
                 scale += step;
     }
     free(gather.candidates);
-    return scale;
+    return most * scale;
 }
 
 void wd_spray_draw(const struct wd_tree_draw *draw, const struct wd_selection *selection,

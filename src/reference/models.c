@@ -135,8 +135,10 @@ static void grow(void *user, size_t index)
         return;
     }
     wd_variant_describe(&model->model, work->scene, (uint32_t)index, &model->grown);
-    if (!model->grown.borrowed)
+    if (!model->grown.borrowed) {
         wd_tree_mesh_finish(&model->grown.reduced);
+        wd_tree_mesh_finish(&model->grown.far_stem);
+    }
     model->look = &models->looks[index / models->variants];
     wd_trace_model_build(model, models->device);
 }

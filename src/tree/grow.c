@@ -43,7 +43,7 @@ static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton 
     mesh->wood_index_count = mesh->index_count;
 }
 
-/* The thickest branches that the budget allows, with few sides and a ring at every third node. */
+/* The thickest branches that the budget allows, with few sides and a ring at every fourth node. */
 static void build_reduced_wood(struct wd_tree_model *model, const struct wd_skeleton *skeleton,
                           const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {

@@ -43,8 +43,8 @@ bool wd_grow_params_resolve(struct wd_grow_params *params, const struct wd_speci
 struct wd_tree_model {
     struct wd_tree_mesh full;
     struct wd_tree_mesh reduced;
-    struct wd_tree_mesh far_stem; /* the reduced one's stem_index_count of it with fewer sides and a round foot, for
-                                     trees of a few pixels; empty where that is none */
+    struct wd_tree_mesh far_stem; /* the reduced mesh's stem again, of five sides and with a round foot, for small trees;
+                                     empty where that has no root lobes */
     struct wd_tree_leaf *leaves; /* of both meshes: leaf_count leaves in progressive order, then
                                     flower_count flowers; NULL of imported trees, whose leaves are
                                     triangles only */

@@ -66,7 +66,7 @@ struct pinnule {
     float reach, half;
 };
 
-/* A point at share y of its reach; pinnules are vaulted, and their ends hang. */
+/* A point at share y of its reach; pinnules rise from the midrib and are vaulted, a little more for light than they are. */
 static uint32_t add_pinnule_corner(struct wd_leaf_template *leaf, const struct pinnule *at, float x, float y)
 {
     struct wd_vec3 p = wd_v3_mad(at->foot, at->out, y * at->reach);
@@ -158,10 +158,10 @@ static void add_strap(struct wd_leaf_template *leaf, const struct wd_blade_place
 }
 
 static void add_leaflet(struct wd_leaf_template *leaf, const struct wd_species *species,
-                        const struct wd_leaf_outline *outline,
+                        const struct wd_leaf_outline *outline, enum wd_leaf_form form,
                         const struct wd_blade_place *place, struct wd_random *random)
 {
-    if (species->leaf.compound == WD_COMPOUND_BIPINNATE && outline == wd_leaf_outline_near(species))
+    if (species->leaf.compound == WD_COMPOUND_BIPINNATE && form == WD_LEAF_AS_NEAR)
         add_near_pinna(leaf, place);
     else if (species->leaf.compound == WD_COMPOUND_BIPINNATE)
         add_pinna(leaf, place);
@@ -183,7 +183,7 @@ static struct axis frond_axis(const struct wd_species *species, struct wd_random
 }
 
 void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species *species,
-                         const struct wd_leaf_outline *outline, uint32_t variant)
+                         const struct wd_leaf_outline *outline, enum wd_leaf_form form, uint32_t variant)
 {
     struct wd_random random = wd_random_of(variant, 0xf40d);
     const struct axis axis = frond_axis(species, &random);
@@ -211,7 +211,7 @@ void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species 
                                                      last ? d : wd_v3_unit(out), up,
                                                      size * length, width * (0.5f + 0.5f * size));
         place.stiff = 0.6f * at;
-        add_leaflet(leaf, species, outline, &place, &random);
+        add_leaflet(leaf, species, outline, form, &place, &random);
     }
 }
 

@@ -37,7 +37,7 @@ void wd_leaf_add_needle(struct wd_leaf_template *leaf, struct wd_vec3 foot,
 
 /* Compound leaves and blades that arch (leaf_compound.c). */
 void wd_leaf_add_pinnate(struct wd_leaf_template *leaf, const struct wd_species *species,
-                         const struct wd_leaf_outline *outline, uint32_t variant);
+                         const struct wd_leaf_outline *outline, enum wd_leaf_form form, uint32_t variant);
 void wd_leaf_add_palmate(struct wd_leaf_template *leaf, const struct wd_species *species,
                          const struct wd_leaf_outline *outline);
 void wd_leaf_add_arching_blade(struct wd_leaf_template *leaf, const struct wd_species *species);

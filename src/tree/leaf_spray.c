@@ -155,6 +155,8 @@ static void add_needles(struct spray *spray, const struct wd_species *species, f
 
 /* --- the whole --------------------------------------------------------------------------- */
 
+_Static_assert(WD_LEAF_VARIANTS <= WD_LEAF_FORMS, "a leaf tells its form");
+
 uint32_t wd_leaf_spray_forms(const struct wd_species *species)
 {
     return species->leaf.compound == WD_COMPOUND_BIPINNATE ? WD_LEAF_VARIANTS : 1;

@@ -40,12 +40,12 @@ static void add_simple(struct wd_leaf_template *leaf, const struct wd_species *s
 }
 
 static void add_outlined(struct wd_leaf_template *leaf, const struct wd_species *species,
-                         const struct wd_leaf_outline *outline, uint32_t variant)
+                         const struct wd_leaf_outline *outline, enum wd_leaf_form form, uint32_t variant)
 {
     switch (species->leaf.compound) {
     case WD_COMPOUND_PINNATE:
     case WD_COMPOUND_BIPINNATE:
-        wd_leaf_add_pinnate(leaf, species, outline, variant);
+        wd_leaf_add_pinnate(leaf, species, outline, form, variant);
         break;
     case WD_COMPOUND_PALMATE:
         wd_leaf_add_palmate(leaf, species, outline);
@@ -73,13 +73,13 @@ void wd_leaf_template_init(struct wd_leaf_template *leaf, const struct wd_specie
         wd_leaf_add_needles(leaf, species, variant);
         return;
     }
-    add_outlined(leaf, species, wd_leaf_outline_of(species), variant);
+    add_outlined(leaf, species, wd_leaf_outline_of(species), WD_LEAF_AS_BLADE, variant);
     if (form == WD_LEAF_AS_BLADE)
         return;
     float area = wd_leaf_template_area(leaf);
     leaf->corner_count = leaf->index_count = 0;
     if (form == WD_LEAF_AS_NEAR) {
-        add_outlined(leaf, species, wd_leaf_outline_near(species), variant);
+        add_outlined(leaf, species, wd_leaf_outline_near(species), WD_LEAF_AS_NEAR, variant);
         wd_leaf_template_scale(leaf, area);
         return;
     }

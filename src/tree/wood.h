@@ -12,7 +12,8 @@ struct wd_wood_style {
     int foot_sides;       /* of a trunk's foot with root lobes: 32 or 16; with fewer the flare is round */
 };
 
-/* Appends the wood; of a mesh that has none yet, a stem with root lobes first. `crown` gives the sky openness of each place (its light already swept). */
+/* Appends the wood; of a mesh that has none yet, a stem with root lobes first. `crown` gives the sky openness of each
+ * place (its light already swept). */
 void wd_wood_mesh(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                   const struct wd_tree_form *form, const struct wd_tree_density *crown,
                   const struct wd_wood_style *style);

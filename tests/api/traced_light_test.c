@@ -14,9 +14,10 @@ struct shown {
     const char *method; /* NULL: continuum */
 };
 
-/* Light of trees and of the ground that lies in their shadow, over the path tracer's, less 100. */
+/* Light of trees, of the ground that lies in their shadow and of that right before their feet (over that farther off), over
+ * the path tracer's, less 100. */
 struct light {
-    double trees_pct, shade_pct, cover_pct;
+    double trees_pct, shade_pct, foot_pct, cover_pct;
 };
 
 static double green(const struct wd_picture *picture, size_t i)
@@ -37,6 +38,26 @@ static double shade_pct(const struct wd_picture *drawn, const struct wd_picture 
         sums[1] += shade ? green(traced, i) : 0;
     }
     return 100 * (sums[0] / fmax(sums[1], 1e-9) - 1);
+}
+
+/* Of ground up to three pixels below the lowest of a tree's in a column, over that of the ground twelve and more below. */
+static double foot_share(const struct wd_picture *picture, const struct wd_picture *traced)
+{
+    double sums[2] = {0}, pixels[2] = {1e-9, 1e-9};
+    for (uint32_t x = 0; x < traced->width; x++) {
+        uint32_t foot = 0;
+        for (uint32_t y = 0; y < traced->height; y++)
+            foot = traced->tree_id[y * traced->width + x] ? y : foot;
+        for (uint32_t y = foot + 1; foot > 0 && y < traced->height; y++) {
+            size_t i = (size_t)y * traced->width + x;
+            bool near = y <= foot + 3, far = y >= foot + 12;
+            if (picture->tree_id[i] || (!near && !far))
+                continue;
+            sums[near] += green(picture, i);
+            pixels[near]++;
+        }
+    }
+    return sums[1] / pixels[1] / fmax(sums[0] / pixels[0], 1e-9);
 }
 
 static struct light against_traced(const struct shown *shown)
@@ -65,9 +86,10 @@ static struct light against_traced(const struct shown *shown)
     assert_int_equal(wd_renderer_render(suite.renderer, &render, &drawn), WD_OK);
     suite_trace(&suite, forest, &render, 64, &traced);
     assert_int_equal(wd_picture_compare(&found, &traced, &drawn, NULL, &suite.log), WD_OK);
-    const struct light light = {found.tree_bias_pct, shade_pct(&drawn, &traced), found.coverage_bias_pct};
-    print_message("light of trees %+.1f %%, of shaded ground %+.1f %%, cover %+.1f %%\n", light.trees_pct, light.shade_pct,
-                  light.cover_pct);
+    double foot_pct = 100 * (foot_share(&drawn, &traced) / fmax(foot_share(&traced, &traced), 1e-9) - 1);
+    const struct light light = {found.tree_bias_pct, shade_pct(&drawn, &traced), foot_pct, found.coverage_bias_pct};
+    print_message("light of trees %+.1f %%, of shaded ground %+.1f %%, at feet %+.1f %%, cover %+.1f %%\n", light.trees_pct,
+                  light.shade_pct, light.foot_pct, light.cover_pct);
     wd_picture_finish(&drawn);
     wd_picture_finish(&traced);
     assert_int_equal(wd_renderer_set_forest(suite.renderer, suite.forest), WD_OK);
@@ -122,6 +144,26 @@ static void trees_in_the_open_darken_the_ground(void **state)
         .keys = "\"openness\": {\"tree\": 1}, \"sky\": {\"cover\": 1}",
         .camera = "\"position_m\": [40, 20, 5], \"look_at_m\": [40, 40, 0], \"fov_deg\": 30"});
     assert_true(found.shade_pct > -15 && found.shade_pct < 40);
+}
+
+/* A dead tree under clouds: its stem alone hides sky from the ground at its foot. -4 %, and +12 where that is not known. */
+static void stems_darken_the_ground_at_their_feet(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "snag", .trees = "30,30,tree,14\n", .size_m = "[60, 60]", .samples = 8, .keys = "\"sky\": {\"cover\": 1}",
+        .camera = "\"position_m\": [30, 24, 4], \"look_at_m\": [30, 29.6, 0], \"fov_deg\": 20"});
+    assert_true(fabs(found.foot_pct) < 8);
+}
+
+/* From near, fronds have pinnules in place of what they are from afar: cover +0.3 %, and +27 on top of it. */
+static void near_fronds_are_drawn_once(void **state)
+{
+    (void)state;
+    const struct light found = against_traced(&(struct shown){
+        .species = "fern", .trees = "30,30,tree,0.9\n", .size_m = "[60, 60]", .samples = 16, .keys = "\"sky\": {\"cover\": 1}",
+        .camera = "\"position_m\": [30, 28, 1.8], \"look_at_m\": [30, 30, 0.4], \"fov_deg\": 30"});
+    assert_true(fabs(found.cover_pct) < 4);
 }
 
 static const char *const STAND = "26,30,tree,14\n34,30,tree,15\n26,38,tree,13\n34,38,tree,14\n";
@@ -280,6 +322,8 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(twigs_throw_their_own_shadows),
         cmocka_unit_test(stems_do_not_shade_themselves),
+        cmocka_unit_test(stems_darken_the_ground_at_their_feet),
+        cmocka_unit_test(near_fronds_are_drawn_once),
         cmocka_unit_test(long_lenses_show_shadows),
         cmocka_unit_test(trees_in_the_open_darken_the_ground),
         cmocka_unit_test(snow_lights_trees_from_below),

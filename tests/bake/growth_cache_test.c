@@ -60,6 +60,7 @@ static void assert_same_mesh(const struct wd_tree_mesh *a, const struct wd_tree_
     assert_int_equal(a->vertex_count, b->vertex_count);
     assert_int_equal(a->index_count, b->index_count);
     assert_int_equal(a->wood_index_count, b->wood_index_count);
+    assert_int_equal(a->stem_index_count, b->stem_index_count);
     assert_memory_equal(a->vertices, b->vertices, a->vertex_count * sizeof *a->vertices);
     assert_memory_equal(a->indices, b->indices, a->index_count * sizeof *a->indices);
     assert_memory_equal(a->min_m, b->min_m, sizeof a->min_m);
@@ -71,6 +72,8 @@ static void assert_same_model(const struct wd_tree_model *a, const struct wd_tre
 {
     assert_same_mesh(&a->full, &b->full);
     assert_same_mesh(&a->reduced, &b->reduced);
+    assert_same_mesh(&a->far_stem, &b->far_stem);
+    assert_true(a->far_stem.index_count > 0 && a->far_stem.index_count < a->reduced.stem_index_count);
     assert_same_mesh(&a->spray, &b->spray);
     assert_same_mesh(&a->spray_shade, &b->spray_shade);
     assert_int_equal(a->leaf_count, b->leaf_count);

@@ -10,14 +10,14 @@
 #include "shared/crown_sky.h"
 
 /* Of an endless upright cylinder, by rays over the sky by what level ground has of them. */
-static double cylinder_hides(double away_m, double stem_m)
+static double cylinder_hides(double away_m, double radius_m)
 {
     enum { BEARINGS = 4096 };
     int hidden = 0; /* at every height alike */
     for (int i = 0; i < BEARINGS; i++) {
         double bearing = 6.283185307179586 * (i + 0.5) / BEARINGS;
         double past_m = fabs(away_m * sin(bearing));
-        hidden += cos(bearing) > 0 && past_m < stem_m;
+        hidden += cos(bearing) > 0 && past_m < radius_m;
     }
     return hidden / (double)BEARINGS;
 }
@@ -25,9 +25,11 @@ static double cylinder_hides(double away_m, double stem_m)
 static void a_stem_hides_what_a_cylinder_would(void **state)
 {
     (void)state;
-    for (float stem_m = 0.02f; stem_m < 0.36f; stem_m += 0.02f)
-        for (float away_m = WD_STEM_ROOTS_END * stem_m; away_m <= WD_STEM_REACH_M; away_m += 0.02f)
-            assert_float_equal(wd_stem_hides(away_m, stem_m), (float)cylinder_hides((double)away_m, (double)stem_m), 2e-3f);
+    for (float radius_m = 0.02f; radius_m < 0.36f; radius_m += 0.02f)
+        for (float away_m = WD_STEM_ROOTS_END * radius_m; away_m <= WD_STEM_REACH_M; away_m += 0.02f) {
+            float exact = (float)cylinder_hides((double)away_m, (double)radius_m);
+            assert_float_equal(wd_stem_hides(away_m, radius_m), exact, 2e-3f);
+        }
 }
 
 static void roots_hide_more_at_its_foot(void **state)
@@ -43,15 +45,15 @@ static void roots_hide_more_at_its_foot(void **state)
     assert_true(wd_stem_hides(WD_STEM_NO_REACH_M, 0.3f) == 0);
 }
 
-static void stems_are_told_to_centimetres(void **state)
+static void stems_are_told_to_two_millimetres(void **state)
 {
     (void)state;
     for (float east_m = -WD_STEM_FAR_M; east_m < WD_STEM_FAR_M; east_m += 0.37f)
-        for (float stem_m = 0.01f; stem_m < WD_STEM_MOST_M; stem_m *= 1.7f) {
-            uint32_t stem = wd_stem_pack(east_m, -east_m, stem_m);
+        for (float radius_m = 0.01f; radius_m < WD_STEM_MOST_M; radius_m *= 1.7f) {
+            uint32_t stem = wd_stem_pack(east_m, -east_m, radius_m);
             assert_float_equal(WD_STEM_EAST_M(stem), east_m, 0.002f);
             assert_float_equal(WD_STEM_NORTH_M(stem), -east_m, 0.002f);
-            assert_float_equal(WD_STEM_M(stem), stem_m, 0.0011f);
+            assert_float_equal(WD_STEM_RADIUS_M(stem), radius_m, 0.0011f);
             assert_true(stem != 0);
         }
 }
@@ -61,7 +63,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_stem_hides_what_a_cylinder_would),
         cmocka_unit_test(roots_hide_more_at_its_foot),
-        cmocka_unit_test(stems_are_told_to_centimetres),
+        cmocka_unit_test(stems_are_told_to_two_millimetres),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -79,7 +79,7 @@ static const struct member members[] = {
     M(wd_draw_indexed, first_index), M(wd_draw_indexed, vertex_offset),
     M(wd_draw_indexed, first_instance),
     M(wd_sky_crown, foot_mm), M(wd_sky_crown, radius_m), M(wd_sky_crown, half_m), M(wd_sky_crown, middle_m),
-    M(wd_sky_crown, per_m), M(wd_sky_crown, steeper), M(wd_sky_crown, stem_m),
+    M(wd_sky_crown, per_m), M(wd_sky_crown, steeper), M(wd_sky_crown, stem_radius_m),
     M(wd_crown_sky_job, foot_mm), M(wd_crown_sky_job, crown), M(wd_crown_sky_job, reach_m), M(wd_crown_sky_job, slot),
     M(wd_crown_sky_job, radius_m), M(wd_crown_sky_job, top_m), M(wd_crown_sky_job, ground),
     M(wd_crown_sky_job, ground_across), M(wd_crown_sky_job, rise_m),

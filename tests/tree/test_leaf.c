@@ -315,8 +315,8 @@ static void a_leaf_of_its_real_size_needs_no_twig(void **state)
     wd_arena_finish(&arena);
 }
 
-/* Near, each of a fern's fronds has pinnules with a vault and slits between them, along the same midribs and of the
- * same area as far off, and throws the shadow of what it is far off. */
+/* Near, each of a fern's fronds has many more triangles along the same midribs, of the same area as far off, and throws
+ * the shadow of what it is far off. */
 static void a_frond_has_a_near_form_of_each_of_its_forms(void **state)
 {
     (void)state;
