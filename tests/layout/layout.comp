@@ -2,6 +2,7 @@
 /* Every struct that C and GLSL share, so that the compiled module tells its offsets. */
 #include "shared/bake.h"
 #include "shared/card_soup.h"
+#include "shared/continuum.h"
 #include "shared/crown_sky.h"
 #include "shared/forest.h"
 #include "shared/frame.h"
@@ -33,6 +34,18 @@ layout(scalar, binding = 22) buffer Crowns { wd_sky_crown crown; };
 layout(scalar, binding = 23) buffer Jobs { wd_crown_sky_job job; };
 layout(scalar, binding = 24) buffer SkyPushes { wd_crown_sky_push sky; };
 layout(scalar, binding = 25) buffer LightPushes { wd_light_push light; };
+layout(scalar, binding = 26) buffer Splats { wd_splat splat; };
+layout(scalar, binding = 27) buffer SplatCorners { wd_splat_corner splat_corner; };
+layout(scalar, binding = 28) buffer SplatModels { wd_splat_model splat_model; };
+layout(scalar, binding = 29) buffer Clusters { wd_cluster cluster; };
+layout(scalar, binding = 30) buffer SplatViews { wd_splat_view splat_view; };
+layout(scalar, binding = 31) buffer SplatCounts { wd_splat_counts splat_counts; };
+layout(scalar, binding = 32) buffer SplatsLost { wd_splat_lost splat_lost; };
+layout(scalar, binding = 33) buffer SplatGroups { wd_splat_groups splat_groups; };
+layout(scalar, binding = 34) buffer SplatTrees { wd_splat_tree splat_tree; };
+layout(scalar, binding = 35) buffer LargeParts { wd_large_part large_part; };
+layout(scalar, binding = 36) buffer CascadePushes { wd_cascade_push cascade_push; };
+layout(scalar, binding = 37) buffer SplatItems { wd_splat_item splat_item; };
 
 void main()
 {
@@ -41,5 +54,8 @@ void main()
               + frame.width + chunk.first_tree + card.turn + corner.card + uint(cull.plane[0].x)
               + soup.variants + draw.index_count + leaf.turn + spray.leaf
               + packed.xy + form.kind + mesh_push.forms + spray_push.tree.level + bake.width
-              + uint(crown.foot_mm[0]) + job.slot + sky.columns + light.variants;
+              + uint(crown.foot_mm[0]) + job.slot + sky.columns + light.variants
+              + splat.xy + splat_corner.tint + splat_model.wood_count + cluster.first
+              + splat_view.width + splat_counts.trees + splat_lost.trees + splat_groups.select[0]
+              + splat_tree.tree + large_part.id + cascade_push.layer + splat_item.tree;
 }

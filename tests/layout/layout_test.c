@@ -10,6 +10,7 @@
 
 #include "shared/bake.h"
 #include "shared/card_soup.h"
+#include "shared/continuum.h"
 #include "shared/crown_sky.h"
 #include "shared/forest.h"
 #include "shared/frame.h"
@@ -27,6 +28,29 @@ struct member {
 #define M(type, name) {#type, #name, offsetof(struct type, name)}
 
 static const struct member members[] = {
+    M(wd_point_gains, gains),
+    M(wd_splat, xy), M(wd_splat, z_normal), M(wd_splat_corner, at), M(wd_splat_corner, uv), M(wd_splat_corner, tint),
+    M(wd_cluster, min_mm), M(wd_cluster, max_mm), M(wd_cluster, first), M(wd_cluster, count), M(wd_splat_lost, trees),
+    M(wd_splat_lost, items), M(wd_large_part, id), M(wd_large_part, part), M(wd_cascade_push, layer),
+    M(wd_cascade_push, has_drawn), M(wd_splat_item, tree), M(wd_splat_item, parts),
+#define S(name) M(wd_splat_model, name)
+    S(wood), S(leaf), S(light), S(wood_light), S(min_m), S(extent_m), S(leaf_area_m2), S(wood_area_m2), S(strata_top_m),
+    S(lower_over_upper), S(lower), S(wood_falls), S(grain), S(finer), S(wood_first), S(wood_count), S(wood_corners),
+    S(wood_stem), S(wood_far_stem), S(leaf_past_bark), S(thin_share), S(thin_wood),
+#define V(name) M(wd_splat_view, name)
+    V(clip_from_rel), V(planes), V(plane_count), V(orthographic), V(calm), V(pixels), V(near_m), V(typical_m), V(width),
+    V(height), V(texels), V(density), V(detail), V(min_splats), V(near_leaves_m), V(near_grains), V(wood_px),
+    V(cluster_count), V(variants), V(page_count), V(slopes_scale), V(slopes_offset), V(slopes_texel_m), V(tree_capacity),
+    V(item_capacity), V(has_history), V(moved), V(still), V(put_off_words), V(history_from_rel), V(slice),
+    V(cascade_records), V(pyramid_first),
+#define C(name) M(wd_splat_counts, name)
+    C(clusters), C(trees), C(items), C(small_items), C(wood_items), C(put_off), C(done_items), C(done_small),
+    C(done_wood),
+#define T(name) M(wd_splat_tree, name)
+    T(clip_x), T(clip_y), T(clip_w), T(sway), T(radius), T(facing), T(wood_radius), T(tree), T(first_splat), T(offset),
+    T(strata), T(first_wood), T(turn), T(shape), T(tint), T(lower), T(sun), T(eye), T(nearer_m),
+#define G(name) M(wd_splat_groups, name)
+    G(select), G(splat), G(small), G(all_splats), G(wood), G(sort),
     M(wd_bake_shot, x), M(wd_bake_shot, y), M(wd_bake_shot, depth),
     M(wd_bake_push, shot), M(wd_bake_push, shot_index), M(wd_bake_push, triangle_count),
     M(wd_bake_push, first_triangle), M(wd_bake_push, width), M(wd_bake_push, height),
