@@ -180,13 +180,14 @@ float wd_foliage_mean_m(const struct wd_foliage *foliage)
 }
 
 /* Feathers keep their shape with a quarter of the leaflets, each four times as wide; a fern's pinnae
- * become single leaflets. */
+ * become single leaflets, as much narrower as there is light between their pinnules. */
 static struct wd_species coarser_fronds(const struct wd_species *species)
 {
     struct wd_species coarse = *species;
     if (species->leaf.compound == WD_COMPOUND_BIPINNATE) {
         coarse.leaf.compound = WD_COMPOUND_PINNATE;
         coarse.leaf.shape = WD_LEAF_LANCEOLATE;
+        coarse.leaf.leaflet_width_cm *= 0.7f;
         return coarse;
     }
     int64_t leaflets = species->leaf.leaflets / 4 > 6 ? species->leaf.leaflets / 4 : 6;

@@ -45,7 +45,7 @@ static void known_hashes(void **state)
         0xe98490c4f2a552f8u, 0x7341d7dff323342du, 0x243a50df820f80f4u,
         0x5fbeb69277f74de1u, 0x8bd19e07f50c78e8u, 0xfac0ab0e922e9debu,
         0xd85d74afefa44923u, 0xb2ac74a96329549du, 0xddc8c10f65cf3b95u,
-        0xc3098b979a71e289u, 0x0148e351c39df543u, 0x9b569c6b09f8213cu,
+        0xc3098b979a71e289u, 0x0148e351c39df543u, 0x419301874c1d9884u,
         0xa6f011c7b6260da1u, 0xc738882ef573b17du};
     struct wd_arena arena = {0};
     int wrong = 0;
