@@ -8,8 +8,8 @@
 #include "shared/hash.h"
 #include "tree/vec.h"
 
-/* Of twigs in all. */
-enum { MOST_TRIANGLES = 4000000 };
+/* Of twigs in all, as in pictures (WD_SPRAY_BUDGET). */
+enum { MOST_TRIANGLES = 1500000 };
 
 /* --- which leaves ---------------------------------------------------------------------------- */
 
