@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the drawn pictures of README.md and docs/ (those of docs/gallery.md: gallery.sh).
+# Makes the pictures of README.md and docs/ (those of docs/gallery.md: gallery.sh).
 #   scripts/pictures.sh BUILD [NAME]...    e.g. valley rows; without names, all
 # DATA=DIR holds the files of scenes that need --data (default: ../shared/data if it is there; without, those
 # pictures stay as they are).
@@ -98,6 +98,18 @@ rows() {
     montage "$@" -tile 4x -resize 504x189 -geometry +0+0 -quality 88 "$shown/rows.jpg"
 }
 
+# Birches in fog, drawn and path-traced.
+fog() {
+    is_wanted fog || return 0
+    for how in "--samples 16" "--samples 160 --reference"; do
+        set -- "$@" "$scratch/fog$#.png"
+        # shellcheck disable=SC2086 # words of options
+        "$build/cli/weald" render scenes/gallery/birches.json --set fog.visibility_m=150 --set fog.height_m=25 \
+            --size 640x360 $how -o "$scratch/fog$(($# - 1)).png"
+    done
+    convert "$@" +append -quality 88 "$shown/fog.jpg"
+}
+
 sheet() { # sheet NAME SPECIES...
     is_wanted "$1" || return 0
     sheet_name=$1
@@ -115,6 +127,7 @@ jpeg intel intel 640x400 walk
 jpeg river river 960x540 bank
 methods overview
 methods walk
+fog
 ! is_wanted hedges || render hedges "$shown/hedges.png" 960x540 --option near_px=2
 rows
 sheet sheet oak birch spruce coconut

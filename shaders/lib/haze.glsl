@@ -48,7 +48,7 @@ const float HAZE_STAND_M = 1000.0;
 float haze_reach(float length_m)
 {
     float x = length_m / HAZE_STAND_M;
-    return 0.5 * inversesqrt(1.0 + x * x);
+    return inversesqrt(1.0 + x * x);
 }
 
 #ifdef SHAFT_AT
@@ -99,27 +99,65 @@ float sun_on_way(float open, vec3 direction, float length_m)
 }
 #endif
 
-/* Simpson's rule over the part of the way that is below the stands' tops. */
-vec3 apply_haze(vec3 radiance, vec3 direction, float length_m, float sunlit)
+/* What haze of an optical depth on a way adds to what arrives, by three places: the near end of the way, one `at` this
+ * part of it, and its far end. Haze lies at `mean` in the mean. Where it is thin this is Simpson's rule; where it hides
+ * the far end, Radau's. */
+struct wd_haze_rule {
+    vec3 weights;
+    float at, mean;
+};
+
+wd_haze_rule haze_rule(float depth)
+{
+    float first = 0.5 - depth / 12.0, second = 1.0 / 3.0 - depth / 12.0; /* moments of the place */
+    if (depth > 0.05) {
+        float through = exp(-depth), per_lost = through / (1.0 - through);
+        first = 1.0 / depth - per_lost;
+        second = 2.0 * first / depth - per_lost;
+    }
+    float at = min(second / first, 0.5);
+    float between = (first - second) / (at - at * at), far = first - at * between;
+    return wd_haze_rule(vec3(1.0 - between - far, between, far), at, first);
+}
+
+/* Shares of the sky's light and of the sun's that stands let through to haze on a way: shade counts on the part of it that
+ * is below their tops, as much as haze there does. */
+vec2 haze_open(vec3 direction, float length_m)
 {
     bool rises = haze_eye.height_m < haze_end.height_m;
-    wd_haze_place low = haze_end, high = haze_eye;
-    if (rises) {
-        low = haze_eye;
-        high = haze_end;
-    }
-    float top_m = max(low.layer_m.y, high.layer_m.y) + 0.5;
-    float part = clamp((top_m - low.height_m) / max(high.height_m - low.height_m, 1e-3), 0.0, 1.0);
-    high.height_m = min(high.height_m, top_m);
-    float middle_m = length_m * (rises ? 0.5 * part : 1.0 - 0.5 * part);
-    wd_haze_place between = wd_haze_place(haze_floor_log(push.camera_m + direction.xy * middle_m),
-                                          0.5 * (low.layer_m + high.layer_m),
-                                          0.5 * (low.height_m + high.height_m));
-    vec2 shade = haze_shade(low) + 4.0 * haze_shade(between) + haze_shade(high);
-    vec2 open = 1.0 - shade * (part * haze_reach(length_m * part) / 3.0);
+    wd_haze_place near = haze_eye, far = haze_end;
+    float low_m = min(near.height_m, far.height_m), high_m = max(near.height_m, far.height_m);
+    float top_m = max(near.layer_m.y, far.layer_m.y) + 0.5;
+    float part = clamp((top_m - low_m) / max(high_m - low_m, 1e-3), 0.0, 1.0), before = rises ? 0.0 : 1.0 - part;
+    near.height_m = min(near.height_m, top_m);
+    far.height_m = min(far.height_m, top_m);
+    float depth = frame.fog_per_m * wd_fog_path_m(direction, length_m), share = part;
+    if (depth > 1e-3)
+        share = exp(-depth * before) * (1.0 - exp(-depth * part)) / (1.0 - exp(-depth));
+    wd_haze_rule rule = haze_rule(depth * part);
+    float between_m = length_m * (before + rule.at * part);
+    wd_haze_place between = wd_haze_place(haze_floor_log(push.camera_m + direction.xy * between_m),
+                                          mix(near.layer_m, far.layer_m, rule.at),
+                                          mix(near.height_m, far.height_m, rule.at));
+    vec2 shade = mat3x2(haze_shade(near), haze_shade(between), haze_shade(far)) * rule.weights;
+    vec2 open = 1.0 - shade * (share * haze_reach(2.0 * rule.mean * length_m * part));
 #ifdef SHAFT_AT
     if (push.shafts > 0.0)
         open.y = sun_on_way(open.y, direction, length_m);
 #endif
+    return open;
+}
+
+vec3 apply_haze(vec3 radiance, vec3 direction, float length_m, float sunlit)
+{
+    vec2 open = haze_open(direction, length_m);
     return wd_fog_apply(radiance, direction, length_m, sunlit, open.x, open.y);
+}
+
+/* Trees beyond those next to the eye are as there. */
+wd_haze_place over_eye(vec3 direction, float length_m)
+{
+    wd_haze_place place = haze_eye;
+    place.height_m += max(direction.z, 0.0) * length_m;
+    return place;
 }

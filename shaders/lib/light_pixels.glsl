@@ -85,8 +85,16 @@ vec3 seen(uvec2 at, vec3 radiance, vec3 direction, float distance_m, float water
         distance_m = water_m;
         haze_end = IN_THE_OPEN;
     }
-    return distance_m < WD_SKY_M ? apply_haze(radiance, direction, distance_m, ground_share)
-                                 : radiance;
+    bool sky = distance_m >= WD_SKY_M;
+    if (sky && frame.fog_over <= 0.0)
+        return radiance;
+    if (sky) {
+        distance_m = WD_FOG_SHADED_M;
+        haze_end = over_eye(direction, distance_m);
+    }
+    vec2 open = haze_open(direction, distance_m);
+    return sky ? wd_fog_shade_sky(radiance, direction, open.x, open.y)
+               : wd_fog_apply(radiance, direction, distance_m, ground_share, open.x, open.y);
 }
 
 vec3 pixel_radiance(ivec2 at, float water_m)
@@ -105,8 +113,6 @@ vec3 pixel_radiance(ivec2 at, float water_m)
         distance_m = WD_SKY_M;
         sun_share = ground_share = 1.0;
     }
-    if ((PARTS & (WD_PART_GROUND | WD_PART_WATER)) == 0u)
-        return radiance;
     return seen(uvec2(at), radiance, direction, distance_m, water_m, sun_share, ground_share);
 }
 

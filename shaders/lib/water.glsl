@@ -99,7 +99,7 @@ vec4 mirrored_pixel(ivec2 at, vec3 direction, float water_m)
     bool covered = water_ahead_m(normalize(ray), length(ray) * axis_m) > 0.0;
     vec4 sum = imageLoad(radiance_image, at);
     vec3 haze = apply_haze(vec3(0.0), direction, water_m, 1.0);
-    vec3 through = apply_haze(vec3(1.0), direction, water_m, 1.0) - haze;
+    vec3 through = wd_fog_through(direction, water_m);
     vec3 light = max(sum.rgb / max(sum.a, 1.0) - haze, vec3(0.0)) / max(through, vec3(0.05));
     return vec4(light, covered ? 0.0 : 1.0);
 }

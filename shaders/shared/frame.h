@@ -68,6 +68,8 @@ struct wd_frame_uniforms {
     uint32_t sky_is_map;             /* the sky is a map (shared/sky_map.h), not computed */
     float fog_height_m;
     float fog_base_m;                /* above the world's zero */
+    WD_VEC3(fog_bands);              /* its extinction by band, over that of green */
+    float fog_over;                  /* optical depth straight up from the camera of what the sky does not hold itself */
     float wind_speed_mps, wind_gust;
     WD_VEC2(wind_toward);            /* unit: where the wind blows to, x east, y north */
     float water_level_m;             /* -1e9: no water */

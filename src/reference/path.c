@@ -322,12 +322,24 @@ static bool sun_lights_haze(struct path *path, struct wd_vec3 at)
     return sky_reaches(path, &(struct wd_trace_ray){at, toward, HAZE_SHADOWS_M});
 }
 
+/* Fog before the sky, as far as trees are looked for that shade it. */
+static struct wd_vec3 shaded_sky(struct path *path, struct wd_vec3 direction)
+{
+    const struct wd_frame_uniforms *frame = frame_of(path);
+    if (frame->fog_over <= 0)
+        return path->radiance;
+    path->seen_m = WD_FOG_SHADED_M;
+    struct wd_vec3 at = place_in_haze(path, direction);
+    float sky = sky_lights_haze(path, at) ? 1.0f : 0.0f, sun = sun_lights_haze(path, at) ? 1.0f : 0.0f;
+    return wd_fog_shade_sky(frame, path->radiance, direction, sky, sun);
+}
+
 /* Haze between the eye and what it sees is lit where the ground there lets the sun pass, and trees near by. */
 static struct wd_vec3 through_haze(struct path *path, struct wd_vec3 direction)
 {
     const struct wd_frame_uniforms *frame = frame_of(path);
     if (path->seen_m >= INFINITY)
-        return path->radiance;
+        return shaded_sky(path, direction);
     struct wd_trace_ray to_sun = {wd_v3_mad(wd_v3_scale(direction, path->seen_m),
                                             WD_V3(0, 0, 1), 0.05f),
                                   wd_v3_of(frame->sun_direction), INFINITY};

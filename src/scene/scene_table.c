@@ -109,9 +109,9 @@ static const struct wd_keys sky_table = {"sky", sky_keys, sizeof(struct wd_scene
 
 static const struct wd_key fog_keys[] = {
     {"visibility_m", WD_KEY_DOUBLE, IN(fog, visibility_m), 1, 1e7, "30000",
-     "Distance at which contrast falls to 2%, in metres."},
+     "Distance at which contrast falls to 2%, in metres. Where fog is thick it hides the sky and the sun."},
     {"height_m", WD_KEY_DOUBLE, IN(fog, height_m), 1, 1e6, "1200",
-     "The haze thins by e over this height, in metres."},
+     "The haze thins by e over this height, in metres; the lower, the more of the sky shows through fog."},
     {"base_m", WD_KEY_DOUBLE, IN(fog, base_m), -12000, 12000, "0",
      "Height of full density above the world's zero, in metres."},
     {0},

@@ -78,6 +78,41 @@ static void add_clouds(struct wd_frame_uniforms *uniforms, float cover)
     wd_skylight_fill(uniforms, radiance_of, uniforms);
 }
 
+/* Haze of this depth straight up is the computed sky's own. */
+static const float OF_THE_SKY = 0.4f;
+
+/* Asymmetry of what drops of fog scatter (Hess, Koepke and Schult 1998). */
+static const float DROPS_G = 0.85f;
+
+/* Share of the sun's light that comes down through fog, scattered or not (Eddington's approximation). */
+static float sun_below_fog(float depth, float rise)
+{
+    float lit = 0.6667f + rise + (0.6667f - rise) * expf(-depth / fmaxf(rise, 0.01f));
+    return lit / (1.3333f + (1 - DROPS_G) * depth);
+}
+
+/* Fog over the camera hides sun and sky, and is as bright as what comes down through it; in thin fog, through which
+ * the sun shines, as haze before the horizon is. */
+static void add_fog(struct wd_frame_uniforms *uniforms)
+{
+    float camera_m = (float)uniforms->camera_mm[2] * 0.001f, rise = fmaxf(uniforms->sun_direction[2], 0);
+    float depth = uniforms->fog_per_m * uniforms->fog_height_m * wd_fog_density(uniforms, camera_m) - OF_THE_SKY;
+    if (!(depth > 0))
+        return;
+    float sun_through = expf(-depth * wd_air_mass(uniforms->sun_direction[2]));
+    float sky_below = 1 / (1 + 0.75f * (1 - DROPS_G) * depth);
+    for (int channel = 0; channel < 3; channel++) {
+        float below = uniforms->sun_irradiance[channel] * rise * sun_below_fog(depth, rise) +
+                      uniforms->sky_irradiance[channel] * sky_below;
+        uniforms->sky_horizon[channel] = sun_through * uniforms->sky_horizon[channel] +
+                                         (1 - sun_through) * below / (float)WD_PI;
+        uniforms->sky_glow[channel] *= sun_through;
+        uniforms->sun_irradiance[channel] *= sun_through;
+    }
+    uniforms->fog_over = depth;
+    wd_skylight_fill(uniforms, radiance_of, uniforms);
+}
+
 /* The map in place of the computed sky; haze fades into its horizon. */
 static void set_map(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene,
                     const struct wd_sky_map *map)
@@ -114,6 +149,7 @@ void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scen
     memcpy(uniforms->sun_direction, sky.sun, sizeof sky.sun);
     uniforms->sun_cos_radius = cosf(fmaxf(radius_deg, 0.05f) * DEGREE);
     uniforms->sky_turbidity = (float)scene->sky.turbidity;
+    uniforms->fog_over = 0;
     uniforms->sky_strength = source * (float)scene->sky.strength;
     for (int channel = 0; channel < 3; channel++) {
         sky.band = wd_sky_band_of(channel, uniforms->sky_turbidity);
@@ -130,4 +166,6 @@ void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scen
     wd_skylight_fill(uniforms, radiance_of, uniforms);
     if (scene->sky.cover > 0)
         add_clouds(uniforms, (float)scene->sky.cover);
+    if (uniforms->fog_per_m > 0)
+        add_fog(uniforms);
 }

@@ -6,6 +6,15 @@
 #include "base/dmath.h"
 #include "world/sun.h"
 
+/* Haze scatters blue more than red; the drops of fog, in which one sees less than half a kilometre far, all colours alike. */
+static void set_fog_bands(struct wd_frame_uniforms *uniforms, double visibility_m)
+{
+    static const float haze[3] = {0.80f, 1, 1.34f};
+    static const double FOG_M = 500, HAZE_M = 1400;
+    float share = (float)fmin(fmax((visibility_m - FOG_M) / (HAZE_M - FOG_M), 0), 1);
+    for (int band = 0; band < 3; band++)
+        uniforms->fog_bands[band] = 1 + (haze[band] - 1) * share;
+}
 
 static void fill_weather(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene)
 {
@@ -13,6 +22,7 @@ static void fill_weather(struct wd_frame_uniforms *uniforms, const struct wd_sce
     uniforms->fog_per_m = (float)(3.912 / scene->fog.visibility_m);
     uniforms->fog_height_m = (float)scene->fog.height_m;
     uniforms->fog_base_m = (float)scene->fog.base_m;
+    set_fog_bands(uniforms, scene->fog.visibility_m);
     uniforms->wind_speed_mps = (float)scene->wind.speed_mps;
     uniforms->wind_gust = (float)scene->wind.gust;
     double from = scene->wind.direction_deg * (WD_PI / 180.0);

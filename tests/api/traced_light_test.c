@@ -239,7 +239,7 @@ static void crowns_shade_the_haze_before_them(void **state)
     (void)state;
     const struct light found = against_traced(&(struct shown){
         .species = "oak", .trees = STAND, .size_m = "[60, 60]", .samples = 4,
-        .keys = "\"sun\": {\"azimuth_deg\": 0, \"elevation_deg\": 14}, \"fog\": {\"visibility_m\": 500}",
+        .keys = "\"sun\": {\"azimuth_deg\": 0, \"elevation_deg\": 14}, \"fog\": {\"visibility_m\": 500, \"height_m\": 50}",
         .camera = "\"position_m\": [30, 4, 1.7], \"look_at_m\": [30, 34, 8], \"fov_deg\": 40"});
     assert_true(fabs(found.trees_pct) < 10);
 }

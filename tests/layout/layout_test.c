@@ -120,7 +120,7 @@ static const struct member members[] = {
     F(time_s), F(camera_frac_m), F(previous_time_s), F(sun_direction), F(sun_cos_radius),
     F(sun_irradiance), F(sky_turbidity), F(sky_irradiance), F(sky_strength), F(circumsolar), F(sky_glow), F(near_m),
     F(sky_horizon), F(fog_per_m), F(sky_cloud), F(snow), F(sky_turn), F(sky_is_map),
-    F(fog_height_m), F(fog_base_m), F(wind_speed_mps), F(wind_gust),
+    F(fog_height_m), F(fog_base_m), F(fog_bands), F(fog_over), F(wind_speed_mps), F(wind_gust),
     F(wind_toward), F(water_level_m), F(water_clarity_m), F(water_color), F(exposure), F(grass),
     F(rock_slope), F(soil), F(snow_line_m), F(rock), F(tree_line_m), F(litter), F(terrain_cell_m),
     F(sward), F(sward_share), F(sward_whole_m), F(sward_gone_m),

@@ -1,4 +1,4 @@
-/* Haze: contrast falls to 2% at the distance that a scene calls its visibility (Koschmieder 1924). */
+/* Haze: contrast falls to 2% at the distance that a scene calls its visibility (Koschmieder 1924). Fog hides sun and sky. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@
 
 static const float FLAT_TERRAIN_M[4] = {0, 0, 0, 0};
 
-static struct wd_frame_uniforms air_of(double visibility_m, double height_m, double elevation_deg)
+static struct wd_frame_uniforms air_at(double visibility_m, double height_m, double elevation_deg, double camera_m)
 {
     struct wd_scene scene = {0};
     struct wd_world world = {0};
@@ -25,8 +25,14 @@ static struct wd_frame_uniforms air_of(double visibility_m, double height_m, dou
     scene.sun.angular_diameter_deg = 0.53;
     scene.sun.strength = scene.sky.strength = 1;
     scene.sky.turbidity = 2.5;
+    wd_surroundings_set_camera(&frame, (const double[3]){0, 0, camera_m});
     wd_surroundings_fill(&frame, &scene, &world);
     return frame;
+}
+
+static struct wd_frame_uniforms air_of(double visibility_m, double height_m, double elevation_deg)
+{
+    return air_at(visibility_m, height_m, elevation_deg, 0);
 }
 
 /* Of something black before the horizon, over the horizon's own light; green. */
@@ -134,6 +140,53 @@ static void test_night(void **state)
     }
 }
 
+/* On level ground; of the sun and the sky, green. */
+static float light_below(const struct wd_frame_uniforms *frame)
+{
+    return frame->sky_irradiance[1] + frame->sun_irradiance[1] * frame->sun_direction[2];
+}
+
+/* Haze that a sky holds itself changes nothing; through thin fog the sun shines, dimmed by Beer's law; thick fog is the
+ * same on all sides, without a sun, and lets through what Eddington's approximation says. */
+static void test_fog_hides_sun_and_sky(void **state)
+{
+    (void)state;
+    const double height_m = 100, elevation_deg = 40;
+    struct wd_frame_uniforms clear = air_of(30000, height_m, elevation_deg);
+    assert_float_equal(clear.fog_over, 0, 0);
+    struct wd_frame_uniforms thin = air_of(3.912 * height_m / 0.9, height_m, elevation_deg);
+    assert_float_equal(thin.fog_over, 0.5, 1e-4);
+    assert_float_equal(thin.sun_irradiance[1] / clear.sun_irradiance[1], expf(-0.5f * wd_air_mass(clear.sun_direction[2])),
+                       1e-4);
+    struct wd_vec3 away = {-clear.sun_direction[0], -clear.sun_direction[1], clear.sun_direction[2]};
+    assert_true(wd_sky_toward(&thin, away).y > 1.2f * wd_sky_toward(&clear, away).y);
+    assert_true(light_below(&thin) > 0.8f * light_below(&clear) && light_below(&thin) < light_below(&clear));
+    struct wd_frame_uniforms thick = air_of(3.912 * height_m / 20.4, height_m, elevation_deg);
+    struct wd_vec3 up = {0, 0, 1}, level = {1, 0, 0};
+    float rise = clear.sun_direction[2], sun = (0.6667f + rise) / (1.3333f + 0.15f * 20), sky = 1 / (1 + 0.1125f * 20);
+    float wanted = clear.sky_irradiance[1] * sky + clear.sun_irradiance[1] * rise * sun;
+    assert_float_equal(light_below(&thick) / wanted, 1, 0.02);
+    assert_float_equal(wd_sky_toward(&thick, up).y / wd_sky_toward(&thick, level).y, 1, 1e-3);
+    assert_true(thick.sun_irradiance[1] < 1e-9f * clear.sun_irradiance[1]);
+}
+
+/* Light and sky over the fog are those of a clear day; on the way up they become so step by step. */
+static void test_above_the_fog(void **state)
+{
+    (void)state;
+    struct wd_frame_uniforms clear = air_at(1e7, 60, 30, 0), over = air_at(150, 60, 30, 400);
+    struct wd_vec3 up = {0, 0, 1};
+    assert_float_equal(over.fog_over, 0, 0);
+    assert_float_equal(wd_sky_toward(&over, up).y, wd_sky_toward(&clear, up).y, 0);
+    float before = 0;
+    for (int z_m = 0; z_m < 80; z_m++) {
+        struct wd_frame_uniforms frame = air_at(150, 60, 30, z_m);
+        assert_true(frame.sun_irradiance[1] > before);
+        before = frame.sun_irradiance[1];
+    }
+    assert_float_equal(before / clear.sun_irradiance[1], 1, 0.05);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -142,6 +195,8 @@ int main(void)
         cmocka_unit_test(test_height),
         cmocka_unit_test(test_far_over_the_haze),
         cmocka_unit_test(test_night),
+        cmocka_unit_test(test_fog_hides_sun_and_sky),
+        cmocka_unit_test(test_above_the_fog),
     };
     return cmocka_run_group_tests_name("air", tests, NULL, NULL);
 }
