@@ -514,15 +514,22 @@ wd_drawn drawn_of(wd_cluster cluster)
 void select_trees(uint index, wd_cluster cluster, uvec2 range, uint mask)
 {
     wd_drawn drawn = drawn_of(cluster);
-    uint records = (cluster.count & WD_CLUSTER_PAGED) != 0u ? WD_CLUSTER_TREES : cluster.count;
-    uint end = min(range.y, drawn.count);
+    bool paged = (cluster.count & WD_CLUSTER_PAGED) != 0u;
+    bool tall_too = ORTHOGRAPHIC != 0u && !paged && drawn.count < WD_CLUSTER_TREES;
+    uint records = paged ? WD_CLUSTER_TREES : cluster.count;
+    uint end = tall_too ? range.y : min(range.y, drawn.count);
     uint i = range.x + gl_LocalInvocationID.x;
     if (i >= end)
         return;
     do {
         uint at = bitfieldReverse(i) >> 26;
-        if (at < records && (mask >> (i & 31u) & 1u) != 0u)
-            select_tree(cluster.first + at, drawn.share, index * WD_CLUSTER_TREES + i);
+        if (at < records && (mask >> (i & 31u) & 1u) != 0u) {
+            float share = i < drawn.count ? drawn.share : 0.0;
+            if (tall_too && WD_TREE_HEIGHT_M(tree_at(cluster.first + at)) >= view.cascade_whole_m)
+                share = 1.0;
+            if (share > 0.0)
+                select_tree(cluster.first + at, share, index * WD_CLUSTER_TREES + i);
+        }
         i += gl_WorkGroupSize.x;
     } while (i < end);
 }

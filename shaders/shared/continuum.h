@@ -232,7 +232,8 @@ struct wd_splat_view {
     WD_VEC4(slice[WD_SPLAT_SIDES]); /* of a cascade: a, b, c of sides in clip coordinates, within which lies
                                        what may shade anything that the camera sees; 0: none */
     uint32_t cascade_records;    /* of a cluster of stored trees, that cascades draw: all, unless the world has
-                                    more trees than a view can hold */
+                                    more trees than a view can hold; */
+    float cascade_whole_m;       /* and all that are this tall */
     uint32_t pyramid_first[WD_PYRAMID_LEVELS];
 };
 

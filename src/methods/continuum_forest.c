@@ -274,6 +274,16 @@ static void measure_grains(struct wd_continuum_forest *own, const struct wd_fore
     }
 }
 
+static void count_heights(struct wd_continuum_forest *own, const struct wd_world *world)
+{
+    for (size_t i = 0; i < world->tree_count; i++) {
+        uint32_t steps = (world->trees[i].size & 0xffffu) / WD_HEIGHT_STEP_CM;
+        own->taller[steps < WD_HEIGHT_STEPS ? steps : WD_HEIGHT_STEPS - 1]++;
+    }
+    for (size_t i = WD_HEIGHT_STEPS - 1; i > 0; i--)
+        own->taller[i - 1] += own->taller[i];
+}
+
 static bool make_splats(struct wd_continuum_forest *own, struct wd_gpu *gpu,
                         struct wd_forest_device *forest)
 {
@@ -305,6 +315,7 @@ bool wd_continuum_forest_init(struct wd_continuum_forest *own, struct wd_gpu *gp
     *own = (struct wd_continuum_forest){0};
     struct wd_cluster *clusters;
     own->cluster_count = wd_clusters_make(&clusters, &forest->world->octree, forest->world->trees);
+    count_heights(own, forest->world);
     size_t paged = (size_t)forest->pages.capacity * WD_PAGE_CLUSTERS;
     const struct wd_buffer_params params = {"clusters",
                                             (own->cluster_count + paged) * sizeof *clusters,

@@ -5,6 +5,9 @@
 #include "forest/forest.h"
 #include "shared/continuum.h"
 
+/* Heights are counted in steps of so many centimetres. */
+enum { WD_HEIGHT_STEPS = 256, WD_HEIGHT_STEP_CM = 25 };
+
 struct wd_continuum_forest {
     struct wd_buffer clusters; /* struct wd_cluster[cluster_count], then those of pages */
     struct wd_buffer splats;   /* struct wd_splat[WD_SPLATS] a model */
@@ -15,6 +18,7 @@ struct wd_continuum_forest {
     uint32_t cluster_count;
     float *grains;     /* [model]: as in struct wd_splat_model */
     float coarsest_m;  /* the greatest grain of a stored tree */
+    uint32_t taller[WD_HEIGHT_STEPS]; /* [i]: stored trees of i steps and more; [0]: all */
 };
 
 /* Samples the splats of every model and gathers the trees in clusters. */

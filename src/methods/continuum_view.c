@@ -144,11 +144,22 @@ struct wd_near_rule wd_continuum_near_rule(const struct wd_tree_draw *draw,
     return rule;
 }
 
-/* A cascade may hold the whole world. */
-static uint32_t cascade_records(uint32_t capacity, size_t trees)
+/* Of the tallest trees all, if a small part of the world's is much taller than the rest, as trees in a meadow are. */
+struct wd_cascade_share wd_cascade_share_of(uint32_t capacity, const uint32_t taller[WD_HEIGHT_STEPS])
 {
-    uint64_t records = trees ? (uint64_t)capacity * WD_CLUSTER_TREES / trees : WD_CLUSTER_TREES;
-    return records < 1 ? 1 : records < WD_CLUSTER_TREES ? (uint32_t)records : WD_CLUSTER_TREES;
+    const uint32_t trees = taller[0];
+    size_t tallest = WD_HEIGHT_STEPS - 1, step = 1;
+    if (trees <= capacity)
+        return (struct wd_cascade_share){WD_CLUSTER_TREES, INFINITY};
+    while (tallest > 0 && taller[tallest] == 0)
+        tallest--;
+    while (step <= tallest && taller[step] > capacity / 2)
+        step++;
+    bool apart = 2 * step <= tallest;
+    uint32_t whole = apart ? taller[step] : 0;
+    uint64_t records = (uint64_t)(capacity - whole) * WD_CLUSTER_TREES / (trees - whole);
+    return (struct wd_cascade_share){records < 1 ? 1 : (uint32_t)records,
+                                     apart ? 0.01f * (float)(step * WD_HEIGHT_STEP_CM) : INFINITY};
 }
 
 /* A splat's texel in the first cascade, where what lies close by is meshes, is as large at most. */
@@ -167,14 +178,17 @@ static uint32_t disc_texels(const struct wd_tree_draw *draw)
     return view->width % texels ? 1 : texels;
 }
 
-static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw *draw)
+static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw *draw,
+                        const struct wd_continuum_forest *forest)
 {
     const struct wd_view *view = draw->view;
     float detail = values->detail;
     values->density =
         (float)draw->forest->scene->methods.continuum.shadow_density * detail * detail;
     values->min_splats = WD_SPLAT_STRATA;
-    values->cascade_records = cascade_records(values->tree_capacity, draw->forest->world->tree_count);
+    struct wd_cascade_share share = wd_cascade_share_of(values->tree_capacity, forest->taller);
+    values->cascade_records = share.records;
+    values->cascade_whole_m = share.whole_m;
     values->texels = disc_texels(draw);
     values->width /= values->texels;
     values->height /= values->texels;
@@ -219,7 +233,7 @@ void wd_continuum_view_fill(struct wd_splat_view *values,
     memcpy(values->planes, view->frustum.planes, sizeof values->planes);
     set_slopes(values, &draw->forest->ground, view);
     if (shadow)
-        set_cascade(values, draw);
+        set_cascade(values, draw, params->forest);
     else
         set_history(values, params);
 }

@@ -29,6 +29,12 @@ void wd_continuum_view_again(struct wd_splat_view *values);
 /* Pixels each way, over the picture's own, that the error bound asks level of detail to be chosen for.
  * Maps that are kept for later frames do not follow it. */
 float wd_continuum_detail(const struct wd_tree_draw *draw);
+/* Which stored trees cascades draw, that may hold the whole world: so many of each cluster, and all that are this tall. */
+struct wd_cascade_share {
+    uint32_t records;
+    float whole_m;
+};
+struct wd_cascade_share wd_cascade_share_of(uint32_t capacity, const uint32_t taller[WD_HEIGHT_STEPS]);
 /* Of a cascade: texels that a metre spans. */
 float wd_texels_per_m(const struct wd_view *view);
 /* Where trees are meshes: in cascades but the first, or in that while it is calm, none are, nor where they are

@@ -42,7 +42,7 @@ static const struct member members[] = {
     V(height), V(texels), V(density), V(detail), V(min_splats), V(near_leaves_m), V(near_grains), V(wood_px),
     V(cluster_count), V(variants), V(page_count), V(slopes_scale), V(slopes_offset), V(slopes_texel_m), V(tree_capacity),
     V(item_capacity), V(has_history), V(moved), V(still), V(put_off_words), V(history_from_rel), V(slice),
-    V(cascade_records), V(pyramid_first),
+    V(cascade_records), V(cascade_whole_m), V(pyramid_first),
 #define C(name) M(wd_splat_counts, name)
     C(clusters), C(trees), C(items), C(small_items), C(wood_items), C(put_off), C(done_items), C(done_small),
     C(done_wood),

@@ -11,7 +11,7 @@
 #include "base/memory.h"
 #include "bake/splats.h"
 #include "frame_test.h"
-#include "methods/continuum_forest.h"
+#include "methods/continuum_view.h"
 
 enum { OVER, WALK, CAMERAS };
 
@@ -431,6 +431,33 @@ static void kept_cascades_are_as_if_drawn(void **state)
     frame_test_finish(&test);
 }
 
+/* Counts of trees by height, as a forest has them. */
+static void add_trees(uint32_t taller[WD_HEIGHT_STEPS], float height_m, uint32_t count)
+{
+    for (size_t i = 0; i < WD_HEIGHT_STEPS && 0.01f * (float)(i * WD_HEIGHT_STEP_CM) <= height_m; i++)
+        taller[i] += count;
+}
+
+/* All of a world that fits; of a larger one an even share, but every oak of a meadow. */
+static void cascades_draw_all_that_stands_out(void **state)
+{
+    (void)state;
+    enum { ROOM = 1 << 20 };
+    uint32_t few[WD_HEIGHT_STEPS] = {0}, meadow[WD_HEIGHT_STEPS] = {0}, forest[WD_HEIGHT_STEPS] = {0};
+    add_trees(few, 20, ROOM);
+    assert_int_equal(wd_cascade_share_of(ROOM, few).records, WD_CLUSTER_TREES);
+    add_trees(meadow, 0.6f, 2400000);
+    add_trees(meadow, 12, 2000);
+    struct wd_cascade_share share = wd_cascade_share_of(ROOM, meadow);
+    assert_true(share.whole_m > 0.6f && share.whole_m <= 12);
+    assert_true(share.records * 2400000.0 / WD_CLUSTER_TREES + 2000 <= ROOM && share.records >= 27);
+    for (int i = 0; i < 30; i++)
+        add_trees(forest, 18 + 0.2f * (float)i, 100000);
+    share = wd_cascade_share_of(ROOM, forest);
+    assert_true(isinf(share.whole_m));
+    assert_int_equal(share.records, (uint64_t)ROOM * WD_CLUSTER_TREES / 3000000);
+}
+
 int main(int argc, char **argv)
 {
     root = argc > 1 ? argv[1] : ".";
@@ -444,6 +471,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(splats_take_the_place_of_leaves),
         cmocka_unit_test(near_leaves_are_the_mesh),
         cmocka_unit_test(kept_cascades_are_as_if_drawn),
+        cmocka_unit_test(cascades_draw_all_that_stands_out),
         cmocka_unit_test(discs_fall_as_the_error_rises),
         cmocka_unit_test(large_trees_have_the_ids_of_octree),
     };
