@@ -8,6 +8,9 @@
 #define TURN_MONTHS 1.5
 #define FALL_MONTHS 0.7
 
+/* Of a tuft's blades, so many are left in winter. */
+#define WINTER_STRAW 0.6
+
 struct season {
     double leaves, young, turned, flowers; /* shares, 0..1 */
 };
@@ -43,6 +46,10 @@ static struct season season_of(const struct wd_species *species, double month)
     season.leaves = ramp(out, out + UNFOLD_MONTHS, month) *
                     (1 - ramp(fall - FALL_MONTHS, fall, month));
     season.turned = ramp(fall - TURN_MONTHS - FALL_MONTHS, fall - FALL_MONTHS, month);
+    if (species->form == WD_FORM_GRASS) { /* straw stands until new blades have come up */
+        season.leaves = fmax(season.leaves, WINTER_STRAW);
+        season.turned = fmax(season.turned, 1 - ramp(out, out + UNFOLD_MONTHS, month));
+    }
     return season;
 }
 

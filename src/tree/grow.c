@@ -208,13 +208,20 @@ static float foliage_top_m(const struct wd_foliage *foliage, const struct wd_spe
 
 /* Growth itself ends near the asked height: wood and leaves are brought to it before stems get
  * their thickness, so that the stem is as thick as asked too. A hedge's height is its cut's. */
+/* A rootstock without its leaves stands no higher than with them. */
+static bool is_bare_rootstock(const struct wd_foliage *foliage, const struct wd_tree_form *form)
+{
+    bool low = form->species->form == WD_FORM_FERN || form->species->form == WD_FORM_GRASS;
+    return low && foliage->count == 0 && foliage->flower_count == 0;
+}
+
 static void fit_height(struct wd_skeleton *skeleton, struct wd_foliage *foliage,
                        struct wd_tree_form *form)
 {
     float top = foliage_top_m(foliage, form->species);
     for (size_t i = 0; i < skeleton->node_count; i++)
         top = wd_maxf(top, skeleton->nodes[i].position_m.z);
-    if (form->clip || !(top > 0))
+    if (form->clip || !(top > 0) || is_bare_rootstock(foliage, form))
         return;
     float factor = form->height_m / top;
     wd_skeleton_scale(skeleton, factor);
@@ -301,7 +308,8 @@ static void finish_model(struct wd_tree_model *model, const struct wd_skeleton *
 {
     wd_tree_mesh_update_bounds(&model->full);
     float top = wd_maxf(model->full.max_m[2], sets_top_m(model));
-    float factor = form->clip ? 1 : form->height_m / top;
+    bool bare = is_bare_rootstock(foliage, form);
+    float factor = form->clip || bare ? 1 : form->height_m / top;
     scale_mesh(&model->full, factor);
     scale_mesh(&model->reduced, factor);
     scale_mesh(&model->far_stem, factor);
@@ -312,7 +320,7 @@ static void finish_model(struct wd_tree_model *model, const struct wd_skeleton *
     if (has_leaf_triangles(model))
         fit_reduced(model);
     model->height_m = form->height_m;
-    model->crown_radius_m = factor * crown_radius_m(foliage, skeleton);
+    model->crown_radius_m = bare ? form->crown_radius_m : factor * crown_radius_m(foliage, skeleton);
     if (form->clip)
         model->crown_radius_m = wd_hedge_reach_m(form->clip->max_m[0] - form->clip->min_m[0],
                                                  form->clip->max_m[1] - form->clip->min_m[1]);

@@ -339,8 +339,9 @@ static void green_leaves_are_not_too_green(void **state)
 static void months_change_leaves(void **state)
 {
     struct fixture *f = *state;
-    assert_true(load(f, "{\"layers\": [{\"species\": {\"spruce\": 1, \"oak\": 1}}]}"));
+    assert_true(load(f, "{\"layers\": [{\"species\": {\"spruce\": 1, \"oak\": 1, \"meadow\": 1}}]}"));
     const struct wd_species *spruce = &f->scene.species[0], *oak = &f->scene.species[1];
+    const struct wd_species *meadow = &f->scene.species[2];
     struct wd_species in;
     assert_true(wd_species_in_month(&in, oak, 7.5, NULL));
     assert_true(in.leaf.count == oak->leaf.count && in.leaf.color[0] == oak->leaf.color[0]);
@@ -349,6 +350,9 @@ static void months_change_leaves(void **state)
     assert_true(in.leaf.count == spruce->leaf.count);
     assert_true(wd_species_in_month(&in, oak, 10.8, NULL));
     assert_true(in.leaf.color[0] > 2 * oak->leaf.color[0] && in.leaf.count > 0);
+    assert_true(wd_species_in_month(&in, meadow, 1.5, NULL)); /* straw */
+    assert_true(in.leaf.count > meadow->leaf.count / 2 && in.leaf.color[0] > in.leaf.color[1]);
+    assert_true(wd_species_in_month(&in, meadow, 4.5, NULL) && in.leaf.color[0] < in.leaf.color[1]);
     assert_false(wd_species_in_month(&in, oak, 0.5, NULL));
     assert_false(wd_species_in_month(&in, oak, (double)NAN, NULL));
 }

@@ -111,12 +111,36 @@ static void ferns_rise_from_the_ground(void **state)
     wd_arena_finish(&arena);
 }
 
+/* Without leaves their rootstocks are all that is left, as low as they were: they had been drawn out to the height of
+ * fronds, as posts. The plant is as wide as planted all the while. */
+static void bare_rootstocks_stay_low(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"fern", "grass", "meadow"};
+    struct wd_arena arena = {0};
+    for (int i = 0; i < 3; i++) {
+        struct wd_species species = test_species(&arena, names[i]), bare = species;
+        bare.leaf.count = bare.flower.count = 0;
+        bare.leaf.area_index = 0;
+        struct wd_tree_model leafy = test_grow_tree(&species, 2, 0, 0.2f);
+        struct wd_tree_model low = test_grow_tree(&bare, 2, 0, 0.2f);
+        assert_int_equal(low.leaf_count, 0);
+        assert_true(low.full.max_m[2] < 0.12f * low.height_m && low.reduced.max_m[2] < 0.12f * low.height_m);
+        assert_float_equal(low.height_m, leafy.height_m, 1e-4);
+        assert_true(low.crown_radius_m > 0.5f * leafy.crown_radius_m && low.crown_radius_m < 2 * leafy.crown_radius_m);
+        wd_tree_model_finish(&leafy);
+        wd_tree_model_finish(&low);
+    }
+    wd_arena_finish(&arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(variants_look_different),
         cmocka_unit_test(crowns_follow_the_allometry),
         cmocka_unit_test(ferns_rise_from_the_ground),
+        cmocka_unit_test(bare_rootstocks_stay_low),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
