@@ -34,37 +34,38 @@ bool small = ITEMS == OF_SMALL;
  * its outline. */
 struct wd_outline {
     vec2 reach; /* in pixels */
-    vec2 along; /* of a leaf: its length's direction, over half its length; else 0 */
+    vec2 along; /* of a leaf or twig: its length's direction, over half its length; else 0 */
+    float width; /* of that: over its length */
 };
+
+/* From this radius on, in pixels, a splat has a leaf's outline, or a twig's. */
+const float LEAF_PX = 1.0, TWIG_PX = 0.5;
+/* Largest width over length. */
+const float LEAF_WIDTH = 0.5, TWIG_WIDTH = 0.1;
 
 /* A square as large as the disc: small ones look alike, and one loop of few steps costs half of what rows
  * of a disc cost where lanes run in step. */
 wd_outline disc_outline(float radius)
 {
-    return wd_outline(vec2(radius * 0.886227), vec2(0.0));
+    return wd_outline(vec2(radius * 0.886227), vec2(0.0), LEAF_WIDTH);
 }
-
-/* From this radius on, in pixels, a splat has a leaf's outline. */
-const float LEAF_PX = 1.0;
-/* Largest width over length. */
-const float LEAF_WIDTH = 0.5;
 
 /* A leaf's outline of the disc's area: pointed at both ends, width falling with the square of the
  * distance from the middle. */
-wd_outline leaf_outline(float radius, vec2 along)
+wd_outline leaf_outline(float radius, vec2 along, float width)
 {
-    float long_px = radius * sqrt(0.375 * 3.14159265 / LEAF_WIDTH);
+    float long_px = radius * sqrt(0.375 * 3.14159265 / width);
     along *= inversesqrt(max(dot(along, along), 1e-12));
-    vec2 tip = abs(along), side = LEAF_WIDTH * tip.yx; /* where the outline reaches farthest is between */
+    vec2 tip = abs(along), side = width * tip.yx; /* where the outline reaches farthest is between */
     vec2 bulge = side + tip * tip / max(4.0 * side, 1e-6);
-    return wd_outline(long_px * mix(tip, bulge, lessThan(tip, 2.0 * side)), along / long_px);
+    return wd_outline(long_px * mix(tip, bulge, lessThan(tip, 2.0 * side)), along / long_px, width);
 }
 
 bool outline_holds(wd_outline outline, vec2 from)
 {
     float u = dot(from, outline.along);
     float v = outline.along.x * from.y - outline.along.y * from.x;
-    return abs(v) <= LEAF_WIDTH * (1.0 - u * u);
+    return abs(v) <= outline.width * (1.0 - u * u);
 }
 
 /* Whether splats may have a leaf's outline. */
@@ -122,7 +123,7 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
     if (w < view.near_m || depth <= 0.0 || (ORTHOGRAPHIC != 0u && !may_shade(clip.xy, 0.0)))
         return;
     float inverse = 1.0 / w;
-    bool wood = turn.x == WD_LEAF_STRATA;
+    bool twig = WD_TREE_TWIGS(tree), wood = turn.x == WD_LEAF_STRATA || twig;
     vec3 normal = splat_normal(disc);
     float facing = dot(normal, tree.facing) * inversesqrt(dot(normal, normal));
     float open = wd_disc_open(seen, WD_TREE_CLOSE(tree));
@@ -130,8 +131,8 @@ void draw_splat(wd_splat_tree tree, uint at, uint id)
     float radius = (wood ? tree.wood_radius : tree.radius) * inverse * sqrt(share);
     vec2 center = (clip.xy * inverse * 0.5 + 0.5) * vec2(view.width, view.height);
     wd_outline outline = disc_outline(radius);
-    if (has_leaves() && !wood && radius > LEAF_PX)
-        outline = leaf_outline(radius, leaf_along(tree, splat_along(disc), clip));
+    if (has_leaves() && (twig || !wood) && radius > (twig ? TWIG_PX : LEAF_PX))
+        outline = leaf_outline(radius, leaf_along(tree, splat_along(disc), clip), twig ? TWIG_WIDTH : LEAF_WIDTH);
     uint depth_bits = floatBitsToUint(depth);
     if (ORTHOGRAPHIC == 0u) /* lib/splat_depth.glsl asks that of it */
         depth_bits = depth_bits & ~1u | uint(seen);

@@ -146,7 +146,7 @@ void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot
 
 /* A disc's reach over a model's radius: it faces the eye, which sees it, and has a leaf's outline
  * (lib/splat_draw.glsl). */
-const float LARGEST_DISC = 1.54 * sqrt(2.0 * WD_DISC_SEEN);
+const float LARGEST_DISC = 1.54 * sqrt(2.0 * WD_DISC_SEEN), LONGEST_TWIG = 3.44 * sqrt(WD_DISC_SEEN);
 
 /* How many strata, from the top, show anything past what the frame before saw. */
 uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint model, vec3 sway,
@@ -270,6 +270,18 @@ vec2 disc_radii(uint model, float each, float sine)
     vec2 gain = vec2(gain_of(model, WD_WORD_LEAF_GAINS, place, sine),
                      gain_of(model, WD_WORD_WOOD_GAINS, place, sine));
     return sqrt(gain * area_m2 / (3.14159265 * each * vec2(WD_LEAF_STRATA, 1.0)));
+}
+
+/* Trees without leaves that are taller on screen have discs of twigs in all strata: in fewer strata these are dots a
+ * twig's length wide. Smaller trees would cover up to a fifth more by it (snags at 32 px). */
+const float TWIGS_PX = 90.0;
+
+/* Of discs of wood where leaves' strata hold it, too. */
+float twig_radius(uint model, float each, float sine)
+{
+    float count = each * float(WD_SPLAT_STRATA);
+    float gain = gain_of(model, WD_WORD_WOOD_GAINS, gain_place(count * float(WD_SPLAT_STRATA)), sine);
+    return sqrt(gain * model_float(model, WD_WORD_WOOD_AREA_M2) / (3.14159265 * count));
 }
 
 /* Factors of the leaves' colour and of how open few discs look. */
@@ -410,6 +422,10 @@ void select_tree(uint index, float share, uint place)
     splats.radius = size * radii.x;
     splats.wood_radius = size * radii.y;
     uint triangles = wood ? wood_triangles(model_index, tall_px) : 0u;
+    bool twigs = triangles > 0u && tall_px > TWIGS_PX * (0.8 + 0.4 * wd_hash_unit(random)) &&
+                 model_float(model_index, WD_WORD_LEAF_AREA_M2) <= 0.0;
+    if (twigs)
+        splats.wood_radius = size * twig_radius(model_index, each, toward.z);
     float missing = wood_missing(model_index, triangles);
     float thin = triangles > 0u ? min(missing / max(model_float(model_index, WD_WORD_THIN_SHARE), 1e-3), 1.0) : 0.0;
     thin = mix(1.0, model_float(model_index, WD_WORD_THIN_WOOD), thin);
@@ -417,7 +433,7 @@ void select_tree(uint index, float share, uint place)
     splats.radius *= sqrt(mix(model_float(model_index, WD_WORD_LEAF_PAST_BARK), 1.0, missing));
     float many = smoothstep(0.125, 1.0, each * (1.0 / float(WD_STRATUM_SPLATS)));
     float fuller = ORTHOGRAPHIC != 0u ? SUN_THROUGH_CROWNS * many : FROM_BELOW * smoothstep(0.0, 0.5, -toward.z);
-    splats.radius *= sqrt(1.0 + fuller);
+    splats.radius = twigs ? splats.wood_radius : splats.radius * sqrt(1.0 + fuller);
     uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
     splats.facing = model_facing(pose, toward);
     splats.sun = wd_sun_mix(tree_toward(pose, frame.sun_direction));
@@ -430,7 +446,7 @@ void select_tree(uint index, float share, uint place)
     pose.across *= stretch;
     if (ORTHOGRAPHIC == 0u && view.has_history != 0u) {
         uint seen = seen_strata(tree, foot, toward, pose, model_index, sway,
-                                LARGEST_DISC * max(splats.radius, splats.wood_radius)
+                                (twigs ? LONGEST_TWIG : LARGEST_DISC) * max(splats.radius, splats.wood_radius)
                                     * max(own_across, pose.up),
                                 splats.nearer_m, strata);
         if (seen == 0u && view.moved != 0u)
@@ -445,7 +461,8 @@ void select_tree(uint index, float share, uint place)
     splats.first_wood = model_word(model_index, WD_WORD_WOOD_FIRST);
     splats.offset = (wd_hash_mix(random) * WD_WINDOW_STEP + frame.sample_index * uint(ceil(each)))
                     & (WD_STRATUM_SPLATS - 1u);
-    splats.offset |= uint(upper_share(model_index, toward.z) * 255.0 + 0.5) << 16 | (wood ? 0x80000000u : 0u);
+    splats.offset |= uint(upper_share(model_index, toward.z) * 255.0 + 0.5) << 16 | (wood ? 0x80000000u : 0u)
+                     | (twigs ? 0x1000000u : 0u);
     splats.turn = packHalf2x16(pose.turn);
     splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
     splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);

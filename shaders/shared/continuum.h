@@ -261,8 +261,8 @@ struct wd_splat_tree {
     float wood_radius;     /* and of one of wood that faces the eye */
     uint32_t tree;         /* in octree order */
     uint32_t first_splat;  /* of the model */
-    uint32_t offset;       /* bits 0..12: of the window in each stratum; 16..23: WD_TREE_UPPER; bit 31: of wood,
-                              from its second half */
+    uint32_t offset;       /* bits 0..12: of the window in each stratum; 16..23: WD_TREE_UPPER; 24: all are
+                              twigs; bit 31: of wood, from its second half */
     uint32_t strata;       /* bits 0..3: of how many it has splats; 4..7: WD_DISC_CLOSE, in fifteenths;
                               8..10: the first of them; 11: the last is that of wood; 12..31: the layer
                               of its bark among looks */
@@ -282,6 +282,7 @@ WD_STATIC_ASSERT_SIZE(wd_splat_tree, 128);
 #define WD_TREE_FIRST_STRATUM(tree) ((tree).strata >> 8 & 0x7u)
 /* Factor on the area of discs that show their upper side. */
 #define WD_TREE_UPPER(tree) (WD_FLOAT((tree).offset >> 16 & 0xffu) * (1.0f / 255.0f))
+#define WD_TREE_TWIGS(tree) (((tree).offset >> 24 & 1u) != 0u)
 #define WD_TREE_WOOD_LAST(tree) ((tree).strata >> 11 & 1u)
 #define WD_TREE_BARK(tree) ((tree).strata >> 12)
 

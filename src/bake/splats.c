@@ -33,7 +33,7 @@ static struct wd_splat splat_at(const struct wd_splat_model *model, const float 
     return (struct wd_splat){axes[0] | axes[1] << 16, axes[2] | wd_normal8(normal) << 16};
 }
 
-/* A leaf's splat: four bits each of two coordinates of the way along the leaf in the box, which has no
+/* A leaf's splat, or a twig's: four bits each of two coordinates of the way along it in the box, which has no
  * sign: half an octahedron, folded out to a square, in bits that are less than a place needs. */
 static struct wd_splat leaf_at(const struct wd_splat_model *model, const struct wd_tree_point *point)
 {
@@ -94,16 +94,28 @@ static struct wd_tree_points room_for(size_t count)
                                    .count = count};
 }
 
-/* Heights that part the points of one kind into `strata` of equal count; tops[0] is the highest. */
-static void find_tops(const struct wd_tree_points *points, uint32_t leaf, uint32_t strata,
-                      float *tops)
+/* Points of one kind, those that are kept of them (NULL: all). */
+struct chosen {
+    const struct wd_tree_points *points;
+    uint32_t leaf;
+    const bool *keep;
+};
+
+static bool is_chosen(const struct chosen *chosen, size_t i)
 {
+    return (chosen->points->points[i].kind & WD_POINT_LEAF) == chosen->leaf && (!chosen->keep || chosen->keep[i]);
+}
+
+/* Heights that part them into `strata` of equal count; tops[0] is the highest. */
+static void find_tops(const struct chosen *chosen, uint32_t strata, float *tops)
+{
+    const struct wd_tree_points *points = chosen->points;
     uint32_t *which = wd_alloc_array(points->count, sizeof *which);
     uint32_t *keys = wd_alloc_array(points->count, sizeof *keys);
     uint32_t *order = wd_alloc_array(points->count, sizeof *order);
     size_t count = 0;
     for (uint32_t i = 0; i < points->count; i++)
-        if ((points->points[i].kind & WD_POINT_LEAF) == leaf) {
+        if (is_chosen(chosen, i)) {
             keys[count] = ~wd_radix_key(points->points[i].position_m[2]);
             which[count++] = i;
         }
@@ -115,20 +127,19 @@ static void find_tops(const struct wd_tree_points *points, uint32_t leaf, uint32
     free(order);
 }
 
-/* Fills one stratum with the points of its kind between the heights, in their order and round
+/* Fills one stratum with the chosen points between the heights, in their order and round
  * again, and `drawn` with the points themselves, `step` apart. What is lit of them is for light_discs: their
  * number among `points` stands for it. False where there are none. */
-static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *points,
-                         uint32_t leaf, uint32_t stratum, float top, float bottom,
-                         struct wd_tree_points *drawn, uint32_t step)
+static bool fill_stratum(struct wd_splats *splats, const struct chosen *chosen, uint32_t stratum, float top,
+                         float bottom, struct wd_tree_points *drawn, uint32_t step)
 {
+    const struct wd_tree_points *points = chosen->points;
     struct wd_splat *to = splats->splats + stratum * WD_STRATUM_SPLATS;
     uint32_t *looks = splats->looks + stratum * WD_STRATUM_SPLATS;
     uint32_t *lit = splats->lit + stratum * WD_STRATUM_SPLATS, used = 0;
     for (size_t i = 0; i < points->count && used < WD_STRATUM_SPLATS; i++) {
         const struct wd_tree_point *point = &points->points[i];
-        if ((point->kind & WD_POINT_LEAF) != leaf || point->position_m[2] > top ||
-            point->position_m[2] <= bottom)
+        if (!is_chosen(chosen, i) || point->position_m[2] > top || point->position_m[2] <= bottom)
             continue;
         drawn->points[used * step + stratum] = *point;
         drawn->lit[used * step + stratum] = lit[used] = (uint32_t)i;
@@ -144,23 +155,26 @@ static bool fill_stratum(struct wd_splats *splats, const struct wd_tree_points *
     return used > 0;
 }
 
-/* `leaves` get the points of the splats: strata in turn, as a tree's window takes them. */
-static void fill_leaves(struct wd_splats *splats, const struct wd_tree_points *points,
+/* `leaves` get the points of the splats: strata in turn, as a tree's window takes them. Of a tree without leaves these
+ * are its twigs: what is `thin` of the wood. */
+static void fill_leaves(struct wd_splats *splats, const struct wd_tree_points *points, const bool *thin,
                         struct wd_tree_points *leaves)
 {
     struct wd_splat_model *model = &splats->model;
     const uint32_t strata = WD_LEAF_STRATA;
-    uint32_t kind = points->leaf_area_m2 > 0.0f ? WD_POINT_LEAF : 0;
-    find_tops(points, kind, strata, model->strata_top_m);
+    bool bare = points->leaf_area_m2 <= 0.0f;
+    const struct chosen chosen = {points, bare ? 0 : WD_POINT_LEAF, bare ? thin : NULL};
+    find_tops(&chosen, strata, model->strata_top_m);
     for (uint32_t s = 0; s < strata; s++) {
         float top = s ? model->strata_top_m[s] : INFINITY;
         float bottom = s + 1 < strata ? model->strata_top_m[s + 1] : -INFINITY;
-        if (!fill_stratum(splats, points, kind, s, top, bottom, leaves, strata))
-            fill_stratum(splats, points, kind, s, INFINITY, -INFINITY, leaves, strata);
+        if (!fill_stratum(splats, &chosen, s, top, bottom, leaves, strata))
+            fill_stratum(splats, &chosen, s, INFINITY, -INFINITY, leaves, strata);
     }
     /* of the wood, the part under the crown's thick is what is seen */
     float tops[4];
-    find_tops(points, points->wood_area_m2 > 0.0f ? 0 : kind, 4, tops);
+    const struct chosen wood = {points, points->wood_area_m2 > 0.0f ? 0 : WD_POINT_LEAF, NULL};
+    find_tops(&wood, 4, tops);
     model->strata_top_m[strata] = tops[1];
 }
 
@@ -387,7 +401,9 @@ static bool fill_wood(struct wd_splats *splats, uint32_t half, const struct wd_t
         const struct wd_tree_point *point = &points->points[chosen];
         drawn->points[i] = *point;
         drawn->lit[i] = splats->lit[first + i] = chosen;
-        splats->splats[first + i] = splat_at(&splats->model, point->position_m, point->face);
+        splats->splats[first + i] = points->leaf_area_m2 > 0.0f
+                                        ? splat_at(&splats->model, point->position_m, point->face)
+                                        : leaf_at(&splats->model, point);
         splats->looks[first + i] = point_look(point, 1);
     }
     free(which);
@@ -424,12 +440,11 @@ static void keep_thin(bool *keep, const struct wd_tree_points *points,
     free(corners);
 }
 
-/* `all` gets the points of all of it, the stratum's first half, `thin` those of the other. */
+/* `all` gets the points of all of it, the stratum's first half, `thin` those of the other, which are kept. */
 static void fill_wood_halves(struct wd_splats *splats, const struct wd_tree_points *points,
-                             const struct wood *wood, const struct wd_tree_sides *sides,
+                             const struct wood *wood, const struct wd_tree_sides *sides, bool *keep,
                              struct wd_tree_points *all, struct wd_tree_points *thin)
 {
-    bool *keep = wd_alloc_array(points->count, sizeof *keep);
     uint32_t first = wd_first_wood(wood->count - wood->stem);
     keep_seen(keep, points, sides);
     fill_wood(splats, 0, points, keep, all);
@@ -438,7 +453,6 @@ static void fill_wood_halves(struct wd_splats *splats, const struct wd_tree_poin
         keep_seen(keep, points, sides);
         fill_wood(splats, 1, points, keep, thin);
     }
-    free(keep);
 }
 
 static void tell_lit(uint32_t *which, size_t count, const uint32_t *lit)
@@ -481,8 +495,10 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     gather_wood(&wood, model);
     order_wood(&wood, &sides);
     make_wood(splats, &wood);
-    fill_leaves(splats, points, &discs[1]);
-    fill_wood_halves(splats, points, &wood, &sides, &discs[0], &discs[2]);
+    bool *keep = wd_alloc_array(points->count, sizeof *keep);
+    fill_wood_halves(splats, points, &wood, &sides, keep, &discs[0], &discs[2]);
+    fill_leaves(splats, points, keep, &discs[1]);
+    free(keep);
     light_discs(splats, points, &model->full, discs);
     struct wd_disc_fit fits;
     const float stratum = 1.0f / WD_SPLAT_STRATA;
