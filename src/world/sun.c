@@ -54,11 +54,13 @@ static void set_horizon(struct wd_frame_uniforms *uniforms, const struct sky *sk
     uniforms->sky_glow[channel] = (with - without) * strength;
 }
 
-/* Clouds take the place of sun and sky, and send back what is left of a clear day's light, mixed to
- * some 6800 K. */
+/* Light that clouds and fog have mixed: some 6800 K. */
+static const float MIXED_TINT[3] = {0.96f, 1.0f, 1.06f};
+
+/* Clouds take the place of sun and sky, and send back what is left of a clear day's light, mixed. */
 static void add_clouds(struct wd_frame_uniforms *uniforms, float cover)
 {
-    static const float tint[3] = {0.96f, 1.0f, 1.06f}, weight[3] = {0.2126f, 0.7152f, 0.0722f};
+    static const float weight[3] = {0.2126f, 0.7152f, 0.0722f};
     const float zenith_per_irradiance = 9.0f / (7.0f * 180.0f * DEGREE);
     float clear = 0;
     for (int channel = 0; channel < 3; channel++)
@@ -67,7 +69,7 @@ static void add_clouds(struct wd_frame_uniforms *uniforms, float cover)
                                         fmaxf(uniforms->sun_direction[2], 0));
     float clouds = clear * fmaxf(wd_cloud_through(cover) - (1 - cover), 0);
     for (int channel = 0; channel < 3; channel++) {
-        float own = clouds * tint[channel];
+        float own = clouds * MIXED_TINT[channel];
         uniforms->sky_cloud[channel] = own * zenith_per_irradiance;
         uniforms->sun_irradiance[channel] *= 1 - cover;
         uniforms->sky_glow[channel] *= 1 - cover;
@@ -105,7 +107,7 @@ static void add_fog(struct wd_frame_uniforms *uniforms)
         float below = uniforms->sun_irradiance[channel] * rise * sun_below_fog(depth, rise) +
                       uniforms->sky_irradiance[channel] * sky_below;
         uniforms->sky_horizon[channel] = sun_through * uniforms->sky_horizon[channel] +
-                                         (1 - sun_through) * below / (float)WD_PI;
+                                         (1 - sun_through) * MIXED_TINT[channel] * below / (float)WD_PI;
         uniforms->sky_glow[channel] *= sun_through;
         uniforms->sun_irradiance[channel] *= sun_through;
     }
