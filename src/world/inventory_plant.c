@@ -240,7 +240,8 @@ static void drop_duplicates(struct planting *planting)
     for (size_t i = 0; i < count; i++)
         stands[i] = (struct stand){trees[i].x_mm, trees[i].y_mm,
                                    &inventory->trees[planting->planted[i]],
-                                   wd_tree_tags_get(&inventory->tags, planting->planted[i]), (uint32_t)i};
+                                   inventory->tags_tell_apart
+                                       ? wd_tree_tags_get(&inventory->tags, planting->planted[i]) : "", (uint32_t)i};
     qsort(stands, count, sizeof *stands, compare_stands);
     uint32_t first_line = 0;
     for (size_t i = 1; i < count; i++) {
