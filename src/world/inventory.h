@@ -30,7 +30,7 @@ bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *sc
                        const struct wd_log *log);
 void wd_inventory_finish(struct wd_inventory *inventory);
 
-/* Adds the trees to the list, in the order of rows, and their tags by id; completes and logs the
+/* Adds the trees to the list, in the order of rows, and their tags and rows by id; completes and logs the
  * report. `fitted`: the ground was made round the inventories, so local coordinates count from its
  * origin too. */
 bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placement_params *params,

@@ -178,8 +178,37 @@ static void test_tags(void **state)
     static const char *const tags[] = {"A-7", "A-8", "", "B 1", "", ""};
     for (size_t i = 0; i < sizeof tags / sizeof *tags; i++)
         assert_string_equal(wd_tree_tags_get(&world.tags, i + 1), tags[i]);
+    static const struct wd_tree_row rows[] = {{0, 2, 30.0f}, {0, 3, 30.0f}, {0, 5, 30.0f}, {0, 7, 30.0f},
+                                              {1, 2, 30.0f}, {1, 7, 30.0f}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct wd_tree_row row = wd_tree_tags_get_row(&world.tags, i + 1);
+        assert_memory_equal(&row, &rows[i], sizeof row);
+    }
+    assert_int_equal(wd_tree_tags_get_row(&world.tags, world.tree_count).line, 0);
     assert_stands(&world, 3, 20000, 10000);
     assert_string_equal(wd_tree_tags_get(&world.tags, world.tree_count), "");
+    wd_world_finish(&world);
+}
+
+/* Without a word of the scene numbers are tags where each is another's, and tell no rows apart. */
+static void test_usual_tags(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path);
+    write_file(path, "N\302\260 arbre,x,y,dbh\nA,10,10,30\nB,10,10,30\n,20,10,30\nC,30,10,\n");
+    make_or_fail(&small, &world);
+    assert_int_equal(world.inventories[0].duplicates, 1);
+    static const char *const tags[] = {"A", "", "C"};
+    for (size_t i = 0; i < 3; i++)
+        assert_string_equal(wd_tree_tags_get(&world.tags, i + 1), tags[i]);
+    assert_true(wd_tree_tags_get_row(&world.tags, 3).dbh_cm == 0.0f);
+    wd_world_finish(&world);
+    write_file(path, "TreeID,x,y,dbh\n1,10,10,30\n2,20,10,30\n1,30,10,30\n");
+    make_or_fail(&small, &world);
+    assert_string_equal(wd_tree_tags_get(&world.tags, 1), "");
     wd_world_finish(&world);
 }
 
@@ -676,6 +705,7 @@ int main(void)
         cmocka_unit_test(test_mapping_units_and_commas),
         cmocka_unit_test(test_dead_duplicates_outside_invalid),
         cmocka_unit_test(test_tags),
+        cmocka_unit_test(test_usual_tags),
         cmocka_unit_test(test_rotation_and_offset),
         cmocka_unit_test(test_fitted_ground),
         cmocka_unit_test(test_ground_under_data),
