@@ -21,6 +21,8 @@ struct reader {
     const struct wd_log *log;
     uint64_t first_invalid_line, zero_sizes;
     struct wd_inventory_dead dead;
+    struct wd_inventory_plots plots;
+    int plot; /* column; -1: none */
 };
 
 enum wd_csv_value wd_inventory_read_size(const struct wd_csv *csv, const struct wd_inventory_columns *columns,
@@ -116,6 +118,8 @@ static bool read_tree(struct reader *reader)
     struct wd_inventory_tree *added = wd_push(inventory->trees, inventory->count,
                                               inventory->capacity);
     *added = tree;
+    if (reader->plot >= 0)
+        wd_inventory_plots_add(&reader->plots, reader->csv.fields[reader->plot], tree.x, tree.y);
     if (columns->id >= 0 && !wd_csv_is_missing(reader->csv.fields[columns->id]))
         wd_tree_tags_set(&inventory->tags, inventory->count - 1, reader->csv.fields[columns->id]);
     return true;
@@ -147,6 +151,7 @@ static void check_tags(struct reader *reader)
 static bool read_rows(struct reader *reader)
 {
     enum wd_csv_row row;
+    reader->plot = wd_inventory_find_usual(&reader->csv, WD_COLUMN_PLOT);
     while ((row = wd_csv_next(&reader->csv)) == WD_CSV_ROW)
         if (!read_tree(reader))
             return false;
@@ -166,6 +171,8 @@ static bool read_rows(struct reader *reader)
                 reader->csv.path, reader->zero_sizes);
     wd_inventory_dead_warn(&reader->dead, &reader->csv, reader->columns.status, report->dead);
     wd_inventory_warn_of_sizes(reader->inventory, &reader->columns, reader->names.scene, reader->log);
+    if (reader->plot >= 0)
+        wd_inventory_plots_warn(&reader->plots, reader->csv.path, reader->csv.header[reader->plot], reader->log);
     check_tags(reader);
     if (reader->inventory->count == 0)
         return wd_error(reader->log, "%s: no living tree with a position among %" PRIu64 " rows",
@@ -187,6 +194,7 @@ bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *sc
               (reader.columns.species >= 0 || wd_species_names_without_column(&reader.names, &reader.csv)) &&
               read_rows(&reader);
     wd_inventory_dead_finish(&reader.dead);
+    wd_inventory_plots_finish(&reader.plots);
     wd_csv_close(&reader.csv);
     wd_species_names_finish(&reader.names);
     if (!ok)

@@ -111,6 +111,20 @@ void wd_inventory_dead_warn(const struct wd_inventory_dead *dead, const struct w
                             uint64_t dead_rows);
 void wd_inventory_dead_finish(struct wd_inventory_dead *dead);
 
+/* Where the trees of each plot of a file stand, by the column that says which plot it is. */
+struct wd_inventory_plots {
+    struct wd_inventory_plot {
+        char *name;
+        double min[2], max[2]; /* x, y */
+    } *plots;
+    size_t count, capacity;
+};
+void wd_inventory_plots_add(struct wd_inventory_plots *plots, const char *name, double x, double y);
+/* Tells of plots that lie on one another. */
+void wd_inventory_plots_warn(const struct wd_inventory_plots *plots, const char *path, const char *column,
+                             const struct wd_log *log);
+void wd_inventory_plots_finish(struct wd_inventory_plots *plots);
+
 /* Tells of sizes that no such trees have, and the units that would make them right. */
 void wd_inventory_warn_of_sizes(const struct wd_inventory *inventory, const struct wd_inventory_columns *columns,
                                 const struct wd_scene *scene, const struct wd_log *log);

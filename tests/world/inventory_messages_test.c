@@ -225,6 +225,17 @@ static void test_girth(void **state)
     assert_said(said_of(path, "x,y,Circonf\303\251rence\n1,1,94\n", &small), "reads as a girth");
 }
 
+static void test_plots_on_one_another(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path);
+    assert_said(said_of(path, "Plot,x,y\n1,1,1\n1,19,18\n2,2,1\n2,18,19\n", &small),
+                "Plot 1 and 2 lie on one another; if x and y count from each plot's own corner");
+    assert_not_said(said_of(path, "Plot,x,y\n1,1,1\n1,19,18\n2,15,1\n2,38,19\n", &small), "one another");
+}
+
 static int remove_file(void **state)
 {
     (void)state;
@@ -244,6 +255,7 @@ int main(void)
         cmocka_unit_test(test_units),
         cmocka_unit_test(test_units_by_size),
         cmocka_unit_test(test_girth),
+        cmocka_unit_test(test_plots_on_one_another),
     };
     return cmocka_run_group_tests_name("inventory messages", tests, NULL, remove_file);
 }
