@@ -32,8 +32,8 @@ enum wd_csv_value wd_inventory_read_size(const struct wd_csv *csv, const struct 
         int column;
         double factor, most;
         const char *unit, *hint;
-    } sizes[] = {{columns->dbh, columns->dbh_cm, most_dbh_cm, "cm", "; \"dbh_unit\" can say another"},
-                 {columns->height, columns->height_m, most_height_m, "m", "; \"height_unit\" can say another"},
+    } sizes[] = {{columns->dbh, columns->dbh_cm, most_dbh_cm, "cm", " \"dbh_unit\" can say another"},
+                 {columns->height, columns->height_m, most_height_m, "m", " \"height_unit\" can say another"},
                  {columns->crown, columns->crown_m, most_crown_m, "m", ""}};
     int column = sizes[which].column;
     double value, most = sizes[which].most;

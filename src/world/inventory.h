@@ -97,8 +97,9 @@ void wd_species_names_finish(struct wd_species_names *names);
 struct wd_inventory_dead {
     const struct wd_scene_inventory *wanted;
     uint64_t *rows; /* by wanted->dead */
-    struct wd_living_word { /* words that mean dead, but counted as living */
+    struct wd_living_word { /* words that count as living, the first of them */
         char *word;
+        bool means_dead;
         uint64_t rows;
     } *living;
     size_t count, capacity;

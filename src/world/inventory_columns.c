@@ -215,11 +215,12 @@ static bool check_apart(const struct wd_inventory_columns *columns, const struct
     return true;
 }
 
-static void warn_of_girth(const struct wd_csv *csv, int dbh, const struct wd_log *log)
+static void warn_of_girth(const struct wd_csv *csv, const struct wd_inventory_columns *columns, const struct wd_log *log)
 {
-    if (dbh >= 0 && wd_inventory_find_usual(csv, WD_COLUMN_GIRTH) == dbh)
-        wd_warn(log, "%s:1: column %s reads as a girth, but counts as a diameter; divide it by 3.1416", csv->path,
-                csv->header[dbh]);
+    int girth = wd_inventory_find_usual(csv, WD_COLUMN_GIRTH);
+    if (girth >= 0 && (columns->dbh == girth || (columns->dbh < 0 && !wd_inventory_uses(columns, (size_t)girth))))
+        wd_warn(log, "%s:1: column %s reads as a girth, %s; divide it by 3.1416, and name it dbh", csv->path,
+                csv->header[girth], columns->dbh == girth ? "but counts as a diameter" : "which is not read");
 }
 
 static bool find_units(struct wd_inventory_columns *columns, const struct wd_csv *csv,
@@ -260,7 +261,7 @@ bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struc
     if (!need(csv, "x", columns->x, log) || !need(csv, "y", columns->y, log) || !check_apart(columns, csv, log))
         return false;
     warn_of_no_sizes(csv, columns, log);
-    warn_of_girth(csv, columns->dbh, log);
+    warn_of_girth(csv, columns, log);
     for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++)
         if (*wishes[i].column < 0 && (wishes[i].column == &columns->dbh || wishes[i].column == &columns->height))
             warn_of_like(csv, columns, &wishes[i].wish, log);

@@ -121,7 +121,9 @@ char *wd_inventory_bracketed(const char *name)
     size_t first = end - 1;
     while (first > 0 && !strchr("([", name[first - 1]))
         first--;
-    return first > 0 ? wd_format("%.*s", (int)(end - 1 - first), name + first) : NULL;
+    size_t length = end - 1 - first;
+    bool place = strcspn(name + first, "0123456789") < length;
+    return first > 0 && !place ? wd_format("%.*s", (int)length, name + first) : NULL;
 }
 
 /* Small letters without accents, and nothing between the words: "Tree ID", tree_id and treeID are one name. */

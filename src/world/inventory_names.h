@@ -25,7 +25,8 @@ extern const char *const wd_inventory_place_pairs[][2];
 /* The unit that ends a column's name, as in "DBH [cm]", dbh.cm or "Height m", and how much of the name stands before
  * it; NULL: none. */
 const struct wd_column_unit *wd_inventory_unit_of(const char *name, enum wd_inventory_column column, size_t *length);
-/* What the brackets hold that end a name, without any; NULL: there are none. free() it. */
+/* What the brackets hold that end a name, without them; NULL: there are none, or they hold a number, as in "D (1.3 m)".
+ * free() it. */
 char *wd_inventory_bracketed(const char *name);
 
 /* Whether the column has the usual name, before a unit; `unit` is NULL where the name has none. */

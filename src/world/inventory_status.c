@@ -9,6 +9,8 @@
 #include "base/memory.h"
 #include "scene/latin_names.h"
 
+enum { MOST_WORDS = 64 }; /* more are remarks, and no states */
+
 /* English, German, French, Spanish, Swedish and Finnish. */
 static const char *const dead_words[] = {
     "dead", "d", "dead standing", "standing dead", "dead fallen", "fallen dead", "dead tree", "snag", "tot", "abgestorben",
@@ -37,8 +39,8 @@ static void note_living(struct wd_inventory_dead *dead, const char *status)
             dead->living[i].rows++;
             return;
         }
-    if (means_dead(status))
-        *wd_push(dead->living, dead->count, dead->capacity) = (struct wd_living_word){wd_strdup(status), 1};
+    if (dead->count < MOST_WORDS)
+        *wd_push(dead->living, dead->count, dead->capacity) = (struct wd_living_word){wd_strdup(status), means_dead(status), 1};
 }
 
 bool wd_inventory_is_dead(struct wd_inventory_dead *dead, const char *status)
@@ -67,15 +69,18 @@ static void warn_of_living(const struct wd_inventory_dead *dead, const struct wd
     char *counts = wd_strdup(""), *words = wd_strdup(dead_rows > 0 ? "\"dead\"" : "");
     for (size_t i = 0; i < dead->count; i++) {
         const struct wd_living_word *living = &dead->living[i];
-        char *more = wd_format("%s%s\"%s\" (%" PRIu64 ")", counts, i ? ", " : "", living->word, living->rows);
+        if (!living->means_dead)
+            continue;
+        char *more = wd_format("%s%s\"%s\" (%" PRIu64 ")", counts, *counts ? ", " : "", living->word, living->rows);
         free(counts);
         counts = more;
         more = wd_format("%s%s\"%s\"", words, *words ? ", " : "", living->word);
         free(words);
         words = more;
     }
-    wd_warn(csv->log, "%s: column %s: %s counted as living; to leave these out, say \"dead\": [%s]", csv->path,
-            csv->header[status], counts, words);
+    if (*counts)
+        wd_warn(csv->log, "%s: column %s: %s counted as living; to leave these out, say \"dead\": [%s]", csv->path,
+                csv->header[status], counts, words);
     free(counts);
     free(words);
 }
@@ -90,8 +95,7 @@ void wd_inventory_dead_warn(const struct wd_inventory_dead *dead, const struct w
         if (dead->rows[i] == 0)
             wd_warn(csv->log, "%s: no row has the status \"%s\" in column %s, so none is left out by it; is "
                     "the word in \"dead\" right?", csv->path, wanted->dead[i], csv->header[status]);
-    if (dead->count > 0)
-        warn_of_living(dead, csv, status, dead_rows);
+    warn_of_living(dead, csv, status, dead_rows);
 }
 
 void wd_inventory_dead_finish(struct wd_inventory_dead *dead)

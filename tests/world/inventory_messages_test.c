@@ -190,6 +190,9 @@ static void test_units(void **state)
                 "mm, ft, in), so it counts as m; say what it is in height_unit");
     inventory->height_unit = "ft";
     assert_not_said(said_of(path, "x,y,H [rod]\n1,1,3\n", &small), "unit");
+    inventory->columns.height = "H (in 2020)";
+    inventory->height_unit = NULL;
+    assert_not_said(said_of(path, "x,y,H (in 2020)\n1,1,3\n", &small), "unit");
     inventory->columns.height = NULL;
     assert_said(said_of(path, "x,y,Height (est.)\n1,1,3\n", &small), "if Height (est.) is, say so");
 }
@@ -221,8 +224,11 @@ static void test_girth(void **state)
     (void)state;
     struct small_scene small;
     small_scene_init(&small);
-    small_scene_inventory(&small, path)->columns.dbh = "Circonf\303\251rence";
-    assert_said(said_of(path, "x,y,Circonf\303\251rence\n1,1,94\n", &small), "reads as a girth");
+    struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
+    assert_said(said_of(path, "x,y,Umfang [cm],H\n1,1,94,20\n", &small), "Umfang [cm] reads as a girth, which is not read");
+    assert_not_said(said_of(path, "x,y,girth,dbh\n1,1,94,30\n", &small), "girth");
+    inventory->columns.dbh = "Circonf\303\251rence";
+    assert_said(said_of(path, "x,y,Circonf\303\251rence\n1,1,94\n", &small), "reads as a girth, but counts as a diameter");
 }
 
 static void test_plots_on_one_another(void **state)
