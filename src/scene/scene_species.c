@@ -108,46 +108,54 @@ static bool unknown_species(const struct loader *loader, const char *name,
                          near ? hint : ".", list);
 }
 
-/* As what the scene has a file; NULL: it has not. */
-static const char *name_of_file(const struct loader *loader, const char *file)
+/* Which of the scene's species so far has the Latin name; NULL: none. */
+static const char *find_own_latin(const struct loader *loader, const char *name)
 {
-    for (size_t i = 0; i < loader->count; i++)
-        if (strcmp(loader->files[i].value, file) == 0)
-            return loader->files[i].name;
-    return NULL;
+    struct wd_arena arena = {0};
+    const char *found = NULL;
+    for (size_t i = 0; i < loader->count && !found; i++) {
+        struct wd_species species;
+        if (wd_species_load(&species, loader->files[i].value, &arena, &wd_log_quiet) && species.latin &&
+            wd_name_is_latin(name, species.latin))
+            found = loader->files[i].name;
+    }
+    wd_arena_finish(&arena);
+    return found;
 }
 
-/* The file of an installed species by its name, else by its Latin name, and its name; NULL: there is none. free()
- * it. */
-static char *find_installed(struct loader *loader, const char *name, const char **installed)
+/* The installed species of that Latin name; NULL: there is none. */
+static const struct wd_latin_name *find_installed_latin(struct loader *loader, const char *name)
 {
-    char *file = wd_species_folders_find(&loader->folders, name);
-    *installed = name;
-    if (file || !wd_name_has_words(name) || strchr(name, '/'))
-        return file;
+    if (!wd_name_has_words(name) || strchr(name, '/'))
+        return NULL;
     if (!loader->has_latin)
         wd_latin_names_init(&loader->latin, &loader->folders);
     loader->has_latin = true;
-    const struct wd_latin_name *found = wd_latin_names_find(&loader->latin, name);
-    *installed = found ? wd_arena_strdup(wd_keys_arena(loader->root), found->name) : NULL;
-    return found ? wd_strdup(found->file) : NULL;
+    return wd_latin_names_find(&loader->latin, name);
 }
 
-/* Finds the file of a species that has no entry in the scene. A name is no path. A Latin name becomes that which the
- * scene or the folder has for the species. */
+/* A Latin name becomes that which the scene, or else the folder has for the species. */
+static bool want_latin(struct loader *loader, const char **name)
+{
+    const char *own = wd_name_has_words(*name) ? find_own_latin(loader, *name) : NULL;
+    const struct wd_latin_name *found = own ? NULL : find_installed_latin(loader, *name);
+    if (found && !has(loader, found->name))
+        add(loader, found->name, found->file);
+    if (own || found)
+        *name = own ? own : wd_arena_strdup(wd_keys_arena(loader->root), found->name);
+    return own || found;
+}
+
+/* Finds the file of a species that has no entry in the scene. A name is no path. */
 static bool want(struct loader *loader, const char **name, const struct wd_keys_place *place,
                  const char *key)
 {
-    const char *installed;
     if (!*name || has(loader, *name)) /* no name: an error that has been reported */
         return true;
-    char *file = find_installed(loader, *name, &installed);
+    char *file = wd_species_folders_find(&loader->folders, *name);
     if (!file)
-        return unknown_species(loader, *name, place, key);
-    const char *own = installed == *name ? NULL : name_of_file(loader, file);
-    *name = own ? own : installed;
-    if (!has(loader, *name))
-        add(loader, *name, file);
+        return want_latin(loader, name) || unknown_species(loader, *name, place, key);
+    add(loader, *name, file);
     free(file);
     return true;
 }
@@ -155,13 +163,17 @@ static bool want(struct loader *loader, const char **name, const struct wd_keys_
 /* What an entry of "species" says: a path beside the scene, or the name of an installed species. free() it. */
 static char *entry_file(struct loader *loader, const char *value)
 {
-    const char *installed;
     char *file = wd_path_beside(wd_keys_path(loader->root), value);
-    char *found = wd_file_exists(file) ? NULL : find_installed(loader, value, &installed);
-    if (!found)
+    if (wd_file_exists(file))
+        return file;
+    char *named = wd_species_folders_find(&loader->folders, value);
+    const struct wd_latin_name *latin = named ? NULL : find_installed_latin(loader, value);
+    if (latin)
+        named = wd_strdup(latin->file);
+    if (!named)
         return file;
     free(file);
-    return found;
+    return named;
 }
 
 static bool take_entries(struct loader *loader, const struct wd_scene *scene)

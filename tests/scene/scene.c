@@ -92,7 +92,7 @@ static void species_are_found_and_loaded(void **state)
 static void species_by_latin_names(void **state)
 {
     struct fixture *f = *state;
-    assert_true(load(f, "{\"species\": {\"Fichte\": \"spruce\", \"Eiche\": \"Quercus robur L.\"},"
+    assert_true(load(f, "{\"species\": {\"Fichte\": \"../species/spruce.json\", \"Eiche\": \"Quercus robur L.\"},"
                         " \"layers\": [{\"species\": {\"Fagus sylvatica\": 1, \"Picea_abies\": 1}}],"
                         " \"inventories\": [{\"file\": \"a.csv\", \"species\": {\"Abies alba\": \"Picea abies\", \"Bi\":"
                         " \"Betula pendula\"}}]}"));
@@ -108,6 +108,8 @@ static void species_by_latin_names(void **state)
     assert_string_equal(f->scene.inventories[0].species[0].value, "Fichte");
     assert_string_equal(f->scene.inventories[0].species[1].value, "birch");
     assert_int_equal(f->log.errors + f->log.warnings, 0);
+    assert_true(load(f, "{\"species\": {\"Fichte\": \"spruce\"}, \"layers\": [{\"species\": \"Fichte\"}]}"));
+    assert_string_equal(f->scene.species[0].name, "spruce");
 }
 
 struct wrong {
