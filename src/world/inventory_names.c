@@ -53,7 +53,8 @@ static const char *const girth_names[] = {"girth", "gbh", "circumference", "cbh"
                                           "circ", "c130", "circunferencia", "cap", "omkrets", NULL};
 
 static const struct wd_column_unit no_units[] = {{NULL, 0.0}};
-static const struct wd_column_unit place_units[] = {{"m", 1.0}, {NULL, 0.0}};
+static const struct wd_column_unit place_units[] = {{"m", 1.0},  {"cm", 0.0}, {"dm", 0.0}, {"km", 0.0},
+                                                   {"ft", 0.0}, {"feet", 0.0}, {NULL, 0.0}};
 static const struct wd_column_unit dbh_units[] = {
     {"cm", 1.0},    {"mm", 0.1},      {"dm", 10.0},  {"m", 100.0},    {"in", 2.54}, {"ft", 30.48}, {"inch", 2.54},
     {"inches", 2.54}, {"zoll", 2.54}, {"feet", 30.48}, {"yd", 0.0}, {"yards", 0.0}, {NULL, 0.0}};

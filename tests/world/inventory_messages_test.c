@@ -182,6 +182,7 @@ static void test_units(void **state)
     assert_true(fabs((tree.size >> 16) - crown_m * 100.0) < 1.0);
     fail_to_make(&small, "x,y,Height (yd)\n1,1,10\n", "inventory_messages_test.csv:1: column Height (yd): yd is no unit "
                  "that is read; known are m, dm, cm, mm, ft, in; convert the column, or say what it is in height_unit");
+    fail_to_make(&small, "Easting (ft),y,H\n1,1,10\n", "column Easting (ft): ft is no unit that is read; known are m; convert");
     inventory->height_unit = "dm";
     assert_int_equal(only_tree(&small, "x,y,H\n1,1,95\n").size & 0xffff, 950);
     inventory->height_unit = NULL;
