@@ -92,10 +92,10 @@ void wd_forest_set_specimen_form(struct wd_forest *forest, enum wd_specimen_form
 
 /* Writes a forest for other programs. As ".csv": a row for each tree: id as in the tree_id layer of
  * a picture, species, the trunk's foot in the terrain's own coordinates, height, crown diameter,
- * layer, and as tag what an inventory's column for "id" calls it. As ".glb": each individual's
- * meshes once (MSFT_lod), its trees as instances (EXT_mesh_gpu_instancing, with tree ids), the
- * ground as a mesh; metres, y up, about the middle of the ground, whose true coordinates are in the
- * scene's extras.
+ * layer, and of an inventory's tree what its column for "id" calls it (tag), the file, the line in
+ * it (row) and the stem diameter as measured (dbh_cm). As ".glb": each individual's meshes once
+ * (MSFT_lod), its trees as instances (EXT_mesh_gpu_instancing, with tree ids), the ground as a mesh;
+ * metres, y up, about the middle of the ground, whose true coordinates are in the scene's extras.
  *   max_trees  a forest with more is refused; 0: a million in a .glb, any number in a .csv
  * Errors: as wd_specimens_write; WD_ERROR_MEMORY, WD_ERROR_INTERRUPTED (nothing is written). */
 enum wd_result wd_forest_write(const struct wd_forest *forest, const char *path, uint64_t max_trees,

@@ -88,6 +88,7 @@ static uint64_t host_bytes(const struct wd_world *world)
     return samples * (sizeof *terrain->height_m + (terrain->hole ? 1 : 0)) +
            world->tree_count * (sizeof *world->trees + sizeof *world->tree_of_id + 1) +
            world->tags.count * sizeof *world->tags.places + world->tags.size +
+           world->tags.row_count * sizeof *world->tags.rows +
            (uint64_t)world->octree.count * sizeof *world->octree.octants +
            (uint64_t)world->octree.tight_count * sizeof *world->octree.tight_trees +
            (uint64_t)world->cover_width * world->cover_height;

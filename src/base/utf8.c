@@ -59,3 +59,33 @@ void wd_utf8_line(char *to, size_t room, const char *text)
     }
     to[used] = '\0';
 }
+
+/* The letter that a character of two bytes is without its accent; 0: none. */
+static char without_accent(const uint8_t *at)
+{
+    static const char letters[] = "aaaaaaaceeeeiiiidnooooo*ouuuuytsaaaaaaaceeeeiiiidnooooo*ouuuuyty"; /* U+00C0 on */
+    return at[0] == 0xc3 && (at[1] & 0x1f) != 0x17 ? letters[at[1] & 0x3f] : 0;
+}
+
+void wd_utf8_plain(char *to, size_t room, const char *text, size_t size)
+{
+    size_t used = 0, length;
+    for (size_t i = 0; i < size; i += length) {
+        const uint8_t *at = (const uint8_t *)text + i;
+        length = wd_utf8_length(text + i, size - i);
+        length = length ? length : 1;
+        bool combined = length == 2 && (at[0] == 0xcc || (at[0] == 0xcd && at[1] < 0xb0));
+        char plain = length == 2 ? without_accent(at) : 0;
+        if (length == 2 && at[0] == 0xc2 && at[1] == 0xa0)
+            plain = ' ';
+        if (length == 1)
+            plain = at[0] >= 'A' && at[0] <= 'Z' ? (char)(at[0] + 32) : at[0] >= 9 && at[0] <= 13 ? ' ' : (char)at[0];
+        if (combined)
+            continue;
+        if (used + (plain ? 1 : length) >= room)
+            break;
+        memcpy(to + used, plain ? &plain : text + i, plain ? 1 : length);
+        used += plain ? 1 : length;
+    }
+    to[used] = '\0';
+}

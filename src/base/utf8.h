@@ -11,4 +11,8 @@ size_t wd_utf8_length(const char *text, size_t size);
  * with a zero; cuts it between characters where there is no room. */
 void wd_utf8_line(char *to, size_t room, const char *text);
 
+/* Copies `size` bytes of a text as people compare names: Latin letters small and without their accents, whole or
+ * combined, a blank for every white space, also the no-break one. Ends it with a zero; cuts it where there is no room. */
+void wd_utf8_plain(char *to, size_t room, const char *text, size_t size);
+
 #endif

@@ -6,8 +6,8 @@ _Static_assert(sizeof(struct wd_scene_share) == sizeof(struct wd_number_pair) &&
 
 static const char *const placements[] = {"grid", "poisson", "canopy", NULL};
 static const char *const outside_rules[] = {"drop", "keep", "error", NULL};
-static const char *const dbh_units[] = {"cm", "mm", "m", "in", NULL};
-static const char *const height_units[] = {"m", "cm", "ft", NULL};
+static const char *const dbh_units[] = {"cm", "mm", "dm", "m", "in", "ft", NULL};
+static const char *const height_units[] = {"m", "dm", "cm", "mm", "ft", "in", NULL};
 
 #define MAP(member) offsetof(struct wd_scene_map, member)
 static const struct wd_key map_keys[] = {

@@ -89,8 +89,8 @@ struct wd_scene_inventory {
     struct {
         const char *x, *y, *species, *dbh, *height, *crown_diameter, *id, *status;
     } columns;               /* NULL: found out from usual names */
-    const char *dbh_unit;    /* "cm", "mm", "m", "in"; NULL: as the column's name says, else cm */
-    const char *height_unit; /* "m", "cm", "ft"; NULL: as the column's name says, else m */
+    const char *dbh_unit;    /* "cm", "mm", "dm", "m", "in", "ft"; NULL: as the column's name says, else cm */
+    const char *height_unit; /* "m", "dm", "cm", "mm", "ft", "in"; NULL: as the column's name says, else m */
     const char *frame;       /* "local" (default): metres from the terrain's south-west corner;
                                 "projected": the terrain's own coordinates; or "EPSG:n" */
     double offset_m[2];      /* added to x, y; of a frame in degrees or feet, to the terrain's own */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "scene/latin_names.h"
 #include "scene/scene_parts.h"
 #include "scene/species_folders.h"
 
@@ -15,6 +16,8 @@ struct loader {
     struct wd_string_pair *files;
     size_t count, capacity;
     struct wd_species_folders folders; /* where species without a file are looked for */
+    struct wd_latin_names latin;       /* of those, once they are asked for */
+    bool has_latin;
 };
 
 static bool has(const struct loader *loader, const char *name)
@@ -105,18 +108,72 @@ static bool unknown_species(const struct loader *loader, const char *name,
                          near ? hint : ".", list);
 }
 
+/* Which of the scene's species so far has the Latin name; NULL: none. */
+static const char *find_own_latin(const struct loader *loader, const char *name)
+{
+    struct wd_arena arena = {0};
+    const char *found = NULL;
+    for (size_t i = 0; i < loader->count && !found; i++) {
+        struct wd_species species;
+        if (wd_species_load(&species, loader->files[i].value, &arena, &wd_log_quiet) && species.latin &&
+            wd_name_is_latin(name, species.latin))
+            found = loader->files[i].name;
+    }
+    wd_arena_finish(&arena);
+    return found;
+}
+
+/* The installed species of that Latin name; NULL: there is none. */
+static const struct wd_latin_name *find_installed_latin(struct loader *loader, const char *name)
+{
+    if (!wd_name_has_words(name) || strchr(name, '/'))
+        return NULL;
+    if (!loader->has_latin)
+        wd_latin_names_init(&loader->latin, &loader->folders);
+    loader->has_latin = true;
+    return wd_latin_names_find(&loader->latin, name);
+}
+
+/* A Latin name becomes that which the scene, or else the folder has for the species. */
+static bool want_latin(struct loader *loader, const char **name)
+{
+    const char *own = wd_name_has_words(*name) ? find_own_latin(loader, *name) : NULL;
+    const struct wd_latin_name *found = own ? NULL : find_installed_latin(loader, *name);
+    if (found && !has(loader, found->name))
+        add(loader, found->name, found->file);
+    if (own || found)
+        *name = own ? own : wd_arena_strdup(wd_keys_arena(loader->root), found->name);
+    return own || found;
+}
+
 /* Finds the file of a species that has no entry in the scene. A name is no path. */
-static bool want(struct loader *loader, const char *name, const struct wd_keys_place *place,
+static bool want(struct loader *loader, const char **name, const struct wd_keys_place *place,
                  const char *key)
 {
-    if (!name || has(loader, name)) /* no name: an error that has been reported */
+    if (!*name || has(loader, *name)) /* no name: an error that has been reported */
         return true;
-    char *file = wd_species_folders_find(&loader->folders, name);
+    char *file = wd_species_folders_find(&loader->folders, *name);
     if (!file)
-        return unknown_species(loader, name, place, key);
-    add(loader, name, file);
+        return want_latin(loader, name) || unknown_species(loader, *name, place, key);
+    add(loader, *name, file);
     free(file);
     return true;
+}
+
+/* What an entry of "species" says: a path beside the scene, or the name of an installed species. free() it. */
+static char *entry_file(struct loader *loader, const char *value)
+{
+    char *file = wd_path_beside(wd_keys_path(loader->root), value);
+    if (wd_file_exists(file))
+        return file;
+    char *named = wd_species_folders_find(&loader->folders, value);
+    const struct wd_latin_name *latin = named ? NULL : find_installed_latin(loader, value);
+    if (latin)
+        named = wd_strdup(latin->file);
+    if (!named)
+        return file;
+    free(file);
+    return named;
 }
 
 static bool take_entries(struct loader *loader, const struct wd_scene *scene)
@@ -130,7 +187,7 @@ static bool take_entries(struct loader *loader, const struct wd_scene *scene)
             ok = false;
             continue;
         }
-        char *file = wd_path_beside(wd_keys_path(root), entry.value);
+        char *file = entry_file(loader, entry.value);
         if (wd_file_exists(file))
             add(loader, entry.name, file);
         else
@@ -149,8 +206,8 @@ static bool take_layers(struct loader *loader, const struct wd_scene *scene)
         struct wd_keys_place layer = {root->reader, &list, NULL, i};
         struct wd_keys_place shares = {root->reader, &layer, "species", 0};
         for (size_t j = 0; j < scene->layers[i].species_count; j++) {
-            const char *name = scene->layers[i].species[j].name;
-            ok = want(loader, name, &shares, name) && ok;
+            const char **name = &scene->layers[i].species[j].name;
+            ok = want(loader, name, &shares, *name) && ok;
         }
     }
     return ok;
@@ -162,11 +219,11 @@ static bool take_inventories(struct loader *loader, const struct wd_scene *scene
     struct wd_keys_place list = {root->reader, root, "inventories", 0};
     bool ok = true;
     for (size_t i = 0; i < scene->inventory_count; i++) {
-        const struct wd_scene_inventory *inventory = &scene->inventories[i];
+        struct wd_scene_inventory *inventory = &scene->inventories[i];
         struct wd_keys_place here = {root->reader, &list, NULL, i};
         struct wd_keys_place map = {root->reader, &here, "species", 0};
         for (size_t j = 0; j < inventory->species_count; j++)
-            ok = want(loader, inventory->species[j].value, &map, inventory->species[j].name) && ok;
+            ok = want(loader, &inventory->species[j].value, &map, inventory->species[j].name) && ok;
         if (ok && loader->count == 0)
             ok = wd_keys_error(&here, NULL, "names no species; say which species the names in its file are: "
                                "\"species\": { \"Picea abies\": \"spruce\", \"*\": \"oak\" }, \"*\" for all others");
@@ -316,6 +373,7 @@ bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *p
     ok = ok && set_openness(&loader, scene);
     if (ok)
         note_planted(scene);
+    wd_latin_names_finish(&loader.latin);
     wd_species_folders_finish(&loader.folders);
     free(loader.files);
     return ok;

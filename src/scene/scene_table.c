@@ -232,8 +232,8 @@ static const struct wd_key scene_keys[] = {
      "The same seed makes the same world."},
     {"terrain", WD_KEY_OBJECT, SCENE(terrain), .table = &terrain_table, .doc = "The ground."},
     {"species", WD_KEY_STRING_MAP, SCENE(species_files), .count_offset = SCENE(species_file_count),
-     .doc = "Names of species and their files, beside the scene; others are looked for in species/ "
-            "and ../species/ beside the scene, then among the installed ones."},
+     .doc = "Names of species and their files, beside the scene, or what installed ones are called; others "
+            "are looked for in species/ and ../species/ beside the scene, then among the installed ones."},
     {"clips", WD_KEY_MAP, SCENE(clips), .table = &clip_table, .count_offset = SCENE(clip_count),
      .doc = "Names of species whose individuals are cut to a box or a mesh, as plants of a hedge are. "
             "A name of its own in \"species\" keeps the same species' free trees apart."},

@@ -189,8 +189,8 @@ extern const struct wd_keys wd_species_keys, wd_species_model_keys;
 /* Whether the name ends like a model: .obj, .gltf, .glb, .fbx or .dae. */
 bool wd_species_is_model_file(const char *path);
 
-/* The file of a species by name, in the folders of wd_species_folders_init for the working directory;
- * NULL (logged, with the names there are, or the folders) if there is none. free() it. */
+/* The file of a species by name, or else by its Latin name, in the folders of wd_species_folders_init for the
+ * working directory; NULL (logged, with the names there are, or the folders) if there is none. free() it. */
 char *wd_species_find_file(const char *name, const struct wd_log *log);
 
 /* Names of the species in the first of those folders that has any, sorted, in the arena. */

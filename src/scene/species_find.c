@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/latin_names.h"
 #include "scene/nearest.h"
 #include "scene/species.h"
 #include "scene/species_folders.h"
@@ -76,11 +77,23 @@ static void complain(const char *name, const struct wd_species_folders *folders,
     wd_arena_finish(&arena);
 }
 
+static char *find_latin(const char *name, const struct wd_species_folders *folders)
+{
+    struct wd_latin_names latin;
+    wd_latin_names_init(&latin, folders);
+    const struct wd_latin_name *found = wd_latin_names_find(&latin, name);
+    char *path = found ? wd_strdup(found->file) : NULL;
+    wd_latin_names_finish(&latin);
+    return path;
+}
+
 char *wd_species_find_file(const char *name, const struct wd_log *log)
 {
     struct wd_species_folders folders;
     wd_species_folders_init(&folders, NULL);
     char *path = wd_species_folders_find(&folders, name);
+    if (!path && wd_name_has_words(name))
+        path = find_latin(name, &folders);
     if (!path)
         complain(name, &folders, log);
     wd_species_folders_finish(&folders);

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -21,81 +20,10 @@ struct reader {
     struct wd_species_names names;
     const struct wd_log *log;
     uint64_t first_invalid_line, zero_sizes;
-    uint64_t *dead_rows; /* by wanted->dead */
+    struct wd_inventory_dead dead;
+    struct wd_inventory_plots plots;
+    int plot; /* column; -1: none */
 };
-
-static bool is_dead(const struct reader *reader)
-{
-    const struct wd_scene_inventory *wanted = reader->inventory->wanted;
-    if (reader->columns.status < 0)
-        return false;
-    const char *status = reader->csv.fields[reader->columns.status];
-    if (wanted->dead_count == 0)
-        return strcasecmp(status, "dead") == 0;
-    bool dead = false;
-    for (size_t i = 0; i < wanted->dead_count; i++)
-        if (strcasecmp(status, wanted->dead[i]) == 0) {
-            reader->dead_rows[i]++;
-            dead = true;
-        }
-    return dead;
-}
-
-/* Nothing is taken away by a word that is misspelt. */
-static void warn_of_no_dead(const struct reader *reader)
-{
-    const struct wd_scene_inventory *wanted = reader->inventory->wanted;
-    for (size_t i = 0; i < wanted->dead_count && reader->columns.status >= 0; i++)
-        if (reader->dead_rows[i] == 0)
-            wd_warn(reader->log, "%s: no row has the status \"%s\" in column %s, so none is left out by it; is "
-                    "the word in \"dead\" right?", reader->csv.path, wanted->dead[i],
-                    reader->csv.header[reader->columns.status]);
-}
-
-static int by_size(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-static float middle_of(float *sizes, size_t count)
-{
-    qsort(sizes, count, sizeof *sizes, by_size);
-    return count ? sizes[count / 2] : 0.0f;
-}
-
-/* Medians of diameters, and of heights over diameters where a tree has both; 0 where none has. */
-static void measure(const struct wd_inventory *inventory, float *dbh_cm, float *slender)
-{
-    float *sizes = wd_alloc_array(inventory->count + 1, sizeof *sizes);
-    size_t count = 0;
-    for (size_t i = 0; i < inventory->count; i++)
-        if (inventory->trees[i].dbh_cm > 0.0f)
-            sizes[count++] = inventory->trees[i].dbh_cm;
-    *dbh_cm = middle_of(sizes, count);
-    count = 0;
-    for (size_t i = 0; i < inventory->count; i++)
-        if (inventory->trees[i].dbh_cm > 0.0f && inventory->trees[i].height_m > 0.0f)
-            sizes[count++] = 100.0f * inventory->trees[i].height_m / inventory->trees[i].dbh_cm;
-    *slender = middle_of(sizes, count);
-    free(sizes);
-}
-
-/* Stems of forests are 15 to 250 times as long as they are thick, and few plots have a median of more than 1.6 m. */
-static void warn_of_dbh_unit(const struct reader *reader)
-{
-    float dbh_cm, slender;
-    measure(reader->inventory, &dbh_cm, &slender);
-    bool thick = slender > 0.0f ? slender < 12.0f : dbh_cm > 160.0f;
-    bool thin = slender > 0.0f ? slender > 1000.0f : dbh_cm < 0.9f;
-    if (reader->columns.dbh_told || dbh_cm <= 0.0f || !(thick || thin))
-        return;
-    char *shape = slender > 0.0f ? wd_format(" and %.3g times as long as thick", (double)slender) : wd_strdup("");
-    wd_warn(reader->log, "%s: column %s names no unit and counts as cm: the middle one of the stems would be %.3g cm "
-            "thick%s; if it is in %s, say \"dbh_unit\": \"%s\"", reader->csv.path,
-            reader->csv.header[reader->columns.dbh], (double)dbh_cm, shape, thick ? "mm" : "metres", thick ? "mm" : "m");
-    free(shape);
-}
 
 enum wd_csv_value wd_inventory_read_size(const struct wd_csv *csv, const struct wd_inventory_columns *columns,
                                          enum wd_inventory_size which, float *size)
@@ -103,10 +31,10 @@ enum wd_csv_value wd_inventory_read_size(const struct wd_csv *csv, const struct 
     const struct {
         int column;
         double factor, most;
-        const char *unit;
-    } sizes[] = {{columns->dbh, columns->dbh_cm, most_dbh_cm, "cm"},
-                 {columns->height, columns->height_m, most_height_m, "m"},
-                 {columns->crown, columns->crown_m, most_crown_m, "m"}};
+        const char *unit, *hint;
+    } sizes[] = {{columns->dbh, columns->dbh_cm, most_dbh_cm, "cm", " \"dbh_unit\" can say another"},
+                 {columns->height, columns->height_m, most_height_m, "m", " \"height_unit\" can say another"},
+                 {columns->crown, columns->crown_m, most_crown_m, "m", ""}};
     int column = sizes[which].column;
     double value, most = sizes[which].most;
     *size = 0.0f;
@@ -119,8 +47,8 @@ enum wd_csv_value wd_inventory_read_size(const struct wd_csv *csv, const struct 
     if (value >= 0.0 && value * sizes[which].factor <= most)
         return kind;
     wd_error(csv->log, "%s:%" PRIu64 ": column %s: %s is %s; above 0 and up to %g %s is "
-             "a tree (is the unit right?)", csv->path, csv->line, csv->header[column], csv->fields[column],
-             value < 0.0 ? "negative" : "too much", most, sizes[which].unit);
+             "a tree (is the unit right?%s)", csv->path, csv->line, csv->header[column], csv->fields[column],
+             value < 0.0 ? "negative" : "too much", most, sizes[which].unit, value < 0.0 ? "" : sizes[which].hint);
     return WD_CSV_BAD;
 }
 
@@ -146,14 +74,34 @@ static bool read_position(struct reader *reader, struct wd_inventory_tree *tree,
     return true;
 }
 
+/* A file of one species needs no column for it; text in another column may say that there are more. */
+static void warn_of_text(const struct reader *reader)
+{
+    const struct wd_csv *csv = &reader->csv;
+    size_t text = 0;
+    for (size_t i = 0; i < csv->column_count && text == 0; i++) {
+        bool letters = strcspn(csv->fields[i], "0123456789") == strlen(csv->fields[i]) && strlen(csv->fields[i]) > 2;
+        if (letters && !wd_csv_is_missing(csv->fields[i]) && !wd_inventory_uses(&reader->columns, i))
+            text = i + 1;
+    }
+    if (text == 0 || reader->inventory->wanted->species_count == 0)
+        return;
+    char *header = wd_csv_names(csv);
+    wd_warn(reader->log, "%s:1: no column for the species was recognised, so all trees are of one; if %s has it, say so: "
+            "\"columns\": {\"species\": \"%s\"}; the header has: %s", csv->path, csv->header[text - 1],
+            csv->header[text - 1], header);
+    free(header);
+}
+
 static bool read_tree(struct reader *reader)
 {
     struct wd_inventory *inventory = reader->inventory;
     const struct wd_inventory_columns *columns = &reader->columns;
     struct wd_inventory_tree tree = {.row = (uint32_t)reader->csv.line};
     bool present;
-    inventory->report.rows++;
-    if (is_dead(reader)) {
+    if (inventory->report.rows++ == 0 && columns->species < 0)
+        warn_of_text(reader);
+    if (columns->status >= 0 && wd_inventory_is_dead(&reader->dead, reader->csv.fields[columns->status])) {
         inventory->report.dead++;
         return true;
     }
@@ -170,36 +118,40 @@ static bool read_tree(struct reader *reader)
     struct wd_inventory_tree *added = wd_push(inventory->trees, inventory->count,
                                               inventory->capacity);
     *added = tree;
+    if (reader->plot >= 0)
+        wd_inventory_plots_add(&reader->plots, reader->csv.fields[reader->plot], tree.x, tree.y);
     if (columns->id >= 0 && !wd_csv_is_missing(reader->csv.fields[columns->id]))
         wd_tree_tags_set(&inventory->tags, inventory->count - 1, reader->csv.fields[columns->id]);
     return true;
 }
 
-/* Without a species column every tree is of the scene's only species, or of "*". */
-static bool check_species_column(struct reader *reader, const struct wd_scene *scene)
+static int by_text(const void *first, const void *second)
 {
-    if (reader->columns.species >= 0)
-        return true;
-    if (scene->species_file_count == 1) {
-        struct wd_species_name *only = wd_push(reader->names.names, reader->names.count,
-                                               reader->names.capacity);
-        *only = (struct wd_species_name){.name = wd_strdup("")};
-        return true;
-    }
-    size_t any = wd_species_names_find(&reader->names, "", 1);
-    if (reader->names.names[any].species >= 0)
-        return true;
-    char *names = wd_csv_names(&reader->csv);
-    wd_error(reader->log, "%s:1: no column for the species was recognised; name it in "
-             "columns.species, or give one species for all as \"*\"; the header has: %s",
-             reader->csv.path, names);
-    free(names);
-    return false;
+    return strcmp(*(const char *const *)first, *(const char *const *)second);
+}
+
+/* A column that was guessed to hold the trees' numbers does only where no two are the same. */
+static void check_tags(struct reader *reader)
+{
+    struct wd_inventory *inventory = reader->inventory;
+    size_t count = inventory->tags.count;
+    const char **tags = wd_alloc_array(count + 1, sizeof *tags);
+    bool unique = true;
+    for (size_t i = 0; i < count; i++)
+        tags[i] = wd_tree_tags_get(&inventory->tags, i);
+    qsort(tags, count, sizeof *tags, by_text);
+    for (size_t i = 1; i < count; i++)
+        unique &= *tags[i] == 0 || strcmp(tags[i], tags[i - 1]) != 0;
+    free(tags);
+    inventory->tags_tell_apart = reader->columns.id_told;
+    if (!unique && !reader->columns.id_told)
+        wd_tree_tags_finish(&inventory->tags);
 }
 
 static bool read_rows(struct reader *reader)
 {
     enum wd_csv_row row;
+    reader->plot = wd_inventory_find_usual(&reader->csv, WD_COLUMN_PLOT);
     while ((row = wd_csv_next(&reader->csv)) == WD_CSV_ROW)
         if (!read_tree(reader))
             return false;
@@ -217,8 +169,11 @@ static bool read_rows(struct reader *reader)
     if (reader->zero_sizes > 0)
         wd_warn(reader->log, "%s: %" PRIu64 " sizes are 0 and count as not measured",
                 reader->csv.path, reader->zero_sizes);
-    warn_of_no_dead(reader);
-    warn_of_dbh_unit(reader);
+    wd_inventory_dead_warn(&reader->dead, &reader->csv, reader->columns.status, report->dead);
+    wd_inventory_warn_of_sizes(reader->inventory, &reader->columns, reader->names.scene, reader->log);
+    if (reader->plot >= 0)
+        wd_inventory_plots_warn(&reader->plots, reader->csv.path, reader->csv.header[reader->plot], reader->log);
+    check_tags(reader);
     if (reader->inventory->count == 0)
         return wd_error(reader->log, "%s: no living tree with a position among %" PRIu64 " rows",
                         reader->csv.path, report->rows);
@@ -231,13 +186,15 @@ bool wd_inventory_load(struct wd_inventory *inventory, const struct wd_scene *sc
     *inventory = (struct wd_inventory){.wanted = &scene->inventories[index]};
     inventory->path = wd_path_beside(scene->path, inventory->wanted->file);
     struct reader reader = {.inventory = inventory, .log = log};
-    reader.dead_rows = wd_alloc_array(inventory->wanted->dead_count + 1, sizeof *reader.dead_rows);
+    wd_inventory_dead_init(&reader.dead, inventory->wanted);
     reader.names = (struct wd_species_names){.scene = scene, .wanted = inventory->wanted};
     bool ok = wd_csv_open(&reader.csv, inventory->path, inventory->wanted->delimiter, log) &&
               wd_inventory_find_columns(&reader.columns, &reader.csv, inventory->wanted, log) &&
               wd_inventory_check_frame(&reader.columns, &reader.csv, inventory->wanted, log) &&
-              check_species_column(&reader, scene) && read_rows(&reader);
-    free(reader.dead_rows);
+              (reader.columns.species >= 0 || wd_species_names_without_column(&reader.names, &reader.csv)) &&
+              read_rows(&reader);
+    wd_inventory_dead_finish(&reader.dead);
+    wd_inventory_plots_finish(&reader.plots);
     wd_csv_close(&reader.csv);
     wd_species_names_finish(&reader.names);
     if (!ok)

@@ -1,98 +1,14 @@
 #include "world/inventory.h"
 
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-/* In plain words; a unit may follow each. */
-static const char *const x_names[] = {"x", "east", "easting", "x_utm", "utm_x", "utm_e", "gx", "px",
-                                      "xcoord", "x_coord", "coord_x", "point_x", "lon", "long",
-                                      "longitude", "rechtswert", NULL};
-static const char *const y_names[] = {"y", "north", "northing", "y_utm", "utm_y", "utm_n", "gy", "py",
-                                      "ycoord", "y_coord", "coord_y", "point_y", "lat", "latitude",
-                                      "hochwert", NULL};
-static const char *const species_names[] = {"species", "sp", "spp", "species_name", "taxon",
-                                            "scientific_name", "latin", "latin_name",
-                                            "tree_species", "baumart", NULL};
-static const char *const dbh_names[] = {"dbh", "d", "bhd", "d130", "d1_3", "d_b_h", "diam", "diameter",
-                                        "stem_diameter", NULL};
-static const char *const height_names[] = {"height", "h", "ht", "total_height", "tree_height",
-                                           "hoehe", "h\303\266he", "h\303\226he", "ho\314\210he", "hauteur", NULL};
-static const char *const crown_names[] = {"crown_diameter", "crown", "crown_width", "crown_d", NULL};
-static const char *const status_names[] = {"status", "state", "condition", NULL};
-static const char *const id_names[] = {NULL};
-
-struct unit {
-    const char *name;
-    double factor;
-};
-static const struct unit no_units[] = {{NULL, 0.0}};
-static const struct unit place_units[] = {{"m", 1.0}, {NULL, 0.0}};
-static const struct unit dbh_units[] = {{"cm", 1.0},    {"mm", 0.1},      {"m", 100.0}, {"in", 2.54},
-                                        {"inch", 2.54}, {"inches", 2.54}, {NULL, 0.0}};
-static const struct unit height_units[] = {{"m", 1.0},       {"cm", 0.01},    {"ft", 0.3048},
-                                           {"feet", 0.3048}, {"metres", 1.0}, {"meters", 1.0},
-                                           {NULL, 0.0}};
-
 /* What a column may be called: by the scene, else usually. */
 struct wish {
+    enum wd_inventory_column column;
     const char *what, *wanted;
-    const char *const *usual;
-    const struct unit *units;
 };
-
-static bool is_gap(char letter)
-{
-    return letter != 0 && strchr(" \t_.-/()[]", letter) != NULL;
-}
-
-/* The unit that ends a column's name, as in "DBH [cm]", dbh.cm or "Height m", and how much of the
- * name stands before it; NULL: none. In "DBH at 1.3 m" the number says that the place is meant. */
-static const struct unit *unit_of_name(const char *name, const struct unit *units, size_t *length)
-{
-    size_t end = strlen(name);
-    while (end > 0 && is_gap(name[end - 1]))
-        end--;
-    size_t first = end;
-    while (first > 0 && !is_gap(name[first - 1]))
-        first--;
-    *length = end;
-    bool place = first > 1 && strchr(" .", name[first - 1]) && isdigit((unsigned char)name[first - 2]);
-    for (const struct unit *unit = units; unit->name && first > 0 && !place; unit++)
-        if (strlen(unit->name) == end - first && strncasecmp(unit->name, name + first, end - first) == 0) {
-            *length = first;
-            return unit;
-        }
-    return NULL;
-}
-
-/* Lower case, the words with one "_" between. */
-static bool reads_as(const char *name, size_t length, const char *plain)
-{
-    bool gap = false;
-    for (const char *at = name, *begin = plain; at < name + length; at++) {
-        if (is_gap(*at)) {
-            gap = plain > begin;
-            continue;
-        }
-        if (gap && *plain++ != '_')
-            return false;
-        gap = false;
-        if (*plain == 0 || tolower((unsigned char)*at) != (unsigned char)*plain++)
-            return false;
-    }
-    return *plain == 0;
-}
-
-/* Whether the column has the usual name; `unit` is NULL where the name has none. */
-static bool has_name(const struct wd_csv *csv, size_t column, const char *usual,
-                     const struct unit *units, const struct unit **unit)
-{
-    size_t length;
-    *unit = unit_of_name(csv->header[column], units, &length);
-    return reads_as(csv->header[column], length, usual);
-}
 
 static bool two_columns(const struct wd_csv *csv, const char *what, size_t first, size_t second,
                         const struct wd_log *log)
@@ -105,15 +21,16 @@ static bool two_columns(const struct wd_csv *csv, const char *what, size_t first
                     csv->path, name, other, what, what);
 }
 
-/* The first of the usual names that is there; one with a unit, in their order, before one without. */
+/* The first of the usual names that is there; one with a unit, in their order, before one without. Numbers of trees are
+ * not worth an error. */
 static bool find_usual(const struct wd_csv *csv, const struct wish *wish, const struct wd_log *log,
                        int *column)
 {
-    for (const char *const *usual = wish->usual; *usual && *column < 0; usual++) {
-        const struct unit *best = NULL, *unit;
+    for (const char *const *usual = wd_inventory_usual_names(wish->column); *usual && *column < 0; usual++) {
+        const struct wd_column_unit *best = NULL, *unit;
         size_t twin = 0;
         for (size_t i = 0; i < csv->column_count; i++) {
-            if (!has_name(csv, i, *usual, wish->units, &unit))
+            if (!wd_inventory_has_name(csv->header[i], *usual, wish->column, &unit))
                 continue;
             if (*column >= 0 && unit == best) {
                 twin = twin ? twin : i;
@@ -123,10 +40,27 @@ static bool find_usual(const struct wd_csv *csv, const struct wish *wish, const 
                 twin = 0;
             }
         }
-        if (twin)
+        if (twin && wish->column != WD_COLUMN_ID)
             return two_columns(csv, wish->what, (size_t)*column, twin, log);
     }
     return true;
+}
+
+/* Names such as E and N, where no other says x or y. */
+static void find_place_pair(const struct wd_csv *csv, int *x, int *y)
+{
+    for (size_t i = 0; wd_inventory_place_pairs[i][0] && *x < 0 && *y < 0; i++) {
+        const struct wd_column_unit *unit;
+        int found[2] = {-1, -1};
+        for (size_t k = 0; k < csv->column_count; k++)
+            for (int side = 0; side < 2; side++)
+                if (wd_inventory_has_name(csv->header[k], wd_inventory_place_pairs[i][side], WD_COLUMN_X, &unit))
+                    found[side] = (int)k;
+        if (found[0] >= 0 && found[1] >= 0) {
+            *x = found[0];
+            *y = found[1];
+        }
+    }
 }
 
 static bool find_wanted(const struct wd_csv *csv, const struct wish *wish, const struct wd_log *log,
@@ -154,7 +88,7 @@ static bool find(const struct wd_csv *csv, const struct wish *wish, const struct
     return wish->wanted ? find_wanted(csv, wish, log, column) : find_usual(csv, wish, log, column);
 }
 
-static const struct unit *find_given(const char *name, const struct unit *units)
+static const struct wd_column_unit *find_given(const char *name, const struct wd_column_unit *units)
 {
     for (; units->name; units++)
         if (strcasecmp(name, units->name) == 0)
@@ -162,20 +96,51 @@ static const struct unit *find_given(const char *name, const struct unit *units)
     return NULL;
 }
 
+/* A unit that is written counts or is told of: it is never taken for another in silence. */
+static bool check_unit_known(const struct wd_csv *csv, const char *key, int column, enum wd_inventory_column which,
+                             const struct wd_column_unit *named, const struct wd_log *log)
+{
+    char *units = wd_inventory_list_units(which), *bracketed = wd_inventory_bracketed(csv->header[column]);
+    bool known = !named || named->factor > 0.0;
+    if (!known)
+        wd_error(log, "%s:1: column %s: %s is no unit that is read; known are %s; convert the column%s%s", csv->path,
+                 csv->header[column], named->name, units, *key ? ", or say what it is in " : "", key);
+    else if (!named && bracketed)
+        wd_warn(log, "%s:1: column %s: \"%s\" is no unit that is known (%s), so it counts as %s%s%s", csv->path,
+                csv->header[column], bracketed, units, wd_inventory_units(which)->name,
+                *key ? "; say what it is in " : "", key);
+    free(units);
+    free(bracketed);
+    return known;
+}
+
 /* What the scene says counts before the unit that ends the column's name, that before the usual. */
 static bool find_unit(const struct wd_csv *csv, const char *key, const char *wanted, int column,
-                      const struct unit *units, const struct wd_log *log, double *factor)
+                      enum wd_inventory_column which, const struct wd_log *log, double *factor)
 {
     size_t length;
-    const struct unit *named = column >= 0 ? unit_of_name(csv->header[column], units, &length) : NULL;
-    const struct unit *given = wanted ? find_given(wanted, units) : NULL;
-    if (wanted && !given)
+    const struct wd_column_unit *units = wd_inventory_units(which);
+    const struct wd_column_unit *named = column >= 0 ? wd_inventory_unit_of(csv->header[column], which, &length) : NULL;
+    const struct wd_column_unit *given = wanted ? find_given(wanted, units) : NULL;
+    if (wanted && (!given || given->factor == 0.0))
         return wd_error(log, "%s: %s: \"%s\" is not a unit for it; the usual one is \"%s\"", csv->path,
                         key, wanted, units[0].name);
     if (given && named && given->factor != named->factor)
         wd_warn(log, "%s:1: the name of column %s says %s, but the scene's %s says %s, which counts",
                 csv->path, csv->header[column], named->name, key, wanted);
     *factor = given ? given->factor : named ? named->factor : units[0].factor;
+    return column < 0 || given || check_unit_known(csv, key, column, which, named, log);
+}
+
+/* A place by angle and distance from a plot's middle has to become x and y first. */
+static bool is_polar(const struct wd_csv *csv, const struct wd_log *log)
+{
+    int azimuth = wd_inventory_find_usual(csv, WD_COLUMN_AZIMUTH), distance = wd_inventory_find_usual(csv, WD_COLUMN_DISTANCE);
+    if (azimuth < 0 || distance < 0)
+        return false;
+    wd_error(log, "%s:1: columns %s and %s tell places from a plot's middle, but x and y are wanted: convert them first, "
+             "x = middle's x + distance sin(azimuth), y = middle's y + distance cos(azimuth)", csv->path,
+             csv->header[azimuth], csv->header[distance]);
     return true;
 }
 
@@ -183,6 +148,8 @@ static bool need(const struct wd_csv *csv, const char *what, int column, const s
 {
     if (column >= 0)
         return true;
+    if (is_polar(csv, log))
+        return false;
     char *names = wd_csv_names(csv);
     wd_error(log, "%s:1: no column for %s was recognised; name it in columns.%s; the header has: %s%s",
              csv->path, what, what, names,
@@ -191,7 +158,7 @@ static bool need(const struct wd_csv *csv, const char *what, int column, const s
     return false;
 }
 
-static bool is_used(const struct wd_inventory_columns *columns, size_t column)
+bool wd_inventory_uses(const struct wd_inventory_columns *columns, size_t column)
 {
     const int used[] = {columns->x, columns->y, columns->species, columns->dbh, columns->height, columns->crown,
                         columns->id, columns->status};
@@ -207,12 +174,11 @@ static void warn_of_like(const struct wd_csv *csv, const struct wd_inventory_col
                          const struct wd_log *log)
 {
     for (size_t i = 0; i < csv->column_count; i++)
-        for (const char *const *usual = wish->usual; *usual; usual++)
-            if (strlen(*usual) > 1 && strncasecmp(csv->header[i], *usual, strlen(*usual)) == 0 && !is_used(columns, i)) {
-                wd_warn(log, "%s:1: no column was recognised for the trees' %s; if %s is, say so: \"columns\": "
-                        "{\"%s\": \"%s\"}", csv->path, wish->what, csv->header[i], wish->what, csv->header[i]);
-                return;
-            }
+        if (wd_inventory_begins_as(csv->header[i], wish->column) && !wd_inventory_uses(columns, i)) {
+            wd_warn(log, "%s:1: no column was recognised for the trees' %s; if %s is, say so: \"columns\": "
+                    "{\"%s\": \"%s\"}", csv->path, wish->what, csv->header[i], wish->what, csv->header[i]);
+            return;
+        }
 }
 
 /* A file of places alone is as it is meant; other columns may well hold the sizes. */
@@ -221,7 +187,7 @@ static void warn_of_no_sizes(const struct wd_csv *csv, const struct wd_inventory
 {
     bool others = false;
     for (size_t i = 0; i < csv->column_count; i++)
-        others |= !is_used(columns, i);
+        others |= !wd_inventory_uses(columns, i);
     if (columns->dbh >= 0 || columns->height >= 0 || !others)
         return;
     char *names = wd_csv_names(csv);
@@ -249,6 +215,42 @@ static bool check_apart(const struct wd_inventory_columns *columns, const struct
     return true;
 }
 
+static void warn_of_girth(const struct wd_csv *csv, const struct wd_inventory_columns *columns, const struct wd_log *log)
+{
+    int girth = wd_inventory_find_usual(csv, WD_COLUMN_GIRTH);
+    if (girth >= 0 && (columns->dbh == girth || (columns->dbh < 0 && !wd_inventory_uses(columns, (size_t)girth))))
+        wd_warn(log, "%s:1: column %s reads as a girth, %s; divide it by 3.1416, and name it dbh", csv->path,
+                csv->header[girth], columns->dbh == girth ? "but counts as a diameter" : "which is not read");
+}
+
+/* The units of a frame that is named are its own. */
+static bool check_place_units(const struct wd_inventory_columns *columns, const struct wd_csv *csv,
+                              const struct wd_scene_inventory *wanted, const struct wd_log *log)
+{
+    size_t length;
+    const struct wd_column_unit *x = wd_inventory_unit_of(csv->header[columns->x], WD_COLUMN_X, &length);
+    const struct wd_column_unit *y = wd_inventory_unit_of(csv->header[columns->y], WD_COLUMN_Y, &length);
+    return wd_inventory_frame(wanted) == WD_FRAME_CRS ||
+           ((!x || check_unit_known(csv, "", columns->x, WD_COLUMN_X, x, log)) &&
+            (!y || check_unit_known(csv, "", columns->y, WD_COLUMN_Y, y, log)));
+}
+
+static bool find_units(struct wd_inventory_columns *columns, const struct wd_csv *csv,
+                       const struct wd_scene_inventory *wanted, const struct wd_log *log)
+{
+    size_t length;
+    columns->dbh_told = wanted->dbh_unit ||
+                        (columns->dbh >= 0 && wd_inventory_unit_of(csv->header[columns->dbh], WD_COLUMN_DBH, &length));
+    columns->height_told = wanted->height_unit || (columns->height >= 0 && wd_inventory_unit_of(
+                                                       csv->header[columns->height], WD_COLUMN_HEIGHT, &length));
+    columns->id_told = wanted->columns.id != NULL;
+    return check_place_units(columns, csv, wanted, log) &&
+           find_unit(csv, "dbh_unit", wanted->dbh_unit, columns->dbh, WD_COLUMN_DBH, log, &columns->dbh_cm) &&
+           find_unit(csv, "height_unit", wanted->height_unit, columns->height, WD_COLUMN_HEIGHT, log,
+                     &columns->height_m) &&
+           find_unit(csv, "", NULL, columns->crown, WD_COLUMN_CROWN, log, &columns->crown_m);
+}
+
 bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struct wd_csv *csv,
                                const struct wd_scene_inventory *wanted, const struct wd_log *log)
 {
@@ -256,41 +258,35 @@ bool wd_inventory_find_columns(struct wd_inventory_columns *columns, const struc
         struct wish wish;
         int *column;
     } wishes[] = {
-        {{"x", wanted->columns.x, x_names, place_units}, &columns->x},
-        {{"y", wanted->columns.y, y_names, place_units}, &columns->y},
-        {{"species", wanted->columns.species, species_names, no_units}, &columns->species},
-        {{"dbh", wanted->columns.dbh, dbh_names, dbh_units}, &columns->dbh},
-        {{"height", wanted->columns.height, height_names, height_units}, &columns->height},
-        {{"crown_diameter", wanted->columns.crown_diameter, crown_names, height_units}, &columns->crown},
-        {{"id", wanted->columns.id, id_names, no_units}, &columns->id},
-        {{"status", wanted->columns.status, status_names, no_units}, &columns->status},
+        {{WD_COLUMN_X, "x", wanted->columns.x}, &columns->x},
+        {{WD_COLUMN_Y, "y", wanted->columns.y}, &columns->y},
+        {{WD_COLUMN_SPECIES, "species", wanted->columns.species}, &columns->species},
+        {{WD_COLUMN_DBH, "dbh", wanted->columns.dbh}, &columns->dbh},
+        {{WD_COLUMN_HEIGHT, "height", wanted->columns.height}, &columns->height},
+        {{WD_COLUMN_CROWN, "crown_diameter", wanted->columns.crown_diameter}, &columns->crown},
+        {{WD_COLUMN_ID, "id", wanted->columns.id}, &columns->id},
+        {{WD_COLUMN_STATUS, "status", wanted->columns.status}, &columns->status},
     };
     for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++)
-        if (!find(csv, &wishes[i].wish, log, wishes[i].column) ||
-            (i < 2 && !need(csv, wishes[i].wish.what, *wishes[i].column, log)))
+        if (!find(csv, &wishes[i].wish, log, wishes[i].column))
             return false;
-    if (!check_apart(columns, csv, log))
+    find_place_pair(csv, &columns->x, &columns->y);
+    if (!need(csv, "x", columns->x, log) || !need(csv, "y", columns->y, log) || !check_apart(columns, csv, log))
         return false;
     warn_of_no_sizes(csv, columns, log);
+    warn_of_girth(csv, columns, log);
     for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++)
-        if (*wishes[i].column < 0 && (columns->dbh >= 0 || columns->height >= 0) &&
-            (wishes[i].column == &columns->dbh || wishes[i].column == &columns->height))
+        if (*wishes[i].column < 0 && (wishes[i].column == &columns->dbh || wishes[i].column == &columns->height))
             warn_of_like(csv, columns, &wishes[i].wish, log);
-    size_t length;
-    columns->dbh_told = wanted->dbh_unit ||
-                        (columns->dbh >= 0 && unit_of_name(csv->header[columns->dbh], dbh_units, &length));
-    return find_unit(csv, "dbh_unit", wanted->dbh_unit, columns->dbh, dbh_units, log, &columns->dbh_cm) &&
-           find_unit(csv, "height_unit", wanted->height_unit, columns->height, height_units, log,
-                     &columns->height_m) &&
-           find_unit(csv, "", NULL, columns->crown, height_units, log, &columns->crown_m);
+    return find_units(columns, csv, wanted, log);
 }
 
 static bool is_degrees(const struct wd_csv *csv, int column)
 {
-    static const char *const names[] = {"lon", "long", "longitude", "lat", "latitude"};
-    const char *name = csv->header[column];
+    static const char *const names[] = {"lon", "long", "lng", "longitude", "longitud", "lat", "latitude", "latitud"};
+    const struct wd_column_unit *unit;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (reads_as(name, strlen(name), names[i]))
+        if (wd_inventory_has_name(csv->header[column], names[i], WD_COLUMN_ID, &unit))
             return true;
     return false;
 }

@@ -126,6 +126,7 @@ struct planting {
     struct wd_inventory *inventory;
     const struct wd_placement_params *params;
     struct wd_ground_input ground;
+    uint32_t index; /* of the inventory in the scene */
     uint32_t key;
     uint32_t *planted; /* index of the inventory's tree for each one in the list */
     struct wd_tree_list trees;
@@ -240,7 +241,8 @@ static void drop_duplicates(struct planting *planting)
     for (size_t i = 0; i < count; i++)
         stands[i] = (struct stand){trees[i].x_mm, trees[i].y_mm,
                                    &inventory->trees[planting->planted[i]],
-                                   wd_tree_tags_get(&inventory->tags, planting->planted[i]), (uint32_t)i};
+                                   inventory->tags_tell_apart
+                                       ? wd_tree_tags_get(&inventory->tags, planting->planted[i]) : "", (uint32_t)i};
     qsort(stands, count, sizeof *stands, compare_stands);
     uint32_t first_line = 0;
     for (size_t i = 1; i < count; i++) {
@@ -268,7 +270,9 @@ static bool take(struct planting *planting, struct wd_tree_list *list, struct wd
         if (list->count >= planting->params->max_trees)
             return wd_too_many_trees(planting->params, planting->inventory->path);
         wd_tree_list_add(list, &planting->trees.trees[i]);
+        const struct wd_inventory_tree *from = &planting->inventory->trees[planting->planted[i]];
         wd_tree_tags_set(tags, list->count, wd_tree_tags_get(own, planting->planted[i]));
+        wd_tree_tags_set_row(tags, list->count, (struct wd_tree_row){planting->index, from->row, from->dbh_cm});
         report->planted++;
     }
     wd_info(planting->params->log,
@@ -296,6 +300,7 @@ bool wd_inventory_plant(struct wd_inventory *inventory, const struct wd_placemen
     struct planting planting = {
         .inventory = inventory,
         .params = params,
+        .index = (uint32_t)index,
         .key = wd_hash2(params->seed, 0x80000000u + (uint32_t)index),
     };
     double *x, *y;

@@ -28,8 +28,21 @@ const char *wd_tree_tags_get(const struct wd_tree_tags *tags, size_t tree)
     return tree < tags->count ? tags->text + tags->places[tree] : "";
 }
 
+void wd_tree_tags_set_row(struct wd_tree_tags *tags, size_t tree, struct wd_tree_row row)
+{
+    while (tags->row_count <= tree)
+        *wd_push(tags->rows, tags->row_count, tags->row_capacity) = (struct wd_tree_row){0};
+    tags->rows[tree] = row;
+}
+
+struct wd_tree_row wd_tree_tags_get_row(const struct wd_tree_tags *tags, size_t tree)
+{
+    return tree < tags->row_count ? tags->rows[tree] : (struct wd_tree_row){0};
+}
+
 void wd_tree_tags_finish(struct wd_tree_tags *tags)
 {
+    free(tags->rows);
     free(tags->text);
     free(tags->places);
     *tags = (struct wd_tree_tags){0};

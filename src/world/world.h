@@ -36,7 +36,8 @@ struct wd_world {
     uint32_t *tree_of_id;           /* tree_of_id[id] is an index into trees; [0] unused */
     uint64_t *species_counts;       /* parallel to scene->species; of layers on demand expected */
     uint8_t *layer_of_tree;         /* parallel to trees: layer index; 255: inventory */
-    struct wd_tree_tags tags;       /* by id, where an inventory's id column says what a tree is called */
+    struct wd_tree_tags tags;       /* by id: of inventories' trees their rows, and what they are called where a
+                                       column says so */
     struct wd_inventory_report *inventories; /* parallel to scene->inventories */
     struct wd_demand demand;        /* layers of which nothing else here says anything */
     struct wd_octree octree;

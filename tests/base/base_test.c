@@ -242,6 +242,17 @@ static void assert_heard(struct heard *heard, const char *text, const char *want
 }
 
 /* Whatever is in a file or its name: a message is one line of UTF-8. */
+static void names_without_accents(void **state)
+{
+    (void)state;
+    static const char name[] = "H\xc3\x96he Ho\xcc\x88he\xc2\xa0" "DIAM\xc3\x88TRE\tN\xc2\xb0 \xc3\x97 \xff";
+    char plain[64];
+    wd_utf8_plain(plain, sizeof plain, name, sizeof name - 1);
+    assert_string_equal(plain, "hohe hohe diametre n\xc2\xb0 \xc3\x97 \xff");
+    wd_utf8_plain(plain, 4, name, sizeof name - 1);
+    assert_string_equal(plain, "hoh");
+}
+
 static void messages_are_one_line_of_utf8(void **state)
 {
     (void)state;
@@ -448,6 +459,7 @@ int main(void)
         cmocka_unit_test(numbers_have_points),
         cmocka_unit_test(threads_log_one_at_a_time),
         cmocka_unit_test(messages_are_one_line_of_utf8),
+        cmocka_unit_test(names_without_accents),
         cmocka_unit_test(srgb_round_trips),
         cmocka_unit_test(every_index_is_worked_once),
         cmocka_unit_test(as_many_threads_as_asked_for_work),

@@ -63,6 +63,8 @@ for other in autumn cards near model; do
 done
 "$weald" grow oak --age 20 --open 1 --seed 3 -o "$out/same.glb" -q
 check 'the same tree, the same bytes' cmp "$out/oak.glb" "$out/same.glb"
+"$weald" grow 'Quercus robur L.' --age 20 --open 1 --seed 3 -o "$out/same.glb" -q
+check 'the same by its Latin name' cmp "$out/oak.glb" "$out/same.glb"
 for file in oak.mtl oak-oak-wood.png oak-oak-leaf.png; do
     check "$file lies beside oak.obj" test -s "$out/$file"
 done

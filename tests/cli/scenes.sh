@@ -177,10 +177,18 @@ printf 'x_m,y_m,height_m,nr\n10,10,12,A-7\n10,10,12,"A ""8"""\n20,20,13,\n' >"$s
 inventory tagged
 jq '.inventories[0].columns.id = "nr"' "$scratch/tagged.json" >"$scratch/tags.json"
 expect 0 'list.csv: ' export "$scratch/tags.json" -o "$scratch/list.csv"
-check 'the list has a column of tags' sh -c "head -1 '$scratch/list.csv' | grep -q ',layer,tag\$'"
-check 'a tag stands in its row' grep -q '^1,.*,"inventory","A-7"$' "$scratch/list.csv"
-check 'a tag with quotes too' grep -q '^2,.*,"inventory","A ""8"""$' "$scratch/list.csv"
-check 'a tree without has none' grep -q '^3,.*,"inventory",$' "$scratch/list.csv"
+check 'the list has a column of tags' sh -c "head -1 '$scratch/list.csv' | grep -q ',layer,tag,file,row,dbh_cm\$'"
+check 'a tag stands in its row' grep -q '^1,.*,"inventory","A-7","tagged.csv",2,$' "$scratch/list.csv"
+check 'a tag with quotes too' grep -q '^2,.*,"inventory","A ""8""","tagged.csv",3,$' "$scratch/list.csv"
+check 'a tree without has none' grep -q '^3,.*,"inventory",,"tagged.csv",4,$' "$scratch/list.csv"
+printf 'tree_id,x,y,species,dbh_mm\n7,10,10,Fagus sylvatica,305\n9,20,20,Picea abies (L.) H.Karst.,\n' >"$scratch/latin.csv"
+jq 'del(.layers) | .inventories = [{"file": "latin.csv", "species": {"Abies alba": "Picea abies"}}]' \
+    "$scratch/plain.json" >"$scratch/latin.json"
+expect 1 '"Fagus sylvatica" is called "beech" here: add \{"Fagus sylvatica": "beech"\}' check "$scratch/latin.json"
+jq '.inventories[0].species = {"Fagus sylvatica": "Fagus sylvatica", "*": "Picea abies"}' "$scratch/latin.json" >"$scratch/named.json"
+expect 0 'list.csv: ' export "$scratch/named.json" -o "$scratch/list.csv"
+check 'a row leads back to what was measured' grep -q '^1,"beech",.*,"7","latin.csv",2,30.50$' "$scratch/list.csv"
+check 'a Latin name is that of its species' grep -q '^2,"spruce",.*,"9","latin.csv",3,$' "$scratch/list.csv"
 printf 'x_m,y_m,height_m\n10,10,12\n,10,12\n20,NA,13\n10,10,12\n' >"$scratch/placeless.csv"
 inventory placeless
 expect 0 'inventory .*: 4 rows, 1 planted, 0 dead, 1 duplicate, 0 outside, 2 without a position' \

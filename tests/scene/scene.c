@@ -88,6 +88,30 @@ static void species_are_found_and_loaded(void **state)
     assert_int_equal(f->log.errors + f->log.warnings, 0);
 }
 
+/* As files and people call them: by an installed name in place of a file, by Latin names in place of names. */
+static void species_by_latin_names(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"species\": {\"Fichte\": \"../species/spruce.json\", \"Eiche\": \"Quercus robur L.\"},"
+                        " \"layers\": [{\"species\": {\"Fagus sylvatica\": 1, \"Picea_abies\": 1}}],"
+                        " \"inventories\": [{\"file\": \"a.csv\", \"species\": {\"Abies alba\": \"Picea abies\", \"Bi\":"
+                        " \"Betula pendula\"}}]}"));
+    static const char *const names[] = {"Fichte", "Eiche", "beech", "birch"};
+    static const char *const files[] = {"spruce", "oak", "beech", "birch"};
+    assert_int_equal(f->scene.species_file_count, 4);
+    for (int i = 0; i < 4; i++) {
+        assert_string_equal(f->scene.species_files[i].name, names[i]);
+        assert_string_equal(f->scene.species[i].name, files[i]);
+    }
+    assert_string_equal(f->scene.layers[0].species[0].name, "beech");
+    assert_string_equal(f->scene.layers[0].species[1].name, "Fichte");
+    assert_string_equal(f->scene.inventories[0].species[0].value, "Fichte");
+    assert_string_equal(f->scene.inventories[0].species[1].value, "birch");
+    assert_int_equal(f->log.errors + f->log.warnings, 0);
+    assert_true(load(f, "{\"species\": {\"Fichte\": \"spruce\"}, \"layers\": [{\"species\": \"Fichte\"}]}"));
+    assert_string_equal(f->scene.species[0].name, "spruce");
+}
+
 struct wrong {
     const char *text, *message;
 };
@@ -433,6 +457,7 @@ int main(int argc, char **argv)
     species_dir = argv[1];
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(species_are_found_and_loaded, setup, teardown),
+        cmocka_unit_test_setup_teardown(species_by_latin_names, setup, teardown),
         cmocka_unit_test_setup_teardown(unknown_species_are_errors, setup, teardown),
         cmocka_unit_test_setup_teardown(checks_across_keys_hold, setup, teardown),
         cmocka_unit_test_setup_teardown(refused_items_are_passed_over, setup, teardown),

@@ -11,51 +11,9 @@
 #include <cmocka.h>
 
 #include "base/memory.h"
-#include "small_scene.h"
-#include "world/world.h"
+#include "inventory_file.h"
 
-struct capture {
-    char errors[8192], others[8192];
-};
-
-static void keep(void *user, enum wd_log_level level, const char *message)
-{
-    struct capture *capture = user;
-    char *text = level == WD_LOG_ERROR ? capture->errors : capture->others;
-    size_t used = strlen(text);
-    snprintf(text + used, sizeof capture->errors - used, "%s\n", message);
-}
-
-static struct capture captured;
-static const struct wd_log sink = {keep, &captured};
 static const char *const path = "inventory_test.csv";
-
-static void write_file(const char *text)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
-static bool make(struct small_scene *small, struct wd_world *world)
-{
-    captured = (struct capture){"", ""};
-    small->scene.path = NULL;
-    return wd_world_init(world, &small->scene, &(struct wd_world_params){.log = &sink});
-}
-
-static void make_or_fail(struct small_scene *small, struct wd_world *world)
-{
-    if (!make(small, world))
-        fail_msg("%s", captured.errors);
-}
-
-static void assert_said(const char *text, const char *part)
-{
-    if (!strstr(text, part))
-        fail_msg("\"%s\" is not in \"%s\"", part, text);
-}
 
 /* Tree by the order of placement. */
 static struct wd_tree tree_at(const struct wd_world *world, size_t index)
@@ -77,7 +35,7 @@ static void test_positions_and_sizes(void **state)
     struct wd_world world;
     small_scene_init(&small);
     small_scene_inventory(&small, path);
-    write_file("id,x,y,species,dbh,height,crown_diameter\n"
+    write_file(path, "id,x,y,species,dbh,height,crown_diameter\n"
                "1,10.5,20.25,oak,40,21.5,9.5\n"
                "2,30,40,Picea abies,40,,\n"
                "3,50,60,SPRUCE,,25,\n"
@@ -131,7 +89,7 @@ static void test_mapping_units_and_commas(void **state)
     inventory->height_unit = "ft";
     inventory->height_m[0] = 5.0f;
     inventory->height_m[1] = 6.0f;
-    write_file("\xef\xbb\xbfRechts;Hoch;Art;BHD;Hoehe\r\n"
+    write_file(path, "\xef\xbb\xbfRechts;Hoch;Art;BHD;Hoehe\r\n"
                "10,5;20,25;Fi;305,5;50\r\n11,5;20,25;Bi;;\r\n12,5;20;Ei;400;\r\n");
     make_or_fail(&small, &world);
     assert_stands(&world, 0, 10500, 20250);
@@ -158,7 +116,7 @@ static void test_dead_duplicates_outside_invalid(void **state)
     struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
     inventory->dead = dead;
     inventory->dead_count = 2;
-    write_file("x,y,species,dbh,status\n"
+    write_file(path, "x,y,species,dbh,status\n"
                "10,10,oak,30,A\n"
                "10,10,oak,30,A\n"      /* duplicate */
                "10,10,spruce,30,A\n"   /* another species may stand there */
@@ -205,7 +163,7 @@ static void test_tags(void **state)
     small_scene_layer(&small);
     struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
     small_scene_inventory(&small, path)->offset_m[0] = 100.0;
-    write_file("nr,x,y,dbh\n"
+    write_file(path, "nr,x,y,dbh\n"
                "A-7,10,10,30\n"
                "A-8,10,10,30\n"  /* another tree */
                "A-7,10,10,30\n"  /* the same again */
@@ -220,8 +178,37 @@ static void test_tags(void **state)
     static const char *const tags[] = {"A-7", "A-8", "", "B 1", "", ""};
     for (size_t i = 0; i < sizeof tags / sizeof *tags; i++)
         assert_string_equal(wd_tree_tags_get(&world.tags, i + 1), tags[i]);
+    static const struct wd_tree_row rows[] = {{0, 2, 30.0f}, {0, 3, 30.0f}, {0, 5, 30.0f}, {0, 7, 30.0f},
+                                              {1, 2, 30.0f}, {1, 7, 30.0f}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct wd_tree_row row = wd_tree_tags_get_row(&world.tags, i + 1);
+        assert_memory_equal(&row, &rows[i], sizeof row);
+    }
+    assert_int_equal(wd_tree_tags_get_row(&world.tags, world.tree_count).line, 0);
     assert_stands(&world, 3, 20000, 10000);
     assert_string_equal(wd_tree_tags_get(&world.tags, world.tree_count), "");
+    wd_world_finish(&world);
+}
+
+/* Without a word of the scene numbers are tags where each is another's, and tell no rows apart. */
+static void test_usual_tags(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    small_scene_init(&small);
+    small_scene_inventory(&small, path);
+    write_file(path, "N\302\260 arbre,x,y,dbh\nA,10,10,30\nB,10,10,30\n,20,10,30\nC,30,10,\n");
+    make_or_fail(&small, &world);
+    assert_int_equal(world.inventories[0].duplicates, 1);
+    static const char *const tags[] = {"A", "", "C"};
+    for (size_t i = 0; i < 3; i++)
+        assert_string_equal(wd_tree_tags_get(&world.tags, i + 1), tags[i]);
+    assert_true(wd_tree_tags_get_row(&world.tags, 3).dbh_cm == 0.0f);
+    wd_world_finish(&world);
+    write_file(path, "TreeID,x,y,dbh\n1,10,10,30\n2,20,10,30\n1,30,10,30\n");
+    make_or_fail(&small, &world);
+    assert_string_equal(wd_tree_tags_get(&world.tags, 1), "");
     wd_world_finish(&world);
 }
 
@@ -235,7 +222,7 @@ static void test_rotation_and_offset(void **state)
     inventory->rotate_deg = 90.0;
     inventory->offset_m[0] = 100.0;
     inventory->offset_m[1] = 50.0;
-    write_file("x,y\n10,0\n0,20\n");
+    write_file(path, "x,y\n10,0\n0,20\n");
     make_or_fail(&small, &world);
     assert_stands(&world, 0, 100000, 60000);
     assert_stands(&world, 1, 80000, 50000);
@@ -251,7 +238,7 @@ static void test_fitted_ground(void **state)
     small.scene.terrain.size_m[0] = small.scene.terrain.size_m[1] = 0.0;
     struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
     inventory->frame = "projected";
-    write_file("x,y,height_m\n493471.123,5821351.4567,20\n493571,5821251,10\n");
+    write_file(path, "x,y,height_m\n493471.123,5821351.4567,20\n493571,5821251,10\n");
     make_or_fail(&small, &world);
     assert_int_equal(world.inventories[0].planted, 2);
     assert_true(world.terrain.origin_m[0] == 493421.0);
@@ -263,7 +250,7 @@ static void test_fitted_ground(void **state)
 
     /* local coordinates, also negative ones, fit as well */
     inventory->frame = "local";
-    write_file("x,y,height_m\n-5,-8,3\n5,2,3\n");
+    write_file(path, "x,y,height_m\n-5,-8,3\n5,2,3\n");
     make_or_fail(&small, &world);
     assert_int_equal(world.inventories[0].planted, 2);
     assert_true(world.terrain.origin_m[0] == -55.0 && world.terrain.origin_m[1] == -58.0);
@@ -279,7 +266,7 @@ static void test_ground_under_data(void **state)
     struct wd_world world;
     small_scene_init(&small);
     small_scene_inventory(&small, path)->frame = "projected";
-    write_file("x,y\n500000,6000000\n500100,6000200\n");
+    write_file(path, "x,y\n500000,6000000\n500100,6000200\n");
     make_or_fail(&small, &world);
     assert_int_equal(world.inventories[0].planted, 2);
     assert_stands(&world, 0, 150000, 50000);
@@ -308,7 +295,7 @@ static void test_offsets_are_metres(void **state)
         }
         char text[64];
         snprintf(text, sizeof text, "%s\n%s", i == 2 ? "lon,lat" : "x,y", files[i].row);
-        write_file(text);
+        write_file(path, text);
         make_or_fail(&small, &world);
         struct wd_tree here = tree_at(&world, 0), there = tree_at(&world, 1);
         assert_in_range(there.x_mm - here.x_mm, 4999, 5001);
@@ -325,7 +312,7 @@ static void test_frames_without_a_place(void **state)
     struct wd_world world;
     small_scene_init(&small);
     small_scene_inventory(&small, path)->frame = "EPSG:4326";
-    write_file("lon,lat\n9.0,48.0\n9.001,148.0\n");
+    write_file(path, "lon,lat\n9.0,48.0\n9.001,148.0\n");
     assert_false(make(&small, &world));
     assert_said(captured.errors, "inventory_test.csv:3: (9.001, 148) is no place of EPSG:4326");
     small.scene.terrain.target_crs = "EPSG:32632";
@@ -344,7 +331,7 @@ static void test_degrees(void **state)
     small_scene_init(&small);
     small.scene.terrain.size_m[0] = small.scene.terrain.size_m[1] = 0.0;
     small_scene_inventory(&small, path)->frame = "EPSG:4326";
-    write_file("lon,lat\n9.0,0.0\n9.001,0.001\n");
+    write_file(path, "lon,lat\n9.0,0.0\n9.001,0.001\n");
     make_or_fail(&small, &world);
     assert_non_null(strstr(world.terrain.crs, "32N"));
     struct wd_tree first = tree_at(&world, 0), second = tree_at(&world, 1);
@@ -356,7 +343,7 @@ static void test_degrees(void **state)
     /* fractal ground, by a system that is no less in degrees: 0.001 of latitude */
     small_scene_hills(&small);
     small.inventories[0].frame = "EPSG:4283";
-    write_file("lon,lat\n147.0,-35.0\n147.0,-35.001\n");
+    write_file(path, "lon,lat\n147.0,-35.0\n147.0,-35.001\n");
     make_or_fail(&small, &world);
     assert_non_null(strstr(world.terrain.crs, "55S"));
     assert_in_range(tree_at(&world, 0).y_mm - tree_at(&world, 1).y_mm, 110850, 110950);
@@ -364,7 +351,7 @@ static void test_degrees(void **state)
 
     /* ... and by one in feet, of which 100 are 30.48 m */
     small.inventories[0].frame = "EPSG:2227";
-    write_file("x,y\n6000000,2100000\n6000000,2100100\n");
+    write_file(path, "x,y\n6000000,2100000\n6000000,2100100\n");
     make_or_fail(&small, &world);
     assert_non_null(strstr(world.terrain.crs, "10N"));
     assert_in_range(tree_at(&world, 1).y_mm - tree_at(&world, 0).y_mm, 30440, 30490);
@@ -380,7 +367,7 @@ static void test_degrees(void **state)
 
     /* metres of a CRS that is named */
     small.inventories[0].frame = "EPSG:32610";
-    write_file("x,y\n493471,5821351\n493571,5821251\n");
+    write_file(path, "x,y\n493471,5821351\n493571,5821251\n");
     make_or_fail(&small, &world);
     assert_stands(&world, 0, 50000, 150000);
     assert_non_null(strstr(world.terrain.crs, "10N"));
@@ -395,7 +382,7 @@ static void expect_error(const char *text, const char *part)
     const struct wd_world nothing = {0};
     small_scene_init(&small);
     small_scene_inventory(&small, path);
-    write_file(text);
+    write_file(path, text);
     assert_false(make(&small, &world));
     assert_memory_equal(&world, &nothing, sizeof world);
     assert_said(captured.errors, part);
@@ -451,7 +438,7 @@ static void test_names_of_columns(void **state)
         small_scene_init(&small);
         small_scene_inventory(&small, path);
         char *text = wd_format("%s\n%s\n", files[i].header, files[i].row);
-        write_file(text);
+        write_file(path, text);
         free(text);
         make_or_fail(&small, &world);
         struct wd_tree tree = tree_at(&world, 0);
@@ -473,7 +460,7 @@ static void test_one_column_for_two(void **state)
     small_scene_init(&small);
     struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
     inventory->columns.y = "X";
-    write_file("x,y\n1,2\n");
+    write_file(path, "x,y\n1,2\n");
     assert_false(make(&small, &world));
     assert_said(captured.errors, "inventory_test.csv:1: column x counts as both x and y");
 }
@@ -487,7 +474,7 @@ static void test_units_said_twice(void **state)
     struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
     inventory->dbh_unit = "cm";
     inventory->height_unit = "m";
-    write_file("x,y,dbh_mm,height (ft),crown_cm\n10,10,30,20,250\n20,20,30,,\n");
+    write_file(path, "x,y,dbh_mm,height (ft),crown_cm\n10,10,30,20,250\n20,20,30,,\n");
     make_or_fail(&small, &world);
     assert_int_equal(tree_at(&world, 0).size, 2000 | 250 << 16);
     double crown_m = wd_species_crown_m(&small.species[0], 30.0);
@@ -512,7 +499,7 @@ static void test_no_sizes(void **state)
     struct wd_world world;
     small_scene_init(&small);
     small_scene_inventory(&small, path);
-    write_file("x,y,girth\n10,10,94\n20,20,94\n");
+    write_file(path, "x,y,girth\n10,10,94\n20,20,94\n");
     make_or_fail(&small, &world);
     wd_world_finish(&world);
     assert_said(captured.others, "inventory_test.csv:1: neither a stem diameter nor a height");
@@ -520,20 +507,10 @@ static void test_no_sizes(void **state)
     assert_said(captured.others, "the header has: x, y, girth");
     assert_null(strstr(strstr(captured.others, "neither") + 1, "neither"));
     /* places alone are meant so */
-    write_file("x,y,species\n10,10,oak\n");
+    write_file(path, "x,y,species\n10,10,oak\n");
     make_or_fail(&small, &world);
     wd_world_finish(&world);
     assert_null(strstr(captured.others, "neither"));
-}
-
-/* Said of `text` by the way, as if it held trees of oak. */
-static const char *said_of(const char *text, struct small_scene *small)
-{
-    struct wd_world world;
-    write_file(text);
-    make_or_fail(small, &world);
-    wd_world_finish(&world);
-    return captured.others;
 }
 
 static void test_sizes_that_are_not_meant_so(void **state)
@@ -543,23 +520,23 @@ static void test_sizes_that_are_not_meant_so(void **state)
     struct small_scene small;
     small_scene_init(&small);
     struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
-    assert_said(said_of("x,y,dbh,height\n10,10,320,19\n20,20,410,22\n", &small),
-                "inventory_test.csv: column dbh names no unit and counts as cm: the middle one of the stems would be "
-                "410 cm thick and 5.94 times as long as thick; if it is in mm, say \"dbh_unit\": \"mm\"");
-    assert_said(said_of("x,y,dbh\n10,10,0.32\n20,20,0.41\n", &small), "if it is in metres, say \"dbh_unit\": \"m\"");
-    assert_null(strstr(said_of("x,y,dbh,height\n10,10,32,19\n20,20,1,2\n", &small), "names no unit"));
-    assert_null(strstr(said_of("x,y,dbh,height\n10,10,32,\n20,20,,1.1\n", &small), "names no unit"));
-    assert_null(strstr(said_of("x,y,dbh_mm,height\n10,10,320,19\n", &small), "names no unit"));
-    assert_said(said_of("x,y,DBH_2015,DBH_2020,Height\n10,10,30,31,19\n", &small),
+    assert_said(said_of(path, "x,y,dbh,height\n10,10,320,19\n20,20,410,22\n", &small),
+                "inventory_test.csv: the middle one of the trees would be 410 cm thick and 22 m high, 5.94 times as "
+                "long as thick; it would be a usual tree with \"dbh_unit\": \"mm\"\n");
+    assert_said(said_of(path, "x,y,dbh\n10,10,0.32\n20,20,0.41\n", &small), "a usual tree with \"dbh_unit\": \"m\"");
+    assert_null(strstr(said_of(path, "x,y,dbh,height\n10,10,32,19\n20,20,1,2\n", &small), "the middle one"));
+    assert_null(strstr(said_of(path, "x,y,dbh,height\n10,10,32,\n20,20,,1.1\n", &small), "the middle one"));
+    assert_null(strstr(said_of(path, "x,y,dbh_mm,height\n10,10,320,19\n", &small), "the middle one"));
+    assert_said(said_of(path, "x,y,DBH_2015,DBH_2020,Height\n10,10,30,31,19\n", &small),
                 "no column was recognised for the trees' dbh; if DBH_2015 is, say so: \"columns\": {\"dbh\": \"DBH_2015\"}");
-    assert_null(strstr(said_of("x,y,BHD,H\303\266he\n10,10,30,19\n", &small), "no column"));
+    assert_null(strstr(said_of(path, "x,y,BHD,H\303\266he\n10,10,30,19\n", &small), "no column"));
     inventory->species = (struct wd_string_pair[]){{"*", "oak"}};
     inventory->species_count = 1;
-    assert_said(said_of("x,y,species,dbh\n10,10,Abies alba,30\n20,20,oak,30\n", &small),
+    assert_said(said_of(path, "x,y,species,dbh\n10,10,Abies alba,30\n20,20,oak,30\n", &small),
                 "\"*\" stands for 1 species, all drawn as oak: \"Abies alba\" (1, from line 2)");
     inventory->dead = dead;
     inventory->dead_count = 2;
-    const char *said = said_of("x,y,dbh,status\n10,10,30,felled\n20,20,30,alive\n", &small);
+    const char *said = said_of(path, "x,y,dbh,status\n10,10,30,felled\n20,20,30,alive\n", &small);
     assert_said(said, "no row has the status \"gone\" in column status");
     assert_null(strstr(said, "\"felled\""));
 }
@@ -575,7 +552,7 @@ static void test_degrees_as_metres(void **state)
     struct wd_scene_inventory *inventory = small_scene_inventory(&small, path);
     inventory->frame = "projected";
     inventory->columns.x = "Longitude";
-    write_file("x,Longitude,y\n10,10,30\n");
+    write_file(path, "x,Longitude,y\n10,10,30\n");
     assert_false(make(&small, &world));
     assert_said(captured.errors, "columns Longitude and y read as degrees, but the frame \"projected\"");
     inventory->columns.x = NULL;
@@ -590,7 +567,7 @@ static void test_wrong_column(void **state)
     struct wd_world world;
     small_scene_init(&small);
     small_scene_inventory(&small, path)->columns.dbh = "dhb_cm";
-    write_file("x,y,dbh_cm,height\n1,2,3,4\n");
+    write_file(path, "x,y,dbh_cm,height\n1,2,3,4\n");
     assert_false(make(&small, &world));
     assert_said(captured.errors, "columns.dbh: no column \"dhb_cm\"; the header has: x, y, dbh_cm, "
                                  "height; did you mean \"dbh_cm\"?");
@@ -603,11 +580,11 @@ static void test_unmapped_species(void **state)
     struct wd_world world;
     small_scene_init(&small);
     small_scene_inventory(&small, path)->species_count = 0;
-    write_file("x,y,species\n1,2,elm\n2,2,oak\n3,2,ash\n4,2,elm\n5,2,\n");
+    write_file(path, "x,y,species\n1,2,elm\n2,2,oak\n3,2,ash\n4,2,elm\n5,2,\n");
     assert_false(make(&small, &world));
     assert_said(captured.errors, ":2: column species: 3 species names are not mapped to a species of the scene: "
                                  "\"elm\" (2, from line 2), \"(empty)\" (1, from line 6), \"ash\" (1, from line 4)");
-    write_file("x,y\n1,2\n");
+    write_file(path, "x,y\n1,2\n");
     assert_false(make(&small, &world));
     assert_said(captured.errors, "no column for the species");
     small.scene.species_file_count = 1;
@@ -623,7 +600,7 @@ static void test_delimiter_given_wrongly(void **state)
     struct wd_world world;
     small_scene_init(&small);
     small_scene_inventory(&small, path)->delimiter = ";";
-    write_file("x,y\n1,2\n");
+    write_file(path, "x,y\n1,2\n");
     assert_false(make(&small, &world));
     assert_said(captured.errors, "is the delimiter right?");
 }
@@ -728,6 +705,7 @@ int main(void)
         cmocka_unit_test(test_mapping_units_and_commas),
         cmocka_unit_test(test_dead_duplicates_outside_invalid),
         cmocka_unit_test(test_tags),
+        cmocka_unit_test(test_usual_tags),
         cmocka_unit_test(test_rotation_and_offset),
         cmocka_unit_test(test_fitted_ground),
         cmocka_unit_test(test_ground_under_data),
