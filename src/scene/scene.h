@@ -28,6 +28,7 @@ struct wd_scene_terrain {
     double *window_m;        /* raster: xmin, ymin, xmax, ymax in the target CRS; NULL: all */
     size_t window_count;     /* 0 or 4 */
     double vertical_scale;
+    bool checked;            /* read from a file, without an error but for files that are not there */
 };
 
 /* A raster that gives a probability (or a height) at each place. */
