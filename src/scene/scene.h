@@ -249,6 +249,9 @@ struct wd_scene_params {
 bool wd_scene_load_with(struct wd_scene *scene, const char *path,
                         const struct wd_scene_params *params, const struct wd_log *log);
 
+/* By its name, what a file of vector data or a workbook is and what becomes of it; NULL: it is of another kind. */
+const char *wd_scene_table_advice(const char *path);
+
 /* Whether a file's text has more keys of a species, of either kind, than of a scene at its root. Text
  * that is no JSON object has none. */
 bool wd_scene_text_is_species(const char *path, const char *text, size_t size);
