@@ -118,6 +118,8 @@ static const struct cli_option option_table[] = {
     {"report", 0, "FILE", CLI_KIND_TEXT, AT(report), 0, 0, CLI_VIEW,
      "append a line of JSON about the state at F9 and at the end"},
     {"times", 0, NULL, CLI_KIND_FLAG, AT(times), 0, 0, CLI_RENDER, "print how long each pass took"},
+    {"skip-existing", 0, NULL, CLI_KIND_FLAG, AT(skip_existing), 0, 0, CLI_BATCH,
+     "leave out lines whose output FILE is there and finished: to go on after a stop"},
     {"json", 0, NULL, CLI_KIND_FLAG, AT(json), 0, 0, CLI_INFO, "print JSON"},
     {"quiet", 'q', NULL, CLI_KIND_FLAG, AT(quiet), 0, 0,
      SCENE_COMMANDS | CLI_CHECK | CLI_GROW | CLI_BENCH | CLI_BATCH,
