@@ -87,8 +87,7 @@ static bool find_file(const char **file, bool raster, const struct wd_keys_place
 static void tell_unused_of_terrain(const struct wd_scene_terrain *terrain, const struct wd_keys_place *place)
 {
     static const char *const of_fractals[] = {"relief_m", "roughness", "valley", NULL};
-    static const char *const of_rasters[] = {"crs", "target_crs", "unit", "band", "nodata", "nodata_rule", "window_m",
-                                             "vertical_scale", NULL};
+    static const char *const of_rasters[] = {"crs", "unit", "band", "nodata", "nodata_rule", "vertical_scale", NULL};
     static const char *const of_made[] = {"size_m", NULL};
     if (terrain->kind != WD_TERRAIN_DIAMOND_SQUARE)
         tell_unused(place, of_fractals, "only \"kind\": \"diamond-square\" makes relief");
