@@ -91,7 +91,7 @@ static const struct cli_option option_table[] = {
     {"faithful", 0, NULL, CLI_KIND_FLAG, AT(faithful), 0, 0, SCENE_COMMANDS,
      "short for --option faithful=true: the method with its paper's faults"},
     {"set", 0, "KEY=VALUE", CLI_KIND_WORDS, AT(settings), 0, 0, SCENE_COMMANDS | CLI_BENCH,
-     "a value in place of the scene file's, as in wind.speed_mps=0; may be given again"},
+     "a value in place of the scene file's, as in wind.speed_mps=0 or cameras[0].fov_deg=40; may be given again"},
     {"view", 0, "WHAT", CLI_KIND_VIEW, AT(view), 0, 0, PICTURE_COMMANDS | CLI_GROW,
      "what pixels show: lit, lod, albedo, normal, tree-id or shadow (default: lit)"},
     {"time", 0, "SECONDS", CLI_KIND_REAL, AT(time_s), 0, 1e6, CLI_RENDER,

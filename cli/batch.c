@@ -1,9 +1,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "args.h"
+#include "output_name.h"
 
 /* What a line may ask for: commands that end by themselves. */
 enum { OF_LINES = CLI_RENDER | CLI_GROW | CLI_EXPORT | CLI_INFO | CLI_CHECK };
@@ -113,25 +113,14 @@ static bool read_lines(struct batch *batch)
     return ok;
 }
 
-/* What can be gone on with has a FILE.partial beside it; numbered pictures have no one name, and go on by themselves. */
-static bool is_done(const struct line *line)
-{
-    const char *output = line->options.output;
-    char *partial = NULL;
-    if (!output || access(output, F_OK) != 0)
-        return false;
-    if (asprintf(&partial, "%s.partial", output) < 0)
-        return false;
-    bool done = access(partial, F_OK) != 0;
-    free(partial);
-    return done;
-}
-
 static void leave_out_done(struct batch *batch)
 {
     uint32_t left_out = 0;
-    for (uint32_t i = 0; i < batch->count; i++)
-        left_out += batch->lines[i].left_out = batch->lines[i].command && is_done(&batch->lines[i]);
+    for (uint32_t i = 0; i < batch->count; i++) {
+        const struct line *line = &batch->lines[i];
+        bool done = line->command && line->options.output && cli_output_is_done(line->options.output);
+        left_out += batch->lines[i].left_out = done;
+    }
     if (left_out && !batch->session->options->quiet)
         fprintf(stderr, "weald: %s: %u lines left out, their output is there\n", batch->path, left_out);
 }
