@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "args.h"
+#include "output_name.h"
 
 /* What a line may ask for: commands that end by themselves. */
 enum { OF_LINES = CLI_RENDER | CLI_GROW | CLI_EXPORT | CLI_INFO | CLI_CHECK };
@@ -13,8 +14,9 @@ struct line {
     uint32_t number;
     char *text;   /* words end in it */
     char **words; /* of the command, then operands */
-    const struct cli_command *command;
+    const struct cli_command *command; /* NULL: an empty line */
     struct cli_options options;
+    bool left_out; /* its output was there before the first line ran */
 };
 
 struct batch {
@@ -111,6 +113,18 @@ static bool read_lines(struct batch *batch)
     return ok;
 }
 
+static void leave_out_done(struct batch *batch)
+{
+    uint32_t left_out = 0;
+    for (uint32_t i = 0; i < batch->count; i++) {
+        const struct line *line = &batch->lines[i];
+        bool done = line->command && line->options.output && cli_output_is_done(line->options.output);
+        left_out += batch->lines[i].left_out = done;
+    }
+    if (left_out && !batch->session->options->quiet)
+        fprintf(stderr, "weald: %s: %u lines left out, their output is there\n", batch->path, left_out);
+}
+
 /* What a line that failed leaves may be of a lost device. */
 static enum cli_status run_line(struct batch *batch, struct line *line)
 {
@@ -129,22 +143,40 @@ static enum cli_status run_line(struct batch *batch, struct line *line)
     return status;
 }
 
+static bool is_wanted(const struct line *line)
+{
+    return line->command && !line->left_out;
+}
+
+/* `next`: the first line that is not done. */
+static enum cli_status stopped(const struct batch *batch, uint32_t next, uint32_t run)
+{
+    uint32_t wanted = 0;
+    for (uint32_t i = 0; i < batch->count; i++)
+        wanted += is_wanted(&batch->lines[i]);
+    fprintf(stderr, "weald: %s: stopped; %u of %u lines done, the next is line %u: with --skip-existing the same command goes "
+            "on from there\n", batch->path, run, wanted, batch->lines[next].number);
+    return cli_session_status(batch->session, WD_ERROR_INTERRUPTED);
+}
+
 static enum cli_status run_lines(struct batch *batch)
 {
     double begin_s = cli_seconds();
     uint32_t run = 0, failed = 0;
+    if (batch->session->options->skip_existing)
+        leave_out_done(batch);
     for (uint32_t i = 0; i < batch->count; i++) {
-        if (!batch->lines[i].command)
+        if (!is_wanted(&batch->lines[i]))
             continue;
-        if (cli_session_interrupted(batch->session))
-            return cli_session_status(batch->session, WD_ERROR_INTERRUPTED);
-        failed += run_line(batch, &batch->lines[i]) != CLI_OK;
+        enum cli_status status = cli_session_interrupted(batch->session) ? CLI_FAILED : run_line(batch, &batch->lines[i]);
+        if (status != CLI_OK && cli_session_interrupted(batch->session))
+            return stopped(batch, i, run);
+        failed += status != CLI_OK;
         run++;
     }
     if (!batch->session->options->quiet) /* what lines tell has standard output to itself */
         fprintf(stderr, "weald: %s: %u lines, %u failed, %.1f s\n", batch->path, run, failed, cli_seconds() - begin_s);
-    return cli_session_interrupted(batch->session) ? cli_session_status(batch->session, WD_ERROR_INTERRUPTED)
-           : failed ? CLI_FAILED : CLI_OK;
+    return failed ? CLI_FAILED : CLI_OK;
 }
 
 enum cli_status cli_batch(struct cli_session *session)

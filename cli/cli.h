@@ -56,7 +56,7 @@ struct cli_options {
     struct cli_words settings, method_options;
     enum wd_view_mode view;
     bool help, json, quiet, quick, reference, times, gpu_validate, walk, single, sheet,
-         faithful;
+         faithful, skip_existing;
 };
 
 /* The bar on standard error, or plain lines at every quarter where that is no terminal. Silent in
@@ -70,7 +70,7 @@ struct cli_meter {
     uint64_t frame, frame_count; /* of a film; frame_count 0: no film */
 };
 
-/* Waits for SIGINT and SIGTERM on a thread of its own; the second one ends the program at once. */
+/* Waits for SIGINT and SIGTERM on a thread of its own, which answers the first; the second ends the program at once. */
 struct cli_interrupt {
     atomic_int signal; /* 0: none came */
     pthread_t thread;

@@ -73,8 +73,10 @@ static const struct cli_command commands[] = {
      "of files as they were at the first of them.\n"
      "Quotes keep blanks in a word, # begins a comment; nothing else of a shell's is known. All lines are\n"
      "read before the first is run: one that cannot be ends it with 2. One that fails is named, the others\n"
-     "are run, and the exit status is 1. Another --gpu, --gpu-validate or --threads opens the device anew.",
+     "are run, and the exit status is 1. Another --gpu, --gpu-validate or --threads opens the device anew.\n"
+     "Ctrl-C ends it after the running step and tells the next line; --skip-existing goes on from there.",
      "  weald batch pictures.txt\n"
+     "  weald batch pictures.txt --skip-existing\n"
      "  for s in 1 2 3; do echo render scenes/valley.json --seed $s -o $s.png; done | weald batch -\n",
      cli_batch},
     {"schema", CLI_SCHEMA, "scene|species|model", 1, 1, "print the JSON Schema of a kind of file",

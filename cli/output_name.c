@@ -24,6 +24,33 @@ enum cli_output_kind cli_output_kind(const char *path)
     return wd_film_has_ending(path) ? CLI_OUTPUT_FILM : CLI_OUTPUT_UNKNOWN;
 }
 
+/* A file's own name, or, of a name with %d or %05d, that of frame 0. */
+static char *first_name(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *percent = slash ? slash + 1 : path;
+    size_t digits = 0;
+    char *name = NULL;
+    while ((percent = strchr(percent, '%')) && percent[1 + (digits = strspn(percent + 1, "0123456789"))] != 'd')
+        percent++;
+    if (!percent || digits > 3)
+        return strdup(path);
+    if (asprintf(&name, percent[1] == '0' ? "%.*s%0*d%s" : "%.*s%*d%s", (int)(percent - path), path, atoi(percent + 1), 0,
+                 percent + digits + 2) < 0)
+        name = NULL;
+    return name;
+}
+
+bool cli_output_is_done(const char *path)
+{
+    char *partial = NULL, *first = first_name(path);
+    if (asprintf(&partial, "%s.partial", path) < 0)
+        partial = NULL;
+    bool done = first && partial && access(first, F_OK) == 0 && access(partial, F_OK) != 0;
+    free(first);
+    free(partial);
+    return done;
+}
+
 /* A file's name beside the output, or beside where links lead from there. */
 static char *probe_name(const char *path)
 {

@@ -103,6 +103,13 @@ static void print_message(void *user, enum wd_log_level level, const char *messa
     fprintf(stderr, "weald: %s%s\n", kind, message);
 }
 
+/* A step may take minutes: a frame of many samples cannot be stopped within. */
+static void say_ending(void)
+{
+    fprintf(stderr, "%sweald: ends after the running step; another Ctrl-C ends it at once\n",
+            isatty(STDERR_FILENO) ? "\r\033[K" : "");
+}
+
 static void *wait_for_signals(void *user)
 {
     struct cli_interrupt *interrupt = user;
@@ -112,6 +119,7 @@ static void *wait_for_signals(void *user)
             return NULL;
         if (atomic_exchange(&interrupt->signal, number))
             _exit(128 + number);
+        say_ending();
     }
 }
 
@@ -193,17 +201,21 @@ bool cli_fail(struct cli_session *session, const char *format, ...)
     return false;
 }
 
-/* One of `names`, or a complaint that lists them. `what` is what they name. */
+/* One of `names`, or a complaint that lists the first of them. `what` is what they name. */
 static bool check_name(struct cli_session *session, const char *what, const char *name,
                        const char *const *names)
 {
-    char known[512] = "";
+    enum { FEW = 10 };
+    char known[1024] = "";
+    size_t used = 0, count = 0;
     for (const char *const *candidate = names; *candidate; candidate++) {
         if (!strcmp(*candidate, name))
             return true;
-        size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", *candidate);
+        if (count++ < FEW)
+            used += (size_t)snprintf(known + used, sizeof known - used, "%s%.60s", used ? ", " : "", *candidate);
     }
+    if (count > FEW)
+        snprintf(known + used, sizeof known - used, " and %zu more", count - FEW);
     const char *suggestion = cli_suggest(name, names);
     if (suggestion)
         return cli_fail(session, "there is no %s \"%s\", did you mean \"%s\"?", what, name,
@@ -241,20 +253,23 @@ bool cli_bound_check(struct cli_session *session, const struct wd_forest *forest
                     options->budget_ms > 0 ? "--budget-ms" : "--max-error", method);
 }
 
-enum { MAX_NAMES = 256 };
-
 static bool check_place(struct cli_session *session, const struct wd_forest *forest,
                         const char *what, const char *name,
                         const char *(*get)(const struct wd_forest *, uint32_t))
 {
-    const char *names[MAX_NAMES + 1];
     uint32_t count = 0;
     if (!name)
         return true;
-    for (const char *next; count < MAX_NAMES && (next = get(forest, count)); count++)
-        names[count] = next;
-    names[count] = NULL;
-    return count == MAX_NAMES || check_name(session, what, name, names);
+    while (get(forest, count))
+        count++;
+    const char **names = calloc((size_t)count + 1, sizeof *names);
+    if (!names)
+        return cli_fail(session, "out of memory");
+    for (uint32_t i = 0; i < count; i++)
+        names[i] = get(forest, i);
+    bool found = check_name(session, what, name, names);
+    free(names);
+    return found;
 }
 
 bool cli_places_check(struct cli_session *session, const struct wd_forest *forest)

@@ -53,23 +53,77 @@ static bool too_far(const struct wd_scene *scene, const struct wd_scene_camera *
                     at[2], WD_MOST_PLACE_M * 1e-3, camera->frame);
 }
 
+/* How far outside the ground a place is; 0 or less: over it. */
+static double outside_m(const struct wd_terrain *terrain, const double at_m[3])
+{
+    double east_m = fmax(-at_m[0], at_m[0] - wd_terrain_extent_x_m(terrain));
+    double north_m = fmax(-at_m[1], at_m[1] - wd_terrain_extent_y_m(terrain));
+    return fmax(east_m, north_m);
+}
+
+/* Where such a camera sees the forest's underside, or nothing. Writes what is to be told of it, "" if nothing is. */
+static void describe_odd_place(const struct wd_terrain *terrain, const struct wd_scene_camera *camera, char *text,
+                               size_t size)
+{
+    const double least_m = 0.01, far_m = 1000; /* small plots are seen from afar */
+    double at_m[3], size_m[2] = {wd_terrain_extent_x_m(terrain), wd_terrain_extent_y_m(terrain)};
+    local_place(terrain, camera, camera->position_m, at_m);
+    double ground_m = wd_terrain_height(terrain, at_m[0], at_m[1]), off_m = outside_m(terrain, at_m);
+    text[0] = '\0';
+    if (camera->automatic)
+        return;
+    if (off_m > fmax(far_m, fmax(size_m[0], size_m[1])))
+        snprintf(text, size, "stands at (%.10g, %.10g, %.10g), %.0f m outside the ground of %.0f x %.0f m, whose edge is "
+                 "%.4g m high there", at_m[0], at_m[1], at_m[2], off_m, size_m[0], size_m[1], ground_m);
+    else if (ground_m - at_m[2] > least_m && (off_m <= 0 || !camera->absolute))
+        snprintf(text, size, "stands at (%.10g, %.10g, %.10g), %.4g m below the ground, which is %.4g m high there", at_m[0],
+                 at_m[1], at_m[2], ground_m - at_m[2], ground_m);
+}
+
+enum { FEW_PLACES = 5 };
+struct places {
+    const struct wd_scene *scene;
+    const struct wd_terrain *terrain;
+    const struct wd_log *log;
+    size_t odd; /* that are warned of, or would be were there fewer */
+    bool ok;
+};
+
+/* `name` is for warnings, `key` for errors. */
+static void check_place(struct places *places, const struct wd_scene_camera *camera, const char *name, const char *key)
+{
+    char text[256];
+    if (!is_near(places->terrain, camera)) {
+        places->ok = too_far(places->scene, camera, key, places->log);
+        return;
+    }
+    describe_odd_place(places->terrain, camera, text, sizeof text);
+    if (text[0] && ++places->odd <= FEW_PLACES)
+        wd_warn(places->log, "%s: %s %s", places->scene->path, name, text);
+}
+
 bool wd_scene_check_places(const struct wd_scene *scene, const struct wd_terrain *terrain,
                            const struct wd_log *log)
 {
-    char key[64];
-    bool ok = true;
+    char key[64], name[128];
+    struct places places = {scene, terrain, log, 0, true};
     for (size_t i = 0; i < scene->camera_count; i++) {
         snprintf(key, sizeof key, "cameras[%zu]", i);
-        ok = (is_near(terrain, &scene->cameras[i]) || too_far(scene, &scene->cameras[i], key, log)) && ok;
+        snprintf(name, sizeof name, "camera \"%.60s\"", scene->cameras[i].name);
+        check_place(&places, &scene->cameras[i], name, key);
     }
     for (size_t i = 0; i < scene->path_count; i++) {
         const struct wd_scene_path *path = &scene->paths[i];
         for (size_t k = 0; k < path->key_count; k++) {
             snprintf(key, sizeof key, "paths[%zu].keys[%zu]", i, k);
-            ok = (is_near(terrain, &path->keys[k]) || too_far(scene, &path->keys[k], key, log)) && ok;
+            snprintf(name, sizeof name, "key %zu of path \"%.60s\"", k, path->name);
+            check_place(&places, &path->keys[k], name, key);
         }
     }
-    return ok;
+    if (places.odd > FEW_PLACES)
+        wd_warn(log, "%s: %zu more cameras and keys of paths stand below the ground or far outside it", scene->path,
+                places.odd - FEW_PLACES);
+    return places.ok;
 }
 
 /* Over the south-western corner, looking to the middle: for scenes that name no camera. */
@@ -108,19 +162,22 @@ static void resolve(const struct wd_forest *forest, const struct wd_scene_camera
     }
 }
 
-/* Cameras or paths: their names as a complaint about `name` lists them. */
+/* Cameras or paths: the first of their names as a complaint about `name` lists them. */
 static enum wd_result no_such(const struct wd_forest *forest, const char *kind, const char *name,
                               const char *(*name_of)(const struct wd_forest *, uint32_t),
                               size_t count)
 {
+    enum { FEW = 10 };
     const char **names = wd_alloc_array(count, sizeof *names);
     for (size_t i = 0; i < count; i++)
         names[i] = name_of(forest, (uint32_t)i);
     const char *nearest = wd_nearest_name(name, names, count);
-    char *list = wd_join(names, count, ", ");
-    wd_error(&forest->log, "%s: no %s \"%s\"%s%s%s; there are: %s", forest->scene.path, kind, name,
+    char *list = wd_join(names, count < FEW ? count : FEW, ", ");
+    char *more = count > FEW ? wd_format(" and %zu more", count - FEW) : wd_strdup("");
+    wd_error(&forest->log, "%s: no %s \"%.200s\"%s%s%s; there are: %s%s", forest->scene.path, kind, name,
              nearest ? ", did you mean \"" : "", nearest ? nearest : "", nearest ? "\"" : "",
-             list);
+             list, more);
+    free(more);
     free(list);
     free(names);
     return WD_ERROR_INPUT;

@@ -67,9 +67,12 @@ static bool check_csv(const char *path, const struct wd_log *log)
 
 /* --- rasters ----------------------------------------------------------------------------- */
 
-/* As ground, coarsely. */
+/* As ground, coarsely. A GeoPackage may hold rasters: GDAL knows. */
 static bool check_raster(const char *path, const struct wd_log *log)
 {
+    const char *advice = wd_has_ending(path, ".gpkg") ? NULL : wd_scene_table_advice(path);
+    if (advice)
+        return wd_error(log, "%s: %s", path, advice);
     enum { COARSE_SAMPLES = 65536 };
     const struct wd_scene scene = {
         .path = "",

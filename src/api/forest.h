@@ -18,7 +18,8 @@ uint64_t wd_code_key(void);
 /* Sets the forest's keys from the files that its scene was just loaded from. */
 bool wd_forest_key_files(struct wd_forest *forest, const struct wd_forest_params *params);
 
-/* False, logged, where cameras or keys of paths are too far from the ground that was made for the scene. */
+/* False, logged, where cameras or keys of paths are too far from the ground that was made for the scene. Warns of those
+ * below it, and of those farther outside than it is large and than a kilometre. */
 bool wd_scene_check_places(const struct wd_scene *scene, const struct wd_terrain *terrain,
                            const struct wd_log *log);
 

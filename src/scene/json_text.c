@@ -10,10 +10,16 @@ struct cursor {
     const char *at, *end;
 };
 
+/* Some editors put a byte order mark before UTF-8. */
+static size_t mark_length(const char *text, size_t size)
+{
+    return size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+}
+
 struct wd_json_spot wd_json_spot_at(const char *text, size_t offset)
 {
     struct wd_json_spot spot = {1, 1};
-    for (size_t i = 0; i < offset; i++) {
+    for (size_t i = mark_length(text, offset); i < offset; i++) {
         if (text[i] == '\n') {
             spot.line++;
             spot.column = 1;
@@ -30,8 +36,6 @@ static const char *encoding_problem(const char *text, size_t size)
     if (size >= 2 && ((bytes[0] == 0xff && bytes[1] == 0xfe) ||
                       (bytes[0] == 0xfe && bytes[1] == 0xff)))
         return "is UTF-16 text; save it as UTF-8";
-    if (size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0)
-        return "begins with a byte order mark; save it as UTF-8 without one";
     if (size >= 2 && (!bytes[0] != !bytes[1]))
         return "looks like UTF-16 text; save it as UTF-8";
     return NULL;
@@ -95,7 +99,7 @@ char *wd_json_blank_comments(const char *path, const char *text, size_t size,
                  spot.column);
         return NULL;
     }
-    size_t blanks = 0;
+    size_t mark = mark_length(text, size), blanks = mark;
     while (blanks < size && memchr(" \t\r\n", text[blanks], 4))
         blanks++;
     if (blanks == size) {
@@ -104,6 +108,7 @@ char *wd_json_blank_comments(const char *path, const char *text, size_t size,
     }
     char *copy = wd_alloc(size + 1);
     memcpy(copy, text, size);
+    blank(copy, 0, mark);
     size_t unclosed = 0;
     if (!blank_all(copy, size, &unclosed)) {
         struct wd_json_spot spot = wd_json_spot_at(text, unclosed);

@@ -19,8 +19,8 @@ struct wd_json_step {
 };
 
 /* A copy of `text` in which comments are spaces, so that lines and columns hold. Refuses what is
- * not UTF-8 JSON text (empty, byte order marks, UTF-16, NUL bytes, unclosed comments) with a
- * message. free() the result; NULL after an error. */
+ * not UTF-8 JSON text (empty, UTF-16, NUL bytes, unclosed comments) with a message; a byte order
+ * mark becomes spaces, too. free() the result; NULL after an error. */
 char *wd_json_blank_comments(const char *path, const char *text, size_t size,
                              const struct wd_log *log);
 

@@ -59,12 +59,11 @@ static void write_path(const struct wd_json_step *steps, size_t count, char *buf
     }
 }
 
-static bool report(const struct wd_keys_place *place, const char *key, bool at_key,
-                   const char *format, va_list arguments)
+/* The message with where it is: free() it. */
+static char *located(const struct wd_keys_place *place, const char *key, bool at_key,
+                     const char *format, va_list arguments)
 {
     struct wd_keys_reader *reader = place->reader;
-    if (++reader->errors > WD_KEYS_ERROR_LIMIT)
-        return false;
     struct wd_json_step steps[MAX_STEPS];
     size_t count = steps_of(place, key, steps);
     char path[256], message[1024];
@@ -72,12 +71,22 @@ static bool report(const struct wd_keys_place *place, const char *key, bool at_k
     vsnprintf(message, sizeof message, format, arguments);
     const char *rest, *setting = wd_keys_setting_of(reader, path, &rest);
     if (setting)
-        return wd_error(reader->log, "%s: setting %s: %s%s%s", reader->path, setting, rest,
-                        rest[0] ? ": " : "", message);
+        return wd_format("%s: setting %s: %s%s%s", reader->path, setting, rest, rest[0] ? ": " : "",
+                         message);
     struct wd_json_spot spot = wd_json_spot_at(
         reader->text, wd_json_find(reader->clean, reader->size, steps, count, at_key));
-    return wd_error(reader->log, "%s:%u:%u: %s%s%s", reader->path, spot.line, spot.column, path,
-                    path[0] ? ": " : "", message);
+    return wd_format("%s:%u:%u: %s%s%s", reader->path, spot.line, spot.column, path,
+                     path[0] ? ": " : "", message);
+}
+
+static void report(const struct wd_keys_place *place, const char *key, bool at_key,
+                   const char *format, va_list arguments)
+{
+    if (++place->reader->errors > WD_KEYS_ERROR_LIMIT)
+        return;
+    char *message = located(place, key, at_key, format, arguments);
+    wd_error(place->reader->log, "%s", message);
+    free(message);
 }
 
 bool wd_keys_error(const struct wd_keys_place *place, const char *key, const char *format, ...)
@@ -97,6 +106,32 @@ bool wd_keys_error_at_key(const struct wd_keys_place *place, const char *key, co
     report(place, key, true, format, arguments);
     va_end(arguments);
     return false;
+}
+
+void wd_keys_warn(const struct wd_keys_place *place, const char *key, const char *format, ...)
+{
+    if (++place->reader->warnings > WD_KEYS_ERROR_LIMIT)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    char *message = located(place, key, false, format, arguments);
+    va_end(arguments);
+    wd_warn(place->reader->log, "%s", message);
+    free(message);
+}
+
+/* NULL: the file does not say it. */
+static const json_t *json_at(const struct wd_keys_place *place)
+{
+    if (!place->parent)
+        return place->reader->json;
+    const json_t *parent = json_at(place->parent);
+    return place->key ? json_object_get(parent, place->key) : json_array_get(parent, place->index);
+}
+
+bool wd_keys_given(const struct wd_keys_place *place, const char *key)
+{
+    return json_object_get(json_at(place), key) != NULL;
 }
 
 static bool unknown_key(const struct wd_keys *table, const char *name,
@@ -196,10 +231,14 @@ static bool read_text(struct wd_keys_reader *reader, const struct wd_keys *table
     struct wd_keys_place root = {.reader = reader};
     bool ok = json_is_object(json) || wd_keys_error(&root, NULL, "found a list; a %s is an object: "
                                                                  "{ ... }", table->title);
+    reader->json = json;
     ok = ok && wd_keys_apply_settings(reader, table, json) &&
          wd_keys_read_object(table, json, &root, object);
     wd_keys_settings_finish(reader);
+    reader->json = NULL;
     json_decref(json);
+    if (reader->warnings > WD_KEYS_ERROR_LIMIT)
+        wd_warn(reader->log, "%s: %u more warnings", reader->path, reader->warnings - WD_KEYS_ERROR_LIMIT);
     if (reader->errors > WD_KEYS_ERROR_LIMIT)
         wd_error(reader->log, "%s: %u more errors", reader->path,
                  reader->errors - WD_KEYS_ERROR_LIMIT);

@@ -93,6 +93,12 @@ struct wd_keys {
 bool wd_keys_error(const struct wd_keys_place *place, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* The same as a warning. */
+void wd_keys_warn(const struct wd_keys_place *place, const char *key, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Whether the file, or a setting, says something at `key` of the object at `place`: else its default counts. */
+bool wd_keys_given(const struct wd_keys_place *place, const char *key);
+
 /* For checks: what the reader was given. */
 const char *wd_keys_path(const struct wd_keys_place *place);
 struct wd_arena *wd_keys_arena(const struct wd_keys_place *place);
@@ -112,7 +118,7 @@ struct wd_keys_input {
     size_t size;
     const void *user; /* for the checks: wd_keys_user */
     /* "key.key=value" each, in place of what the text says, ended by NULL; or NULL. The value is
-     * JSON, or else a text. A number stands for an item of a list; "@key" for what the root's key
+     * JSON, or else a text. A number, "list.0" or "list[0]", stands for an item of a list; "@key" for what the root's key
      * says, so that "methods.@method.depth=7" sets an option of the chosen method. Errors of a
      * value that was set, and within it, name the setting instead of a line. */
     const char *const *settings;

@@ -17,10 +17,11 @@ struct wd_keys_reader {
     const void *user;
     const char *const *settings;   /* as given; NULL: none */
     char **setting_paths;          /* of each its path, without "@"; NULL: it could not be set */
-    unsigned errors;
+    const json_t *json;            /* the text's, with the settings in it; NULL: not read yet */
+    unsigned errors, warnings;
 };
 
-/* Errors of one file that are logged; the rest is counted. */
+/* Errors, and warnings, of one file that are logged; the rest is counted. */
 enum { WD_KEYS_ERROR_LIMIT = 20 };
 
 /* Fills an object's struct from its JSON. */

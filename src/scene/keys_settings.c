@@ -32,6 +32,25 @@ static const char *text_of_root(const struct wd_keys *table, const json_t *root,
     return NULL;
 }
 
+/* "cameras[0].fov_deg", as errors spell it, becomes "cameras.0.fov_deg". */
+static void flatten_indices(char *path)
+{
+    char *to = path;
+    for (const char *at = path; *at;) {
+        size_t digits = *at == '[' ? strspn(at + 1, "0123456789") : 0;
+        const char *close = at + 1 + digits;
+        if (digits == 0 || at == path || *close != ']' || !strchr(".[", close[1])) {
+            *to++ = *at++;
+            continue;
+        }
+        *to++ = '.';
+        memmove(to, at + 1, digits);
+        to += digits;
+        at = close + 1;
+    }
+    *to = '\0';
+}
+
 /* The path before "=", with every "@key" replaced. */
 static bool expand_path(char path[MAX_PATH], const struct wd_keys_reader *reader,
                         const struct wd_keys *table, const json_t *root, const char *setting)
@@ -57,6 +76,7 @@ static bool expand_path(char path[MAX_PATH], const struct wd_keys_reader *reader
             path[used++] = *at++;
     }
     path[used] = '\0';
+    flatten_indices(path);
     return true;
 }
 

@@ -28,6 +28,7 @@ struct wd_scene_terrain {
     double *window_m;        /* raster: xmin, ymin, xmax, ymax in the target CRS; NULL: all */
     size_t window_count;     /* 0 or 4 */
     double vertical_scale;
+    bool checked;            /* read from a file, without an error but for files that are not there */
 };
 
 /* A raster that gives a probability (or a height) at each place. */
@@ -247,6 +248,9 @@ struct wd_scene_params {
  * installed ones. File names that begin with ${data} become absolute. `params` may be NULL. */
 bool wd_scene_load_with(struct wd_scene *scene, const char *path,
                         const struct wd_scene_params *params, const struct wd_log *log);
+
+/* By its name, what a file of vector data or a workbook is and what becomes of it; NULL: it is of another kind. */
+const char *wd_scene_table_advice(const char *path);
 
 /* Whether a file's text has more keys of a species, of either kind, than of a scene at its root. Text
  * that is no JSON object has none. */

@@ -1,5 +1,6 @@
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -17,6 +18,19 @@ static struct wd_keys_place child(const struct wd_keys_place *place, const char 
 static struct wd_keys_place item(const struct wd_keys_place *list, size_t index)
 {
     return (struct wd_keys_place){list->reader, list, NULL, index};
+}
+
+/* Keys that others of the same object leave without effect are told in one warning, not refused: parts of a scene
+ * are switched off to try what they do. `keys` ends with NULL. */
+static void tell_unused(const struct wd_keys_place *place, const char *const *keys, const char *why)
+{
+    char names[256] = "";
+    size_t used = 0, count = 0;
+    for (; *keys; keys++)
+        if (wd_keys_given(place, *keys) && used < sizeof names)
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", count++ ? ", " : "", *keys);
+    if (count)
+        wd_keys_warn(place, NULL, "%s %s no effect: %s", names, count > 1 ? "have" : "has", why);
 }
 
 bool wd_scene_expand_file(const char **file, const char *key, const struct wd_keys_place *place)
@@ -70,6 +84,19 @@ static bool find_file(const char **file, bool raster, const struct wd_keys_place
     return ok;
 }
 
+static void tell_unused_of_terrain(const struct wd_scene_terrain *terrain, const struct wd_keys_place *place)
+{
+    static const char *const of_fractals[] = {"relief_m", "roughness", "valley", NULL};
+    static const char *const of_rasters[] = {"crs", "unit", "band", "nodata", "nodata_rule", "vertical_scale", NULL};
+    static const char *const of_made[] = {"size_m", NULL};
+    if (terrain->kind != WD_TERRAIN_DIAMOND_SQUARE)
+        tell_unused(place, of_fractals, "only \"kind\": \"diamond-square\" makes relief");
+    if (terrain->kind != WD_TERRAIN_RASTER)
+        tell_unused(place, of_rasters, "only \"kind\": \"raster\" reads a file");
+    else
+        tell_unused(place, of_made, "a raster has a size of its own (window_m takes a part)");
+}
+
 bool wd_scene_check_terrain(void *object, const struct wd_keys_place *place)
 {
     struct wd_scene_terrain *terrain = object;
@@ -91,6 +118,8 @@ bool wd_scene_check_terrain(void *object, const struct wd_keys_place *place)
         return wd_keys_error(place, "window_m", "found [%.9g, %.9g, %.9g, %.9g]; allowed is [xmin, "
                              "ymin, xmax, ymax] with xmin < xmax and ymin < ymax", window[0],
                              window[1], window[2], window[3]);
+    tell_unused_of_terrain(terrain, place);
+    terrain->checked = true;
     return find_file(&terrain->file, true, place);
 }
 
@@ -136,6 +165,19 @@ static bool check_layer_maps(const struct wd_scene_layer *layer, const struct wd
     return true;
 }
 
+/* What was measured stands where it is, unless the scene itself says where trees may. */
+static void settle_canopy(struct wd_scene_layer *layer, const struct wd_keys_place *place)
+{
+    static const char *const of_grids[] = {"density", "height_m", NULL}, *const of_canopies[] = {"canopy", NULL};
+    if (layer->placement != WD_PLACE_CANOPY) {
+        tell_unused(place, of_canopies, "only \"placement\": \"canopy\" reads it");
+        return;
+    }
+    tell_unused(place, of_grids, "the canopy says where trees stand and how tall they are");
+    if (!wd_keys_given(place, "slope_deg"))
+        layer->slope_deg[0] = 0, layer->slope_deg[1] = 90;
+}
+
 bool wd_scene_check_layer(void *object, const struct wd_keys_place *place)
 {
     struct wd_scene_layer *layer = object;
@@ -150,6 +192,7 @@ bool wd_scene_check_layer(void *object, const struct wd_keys_place *place)
                            "(only poisson takes a mean number of trees)", layer->density);
     if (layer->yaw_count > 1)
         ok = wd_keys_error(place, "yaw_deg", "found %zu angles; allowed is one", layer->yaw_count);
+    settle_canopy(layer, place);
     return check_layer_maps(layer, place) && ok;
 }
 
@@ -178,6 +221,7 @@ bool wd_scene_check_inventory(void *object, const struct wd_keys_place *place)
 
 bool wd_scene_check_camera(void *object, const struct wd_keys_place *place)
 {
+    static const char *const turns[] = {"yaw_deg", "pitch_deg", NULL};
     const struct wd_scene_camera *camera = object;
     const double *at = camera->position_m;
     /* of projected coordinates it is told once the terrain says where it is */
@@ -189,6 +233,8 @@ bool wd_scene_check_camera(void *object, const struct wd_keys_place *place)
                                         sizeof camera->position_m) == 0)
         return wd_keys_error(place, "look_at_m", "is the camera's own position; it must be "
                              "another point");
+    if (camera->look_at_count)
+        tell_unused(place, turns, "look_at_m says where to look");
     return true;
 }
 
@@ -201,13 +247,13 @@ bool wd_scene_check_path(void *object, const struct wd_keys_place *place)
     return true;
 }
 
-/* Ground of no size is made under inventories. */
+/* Ground of no size is made under inventories. A terrain that was refused has no size that the file names. */
 static bool check_size(const struct wd_scene *scene, const struct wd_keys_place *place)
 {
     const struct wd_scene_terrain *terrain = &scene->terrain;
     struct wd_keys_place here = child(place, "terrain");
     return terrain->kind != WD_TERRAIN_FLAT || terrain->size_m[0] > 0 || terrain->window_count ||
-           scene->inventory_count ||
+           scene->inventory_count || !terrain->checked ||
            wd_keys_error(&here, "size_m", "found 0 x 0, to be fitted to inventories, of which there are "
                          "none; both must be above 0");
 }

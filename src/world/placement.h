@@ -54,6 +54,8 @@ bool wd_placement_fill(const struct wd_placement *placement,
 /* Parts of the above. */
 bool wd_canopy_fill(const struct wd_placement *placement, const struct wd_placement_params *params,
                     struct wd_tree_list *list);
+/* The same messages, without a tree. */
+bool wd_canopy_check(const struct wd_placement *placement, const struct wd_placement_params *params);
 bool wd_layer_map_load(struct wd_placement *placement, const struct wd_placement_params *params);
 /* What a map's value says, 0..1. */
 float wd_map_probability(const struct wd_scene_map *map, float value);

@@ -170,6 +170,7 @@ static bool plant_tops(const struct wd_placement *placement, const struct top_li
                        struct wd_tree_list *trees)
 {
     const struct wd_place_layer *layer = &placement->input.layer;
+    size_t before = trees->count;
     for (size_t i = 0; i < list->count; i++) {
         const struct top *top = &list->tops[i];
         uint32_t key = wd_hash3(layer->key, top->column, top->row);
@@ -187,25 +188,100 @@ static bool plant_tops(const struct wd_placement *placement, const struct top_li
                                             height_cm);
         wd_tree_list_add(trees, &tree);
     }
+    size_t left_out = list->count - (trees->count - before);
+    if (left_out)
+        wd_info(params->log, "%s: %zu of %zu tops left out by the layer's rules (slope_deg, altitude_m, map, patchiness), "
+                "by water or by holes of the ground", placement->name, left_out, list->count);
     return true;
+}
+
+/* What the raster's cells say of its unit. */
+struct heights {
+    size_t known, plants, too_high; /* cells; of those with a height, those from 2 m up; of these, those over 120 m */
+    float least_m, most_m;
+};
+
+static struct heights heights_of(const struct wd_raster *raster)
+{
+    struct heights heights = {.least_m = INFINITY, .most_m = -INFINITY};
+    size_t count = (size_t)raster->width * raster->height;
+    for (size_t i = 0; i < count; i++) {
+        float height_m = raster->values[i];
+        if (isnan(height_m))
+            continue;
+        heights.known++;
+        heights.plants += height_m >= least_top_m;
+        heights.too_high += height_m > most_top_m;
+        heights.least_m = fminf(heights.least_m, height_m);
+        heights.most_m = fmaxf(heights.most_m, height_m);
+    }
+    return heights;
+}
+
+/* Decimetres taken for metres, or heights above the sea, leave the rims of crowns as tops: that is no forest. A few
+ * cells are birds and pylons. */
+static bool check_heights(const struct wd_placement *placement, const struct heights *heights, const struct wd_log *log)
+{
+    const double most_share = 0.05;
+    static const char *const what =
+        "%s: %s: %.3g %% of its cells from 2 m up are over 120 m, up to %.4g m, and no tree is. Wanted are metres above "
+        "the ground: of other units write the scale into the file (gdal_translate -a_scale 0.1 for decimetres), from a "
+        "surface model subtract the terrain; numbers that mean no data are to be its nodata value (-a_nodata)%s";
+    double share = heights->plants ? (double)heights->too_high / (double)heights->plants : 0;
+    if (share > most_share)
+        return wd_error(log, what, placement->name, placement->layer->canopy.file, 100 * share, (double)heights->most_m, "");
+    if (share > 0)
+        wd_warn(log, what, placement->name, placement->layer->canopy.file, 100 * share, (double)heights->most_m,
+                "; they are passed over");
+    return true;
+}
+
+/* A raster without any data has been told of. */
+static void warn_of_no_top(const struct wd_placement *placement, const struct heights *heights, const struct wd_log *log)
+{
+    if (heights->known)
+        wd_warn(log, "%s: %s has no top of 2 to 120 m on the terrain: no tree stands; its heights are %.4g to %.4g m",
+                placement->name, placement->layer->canopy.file, (double)heights->least_m, (double)heights->most_m);
+}
+
+static bool load_tops(struct top_list *tops, struct wd_raster *raster, const struct wd_placement *placement,
+                      const struct wd_placement_params *params)
+{
+    const struct wd_scene_layer *layer = placement->layer;
+    *raster = (struct wd_raster){0};
+    if (layer->canopy.file == NULL)
+        return wd_error(params->log, "%s: placement \"canopy\" needs canopy.file, a raster "
+                        "of canopy heights in metres", placement->name);
+    if (!wd_raster_load(raster, params->scene, &layer->canopy, params->terrain, WD_RESAMPLE_MAX, UINT64_C(1) << 26,
+                        params->log))
+        return false;
+    struct heights heights = heights_of(raster);
+    if (!check_heights(placement, &heights, params->log) || !find_tops(tops, raster, params))
+        return false;
+    if (tops->count == 0)
+        warn_of_no_top(placement, &heights, params->log);
+    return true;
+}
+
+bool wd_canopy_check(const struct wd_placement *placement, const struct wd_placement_params *params)
+{
+    struct wd_raster raster;
+    struct top_list tops = {0};
+    bool ok = load_tops(&tops, &raster, placement, params);
+    free(tops.tops);
+    wd_raster_finish(&raster);
+    return ok;
 }
 
 bool wd_canopy_fill(const struct wd_placement *placement, const struct wd_placement_params *params,
                     struct wd_tree_list *list)
 {
-    const struct wd_scene_layer *layer = placement->layer;
-    if (layer->canopy.file == NULL)
-        return wd_error(params->log, "%s: placement \"canopy\" needs canopy.file, a raster "
-                        "of canopy heights in metres", placement->name);
     struct wd_raster raster;
-    if (!wd_raster_load(&raster, params->scene, &layer->canopy, params->terrain,
-                        WD_RESAMPLE_MAX, UINT64_C(1) << 26, params->log))
-        return false;
     struct top_list tops = {0};
-    bool ok = find_tops(&tops, &raster, params);
+    bool ok = load_tops(&tops, &raster, placement, params);
     if (ok) {
         qsort(tops.tops, tops.count, sizeof *tops.tops, higher_first);
-        keep_spaced(&tops, layer->spacing_m, wd_terrain_extent_x_m(params->terrain),
+        keep_spaced(&tops, placement->layer->spacing_m, wd_terrain_extent_x_m(params->terrain),
                     wd_terrain_extent_y_m(params->terrain));
         ok = plant_tops(placement, &tops, &raster, params, list);
     }

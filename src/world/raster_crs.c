@@ -73,6 +73,30 @@ OGRSpatialReferenceH wd_crs_parse(const char *crs, const char *subject, const st
     return parsed;
 }
 
+/* Heights' own datum, which compound systems name, changes no place. */
+static bool is_same_place(OGRSpatialReferenceH a, OGRSpatialReferenceH b)
+{
+    OGRSpatialReferenceH flat[2] = {wd_crs_copy(a), wd_crs_copy(b)};
+    for (int i = 0; i < 2; i++)
+        OSRDemoteTo2D(flat[i], NULL);
+    bool same = OSRIsSame(flat[0], flat[1]);
+    wd_crs_free(flat[0]);
+    wd_crs_free(flat[1]);
+    return same;
+}
+
+bool wd_crs_agree(OGRSpatialReferenceH own, const char *given, const char *subject, const struct wd_log *log)
+{
+    OGRSpatialReferenceH parsed = wd_crs_parse(given, subject, log);
+    if (!parsed)
+        return false;
+    if (!is_same_place(own, parsed))
+        wd_warn(log, "%s: \"%.60s\" has no effect: the file has a coordinate system of its own, which counts: %s",
+                subject, given, OSRGetName(own));
+    wd_crs_free(parsed);
+    return true;
+}
+
 OGRSpatialReferenceH wd_crs_copy(OGRSpatialReferenceH crs)
 {
     OGRSpatialReferenceH copy = crs ? OSRClone(crs) : NULL;

@@ -22,6 +22,9 @@ const char *wd_gdal_reason(struct wd_gdal_scope *scope);
 /* A coordinate system with x before y (longitude before latitude), or NULL with an error that
  * begins with `subject`. wd_crs_free accepts NULL. */
 OGRSpatialReferenceH wd_crs_parse(const char *crs, const char *subject, const struct wd_log *log);
+/* A file has `own`, the scene says `given`, which must be one, too, and is warned of where it is another; `subject`
+ * names the key or the file. False, logged, where `given` is none. */
+bool wd_crs_agree(OGRSpatialReferenceH own, const char *given, const char *subject, const struct wd_log *log);
 OGRSpatialReferenceH wd_crs_copy(OGRSpatialReferenceH crs);
 void wd_crs_free(OGRSpatialReferenceH crs);
 /* Projected, in metres that are metres on the ground. */

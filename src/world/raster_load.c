@@ -50,10 +50,13 @@ static bool find_crs(struct load *load)
 {
     const struct wd_raster_source *source = &load->source;
     const char *assumed = load->wanted->crs;
-    if (source->crs)
+    if (source->crs) {
         load->source_crs = wd_crs_copy(source->crs);
-    else if (assumed && !(load->source_crs = wd_crs_parse(assumed, source->path, load->log)))
+        if (assumed && !wd_crs_agree(source->crs, assumed, source->path, load->log))
+            return false;
+    } else if (assumed && !(load->source_crs = wd_crs_parse(assumed, source->path, load->log))) {
         return false;
+    }
     if (!load->terrain->crs && load->source_crs)
         return wd_error(load->log,
                         "%s: has a coordinate system, the terrain has none, so its place is not "
@@ -131,7 +134,7 @@ static bool read_blocks(struct load *load)
     if (!wd_source_blocks_over(&load->source, &load->mapping, load->blocks.step, &load->blocks))
         return wd_error(load->log, "%s: does not overlap the terrain", load->source.path);
     load->values = wd_alloc_array((size_t)load->blocks.columns * load->blocks.rows, sizeof(float));
-    struct wd_missing_rule rule = {NAN, load->resampling == WD_RESAMPLE_MAX};
+    struct wd_missing_rule rule = {.extra = NAN, .heights = load->resampling == WD_RESAMPLE_MAX};
     return wd_source_read(&load->source, &load->blocks, reductions[load->resampling], &rule,
                           load->values, NULL, load->log);
 }

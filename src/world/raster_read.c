@@ -11,6 +11,7 @@
 struct decoding {
     float declared, extra;  /* NaN: none */
     double scale, offset;
+    double metres;          /* of a value, to tell whether it can be a height */
     bool heights, masked;
     uint64_t undeclared;    /* pixels of heights no Earth has, taken as missing */
     float example;          /* one of them */
@@ -50,6 +51,8 @@ static struct decoding decoding_of(GDALRasterBandH band, const struct wd_missing
         .extra = (float)rule->extra,
         .scale = GDALGetRasterScale(band, NULL),
         .offset = GDALGetRasterOffset(band, NULL),
+        /* exaggerated heights may be any, those of a smaller unit only once they are metres */
+        .metres = rule->vertical_scale > 0 ? fmin(rule->vertical_scale, 1) : 1,
         .heights = rule->heights,
         .masked = (flags & (GMF_PER_DATASET | GMF_ALPHA)) != 0,
     };
@@ -64,7 +67,8 @@ static float decode(struct decoding *decoding, float raw)
     if (!isfinite(raw) || raw == decoding->declared || raw == decoding->extra)
         return NAN;
     float value = (float)(raw * decoding->scale + decoding->offset);
-    bool absurd = raw == -9999 || raw == -32768 || value < -500 || value > 9000;
+    double height_m = value * decoding->metres;
+    bool absurd = raw == -9999 || raw == -32768 || height_m < -500 || height_m > 9000;
     if (decoding->heights && absurd) {
         decoding->undeclared++;
         decoding->example = raw;

@@ -23,6 +23,18 @@ static bool check_file(const char *path, const char *key, const struct wd_log *l
     return true;
 }
 
+/* What GDAL reads no raster in may be what it reads points in. */
+static const char *advice_for(const char *path)
+{
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+    GDALDatasetH vectors = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY, NULL, NULL, NULL);
+    CPLPopErrorHandler();
+    if (!vectors)
+        return "";
+    GDALClose(vectors);
+    return "; it holds vectors or a table: export trees as CSV, for a scene's inventories";
+}
+
 static bool open_band(struct wd_raster_source *source, int64_t band, const char *key,
                       struct wd_gdal_scope *scope)
 {
@@ -31,8 +43,8 @@ static bool open_band(struct wd_raster_source *source, int64_t band, const char 
         GDALAllRegister();
     source->dataset = GDALOpenEx(source->path, GDAL_OF_RASTER | GDAL_OF_READONLY, NULL, NULL, NULL);
     if (!source->dataset)
-        return wd_error(log, "%s: %s: is not a raster that GDAL can read%s", key, source->path,
-                        wd_gdal_reason(scope));
+        return wd_error(log, "%s: %s: is not a raster that GDAL can read%s%s", key, source->path,
+                        wd_gdal_reason(scope), advice_for(source->path));
     int bands = GDALGetRasterCount(source->dataset);
     if (bands == 0)
         return wd_error(log, "%s: %s: holds no raster itself; name one of its subdatasets", key,

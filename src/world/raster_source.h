@@ -12,6 +12,7 @@ struct wd_missing_rule {
     double extra;       /* besides the file's own and NaN; NaN: none */
     bool heights;       /* values in metres: feet are converted; what cannot be a height on Earth
                            (undeclared -9999 and -32768, below -500, above 9000) is missing too */
+    double vertical_scale; /* heights: what the caller makes metres of the values with; 0: they are */
 };
 
 struct wd_raster_source {

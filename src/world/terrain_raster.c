@@ -49,7 +49,7 @@ static bool find_source_crs(struct dem *dem)
         return wd_error(dem->log, "terrain.unit: is \"%s\"; only \"metres\" is known", wanted->unit);
     if (dem->source.crs) {
         dem->source_crs = wd_crs_copy(dem->source.crs);
-        return true;
+        return !wanted->crs || wd_crs_agree(dem->source_crs, wanted->crs, "terrain.crs", dem->log);
     }
     if (wanted->crs) {
         dem->source_crs = wd_crs_parse(wanted->crs, "terrain.crs", dem->log);
@@ -288,7 +288,8 @@ static bool read_blocks(struct dem *dem, const struct wd_progress *progress)
     const struct wd_source_blocks *blocks = &dem->blocks;
     size_t count = (size_t)blocks->columns * blocks->rows;
     dem->block_m = wd_alloc_array(count, sizeof(float));
-    struct wd_missing_rule rule = {.extra = dem->wanted->nodata, .heights = true};
+    struct wd_missing_rule rule = {.extra = dem->wanted->nodata, .heights = true,
+                                   .vertical_scale = dem->wanted->vertical_scale};
     if (!wd_source_read(&dem->source, blocks, WD_REDUCE_MEAN, &rule, dem->block_m, progress,
                         dem->log))
         return false;

@@ -134,19 +134,6 @@ static bool plant(struct wd_world *world, const struct wd_placement_params *para
     return ok;
 }
 
-/* A canopy's heights may be as many as pixels: what can be wrong shows in a few. */
-static bool check_canopy(const struct wd_placement_params *params, const struct wd_scene_layer *layer)
-{
-    enum { FEW = 1 << 16 };
-    struct wd_raster raster;
-    if (layer->placement != WD_PLACE_CANOPY)
-        return true;
-    bool ok = wd_raster_load(&raster, params->scene, &layer->canopy, params->terrain, WD_RESAMPLE_MAX, FEW,
-                             params->log);
-    wd_raster_finish(&raster);
-    return ok;
-}
-
 /* Layers are made ready and no more. */
 static bool check_layers(struct wd_world *world, const struct wd_placement_params *params,
                          struct wd_tree_list *list)
@@ -155,7 +142,9 @@ static bool check_layers(struct wd_world *world, const struct wd_placement_param
     bool ok = true;
     for (size_t i = 0; i < params->scene->layer_count; i++) {
         struct wd_placement placement;
-        ok = wd_placement_init(&placement, params, i) && check_canopy(params, placement.layer) && ok;
+        bool ready = wd_placement_init(&placement, params, i);
+        bool canopy = ready && placement.layer->placement == WD_PLACE_CANOPY;
+        ok = ready && (!canopy || wd_canopy_check(&placement, params)) && ok;
         wd_placement_finish(&placement);
     }
     return ok;

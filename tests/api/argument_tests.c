@@ -154,6 +154,48 @@ static void unknown_names_list_all(void **state)
                  "no path \"zzz\"; there are: fly");
 }
 
+/* Of many the first, how many more there are, and the one that was meant. */
+static void unknown_names_of_many_list_few(void **state)
+{
+    struct suite *suite = *state;
+    char text[4096] = "{\"name\": \"over\"";
+    struct wd_camera camera;
+    for (int i = 0; i < 40; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text),
+                 ", \"position_m\": [9, 9, -9]}, {\"name\": \"camera_%02d\"", i);
+    assert_true(suite_write_variant(suite, "many.json", "{\"name\": \"over\"", text));
+    suite_clear(suite);
+    struct wd_forest *forest = suite_forest(suite, suite_path(suite, "many.json"));
+    assert_non_null(forest);
+    assert_true(suite_logged(suite, "camera \"camera_03\" stands") && !suite_logged(suite, "camera \"camera_04\" stands"));
+    assert_true(suite_logged(suite, "35 more cameras and keys of paths stand below the ground"));
+    assert_input(suite, wd_forest_get_camera(forest, "camra_37", &camera),
+                 "did you mean \"camera_37\"; there are: over, camera_00, camera_01, camera_02, camera_03, camera_04, "
+                 "camera_05, camera_06, camera_07, camera_08 and 32 more\n");
+    wd_forest_destroy(&forest);
+}
+
+static void odd_places_of_cameras_are_told(void **state)
+{
+    struct suite *suite = *state;
+    suite_clear(suite);
+    struct wd_forest *forest = suite_forest(suite, suite->small_path);
+    assert_string_equal(suite->messages, "");
+    wd_forest_destroy(&forest);
+    assert_true(suite_write_variant(suite, "odd.json", "\"position_m\": [150, 120, 1.7]", "\"position_m\": [150, 120, -30]"));
+    forest = suite_forest(suite, suite_path(suite, "odd.json"));
+    assert_true(suite_logged(suite, "camera \"walk\" stands at (150, 120, ") && suite_logged(suite, "30 m below the ground, "));
+    wd_forest_destroy(&forest);
+    assert_true(suite_write_variant(suite, "odd.json", "{\"position_m\": [150, 0, 50]", "{\"position_m\": [150, 1250, 50]"));
+    suite_clear(suite);
+    assert_int_equal(wd_file_check(suite_path(suite, "odd.json"), NULL, &suite->log), WD_OK);
+    assert_string_equal(suite->messages, "");
+    assert_true(suite_write_variant(suite, "odd.json", "{\"position_m\": [150, 0, 50]", "{\"position_m\": [150, 1350, 50]"));
+    assert_int_equal(wd_file_check(suite_path(suite, "odd.json"), NULL, &suite->log), WD_OK);
+    assert_true(suite_logged(suite, "key 1 of path \"fly\" stands at (150, 1350, ") &&
+                suite_logged(suite, "1050 m outside the ground of 300 x 300 m"));
+}
+
 /* --- what is not given ------------------------------------------------------------------- */
 
 static void nothing_is_made_of_nothing(void **state)
@@ -261,6 +303,8 @@ int argument_tests(struct suite *suite)
         cmocka_unit_test_prestate(choices_are_known, suite),
         cmocka_unit_test_prestate(what_is_not_used_is_not_asked_for, suite),
         cmocka_unit_test_prestate(unknown_names_list_all, suite),
+        cmocka_unit_test_prestate(unknown_names_of_many_list_few, suite),
+        cmocka_unit_test_prestate(odd_places_of_cameras_are_told, suite),
         cmocka_unit_test_prestate(nothing_is_made_of_nothing, suite),
         cmocka_unit_test_prestate(nothing_is_written_of_nothing, suite),
         cmocka_unit_test_prestate(frames_do_not_replace_sources, suite),

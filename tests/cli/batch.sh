@@ -92,7 +92,28 @@ done
 kill -INT $!
 status=0
 wait $! || status=$?
+cp "$scratch/output" "$scratch/long.log"
 check 'Ctrl-C ends the batch' [ "$status" -eq 130 ]
 check 'and no later line is begun' test ! -e "$out/never.png"
+check 'Ctrl-C is answered' grep -q 'ends after the running step; another Ctrl-C ends it at once' "$scratch/long.log"
+check 'the next line is told' grep -q 'long: stopped; 0 of 2 lines done, the next is line 1: with --skip-existing' \
+    "$scratch/long.log"
+# What is there is left out, but for what can be gone on with.
+printf 'render %s -o "%s" --size 32x18 --gpu software\n' "$tiny" "$out/one.png" "$tiny" "$out/two.png" \
+    "$tiny" "$out/half.png" >"$scratch/rest"
+echo "render $tiny -o '$out/f-%03d.png' --path fly --frames 2 --size 32x18 --gpu software" >>"$scratch/rest"
+echo "info $tiny" >>"$scratch/rest"
+echo kept | tee "$out/one.png" "$out/two.png" >"$out/half.png"
+echo kept >"$out/f-000.png"
+expect 0 'rest: 4 lines left out, their output is there' batch "$scratch/rest" --skip-existing
+check 'what was there is as it was' grep -q kept "$out/one.png"
+rm "$out/two.png"
+echo more >"$out/half.png.partial"
+expect 0 'rest: 3 lines, 0 failed' batch "$scratch/rest" --skip-existing
+check 'numbered pictures are left out as well' grep -q kept "$out/f-000.png"
+check 'what was missing was made, and what was half done' sh -c "! grep -q kept '$out/two.png' '$out/half.png'"
+check 'and no more' grep -q kept "$out/one.png"
+expect 0 'rest: 5 lines, 0 failed' batch "$scratch/rest"
+check 'without the option all are run' sh -c "! grep -q kept '$out/one.png'"
 expect 2 'no such file' batch "$scratch/missing"
 finish

@@ -44,6 +44,19 @@ check 'the first as well' cmp "$out/first.exr" "$out/m-0.exr"
 check 'numbered layers' test -s "$out/e-1.exr"
 rm -f "$out"/*
 
+# As many frames as keys: each is what a camera there sees.
+sed -e 's,^ *//.*,,' -e "s,\.\./\.\./,$root/,g" "$tiny" >"$scratch/plain.json"
+jq '.wind.speed_mps = 0 | .cameras = [range(5) | {name: "c\(.)", position_m: [10 + . * 3.7, 5 + . * 1.3, 6],
+    look_at_m: [30, 20 + . * 2, 3]}] | .paths = [{name: "p", duration_s: 7.3, keys: (.cameras | map(del(.name)))}]' \
+    "$scratch/plain.json" >"$scratch/keys.json"
+# shellcheck disable=SC2086
+{
+    expect 0 '5 frames' render "$scratch/keys.json" -o "$out/k-%d.png" --path p --frames 5 $size
+    expect 0 . render "$scratch/keys.json" -o "$out/still.png" --camera c3 $size
+}
+check 'frame 3 is the key 3' cmp "$out/still.png" "$out/k-3.png"
+rm -f "$out"/*
+
 # start NAME FRAMES OPTION...: a film in the background
 start() {
     name=$1

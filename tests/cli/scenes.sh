@@ -52,6 +52,16 @@ printf '[1, 2]' >"$scratch/list.json"
 bad list 'list.json:1:'
 printf '{"name": "a", "name": ' >"$scratch/cut.json"
 bad cut 'cut.json:1:'
+# What scenes are made of is told from them.
+printf '{"type": "FeatureCollection", "features": []}' | tee "$scratch/points.json" >"$scratch/points.geojson"
+printf 'x,y\n1,1\n' | tee "$scratch/points.csv" "$scratch/points.gpkg" >"$scratch/points.XLSX"
+bad points 'points.json: is no scene .* holds vector data: export the trees as CSV'
+expect 1 'points.csv: is no scene .* is a table: name it in' info "$scratch/points.csv"
+expect 1 'points.gpkg: is no scene .* export the trees as CSV' info "$scratch/points.gpkg"
+expect 1 'points.geojson: holds vector data: export the trees as CSV' check "$scratch/points.geojson"
+expect 1 'points.XLSX: is a workbook: save its sheet as CSV' check "$scratch/points.XLSX"
+printf '\357\273\277%s' "$(cat "$scratch/plain.json")" >"$scratch/marked.json"
+expect 0 'marked.json: ok' check "$scratch/marked.json"
 change unknown '. + {"terain": {}}'
 bad unknown 'terain.*did you mean.*terrain'
 change type '.terrain.size_m = "large"'

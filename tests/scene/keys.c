@@ -204,7 +204,7 @@ static void broken_text_is_refused(void **state)
         {"[1]", "f.json:1:1: found a list; a sample is an object"},
         {"{} x", "not valid JSON: end of file expected"},
         {"{ /* open", "f.json:1:3: a /* comment without its */"},
-        {"\xef\xbb\xbf{}", "byte order mark"},
+        {"\xef\xbb\xbf ", "f.json:1:1: the file is empty"},
         {"\xff\xfe{", "UTF-16"},
         {"{\"text\": \"\xff\xc0\"}", "not valid JSON"},
         {"{\"te\nxt\": 1}", "not valid JSON"},
@@ -258,6 +258,9 @@ static void columns_count_characters_beyond_comments(void **state)
     struct fixture f = {0};
     assert_false(read_text(&f, "{ /* \xc3\xa9\xc3\xa9 */ \"number\": 7}"));
     assert_true(logged(&f.log, "f.json:1:22: number: found 7"));
+    assert_false(read_text(&f, "\xef\xbb\xbf{\"number\": 7}"));
+    assert_true(logged(&f.log, "f.json:1:12: number: found 7"));
+    assert_true(read_text(&f, "\xef\xbb\xbf{\"number\": 1}") && f.sample.number == 1);
     wd_arena_finish(&f.arena);
 }
 
@@ -275,11 +278,12 @@ static void settings_take_the_place_of_the_text(void **state)
     (void)state;
     struct fixture f = {0};
     const char *const good[] = {"whole=9",           "leaf.size_m=3", "text=plain words",
-                                "list.0.size_m=4.5", "flag=false",    "vector=[1, 2, 3]", NULL};
+                                "list.0.size_m=4.5", "flag=false",    "vector=[1, 2, 3]",
+                                "list[1].size_m=6",  "vector[0]=0.5", NULL};
     assert_true(read_set(&f, "{\"whole\": 1, \"list\": [{}, {}]}", good));
     assert_true(f.sample.whole == 9 && f.sample.leaf.size == 3 && !f.sample.flag);
-    assert_true(f.sample.list[0].size == 4.5 && f.sample.list[1].size == 2);
-    assert_true(f.sample.vector[2] == 3);
+    assert_true(f.sample.list[0].size == 4.5 && f.sample.list[1].size == 6);
+    assert_true(f.sample.vector[0] == 0.5 && f.sample.vector[2] == 3);
     assert_string_equal(f.sample.text, "plain words");
     const char *const chosen[] = {"text=leaf", "@text.size_m=7", NULL};
     assert_true(read_set(&f, "{}", chosen) && f.sample.leaf.size == 7);
@@ -295,6 +299,9 @@ static void settings_that_are_wrong_are_named(void **state)
         {"whole=0.5", "f.json: setting whole=0.5: found 0.5; allowed is a whole number"},
         {"whoel=1", "setting whoel=1: unknown key; did you mean \"whole\"?"},
         {"list.0.size_m=11", "setting list.0.size_m=11: found 11"},
+        {"list[0].size_m=11", "setting list[0].size_m=11: found 11"},
+        {"list[5].size_m=1", "there is no item \"5\" in the list; it has 2, numbered from 0"},
+        {"list[x].size_m=1", "f.json:1:1: list[x]: unknown key"},
         {"list.5=1", "there is no item \"5\" in the list; it has 2, numbered from 0"},
         {"list.nonsense.size_m=1", "there is no item \"nonsense\" in the list"},
         {"list.0x.size_m=1", "there is no item \"0x\" in the list"},

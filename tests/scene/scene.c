@@ -202,6 +202,57 @@ static void checks_across_keys_hold(void **state)
     }
 }
 
+/* What is wrong is told, and not what only follows from its not being read. */
+static void refused_ground_is_told_once(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const sizes[] = {"{\"size_m\": 100}", "{\"size_m\": [\"100\", \"100\"]}",
+                                        "{\"size_m\": [-100, 100]}", "\"flat\"", "{\"size_m\": [0, 0]}"};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        char text[128];
+        snprintf(text, sizeof text, "{\"terrain\": %s, \"layers\": [{\"species\": \"oak\"}]}", sizes[i]);
+        assert_false(load(f, text));
+        assert_true(logged(&f->log, "terrain"));
+        assert_int_equal(f->log.errors, 1);
+        assert_true(i == 4 || !strstr(f->log.text, "to be fitted"));
+    }
+}
+
+static void keys_without_effect_are_told(void **state)
+{
+    struct fixture *f = *state;
+    static const struct wrong cases[] = {
+        {"{\"terrain\": {\"relief_m\": 9, \"crs\": \"EPSG:32632\"}, \"layers\": [{\"species\": \"oak\"}]}",
+         "a.json:1:13: terrain: relief_m has no effect: only"},
+        {"{\"terrain\": {\"crs\": \"EPSG:32632\", \"band\": 1}, \"layers\": [{\"species\": \"oak\"}]}",
+         "terrain: crs, band have no effect: only"},
+        {"{\"layers\": [{\"species\": \"oak\", \"placement\": \"canopy\", \"canopy\": {\"file\": \"a\"}, "
+         "\"density\": 0.1, \"height_m\": 4}]}", "layers[0]: density, height_m have no effect: the canopy says"},
+        {"{\"layers\": [{\"species\": \"oak\", \"canopy\": {\"file\": \"a\"}}]}", "layers[0]: canopy has no effect"},
+        {"{\"layers\": [{\"species\": \"oak\"}], \"cameras\": [{\"name\": \"a\", \"position_m\": [0, 0, 1], "
+         "\"look_at_m\": [5, 5, 5], \"yaw_deg\": 3}]}", "cameras[0]: yaw_deg has no effect: look_at_m"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_true(load(f, cases[i].text));
+        assert_true(logged(&f->log, cases[i].message));
+        assert_int_equal(f->log.warnings, i ? 1 : 2);
+    }
+    assert_true(load(f, "{\"layers\": [{\"species\": \"oak\"}], \"cameras\": [{\"name\": \"a\", "
+                        "\"position_m\": [0, 0, 1], \"yaw_deg\": 3}]}"));
+    assert_int_equal(f->log.warnings, 0);
+}
+
+/* The default rule of slopes is for trees that are made up. */
+static void measured_trees_stand_on_any_slope(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"layers\": [{\"species\": \"oak\", \"placement\": \"canopy\", \"canopy\": {\"file\": \"a\"}},"
+                        "{\"species\": \"oak\", \"placement\": \"canopy\", \"canopy\": {\"file\": \"a\"}, "
+                        "\"slope_deg\": [0, 42]}, {\"species\": \"oak\"}]}"));
+    assert_true(f->scene.layers[0].slope_deg[1] == 90);
+    assert_true(f->scene.layers[1].slope_deg[1] == 42 && f->scene.layers[2].slope_deg[1] == 42);
+}
+
 /* Items that were refused are empty where the checks of the whole scene come to them. */
 static void refused_items_are_passed_over(void **state)
 {
@@ -460,6 +511,9 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(species_by_latin_names, setup, teardown),
         cmocka_unit_test_setup_teardown(unknown_species_are_errors, setup, teardown),
         cmocka_unit_test_setup_teardown(checks_across_keys_hold, setup, teardown),
+        cmocka_unit_test_setup_teardown(refused_ground_is_told_once, setup, teardown),
+        cmocka_unit_test_setup_teardown(keys_without_effect_are_told, setup, teardown),
+        cmocka_unit_test_setup_teardown(measured_trees_stand_on_any_slope, setup, teardown),
         cmocka_unit_test_setup_teardown(refused_items_are_passed_over, setup, teardown),
         cmocka_unit_test_setup_teardown(all_errors_come_in_one_pass, setup, teardown),
         cmocka_unit_test_setup_teardown(data_directory_is_put_into_names, setup, teardown),

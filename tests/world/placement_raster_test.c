@@ -171,6 +171,93 @@ static void test_canopy(void **state)
     wd_world_finish(&world);
 }
 
+static double in_decimetres(uint32_t column, uint32_t row)
+{
+    return 10.0 * canopy(column, row);
+}
+
+/* Closed forest of 10 and 20 m with gaps. */
+static double dense_in_decimetres(uint32_t column, uint32_t row)
+{
+    return 100.0 * ((column / 4 + row / 4) % 3);
+}
+
+static double above_the_sea(uint32_t column, uint32_t row)
+{
+    return 400.0 + canopy(column, row);
+}
+
+static double with_a_bird(uint32_t column, uint32_t row)
+{
+    return column == 3 && row == 3 ? 130.0 : canopy(column, row);
+}
+
+static double of_grass(uint32_t column, uint32_t row)
+{
+    return 0.01 * (column + row) / 7.0;
+}
+
+/* What is said of a canopy is said by a check, too. */
+static void test_heights_of_no_trees(void **state)
+{
+    (void)state;
+    static const struct {
+        double (*height)(uint32_t column, uint32_t row);
+        int errors, warnings;
+        size_t trees;
+        const char *said;
+    } cases[] = {
+        {canopy, 0, 0, 3, "layer: 3 trees"},
+        {in_decimetres, 0, 1, 3, "of its cells from 2 m up are over 120 m, up to 297.5 m, and no tree is."},
+        {dense_in_decimetres, 1, 0, 0, ": 50 % of its cells from 2 m up are over 120 m, up to 200 m, and no tree is."},
+        {above_the_sea, 1, 0, 0, "placement_raster_test.asc: 100 % of its cells from 2 m up are over 120 m"},
+        {with_a_bird, 0, 1, 3, "are over 120 m, up to 130 m"},
+        {of_grass, 0, 1, 0, "has no top of 2 to 120 m on the terrain: no tree stands; its heights are 0 to 0.9971 m"},
+    };
+    for (size_t i = 0; i < 2 * (sizeof cases / sizeof *cases); i++) {
+        bool check = i % 2;
+        struct small_scene small;
+        struct wd_world world;
+        struct logged logged = {0};
+        const struct wd_log log = {logged_sink, &logged};
+        const struct wd_world_params params = {.log = &log};
+        small_scene_init(&small);
+        struct wd_scene_layer *layer = small_scene_layer(&small);
+        layer->placement = WD_PLACE_CANOPY;
+        layer->canopy = (struct wd_scene_map){.file = path, .crs = "local", .band = 1};
+        write_grid(400, 300, cases[i / 2].height);
+        small.scene.path = NULL;
+        bool ok = check ? wd_world_check(&world, &small.scene, &params) : wd_world_init(&world, &small.scene, &params);
+        if (ok != !cases[i / 2].errors || (!strstr(logged.text, cases[i / 2].said) && (!check || i > 1)))
+            fail_msg("\"%s\" does not say \"%s\"", logged.text, cases[i / 2].said);
+        assert_true(logged.errors == cases[i / 2].errors && logged.warnings == cases[i / 2].warnings);
+        assert_true(!ok || check || world.tree_count == cases[i / 2].trees);
+        if (ok)
+            wd_world_finish(&world);
+    }
+}
+
+/* Tops that the scene's own rules leave out are counted. */
+static void test_tops_left_out(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    struct logged logged = {0};
+    const struct wd_log log = {logged_sink, &logged};
+    small_scene_init(&small);
+    struct wd_scene_layer *layer = small_scene_layer(&small);
+    layer->placement = WD_PLACE_CANOPY;
+    layer->canopy = (struct wd_scene_map){.file = path, .crs = "local", .band = 1};
+    layer->altitude_m[0] = 200.0; /* the ground lies at 100 m */
+    write_grid(400, 300, canopy);
+    small.scene.path = NULL;
+    assert_true(wd_world_init(&world, &small.scene, &(struct wd_world_params){.log = &log}));
+    assert_int_equal(world.tree_count, 0);
+    assert_non_null(strstr(logged.text, "layer: 3 of 3 tops left out by the layer's rules"));
+    wd_world_finish(&world);
+}
+
 /* Tree tops of the lidar data against those that ForestTools found in it. */
 static void test_quesnel_canopy(void **state)
 {
@@ -249,6 +336,8 @@ int main(void)
         cmocka_unit_test(test_values),
         cmocka_unit_test(test_hash_on_demand),
         cmocka_unit_test(test_canopy),
+        cmocka_unit_test(test_heights_of_no_trees),
+        cmocka_unit_test(test_tops_left_out),
         cmocka_unit_test(test_quesnel_canopy),
         cmocka_unit_test(test_map_of_nothing),
         cmocka_unit_test(test_missing_map),

@@ -207,6 +207,25 @@ static void linear_and_max_between_pixels(void **state)
     wd_terrain_finish(&terrain);
 }
 
+static void a_crs_beside_the_files_own_is_told(void **state)
+{
+    (void)state;
+    make_raster(&(struct made_raster){.name = "/vsimem/own.tif", .width = 5, .height = 4, .affine = utm_10m, .epsg = 32632,
+                                      .values = classes});
+    struct wd_terrain terrain = ground("EPSG:32632", 500000, 5000000, 40, 40);
+    struct wd_scene_map map = {.file = "/vsimem/own.tif", .crs = "EPSG:banana"};
+    assert_refused(&map, &terrain, "/vsimem/own.tif: \"EPSG:banana\" is not a coordinate system");
+    forget_log(NULL);
+    for (int i = 0; i < 3; i++) {
+        map.crs = i == 0 ? "EPSG:32632" : i == 1 ? "local" : "EPSG:25833";
+        struct wd_raster raster = loaded(&map, &terrain, WD_RESAMPLE_NEAREST);
+        assert_int_equal(logged.warnings, i == 2);
+        wd_raster_finish(&raster);
+    }
+    assert_non_null(strstr(logged.text, "/vsimem/own.tif: \"EPSG:25833\" has no effect"));
+    wd_terrain_finish(&terrain);
+}
+
 static void maxima_survive_decimation(void **state)
 {
     (void)state;
@@ -356,6 +375,7 @@ int main(void)
         cmocka_unit_test_setup(local_rasters_are_stretched, forget_log),
         cmocka_unit_test_setup(frames_that_cannot_be_matched_are_refused, forget_log),
         cmocka_unit_test_setup(linear_and_max_between_pixels, forget_log),
+        cmocka_unit_test_setup(a_crs_beside_the_files_own_is_told, forget_log),
         cmocka_unit_test_setup(maxima_survive_decimation, forget_log),
         cmocka_unit_test_setup(points_are_reprojected, forget_log),
         cmocka_unit_test_setup(real_canopies, forget_log),

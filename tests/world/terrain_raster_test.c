@@ -549,6 +549,67 @@ static void heights_are_scaled_and_moved(void **state)
     wd_terrain_finish(&terrain);
 }
 
+/* Centimetres in whole numbers: 600 m is 60,000. */
+static void small_units_are_scaled_first(void **state)
+{
+    (void)state;
+    float centimetres[20];
+    for (int k = 0; k < 20; k++)
+        centimetres[k] = 60000 + five_by_four[k];
+    make_raster(&(struct made_raster){.name = "/vsimem/cm.tif", .width = 5, .height = 4, .affine = utm_2m, .epsg = 32632,
+                                      .type = GDT_UInt16, .values = centimetres});
+    struct wd_scene scene = scene_of("/vsimem/cm.tif");
+    assert_refused(&scene, "all 20 pixels are missing");
+    scene.terrain.vertical_scale = 0.01;
+    forget_log(NULL);
+    struct wd_terrain terrain = read_scene(&scene);
+    assert_int_equal(logged.warnings, 0);
+    assert_float_equal(terrain.min_m, 600.1, 1e-3);
+    wd_terrain_finish(&terrain);
+    scene.terrain.vertical_scale = 1e-3; /* 60 m; exaggeration makes nothing a height that is none */
+    terrain = read_scene(&scene);
+    assert_float_equal(terrain.min_m, 60.01, 1e-3);
+    wd_terrain_finish(&terrain);
+    scene.terrain.vertical_scale = 3;
+    assert_refused(&scene, "all 20 pixels are missing");
+}
+
+static void a_crs_beside_the_files_own_is_told(void **state)
+{
+    (void)state;
+    make_raster(&(struct made_raster){.name = "/vsimem/plain.tif", .width = 5, .height = 4,
+                                      .affine = utm_2m, .epsg = 32632, .values = five_by_four});
+    struct wd_scene scene = scene_of("/vsimem/plain.tif");
+    scene.terrain.crs = "EPSG:banana";
+    assert_refused(&scene, "terrain.crs: \"EPSG:banana\" is not a coordinate system");
+    static const char *const given[] = {"EPSG:32632", "EPSG:32632+5773", "EPSG:25833"};
+    for (int i = 0; i < 3; i++) {
+        scene.terrain.crs = given[i];
+        forget_log(NULL);
+        struct wd_terrain terrain = read_scene(&scene);
+        assert_five_by_four(&terrain);
+        wd_terrain_finish(&terrain);
+        assert_int_equal(logged.warnings, i == 2);
+    }
+    assert_non_null(strstr(logged.text, "terrain.crs: \"EPSG:25833\" has no effect: the file has a coordinate system of its "
+                                        "own, which counts: WGS 84 / UTM zone 32N"));
+}
+
+static void vectors_are_told(void **state)
+{
+    (void)state;
+    static const char points[] = "{\"type\": \"FeatureCollection\", \"features\": [{\"type\": \"Feature\", \"properties\": {}, "
+                                 "\"geometry\": {\"type\": \"Point\", \"coordinates\": [1, 2]}}]}";
+    char name[] = "/tmp/weald-vectors-XXXXXX";
+    int file = mkstemp(name);
+    assert_true(file >= 0);
+    assert_int_equal(write(file, points, sizeof points - 1), sizeof points - 1);
+    struct wd_scene scene = scene_of(name);
+    assert_refused(&scene, "export trees as CSV");
+    close(file);
+    unlink(name);
+}
+
 /* 40,000,000,000 pixels of which 256 x 256 were ever written. */
 static void make_huge(void)
 {
@@ -701,6 +762,9 @@ int main(void)
         cmocka_unit_test_setup(coarse_ground_is_refined_smoothly, forget_log),
         cmocka_unit_test_setup(cell_and_window_can_be_chosen, forget_log),
         cmocka_unit_test_setup(heights_are_scaled_and_moved, forget_log),
+        cmocka_unit_test_setup(small_units_are_scaled_first, forget_log),
+        cmocka_unit_test_setup(a_crs_beside_the_files_own_is_told, forget_log),
+        cmocka_unit_test_setup(vectors_are_told, forget_log),
         cmocka_unit_test_setup(huge_files_are_read_by_window, forget_log),
         cmocka_unit_test_setup(can_be_stopped, forget_log),
         cmocka_unit_test_setup(real_bei, forget_log),
