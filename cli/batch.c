@@ -149,13 +149,16 @@ static bool is_wanted(const struct line *line)
 }
 
 /* `next`: the first line that is not done. */
-static enum cli_status stopped(const struct batch *batch, uint32_t next, uint32_t run)
+static enum cli_status stopped(const struct batch *batch, uint32_t next, uint32_t run, uint32_t failed)
 {
     uint32_t wanted = 0;
+    char of_them[32] = "";
     for (uint32_t i = 0; i < batch->count; i++)
         wanted += is_wanted(&batch->lines[i]);
-    fprintf(stderr, "weald: %s: stopped; %u of %u lines done, the next is line %u: with --skip-existing the same command goes "
-            "on from there\n", batch->path, run, wanted, batch->lines[next].number);
+    if (failed)
+        snprintf(of_them, sizeof of_them, " (%u failed)", failed);
+    fprintf(stderr, "weald: %s: stopped; %u of %u lines done%s, the next is line %u: with --skip-existing the same command goes "
+            "on from there\n", batch->path, run, wanted, of_them, batch->lines[next].number);
     return cli_session_status(batch->session, WD_ERROR_INTERRUPTED);
 }
 
@@ -170,7 +173,7 @@ static enum cli_status run_lines(struct batch *batch)
             continue;
         enum cli_status status = cli_session_interrupted(batch->session) ? CLI_FAILED : run_line(batch, &batch->lines[i]);
         if (status != CLI_OK && cli_session_interrupted(batch->session))
-            return stopped(batch, i, run);
+            return stopped(batch, i, run, failed);
         failed += status != CLI_OK;
         run++;
     }

@@ -1,5 +1,6 @@
 #include "cli.h"
 
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -103,11 +104,16 @@ static void print_message(void *user, enum wd_log_level level, const char *messa
     fprintf(stderr, "weald: %s%s\n", kind, message);
 }
 
-/* A step may take minutes: a frame of many samples cannot be stopped within. */
+/* A step may take minutes: a frame of many samples cannot be stopped within. Said only where that cannot block, or the
+ * next signal would not be waited for. */
 static void say_ending(void)
 {
-    fprintf(stderr, "%sweald: ends after the running step; another Ctrl-C ends it at once\n",
-            isatty(STDERR_FILENO) ? "\r\033[K" : "");
+    static const char clear[] = "\r\033[K";
+    static const char line[] = "\r\033[Kweald: ends after the running step; another Ctrl-C ends it at once\n";
+    const char *text = isatty(STDERR_FILENO) ? line : line + strlen(clear);
+    struct pollfd errors = {.fd = STDERR_FILENO, .events = POLLOUT};
+    if (poll(&errors, 1, 0) == 1 && (errors.revents & POLLOUT) && write(STDERR_FILENO, text, strlen(text)) < 0)
+        return; /* it is but a hint */
 }
 
 static void *wait_for_signals(void *user)

@@ -296,9 +296,11 @@ static bool advance(struct path *path)
 /* Where the eye looks through haze: a place on the way, chosen as haze there adds to what arrives. */
 static struct wd_vec3 place_in_haze(struct path *path, struct wd_vec3 direction)
 {
-    float through = wd_fog_through(frame_of(path), direction, path->seen_m).y, point[2];
+    const struct wd_frame_uniforms *frame = frame_of(path);
+    float through = wd_fog_through(frame, direction, path->seen_m).y, point[2];
+    float depth = through > 0 ? -logf(through) : frame->fog_per_m * wd_fog_path_m(frame, direction, path->seen_m);
     wd_sampler_next(&path->sampler, point);
-    float share = through < 0.999f ? logf(1 - point[0] * (1 - through)) / logf(through) : point[0];
+    float share = through < 0.999f ? -logf(1 - point[0] * (1 - through)) / depth : point[0];
     return wd_v3_scale(direction, share * path->seen_m);
 }
 

@@ -9,6 +9,9 @@
 
 enum { NAME_ROOM = 256 };
 
+/* What artists' models have for one that nobody told. */
+#define NO_LATIN_NAME "unknown"
+
 /* Small, one blank between words; a hybrid's sign is an x. False where it is longer than any name. */
 static bool plain(char to[NAME_ROOM], const char *name)
 {
@@ -33,39 +36,46 @@ bool wd_names_alike(const char *a, const char *b)
     return plain(first, a) && plain(second, b) && strcmp(first, second) == 0;
 }
 
-/* The letter that begins a word; 0: there are not so many. */
-static char first_of_word(const char *name, size_t word)
+/* A word and what follows; NULL: there are not so many. */
+static const char *find_word(const char *name, size_t word)
 {
     bool gap = true;
     for (; *name; name++) {
         bool no_break = strncmp(name, "\302\240", 2) == 0;
         bool blank = *name == ' ' || *name == '\t' || *name == '_' || no_break;
         if (gap && !blank && word-- == 0)
-            return *name;
+            return name;
         gap = blank;
         name += no_break;
     }
-    return 0;
+    return NULL;
+}
+
+/* Authors begin with a capital, of Latin-1's too, or a bracket. */
+static bool is_author(const char *word)
+{
+    unsigned char first = (unsigned char)word[0], second = first ? (unsigned char)word[1] : 0;
+    return first == '(' || (first >= 'A' && first <= 'Z') ||
+           (first == 0xc3 && second >= 0x80 && second <= 0x9e && second != 0x97); /* that is a hybrid's sign */
 }
 
 bool wd_name_is_latin(const char *name, const char *latin)
 {
     char whole[NAME_ROOM], begin[NAME_ROOM];
-    if (!plain(whole, name) || !plain(begin, latin))
+    if (strcmp(latin, NO_LATIN_NAME) == 0 || !plain(whole, name) || !plain(begin, latin))
         return false;
     size_t length = strlen(begin), words = 1;
     for (const char *at = begin; *at; at++)
         words += *at == ' ';
     if (strncmp(whole, begin, length) != 0 || whole[length] == 0)
         return strcmp(whole, begin) == 0;
-    char author = first_of_word(name, words);
-    bool capital = (author >= 'A' && author <= 'Z') || (unsigned char)author >= 0x80;
-    return words > 1 && whole[length] == ' ' && (author == '(' || capital);
+    const char *author = find_word(name, words);
+    return words > 1 && whole[length] == ' ' && author && is_author(author);
 }
 
 bool wd_name_has_words(const char *name)
 {
-    return first_of_word(name, 1) != 0;
+    return find_word(name, 1) != NULL;
 }
 
 static bool is_listed(const struct wd_latin_names *latin, const char *name)
@@ -83,9 +93,12 @@ static void add_file(struct wd_latin_names *latin, const char *folder, const cha
         return;
     struct wd_species species;
     char *name = wd_format("%.*s", (int)length - 5, entry), *file = wd_format("%s/%s", folder, entry);
-    if (!is_listed(latin, name) && wd_species_load(&species, file, &latin->arena, &wd_log_quiet) && species.latin)
+    if (!is_listed(latin, name)) {
+        bool known = wd_species_load(&species, file, &latin->arena, &wd_log_quiet) && species.latin;
         *wd_push(latin->names, latin->count, latin->capacity) = (struct wd_latin_name){
-            wd_arena_strdup(&latin->arena, name), species.latin, wd_arena_strdup(&latin->arena, file)};
+            wd_arena_strdup(&latin->arena, name), known ? species.latin : NO_LATIN_NAME,
+            wd_arena_strdup(&latin->arena, file)};
+    }
     free(name);
     free(file);
 }

@@ -13,6 +13,7 @@ enum { MAX_SPECIES = 255 };
 
 struct loader {
     const struct wd_keys_place *root;
+    const struct wd_scene *scene; /* its clips are known */
     struct wd_string_pair *files;
     size_t count, capacity;
     struct wd_species_folders folders; /* where species without a file are looked for */
@@ -108,14 +109,23 @@ static bool unknown_species(const struct loader *loader, const char *name,
                          near ? hint : ".", list);
 }
 
-/* Which of the scene's species so far has the Latin name; NULL: none. */
+static bool is_clipped(const struct loader *loader, const char *name)
+{
+    for (size_t i = 0; i < loader->scene->clip_count; i++)
+        if (strcmp(loader->scene->clips[i].name, name) == 0)
+            return true;
+    return false;
+}
+
+/* Which of the scene's species so far has the Latin name, but for hedges; NULL: none. */
 static const char *find_own_latin(const struct loader *loader, const char *name)
 {
     struct wd_arena arena = {0};
     const char *found = NULL;
     for (size_t i = 0; i < loader->count && !found; i++) {
         struct wd_species species;
-        if (wd_species_load(&species, loader->files[i].value, &arena, &wd_log_quiet) && species.latin &&
+        if (!is_clipped(loader, loader->files[i].name) &&
+            wd_species_load(&species, loader->files[i].value, &arena, &wd_log_quiet) && species.latin &&
             wd_name_is_latin(name, species.latin))
             found = loader->files[i].name;
     }
@@ -134,15 +144,20 @@ static const struct wd_latin_name *find_installed_latin(struct loader *loader, c
     return wd_latin_names_find(&loader->latin, name);
 }
 
-/* A Latin name becomes that which the scene, or else the folder has for the species. */
+/* A Latin name becomes that which the scene, or else the folder has for the species; where the scene calls another species
+ * so it stays. */
 static bool want_latin(struct loader *loader, const char **name)
 {
     const char *own = wd_name_has_words(*name) ? find_own_latin(loader, *name) : NULL;
     const struct wd_latin_name *found = own ? NULL : find_installed_latin(loader, *name);
-    if (found && !has(loader, found->name))
+    if (own)
+        *name = own;
+    else if (found && has(loader, found->name))
+        add(loader, *name, found->file);
+    else if (found) {
         add(loader, found->name, found->file);
-    if (own || found)
-        *name = own ? own : wd_arena_strdup(wd_keys_arena(loader->root), found->name);
+        *name = wd_arena_strdup(wd_keys_arena(loader->root), found->name);
+    }
     return own || found;
 }
 
@@ -288,13 +303,23 @@ static bool cut_hedge(const struct wd_keys_place *map, struct wd_species *specie
     return true;
 }
 
+/* By the scene's name, or a Latin one that a layer may have; -1: there is none. */
+static int find_species(const struct wd_scene *scene, const char *name)
+{
+    int index = wd_scene_find_species(scene, name);
+    for (size_t i = 0; i < scene->species_file_count && index < 0; i++)
+        if (scene->species[i].latin && wd_name_is_latin(name, scene->species[i].latin))
+            index = (int)i;
+    return index;
+}
+
 static bool cut_hedges(const struct loader *loader, struct wd_scene *scene)
 {
     struct wd_keys_place map = {loader->root->reader, loader->root, "clips", 0};
     bool ok = true;
     for (size_t i = 0; i < scene->clip_count; i++) {
         const struct wd_scene_clip *clip = &scene->clips[i];
-        int index = wd_scene_find_species(scene, clip->name);
+        int index = find_species(scene, clip->name);
         if (index < 0) {
             ok = wd_keys_error(&map, clip->name, "no layer or inventory has the species \"%.60s\"",
                                clip->name);
@@ -311,7 +336,7 @@ static bool set_openness(const struct loader *loader, struct wd_scene *scene)
     bool ok = true;
     for (size_t i = 0; i < scene->openness_count; i++) {
         const struct wd_number_pair *given = &scene->openness[i];
-        int index = wd_scene_find_species(scene, given->name);
+        int index = find_species(scene, given->name);
         if (index < 0)
             ok = wd_keys_error(&map, given->name,
                                "no layer or inventory has the species \"%.60s\"", given->name);
@@ -363,7 +388,7 @@ static void note_planted(struct wd_scene *scene)
 
 bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *place)
 {
-    struct loader loader = {.root = place};
+    struct loader loader = {.root = place, .scene = scene};
     wd_species_folders_init(&loader.folders, wd_keys_path(place));
     bool ok = take_entries(&loader, scene);
     ok = take_layers(&loader, scene) && ok;

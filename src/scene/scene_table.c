@@ -34,7 +34,7 @@ static const struct wd_key terrain_keys[] = {
     {"crs", WD_KEY_STRING, TERRAIN(crs),
      .doc = "raster: coordinates to assume where the file has none, such as \"EPSG:4326\"."},
     {"target_crs", WD_KEY_STRING, TERRAIN(target_crs),
-     .doc = "raster: coordinates in metres to reproject to; by default the UTM zone for degrees "
+     .doc = "Coordinates in metres, of rasters to reproject to; by default the UTM zone for degrees "
             "and Mercator."},
     {"unit", WD_KEY_STRING, TERRAIN(unit), .choices = raster_units,
      .doc = "raster without coordinates: \"metres\" says that x and y are metres already."},
@@ -47,7 +47,7 @@ static const struct wd_key terrain_keys[] = {
      .count_offset = TERRAIN(window_count),
      .doc = "raster: xmin, ymin, xmax, ymax in the target coordinates; all where absent."},
     {"vertical_scale", WD_KEY_DOUBLE, TERRAIN(vertical_scale), 0, 1000, "1",
-     "Factor on every height.", .flags = WD_KEY_EXCLUSIVE_MIN},
+     "raster: factor on every height.", .flags = WD_KEY_EXCLUSIVE_MIN},
     {0},
 };
 static const struct wd_keys terrain_table = {

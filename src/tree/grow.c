@@ -206,8 +206,6 @@ static float foliage_top_m(const struct wd_foliage *foliage, const struct wd_spe
     return top;
 }
 
-/* Growth itself ends near the asked height: wood and leaves are brought to it before stems get
- * their thickness, so that the stem is as thick as asked too. A hedge's height is its cut's. */
 /* A rootstock without its leaves stands no higher than with them. */
 static bool is_bare_rootstock(const struct wd_foliage *foliage, const struct wd_tree_form *form)
 {
@@ -215,6 +213,8 @@ static bool is_bare_rootstock(const struct wd_foliage *foliage, const struct wd_
     return low && foliage->count == 0 && foliage->flower_count == 0;
 }
 
+/* Growth itself ends near the asked height: wood and leaves are brought to it before stems get
+ * their thickness, so that the stem is as thick as asked too. A hedge's height is its cut's. */
 static void fit_height(struct wd_skeleton *skeleton, struct wd_foliage *foliage,
                        struct wd_tree_form *form)
 {

@@ -223,18 +223,6 @@ static void warn_of_girth(const struct wd_csv *csv, const struct wd_inventory_co
                 csv->header[girth], columns->dbh == girth ? "but counts as a diameter" : "which is not read");
 }
 
-/* The units of a frame that is named are its own. */
-static bool check_place_units(const struct wd_inventory_columns *columns, const struct wd_csv *csv,
-                              const struct wd_scene_inventory *wanted, const struct wd_log *log)
-{
-    size_t length;
-    const struct wd_column_unit *x = wd_inventory_unit_of(csv->header[columns->x], WD_COLUMN_X, &length);
-    const struct wd_column_unit *y = wd_inventory_unit_of(csv->header[columns->y], WD_COLUMN_Y, &length);
-    return wd_inventory_frame(wanted) == WD_FRAME_CRS ||
-           ((!x || check_unit_known(csv, "", columns->x, WD_COLUMN_X, x, log)) &&
-            (!y || check_unit_known(csv, "", columns->y, WD_COLUMN_Y, y, log)));
-}
-
 static bool find_units(struct wd_inventory_columns *columns, const struct wd_csv *csv,
                        const struct wd_scene_inventory *wanted, const struct wd_log *log)
 {
@@ -244,8 +232,7 @@ static bool find_units(struct wd_inventory_columns *columns, const struct wd_csv
     columns->height_told = wanted->height_unit || (columns->height >= 0 && wd_inventory_unit_of(
                                                        csv->header[columns->height], WD_COLUMN_HEIGHT, &length));
     columns->id_told = wanted->columns.id != NULL;
-    return check_place_units(columns, csv, wanted, log) &&
-           find_unit(csv, "dbh_unit", wanted->dbh_unit, columns->dbh, WD_COLUMN_DBH, log, &columns->dbh_cm) &&
+    return find_unit(csv, "dbh_unit", wanted->dbh_unit, columns->dbh, WD_COLUMN_DBH, log, &columns->dbh_cm) &&
            find_unit(csv, "height_unit", wanted->height_unit, columns->height, WD_COLUMN_HEIGHT, log,
                      &columns->height_m) &&
            find_unit(csv, "", NULL, columns->crown, WD_COLUMN_CROWN, log, &columns->crown_m);
@@ -291,12 +278,23 @@ static bool is_degrees(const struct wd_csv *csv, int column)
     return false;
 }
 
+static bool check_place_units(const struct wd_inventory_columns *columns, const struct wd_csv *csv, const struct wd_log *log)
+{
+    size_t length;
+    const struct wd_column_unit *x = wd_inventory_unit_of(csv->header[columns->x], WD_COLUMN_X, &length);
+    const struct wd_column_unit *y = wd_inventory_unit_of(csv->header[columns->y], WD_COLUMN_Y, &length);
+    return (!x || check_unit_known(csv, "", columns->x, WD_COLUMN_X, x, log)) &&
+           (!y || check_unit_known(csv, "", columns->y, WD_COLUMN_Y, y, log));
+}
+
+/* The units of a frame that is named are its own. */
 bool wd_inventory_check_frame(const struct wd_inventory_columns *columns, const struct wd_csv *csv,
                               const struct wd_scene_inventory *wanted, const struct wd_log *log)
 {
-    if (wd_inventory_frame(wanted) == WD_FRAME_CRS ||
-        (!is_degrees(csv, columns->x) && !is_degrees(csv, columns->y)))
+    if (wd_inventory_frame(wanted) == WD_FRAME_CRS)
         return true;
+    if (!is_degrees(csv, columns->x) && !is_degrees(csv, columns->y))
+        return check_place_units(columns, csv, log);
     return wd_error(log, "%s:1: columns %s and %s read as degrees, but the frame \"%s\" is in metres; say "
                     "\"frame\": \"EPSG:4326\", or name the columns in metres in columns.x and columns.y",
                     csv->path, csv->header[columns->x], csv->header[columns->y],

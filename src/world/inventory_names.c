@@ -25,7 +25,7 @@ static const char *const species_names[] = {
     "wissenschaftlichername", "lateinischername", "essence", "espece", "codeessence", "codeespece", "nomlatin",
     "nomscientifique", "especie", "codigoespecie", "nombrecientifico", "tradslag", "tradart", "puulaji", NULL};
 static const char *const dbh_names[] = {
-    "dbh", "d", "bhd", "d130", "d13", "diam", "diameter", "stemdiameter", "diameteratbreastheight", "trunkdiameter",
+    "dbh", "d", "bhd", "d130", "d1.3", "diam", "diameter", "stemdiameter", "diameteratbreastheight", "trunkdiameter",
     "stemdiam", "durchmesser", "brusthohendurchmesser", "brusthoehendurchmesser", "diametre", "diam130", "diametre130",
     "dhp", "dap", "diametro", "diametronormal", "brosthojdsdiameter", "rinnankorkeuslapimitta", "lapimitta", NULL};
 static const char *const height_names[] = {
@@ -127,15 +127,17 @@ char *wd_inventory_bracketed(const char *name)
     return first > 0 && !place ? wd_format("%.*s", (int)length, name + first) : NULL;
 }
 
-/* Small letters without accents, and nothing between the words: "Tree ID", tree_id and treeID are one name. */
+/* Small letters without accents, and nothing between the words: "Tree ID", tree_id and treeID are one name. A point between
+ * digits stays, or D_13, of 2013, would be D1.3. */
 static void plain(char *to, size_t room, const char *name, size_t length)
 {
     wd_utf8_plain(to, room, name, length);
     char *end = to;
     for (const char *at = to; *at; at++) {
         bool sign = strncmp(at, "\302\260", 2) == 0 || strncmp(at, "\302\272", 2) == 0; /* of a number */
-        if (!is_gap(*at) && !sign)
-            *end++ = *at;
+        bool decimal = is_gap(*at) && at > to && isdigit((unsigned char)at[-1]) && isdigit((unsigned char)at[1]);
+        if (decimal || (!is_gap(*at) && !sign))
+            *end++ = decimal ? '.' : *at;
         at += sign;
     }
     *end = 0;

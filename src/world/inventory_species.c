@@ -185,7 +185,15 @@ bool wd_species_names_check(const struct wd_species_names *names, const char *pa
     return count == 0;
 }
 
-/* A mapping of several names is for a column: without one, all would become of one species in silence. */
+static bool maps_to_one(const struct wd_scene_inventory *wanted)
+{
+    for (size_t i = 1; i < wanted->species_count; i++)
+        if (strcmp(wanted->species[i].value, wanted->species[0].value) != 0)
+            return false;
+    return wanted->species_count > 0;
+}
+
+/* A mapping to several species is for a column: without one, all would become of one in silence. */
 static bool check_mapping(const struct wd_species_names *names, const struct wd_csv *csv)
 {
     const struct wd_scene_inventory *wanted = names->wanted;
@@ -195,7 +203,7 @@ static bool check_mapping(const struct wd_species_names *names, const struct wd_
     char *header = wd_csv_names(csv);
     const char *said = "no column for the species was recognised, so \"species\" cannot tell the trees apart; name it in "
                        "\"columns\": {\"species\": \"...\"}";
-    bool one = wanted->species_count == 1;
+    bool one = maps_to_one(wanted);
     if (one && names->scene->species_file_count == 1)
         wd_warn(csv->log, "%s:1: %s; all trees are \"%s\"; the header has: %s", csv->path, said, wanted->species[0].value,
                 header);

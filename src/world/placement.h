@@ -54,7 +54,7 @@ bool wd_placement_fill(const struct wd_placement *placement,
 /* Parts of the above. */
 bool wd_canopy_fill(const struct wd_placement *placement, const struct wd_placement_params *params,
                     struct wd_tree_list *list);
-/* The same messages, without a tree. */
+/* What the raster itself makes it say, without a tree; all of it is read. */
 bool wd_canopy_check(const struct wd_placement *placement, const struct wd_placement_params *params);
 bool wd_layer_map_load(struct wd_placement *placement, const struct wd_placement_params *params);
 /* What a map's value says, 0..1. */

@@ -222,13 +222,13 @@ static struct heights heights_of(const struct wd_raster *raster)
  * cells are birds and pylons. */
 static bool check_heights(const struct wd_placement *placement, const struct heights *heights, const struct wd_log *log)
 {
-    const double most_share = 0.05;
+    const double most_share = 0.05, least_of_all = 0.005;
     static const char *const what =
         "%s: %s: %.3g %% of its cells from 2 m up are over 120 m, up to %.4g m, and no tree is. Wanted are metres above "
         "the ground: of other units write the scale into the file (gdal_translate -a_scale 0.1 for decimetres), from a "
         "surface model subtract the terrain; numbers that mean no data are to be its nodata value (-a_nodata)%s";
     double share = heights->plants ? (double)heights->too_high / (double)heights->plants : 0;
-    if (share > most_share)
+    if (share > most_share && (double)heights->too_high > least_of_all * (double)heights->known)
         return wd_error(log, what, placement->name, placement->layer->canopy.file, 100 * share, (double)heights->most_m, "");
     if (share > 0)
         wd_warn(log, what, placement->name, placement->layer->canopy.file, 100 * share, (double)heights->most_m,
@@ -279,7 +279,7 @@ bool wd_canopy_fill(const struct wd_placement *placement, const struct wd_placem
     struct wd_raster raster;
     struct top_list tops = {0};
     bool ok = load_tops(&tops, &raster, placement, params);
-    if (ok) {
+    if (ok && tops.count) {
         qsort(tops.tops, tops.count, sizeof *tops.tops, higher_first);
         keep_spaced(&tops, placement->layer->spacing_m, wd_terrain_extent_x_m(params->terrain),
                     wd_terrain_extent_y_m(params->terrain));

@@ -68,7 +68,7 @@ static float decode(struct decoding *decoding, float raw)
         return NAN;
     float value = (float)(raw * decoding->scale + decoding->offset);
     double height_m = value * decoding->metres;
-    bool absurd = raw == -9999 || raw == -32768 || height_m < -500 || height_m > 9000;
+    bool absurd = raw == -9999 || raw == -32767 || raw == -32768 || height_m < -500 || height_m > 9000;
     if (decoding->heights && absurd) {
         decoding->undeclared++;
         decoding->example = raw;

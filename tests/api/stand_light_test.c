@@ -150,7 +150,7 @@ static void a_dark_floor_is_as_bright_as_traced(void **state)
 {
     (void)state;
     struct sum drawn = {0}, traced = {0};
-    look_at_floor(&dark, 6, &drawn, &traced);
+    look_at_floor(&dark, 5, &drawn, &traced);
     check_light("floor of a dark stand", &drawn, &traced, 1.15, 1.15);
 }
 
@@ -217,7 +217,7 @@ static void a_dark_stand_from_within_is_as_bright_as_traced(void **state)
 {
     (void)state;
     struct within drawn = {0}, traced = {0};
-    look_from_within(&dark, 8, LIGHT, &drawn, &traced);
+    look_from_within(&dark, 6, LIGHT, &drawn, &traced);
     check_light("crowns of a dark stand", &drawn.crowns, &traced.crowns, 1.13, 1.24);
     check_light("haze within a dark stand", &drawn.haze, &traced.haze, 1.3, 1.3);
 }
@@ -341,7 +341,7 @@ static void fog_in_a_stand_is_as_bright_as_traced(void **state)
 {
     (void)state;
     struct within drawn = {0}, traced = {0};
-    look_from_within(&foggy, 4, LIGHT, &drawn, &traced);
+    look_from_within(&foggy, 3, LIGHT, &drawn, &traced);
     check_light("crowns in fog", &drawn.crowns, &traced.crowns, 1.3, 1.3);
     check_light("fog within a dark stand", &drawn.haze, &traced.haze, 1.3, 1.3);
 }
@@ -351,7 +351,7 @@ static void crowns_from_within_hide_as_much_of_the_sky_as_traced(void **state)
 {
     (void)state;
     struct within drawn = {0}, traced = {0};
-    look_from_within(&light, 6, SHAPES, &drawn, &traced);
+    look_from_within(&light, 4, SHAPES, &drawn, &traced);
     double ratio = drawn.crowns.pixels / traced.crowns.pixels;
     print_message("crowns from within cover %.3f of what is traced\n", ratio);
     assert_true(ratio > 0.96 && ratio < 1.04);

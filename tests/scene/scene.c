@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "log.h"
+#include "scene/latin_names.h"
 #include "scene/scene.h"
 
 static char *species_dir;
@@ -110,6 +111,25 @@ static void species_by_latin_names(void **state)
     assert_int_equal(f->log.errors + f->log.warnings, 0);
     assert_true(load(f, "{\"species\": {\"Fichte\": \"spruce\"}, \"layers\": [{\"species\": \"Fichte\"}]}"));
     assert_string_equal(f->scene.species[0].name, "spruce");
+}
+
+/* A scene's own spruce may be another species, its beech a hedge. */
+static void latin_names_stay_what_they_mean(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"species\": {\"spruce\": \"../species/oak.json\"}, \"openness\": {\"Picea abies\": 1},"
+                        " \"layers\": [{\"species\": {\"spruce\": 1, \"Picea abies\": 1}}]}"));
+    int own = wd_scene_find_species(&f->scene, "spruce"), installed = wd_scene_find_species(&f->scene, "Picea abies");
+    assert_string_equal(f->scene.species[own].name, "oak");
+    assert_string_equal(f->scene.species[installed].name, "spruce");
+    assert_true(f->scene.species[installed].openness == 1 && f->scene.species[own].openness < 1);
+    assert_true(load(f, "{\"species\": {\"hedge\": \"../species/beech.json\"}, \"clips\": {\"hedge\": {\"box_m\": [2, 1, 1.8]}},"
+                        " \"layers\": [{\"species\": {\"hedge\": 1}}, {\"species\": {\"Fagus sylvatica\": 1}}]}"));
+    assert_string_equal(f->scene.layers[1].species[0].name, "beech");
+    assert_true(wd_name_is_latin("Larix decidua Mill.", "Larix decidua"));
+    assert_true(wd_name_is_latin("Larix decidua \303\205ngstr\303\266m", "Larix decidua"));
+    assert_false(wd_name_is_latin("Larix decidua \303\227 kaempferi", "Larix decidua"));
+    assert_false(wd_name_is_latin("Unknown", "unknown"));
 }
 
 struct wrong {
@@ -509,6 +529,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(species_are_found_and_loaded, setup, teardown),
         cmocka_unit_test_setup_teardown(species_by_latin_names, setup, teardown),
+        cmocka_unit_test_setup_teardown(latin_names_stay_what_they_mean, setup, teardown),
         cmocka_unit_test_setup_teardown(unknown_species_are_errors, setup, teardown),
         cmocka_unit_test_setup_teardown(checks_across_keys_hold, setup, teardown),
         cmocka_unit_test_setup_teardown(refused_ground_is_told_once, setup, teardown),

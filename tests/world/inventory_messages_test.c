@@ -85,6 +85,10 @@ static void test_no_wrong_guesses(void **state)
     struct wd_tree tree = only_tree(&small, "E,N,x,y\n1,2,30,40\n");
     assert_int_equal(tree.x_mm, 30000);
     assert_int_equal(tree.y_mm, 40000);
+    tree = only_tree(&small, "x,y,D_13\n10,20,40\n"); /* of 2013 */
+    assert_int_equal(tree.size, only_tree(&small, "x,y\n10,20\n").size);
+    tree = only_tree(&small, "x,y,D1.3\n10,20,40\n");
+    assert_int_not_equal(tree.size, only_tree(&small, "x,y\n10,20\n").size);
     fail_to_make(&small, "plot,Azimut,Distanz,BHD\n1,10,5,30\n",
                  "columns Azimut and Distanz tell places from a plot's middle, but x and y are wanted: convert them");
 }
