@@ -212,7 +212,8 @@ static void look_from_within(const struct stand *stand, int places, uint32_t lay
 
 /* Crowns: 0.93 of the traced, 0.99 in blue, most of which wax mirrors (without haze 0.93 and 0.99); 1.20 in red, without
  * haze, if leaves let through a share of the side that is seen and what lies lower in crowns is lit as what lies higher.
- * Haze: 0.87 to 0.89 of the traced (at eight places 0.91 to 0.95, level 1.03 to 1.08); 12 times as much in red if no tree shades it. */
+ * Haze: 0.87 to 0.89 of the traced (at eight places 0.91 to 0.95, level 1.03 to 1.08); 12 times as much in red if no
+ * tree shades it. */
 static void a_dark_stand_from_within_is_as_bright_as_traced(void **state)
 {
     (void)state;
