@@ -96,11 +96,10 @@ WD_FUNC WD_VECTOR wd_fog_apply(WD_FRAME_IN WD_VECTOR radiance, WD_VECTOR directi
 #define WD_FOG_SHADED_M 1000.0f
 WD_FUNC WD_VECTOR wd_fog_shade_sky(WD_FRAME_IN WD_VECTOR radiance, WD_VECTOR direction, float sky, float sun)
 {
-    WD_VECTOR none = WD_V3(0.0f, 0.0f, 0.0f);
-    WD_VECTOR open = wd_fog_apply(WD_FRAME_PASS none, direction, WD_FOG_SHADED_M, 1.0f, 1.0f, 1.0f);
-    WD_VECTOR shaded = wd_fog_apply(WD_FRAME_PASS none, direction, WD_FOG_SHADED_M, 1.0f, sky, sun);
     float share = WD_CLAMP(10.0f * WD_FRAME(fog_over), 0.0f, 1.0f); /* thin haze over the camera is the sky's own */
-    WD_VECTOR left = wd_v3_sub(radiance, wd_v3_scale(wd_v3_sub(open, shaded), share));
+    WD_VECTOR none = WD_V3(0.0f, 0.0f, 0.0f);
+    WD_VECTOR shade = wd_fog_apply(WD_FRAME_PASS none, direction, WD_FOG_SHADED_M, 1.0f, 1.0f - sky, 1.0f - sun);
+    WD_VECTOR left = wd_v3_sub(radiance, wd_v3_scale(shade, share));
     return WD_V3(WD_MAX(left.x, 0.0f), WD_MAX(left.y, 0.0f), WD_MAX(left.z, 0.0f));
 }
 

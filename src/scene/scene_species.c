@@ -19,6 +19,8 @@ struct loader {
     struct wd_species_folders folders; /* where species without a file are looked for */
     struct wd_latin_names latin;       /* of those, once they are asked for */
     bool has_latin;
+    const char **own_latin; /* of files, as far as it was asked for; NULL: has none */
+    size_t own_count, own_capacity;
 };
 
 static bool has(const struct loader *loader, const char *name)
@@ -117,20 +119,27 @@ static bool is_clipped(const struct loader *loader, const char *name)
     return false;
 }
 
-/* Which of the scene's species so far has the Latin name, but for hedges; NULL: none. */
-static const char *find_own_latin(const struct loader *loader, const char *name)
+/* Each file is read once, however many names are looked up. */
+static const char *latin_of(struct loader *loader, size_t index)
 {
-    struct wd_arena arena = {0};
-    const char *found = NULL;
-    for (size_t i = 0; i < loader->count && !found; i++) {
+    while (loader->own_count <= index) {
         struct wd_species species;
-        if (!is_clipped(loader, loader->files[i].name) &&
-            wd_species_load(&species, loader->files[i].value, &arena, &wd_log_quiet) && species.latin &&
-            wd_name_is_latin(name, species.latin))
-            found = loader->files[i].name;
+        bool known = wd_species_load(&species, loader->files[loader->own_count].value, wd_keys_arena(loader->root),
+                                     &wd_log_quiet);
+        *wd_push(loader->own_latin, loader->own_count, loader->own_capacity) = known ? species.latin : NULL;
     }
-    wd_arena_finish(&arena);
-    return found;
+    return loader->own_latin[index];
+}
+
+/* Which of the scene's species so far has the Latin name, but for hedges; NULL: none. */
+static const char *find_own_latin(struct loader *loader, const char *name)
+{
+    for (size_t i = 0; i < loader->count; i++) {
+        const char *latin = is_clipped(loader, loader->files[i].name) ? NULL : latin_of(loader, i);
+        if (latin && wd_name_is_latin(name, latin))
+            return loader->files[i].name;
+    }
+    return NULL;
 }
 
 /* The installed species of that Latin name; NULL: there is none. */
@@ -398,6 +407,7 @@ bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *p
     ok = ok && set_openness(&loader, scene);
     if (ok)
         note_planted(scene);
+    free(loader.own_latin);
     wd_latin_names_finish(&loader.latin);
     wd_species_folders_finish(&loader.folders);
     free(loader.files);
