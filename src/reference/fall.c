@@ -99,7 +99,6 @@ RTCScene wd_trace_fall_scene(const struct wd_trace_scene *scene, const struct wd
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(leaves, geometry);
     rtcReleaseGeometry(geometry);
-    rtcSetSceneFlags(leaves, RTC_SCENE_FLAG_COMPACT);
     rtcCommitScene(leaves);
     return leaves;
 }

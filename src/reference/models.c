@@ -78,7 +78,6 @@ void wd_trace_model_build(struct wd_trace_model *model, RTCDevice device)
 {
     const struct wd_tree_mesh *mesh = &model->grown.full;
     model->scene = rtcNewScene(device);
-    rtcSetSceneFlags(model->scene, RTC_SCENE_FLAG_COMPACT);
     rtcSetSceneBuildQuality(model->scene, RTC_BUILD_QUALITY_MEDIUM);
     if (mesh->index_count) {
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);

@@ -116,7 +116,6 @@ bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_mod
         origin_m[k] = frame->camera_mm[k] * 0.001 + (double)frame->camera_frac_m[k];
     wd_trace_ground_init(&scene->ground, device, &world->terrain, origin_m);
     scene->top = rtcNewScene(device);
-    rtcSetSceneFlags(scene->top, RTC_SCENE_FLAG_COMPACT);
     rtcSetSceneBuildQuality(scene->top, RTC_BUILD_QUALITY_MEDIUM);
     rtcAttachGeometryByID(scene->top, scene->ground.geometry, (unsigned)world->tree_count);
     for (size_t i = 0; i < world->tree_count; i++)
