@@ -41,7 +41,8 @@ struct wd_mesh_range {
 /* The leaves of one model, and the twig that each stands for. */
 struct wd_twig_range {
     struct wd_mesh_range mesh;       /* index_count 0: they are single leaves */
-    struct wd_mesh_range shade;      /* the same for shadow maps */
+    struct wd_mesh_range shade;      /* the same as shadow maps show it, and pixels that are as wide as its leaves */
+    float shade_grain;               /* root of the mean area of a leaf of that, in units of the drawn leaf's length */
     uint32_t first_leaf, leaf_count; /* flowers included; first: a multiple of WD_MESH_ALIGNMENT */
     struct wd_leaf_box box;
     float reach;    /* of wd_spray_share; 0 without twigs */

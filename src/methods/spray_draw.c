@@ -47,9 +47,13 @@ bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu, en
     return wd_pipeline_init_graphics(pipeline, gpu, &params);
 }
 
-static const struct wd_mesh_range *twig_mesh(const struct wd_tree_draw *draw, const struct wd_twig_range *range)
+/* A twig in full, or as shadow maps show it, for the camera where leaves are some pixels wide and less. */
+enum { FULL, PLAIN, DETAILS };
+static const float PLAIN_PX = 1.5f;
+
+static const struct wd_mesh_range *twig_mesh(const struct wd_twig_range *range, int detail)
 {
-    return draw->pass == WD_PASS_SHADOW ? &range->shade : &range->mesh;
+    return detail == PLAIN ? &range->shade : &range->mesh;
 }
 
 /* What it takes to show a leaf in view as a twig. */
@@ -61,8 +65,10 @@ struct candidate {
 /* Twigs of one model, gathered before they are uploaded, or all that could be. */
 struct gather {
     float scale;
-    struct wd_spray_instance *items;
-    size_t count, capacity;
+    struct twigs {
+        struct wd_spray_instance *items;
+        size_t count, capacity;
+    } twigs[DETAILS];
     struct candidate *candidates; /* gathered instead, with `weigh` */
     size_t candidate_count, candidate_capacity;
     bool weigh;
@@ -71,38 +77,49 @@ struct gather {
 /* A tree whose twigs are gathered. */
 struct bearer {
     uint32_t index;
-    uint32_t triangles; /* of a twig */
+    const struct wd_twig_range *range;
     float reach;
-    const struct wd_leaf_box *box;
     struct wd_stand stand;
 };
+
+/* Each leaf changes at a distance of its own. */
+static int detail_of(const struct wd_tree_draw *draw, const struct bearer *bearer, float size_m, float distance_m,
+                     float chance)
+{
+    float grain_px = bearer->range->shade_grain * size_m / distance_m * draw->view->pixels_per_radian;
+    float own = 7 * chance - floorf(7 * chance);
+    return draw->pass == WD_PASS_SHADOW || grain_px < PLAIN_PX * (0.8f + 0.4f * own) ? PLAIN : FULL;
+}
 
 static void gather_leaf(struct gather *gather, const struct wd_tree_draw *draw,
                         const struct bearer *bearer, const struct wd_tree_leaf *leaf, uint32_t index)
 {
     const struct wd_tree_pose *pose = &bearer->stand.pose;
     const struct wd_tree *tree = &draw->forest->world->trees[bearer->index];
+    const struct wd_leaf_box box = bearer->range->box;
     float at[3];
-    wd_stand_place(&bearer->stand, wd_leaf_foot(*leaf, *bearer->box), at);
+    wd_stand_place(&bearer->stand, wd_leaf_foot(*leaf, box), at);
     float square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
     if (square > WD_SPRAY_NONE_M * WD_SPRAY_NONE_M * bearer->reach * bearer->reach)
         return;
     float distance_m = sqrtf(square), chance = wd_spray_chance(index, wd_tree_random(*tree));
     if (chance >= wd_spray_share(distance_m, bearer->reach))
         return;
-    float reach = 2 * wd_leaf_size_m(*leaf, *bearer->box) * fmaxf(pose->across, pose->up), min[3], max[3];
+    float size_m = wd_leaf_size_m(*leaf, box), reach = 2 * size_m * fmaxf(pose->across, pose->up), min[3], max[3];
     for (int k = 0; k < 3; k++) {
         min[k] = at[k] - reach;
         max[k] = at[k] + reach;
     }
     if (wd_frustum_box(&draw->view->frustum, min, max) == WD_OUTSIDE)
         return;
+    int detail = detail_of(draw, bearer, size_m * pose->across, distance_m, chance);
+    struct twigs *twigs = &gather->twigs[detail];
     if (gather->weigh)
         *wd_push(gather->candidates, gather->candidate_count, gather->candidate_capacity) =
-            (struct candidate){distance_m, bearer->reach, chance, bearer->triangles};
+            (struct candidate){distance_m, bearer->reach, chance,
+                               twig_mesh(bearer->range, detail)->index_count / bearer->range->forms / 3};
     else
-        *wd_push(gather->items, gather->count, gather->capacity) =
-            (struct wd_spray_instance){bearer->index, index};
+        *wd_push(twigs->items, twigs->count, twigs->capacity) = (struct wd_spray_instance){bearer->index, index};
 }
 
 static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, uint32_t model,
@@ -112,9 +129,8 @@ static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, 
     const struct wd_tree *tree = &forest->world->trees[tree_index];
     const struct wd_twig_range *range = &forest->meshes.twigs[model];
     const struct bearer bearer = {.index = tree_index,
-                                  .triangles = twig_mesh(draw, range)->index_count / range->forms / 3,
+                                  .range = range,
                                   .reach = gather->scale * range->reach,
-                                  .box = &range->box,
                                   .stand = wd_stand_of(draw, tree_index)};
     const float *foot = bearer.stand.foot;
     float reach = 0.01f * (float)(tree->size >> 16) + WD_SPRAY_NONE_M * bearer.reach;
@@ -127,30 +143,29 @@ static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, 
 
 /* Puts the gathered in order of their forms, of which `counts` get how many there are. */
 static void deal_forms(struct wd_spray_instance *to, uint32_t counts[WD_LEAF_FORMS], const struct wd_tree_draw *draw,
-                       const struct wd_twig_range *range, const struct gather *gather)
+                       const struct wd_twig_range *range, const struct twigs *twigs)
 {
     const struct wd_tree_leaf *leaves = draw->forest->meshes.host_leaves + range->first_leaf;
     for (uint32_t form = 0; form < range->forms; form++) {
         counts[form] = 0;
-        for (size_t i = 0; i < gather->count; i++)
-            if (WD_LEAF_FORM(leaves[gather->items[i].leaf]) % range->forms == form) {
-                *to++ = gather->items[i];
+        for (size_t i = 0; i < twigs->count; i++)
+            if (WD_LEAF_FORM(leaves[twigs->items[i].leaf]) % range->forms == form) {
+                *to++ = twigs->items[i];
                 counts[form]++;
             }
     }
 }
 
-static void draw_range(const struct wd_tree_draw *draw, const struct wd_twig_range *range,
-                       const struct gather *gather)
+static void draw_twigs(const struct wd_tree_draw *draw, const struct wd_twig_range *range,
+                       const struct wd_mesh_range *mesh, const struct twigs *twigs)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const struct wd_mesh_range *mesh = twig_mesh(draw, range);
     struct wd_binding instances;
-    void *memory = wd_cmd_upload(draw->cmd, gather->count * sizeof *gather->items, &instances);
+    void *memory = wd_cmd_upload(draw->cmd, twigs->count * sizeof *twigs->items, &instances);
     if (!memory)
         return;
     uint32_t counts[WD_LEAF_FORMS];
-    deal_forms(memory, counts, draw, range, gather);
+    deal_forms(memory, counts, draw, range, twigs);
     const struct wd_binding bindings[] = {
         draw->uniforms,
         WD_BIND_BUFFER(&forest->trees),
@@ -181,7 +196,7 @@ static void draw_range(const struct wd_tree_draw *draw, const struct wd_twig_ran
                                                                        mesh->first_index + form * indices, 0, first});
         draw->stats->draw_calls++;
     }
-    draw->stats->triangles += (uint64_t)indices / 3 * gather->count;
+    draw->stats->triangles += (uint64_t)indices / 3 * twigs->count;
 }
 
 static bool has_sprays(const struct wd_tree_draw *draw, const struct wd_mesh_batch *batch)
@@ -193,7 +208,8 @@ static bool has_sprays(const struct wd_tree_draw *draw, const struct wd_mesh_bat
 static void gather_batch(struct gather *gather, const struct wd_tree_draw *draw,
                          const struct wd_selection *selection, const struct wd_mesh_batch *batch)
 {
-    gather->count = 0;
+    for (int detail = 0; detail < DETAILS; detail++)
+        gather->twigs[detail].count = 0;
     for (uint32_t k = 0; k < batch->count && has_sprays(draw, batch); k++)
         gather_tree(gather, draw, batch->model, selection->meshes[batch->first + k].tree);
 }
@@ -235,8 +251,11 @@ void wd_spray_draw(const struct wd_tree_draw *draw, const struct wd_selection *s
     for (size_t i = 0; i < selection->batch_count; i++) {
         const struct wd_mesh_batch *batch = &selection->batches[i];
         gather_batch(&gather, draw, selection, batch);
-        if (gather.count)
-            draw_range(draw, &draw->forest->meshes.twigs[batch->model], &gather);
+        const struct wd_twig_range *range = &draw->forest->meshes.twigs[batch->model];
+        for (int detail = 0; detail < DETAILS; detail++)
+            if (gather.twigs[detail].count)
+                draw_twigs(draw, range, twig_mesh(range, detail), &gather.twigs[detail]);
     }
-    free(gather.items);
+    for (int detail = 0; detail < DETAILS; detail++)
+        free(gather.twigs[detail].items);
 }
