@@ -17,8 +17,8 @@ uint32_t wd_leaf_spray_forms(const struct wd_species *species);
  * across, y along, z above), tints of leaves white, of wood the twig's; kind's flexibility is what
  * is added to the leaf's own. Empty where a drawn leaf is a single leaf or frond in full already. */
 void wd_leaf_spray_mesh(struct wd_tree_mesh *mesh, const struct wd_species *species, float size_m);
-/* The same twig for shadow maps and pixels that are as wide as its leaves, wider than needles and teeth: leaves as kites in the same places
- * (fronds as from afar), fewer and wider needles, of the same area in all. */
+/* The same twig for shadow maps and pixels that are as wide as its leaves, wider than needles and teeth: leaves as kites
+ * in the same places (fronds as from afar), fewer and wider needles, of the same area in all. */
 void wd_leaf_spray_shade_mesh(struct wd_tree_mesh *mesh, const struct wd_species *species, float size_m);
 
 #endif
