@@ -34,8 +34,6 @@ static const struct row {
       {"splats", {-2, 1}, {-1, 1.5}, true}}},
     /* plumes let as little through as blades: +13.3 otherwise, +0.1 */
     {"species/grass.json", 0, {{"full", {-1.5, 1.5}, {-1.5, 2}, true}}},
-    /* tufts that stand free have their models' tables, and are as wide as they grew: -12.9 otherwise, +0.2 */
-    {"species/grass.json", 2, {{"zfield", {-2, 1.5}, {-1.5, 2.5}, true}}},
     /* discs of wood show less of the white stem than they would: +8.3 otherwise. Pairs of models differ: -8.6 (these two),
        -8.1, -4.0, -2.5 and +2.1; ten at once -3.0, and -2.2 while feet were round, when these two had +0.9 */
     {"species/birch.json", 3, {{"splats", {-2, 2}, {-10.5, -6.5}, true}}},

@@ -144,18 +144,19 @@ static void look_at_floor(const struct stand *stand, int places, struct sum *dra
     }
 }
 
-/* 1.01 to 1.04 of the traced; 1.36 in red if leaves scatter the sun down as an even layer does and
+/* 1.01 to 1.05 of the traced; 1.36 in red if leaves scatter the sun down as an even layer does and
  * the sky about the sun comes by as short a way as in lighter stands. */
 static void a_dark_floor_is_as_bright_as_traced(void **state)
 {
     (void)state;
     struct sum drawn = {0}, traced = {0};
-    look_at_floor(&dark, 4, &drawn, &traced);
+    look_at_floor(&dark, 3, &drawn, &traced);
     check_light("floor of a dark stand", &drawn, &traced, 1.15, 1.15);
 }
 
-/* A bright horizon lights it past the plot's edges: 1.02 to 1.04 of the traced; 0.83 in red, at twice as many places, if
- * leaves of layers are spread evenly from base to top and the low sky that comes in is as dim as a closed stand's. */
+/* A bright horizon lights it past the plot's edges: 0.96 to 0.98 of the traced, a place more or less 1.02 to 1.12; 0.83 in
+ * red, at more places, if leaves of layers are spread evenly from base to top and the low sky that comes in is as dim as a
+ * closed stand's. */
 static void the_floor_of_a_plot_is_as_bright_as_traced(void **state)
 {
     (void)state;
@@ -166,7 +167,7 @@ static void the_floor_of_a_plot_is_as_bright_as_traced(void **state)
         print_message("skipped, there is no %s\n", file);
         skip();
     }
-    look_at_floor(&plot, 4, &drawn, &traced);
+    look_at_floor(&plot, 3, &drawn, &traced);
     check_light("floor of a plot", &drawn, &traced, 1.15, 1.25);
 }
 
@@ -210,15 +211,14 @@ static void look_from_within(const struct stand *stand, int places, uint32_t lay
     }
 }
 
-/* Crowns: 0.93 of the traced, 0.99 in blue, most of which wax mirrors (without haze 0.93 and 0.99); 1.20 in red, without
- * haze, if leaves let through a share of the side that is seen and what lies lower in crowns is lit as what lies higher.
- * Haze: 0.87 to 0.89 of the traced (at eight places 0.91 to 0.95, level 1.03 to 1.08); 12 times as much in red if no
+/* Crowns: 0.94 of the traced, 1.03 in blue, most of which wax mirrors; 1.20 in red, without haze, at other places, if leaves let through a share of the side that is seen and what lies lower in crowns is lit as what lies higher.
+ * Haze: 0.85 to 0.88 of the traced (at eight places 0.91 to 0.95, level 1.03 to 1.08); 12 times as much in red if no
  * tree shades it. */
 static void a_dark_stand_from_within_is_as_bright_as_traced(void **state)
 {
     (void)state;
     struct within drawn = {0}, traced = {0};
-    look_from_within(&dark, 6, LIGHT, &drawn, &traced);
+    look_from_within(&dark, 4, LIGHT, &drawn, &traced);
     check_light("crowns of a dark stand", &drawn.crowns, &traced.crowns, 1.13, 1.24);
     check_light("haze within a dark stand", &drawn.haze, &traced.haze, 1.3, 1.3);
 }
@@ -319,21 +319,21 @@ static struct likeness trees_alike(const char *what, struct wd_camera camera_of(
     return found;
 }
 
-/* 0.95 and 0.22; 0.77 and 0.44 where the canopy's field alone tells what neighbours leave of the sky. */
+/* 0.95 and 0.22; 0.77 and 0.44, at other places, where the canopy's field alone tells what neighbours leave of the sky. */
 static void a_tree_is_as_dark_as_its_neighbours_make_it(void **state)
 {
     (void)state;
     paint(&cloudy);
-    const struct likeness found = trees_alike("from above", down_at, 8);
+    const struct likeness found = trees_alike("from above", down_at, 6);
     assert_true(found.correlation > 0.89 && found.apart < 0.31);
 }
 
-/* 0.84 and 0.32; 0.76 and 0.39 by the field alone. */
+/* 0.86 and 0.28; at more places 0.90 and 0.26, and before, by the field alone, 0.76 and 0.39. */
 static void crowns_about_an_eye_are_as_dark_as_traced(void **state)
 {
     (void)state;
     paint(&cloudy);
-    const struct likeness found = trees_alike("about the eye", among_crowns, 8);
+    const struct likeness found = trees_alike("about the eye", among_crowns, 5);
     assert_true(found.correlation > 0.80 && found.apart < 0.36);
 }
 
@@ -347,12 +347,12 @@ static void fog_in_a_stand_is_as_bright_as_traced(void **state)
     check_light("fog within a dark stand", &drawn.haze, &traced.haze, 1.1, 1.1);
 }
 
-/* 0.999; 0.978 if discs are as large from below as from above. */
+/* 0.994; at other places 0.978 if discs are as large from below as from above. */
 static void crowns_from_within_hide_as_much_of_the_sky_as_traced(void **state)
 {
     (void)state;
     struct within drawn = {0}, traced = {0};
-    look_from_within(&light, 4, SHAPES, &drawn, &traced);
+    look_from_within(&light, 3, SHAPES, &drawn, &traced);
     double ratio = drawn.crowns.pixels / traced.crowns.pixels;
     print_message("crowns from within cover %.3f of what is traced\n", ratio);
     assert_true(ratio > 0.96 && ratio < 1.04);

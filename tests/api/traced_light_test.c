@@ -226,7 +226,7 @@ static void pale_leaves_light_each_other(void **state)
     assert_true(found.trees_pct > 0.5 && found.trees_pct < 7);
 }
 
-/* Of grass: +9 %, and half as bright where they are lit as in a sward. */
+/* Of grass: +1.8 %, half as bright where they are lit as in a sward, -13 % by a table of tufts half as wide. */
 static void tufts_stand_free(void **state)
 {
     (void)state;
@@ -235,7 +235,7 @@ static void tufts_stand_free(void **state)
         .size_m = "[60, 60]", .samples = 8,
         .keys = "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40}",
         .camera = "\"position_m\": [30, 24, 1.6], \"look_at_m\": [30, 30, 0.4], \"fov_deg\": 18"});
-    assert_true(fabs(found.trees_pct) < 15);
+    assert_true(found.trees_pct > -6 && found.trees_pct < 10);
 }
 
 /* Maples as cards, whose texels mix leaves' upper sides with paler lower ones: what reflects light from above are
