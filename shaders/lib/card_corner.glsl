@@ -189,7 +189,7 @@ card_frame card_at(card_tree t, uint slot)
 vec4 card_clip(card_tree t, card_frame card, vec2 side)
 {
     vec3 offset = card.middle + card.across * side.x + card.down * side.y;
-    offset += tree_sway(t.tree, t.model.flexibility, offset.z, frame.time_s);
+    offset += tree_bend(tree_wind(), t.tree, t.model.flexibility, offset.z, frame.time_s);
     vec3 rel = t.foot + offset;
     return SHADOW != 0u ? shadow_clip(push.cascade, rel)
                         : frame.clip_from_rel * vec4(card_over_ground(rel, t.foot), 1.0);

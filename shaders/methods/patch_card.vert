@@ -64,7 +64,7 @@ void main()
     vec3 toward = -normalize(foot + vec3(0.0, 0.0, 0.5 * WD_TREE_HEIGHT_M(tree)));
     wd_billboard board = billboard_corner(model, pose, toward, side, false);
     vec3 offset = board.offset
-                  + tree_sway(tree, model.flexibility, max(board.offset.z, 0.0), frame.time_s);
+                  + tree_bend(tree_wind(), tree, model.flexibility, max(board.offset.z, 0.0), frame.time_s);
 
     float tall_px = WD_TREE_HEIGHT_M(tree) * push.pixels_per_radian / distance_m;
     wd_card_flat packed =
