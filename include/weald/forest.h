@@ -28,7 +28,8 @@ struct wd_forest_params {
     struct wd_log log;
 };
 
-/* Reads the scene, makes the ground and plants every tree. The same scene and seed give the same
+/* Reads the scene, makes the ground and plants every tree. A forest does not change: for another hour, season or
+ * weather make another, with other settings. The same scene and seed give the same
  * forest on any machine, compiler and number of threads. Takes about a second for a million trees.
  *   forest  receives the new object, NULL on failure; destroy with wd_forest_destroy
  *   params  read during the call only
@@ -101,13 +102,31 @@ double wd_forest_ground_m(const struct wd_forest *forest, double x_m, double y_m
 /* Most pixels of a picture each way. */
 #define WD_MOST_SIZE_PX 16384
 
-/* A pinhole camera. All of it is finite. */
+/* A pinhole camera. All of it is finite. It looks along
+ *   ahead = (sin yaw cos pitch, cos yaw cos pitch, sin pitch), with
+ *   right = (cos yaw, -sin yaw, 0) and up = right x ahead: never rolled.
+ * Pixels are square: the focal length is height / (2 tan(fov_rad / 2)) pixels both ways, the principal point the
+ * picture's middle, (width / 2, height / 2). Without distortion. Places in a picture are in pixels from its upper
+ * left corner, x right and y down: the middle of the pixel in column i and row j is at (i + 0.5, j + 0.5). */
 struct wd_camera {
     double position_m[3]; /* local frame, less than WD_MOST_PLACE_M from its origin; z above the datum */
     double yaw_rad;       /* clockwise from north */
     double pitch_rad;     /* up from the horizon */
     double fov_rad;       /* vertical field of view, WD_LEAST_FOV_DEG..WD_MOST_FOV_DEG as radians */
 };
+
+/* Turns the camera toward a local place. Straight up or down, or where the place is its own, yaw stays. Thread-safe,
+ * as the next two. */
+void wd_camera_look_at(struct wd_camera *camera, const double place_m[3]);
+
+/* Where a picture of this size shows a local place, within the picture or beside it, and at which depth, as in the
+ * layer depth_m. False, and both are left as they are, if the place is not ahead of the camera.
+ *   depth_m  may be NULL */
+bool wd_camera_project(const struct wd_camera *camera, uint32_t width, uint32_t height, const double place_m[3],
+                       double pixel[2], double *depth_m);
+/* The other way: the local place that is seen there at this depth. */
+void wd_camera_place(const struct wd_camera *camera, uint32_t width, uint32_t height, const double pixel[2],
+                     double depth_m, double place_m[3]);
 
 /* Names of the scene's cameras and paths, in file order; NULL beyond the last. Every scene has at
  * least one camera. The strings live as long as the forest. */

@@ -8,6 +8,7 @@
 #include "base/dmath.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "world/surroundings.h"
 
 const char *wd_forest_camera_name(const struct wd_forest *forest, uint32_t index)
 {
@@ -35,6 +36,50 @@ static void look_at(struct wd_camera *camera, const double target_m[3])
     double up = target_m[2] - camera->position_m[2];
     camera->yaw_rad = atan2(east, north);
     camera->pitch_rad = atan2(up, hypot(east, north));
+}
+
+void wd_camera_look_at(struct wd_camera *camera, const double place_m[3])
+{
+    double yaw_rad = camera->yaw_rad;
+    look_at(camera, place_m);
+    if (place_m[0] == camera->position_m[0] && place_m[1] == camera->position_m[1])
+        camera->yaw_rad = yaw_rad;
+}
+
+static double focal_px(const struct wd_camera *camera, uint32_t height)
+{
+    return 0.5 * height / tan(0.5 * camera->fov_rad);
+}
+
+bool wd_camera_project(const struct wd_camera *camera, uint32_t width, uint32_t height, const double place_m[3],
+                       double pixel[2], double *depth_m)
+{
+    double right[3], ahead[3], up[3], along[3] = {0}; /* right, ahead, up */
+    wd_camera_axes(camera, right, ahead, up);
+    for (int k = 0; k < 3; k++) {
+        double from_m = place_m[k] - camera->position_m[k];
+        along[0] += from_m * right[k];
+        along[1] += from_m * ahead[k];
+        along[2] += from_m * up[k];
+    }
+    if (!(along[1] > 0))
+        return false;
+    double scale = focal_px(camera, height) / along[1];
+    pixel[0] = 0.5 * width + scale * along[0];
+    pixel[1] = 0.5 * height - scale * along[2];
+    if (depth_m)
+        *depth_m = along[1];
+    return true;
+}
+
+void wd_camera_place(const struct wd_camera *camera, uint32_t width, uint32_t height, const double pixel[2],
+                     double depth_m, double place_m[3])
+{
+    double right[3], ahead[3], up[3], scale = 1 / focal_px(camera, height);
+    double x = scale * (pixel[0] - 0.5 * width), y = scale * (0.5 * height - pixel[1]);
+    wd_camera_axes(camera, right, ahead, up);
+    for (int k = 0; k < 3; k++)
+        place_m[k] = camera->position_m[k] + depth_m * (ahead[k] + x * right[k] + y * up[k]);
 }
 
 static bool is_near(const struct wd_terrain *terrain, const struct wd_scene_camera *camera)

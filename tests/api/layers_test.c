@@ -154,6 +154,88 @@ static void pictures_tell_what_they_show(void **state)
     }
 }
 
+/* --- places ------------------------------------------------------------------------------- */
+
+/* A breast-high look at each of some trunks: id, place and depth agree. */
+static void trees_are_where_they_are_said_to_be(void **state)
+{
+    (void)state;
+    const double away_m = 4, up_m = 0.8, thickest_m = 0.3;
+    const char *const set[] = {"wind.speed_mps=0", NULL};
+    struct wd_forest_params still = {.scene_path = suite.small_path, .settings = set, .log = suite.log};
+    struct wd_forest *forest;
+    assert_int_equal(wd_forest_create(&forest, &still), WD_OK);
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, forest), WD_OK);
+    for (uint32_t id = 20; id < 1400; id += 230) {
+        struct wd_tree_info tree;
+        struct wd_render_params params = {
+            .width = 41, .height = 25, .method = "continuum", .layers = WD_LAYER_DEPTH | WD_LAYER_TREE_ID};
+        assert_true(wd_forest_get_tree(forest, id, &tree));
+        const double *foot = tree.position_m, axis_m[3] = {foot[0], foot[1], foot[2] + up_m};
+        assert_float_equal(foot[2], wd_forest_ground_m(forest, foot[0], foot[1]), 1e-3);
+        params.camera = (struct wd_camera){
+            .position_m = {foot[0] - away_m * sin(id), foot[1] - away_m * cos(id), foot[2] + 2 * up_m}, .fov_rad = 0.2};
+        wd_camera_look_at(&params.camera, axis_m);
+        params.camera.yaw_rad += 0.05;
+        double pixel[2], depth_m, place_m[3];
+        assert_true(wd_camera_project(&params.camera, params.width, params.height, axis_m, pixel, &depth_m));
+        assert_true(pixel[0] > 4 && pixel[0] < 18 && fabs(pixel[1] - 12.5) < 0.5);
+        struct wd_picture picture = suite_render(&suite, &params);
+        size_t at = (size_t)pixel[1] * params.width + (size_t)pixel[0];
+        assert_int_equal(picture.tree_id[at], id);
+        wd_camera_place(&params.camera, params.width, params.height, pixel, (double)picture.depth_m[at], place_m);
+        assert_true(hypot(place_m[0] - foot[0], place_m[1] - foot[1]) < thickest_m);
+        wd_picture_finish(&picture);
+    }
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, suite.forest), WD_OK);
+    wd_forest_destroy(&forest);
+}
+
+/* What is seen of the ground lies on it, right to the picture's edges. */
+static void depths_are_of_places(void **state)
+{
+    (void)state;
+    struct wd_render_params params = suite_params(suite.forest, "walk");
+    params.layers = WD_LAYER_DEPTH | WD_LAYER_TREE_ID;
+    params.camera.position_m[2] += 30;
+    params.camera.pitch_rad = -1.2;
+    struct wd_picture picture = suite_render(&suite, &params);
+    double off_m = 0, place_m[3], again[2], depth_m;
+    size_t ground = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        const double pixel[2] = {(double)(i % PICTURE_WIDTH) + 0.5, (double)(i / PICTURE_WIDTH) + 0.5};
+        if (picture.tree_id[i] || isinf(picture.depth_m[i]))
+            continue;
+        wd_camera_place(&params.camera, params.width, params.height, pixel, (double)picture.depth_m[i], place_m);
+        assert_true(wd_camera_project(&params.camera, params.width, params.height, place_m, again, &depth_m));
+        assert_true(hypot(again[0] - pixel[0], again[1] - pixel[1]) < 1e-6);
+        assert_float_equal(depth_m, picture.depth_m[i], 1e-6);
+        off_m += fabs(place_m[2] - wd_forest_ground_m(suite.forest, place_m[0], place_m[1]));
+        ground++;
+    }
+    assert_true(ground > 1000 && off_m < 0.01 * (double)ground);
+    wd_picture_finish(&picture);
+}
+
+static void cameras_turn_to_places(void **state)
+{
+    (void)state;
+    struct wd_camera camera = {.position_m = {10, 20, 30}, .yaw_rad = 0.7, .fov_rad = 1};
+    double pixel[2] = {-1, -1}, depth_m = -1;
+    wd_camera_look_at(&camera, (const double[3]){13, 20, 30});
+    assert_float_equal(camera.yaw_rad, 1.57079632679, 1e-9);
+    assert_true(wd_camera_project(&camera, 40, 30, (const double[3]){13, 20, 30}, pixel, NULL));
+    assert_true(fabs(pixel[0] - 20) < 1e-9 && fabs(pixel[1] - 15) < 1e-9);
+    assert_true(wd_camera_project(&camera, 40, 30, (const double[3]){13, 19, 31}, pixel, &depth_m));
+    assert_true(pixel[0] > 20 && pixel[1] < 15 && fabs(depth_m - 3) < 1e-9);
+    assert_false(wd_camera_project(&camera, 40, 30, (const double[3]){10, 20, 30}, pixel, &depth_m));
+    assert_false(wd_camera_project(&camera, 40, 30, (const double[3]){9, 20, 30}, pixel, &depth_m));
+    assert_float_equal(depth_m, 3, 1e-9);
+    wd_camera_look_at(&camera, (const double[3]){10, 20, 0});
+    assert_float_equal(camera.yaw_rad, 1.57079632679, 1e-9);
+    assert_float_equal(camera.pitch_rad, -1.57079632679, 1e-9);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -162,6 +244,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(mattes_are_of_all_samples),
         cmocka_unit_test(solid_normals_are_bent_not_turned),
         cmocka_unit_test(pictures_tell_what_they_show),
+        cmocka_unit_test(trees_are_where_they_are_said_to_be),
+        cmocka_unit_test(depths_are_of_places),
+        cmocka_unit_test(cameras_turn_to_places),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]) || wd_renderer_set_forest(suite.renderer, suite.forest) != WD_OK)
         return 1;
