@@ -86,6 +86,9 @@ enum wd_layer_bits {
 /* Trees of a pixel that WD_LAYER_CRYPTOMATTE keeps, by falling coverage. */
 enum { WD_RANKS = 6 };
 
+enum wd_accumulation { WD_ACCUMULATE_NOT, WD_ACCUMULATE };
+enum wd_time_mode { WD_TIME_OFF, WD_TIME_PASSES };
+
 #define WD_LEAST_ERROR_PX 0.25
 #define WD_MOST_ERROR_PX 32.0
 
@@ -95,7 +98,7 @@ struct wd_render_params {
     double time_s;          /* of the wind; within 1e9 of 0, as the next */
     double previous_time_s; /* for velocity */
     uint32_t width, height; /* 1..16384 each */
-    uint32_t samples;       /* pictures averaged with sub-pixel offsets; 0: 1 */
+    uint32_t samples;       /* pictures averaged with sub-pixel offsets, 65536 at most; 0: 1 */
     const char *method;     /* NULL: the scene's */
     enum wd_view_mode view;
     uint32_t layers;        /* wd_layer_bits wanted; 0: display */
@@ -109,8 +112,8 @@ struct wd_render_params {
      * method, view and size have shown of the same surfaces: moved along with camera and wind, and begun
      * anew where something else has come into view. For live views; `samples`, previous_camera and
      * previous_time_s are not used. A still camera in a still world comes to the picture of many samples. */
-    enum wd_accumulation { WD_ACCUMULATE_NOT, WD_ACCUMULATE } accumulation;
-    enum wd_time_mode { WD_TIME_OFF, WD_TIME_PASSES } timing; /* per-pass times, at some cost */
+    enum wd_accumulation accumulation;
+    enum wd_time_mode timing; /* per-pass times, at some cost */
 };
 
 /* A finished picture in host memory. Arrays are height * width, rows top to bottom; those not
@@ -120,7 +123,9 @@ struct wd_picture {
     uint32_t width, height;
     uint8_t *display;  /* 4 a pixel: R, G, B, 255 */
     float *color;      /* 3 a pixel */
-    float *depth_m;    /* distance along the view axis, metres; +infinity for sky */
+    float *depth_m;    /* distance along the view axis, metres; +infinity for sky. wd_camera_place makes places of it.
+                          Of trees that a method draws as pictures, that of the picture's plane: metres off, and seen
+                          from above tens of metres. continuum draws none */
     float *normal;     /* 3 a pixel, local frame, unit length, of the side that is seen; 0 for sky */
     float *albedo;     /* 3 a pixel, linear */
     uint32_t *species; /* index + 1; 0: no tree */
@@ -145,7 +150,7 @@ struct wd_picture {
 enum wd_result wd_renderer_render(struct wd_renderer *renderer,
                                   const struct wd_render_params *params,
                                   struct wd_picture *picture);
-void wd_picture_finish(struct wd_picture *picture); /* accepts {0} */
+void wd_picture_finish(struct wd_picture *picture); /* accepts NULL and {0} */
 
 /* Times of the newest picture's passes, per sample. */
 struct wd_pass_time {

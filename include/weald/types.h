@@ -27,6 +27,10 @@ enum wd_result {
  * comparing pictures or for small things, the process ends by abort() after a message on standard error. Systems
  * that promise more memory than they have may end it at any time. */
 
+/* Pointers that a call takes are to objects that are there, but where a comment says that NULL is accepted or may be
+ * given. Where a call returns an enum wd_result, most that are NULL are refused with WD_ERROR_INPUT; those to where the
+ * call writes must not be. */
+
 /* Short English name of a result ("input", "output", ...); never NULL. Thread-safe. */
 const char *wd_result_name(enum wd_result result);
 
@@ -45,8 +49,8 @@ struct wd_log {
     void *user;
 };
 
-/* How far a long call has come. `report` may be NULL. `done` runs from 0 to `total`, in the
- * unit that `stage` names ("trees", "frames", ...). Return false to stop the call, which then
+/* How far a long call has come. `report` may be NULL. `done`, in the unit that `stage` names ("trees", "frames", ...),
+ * never falls within a stage; one may begin after 0 and end before `total`. Return false to stop the call, which then
  * returns WD_ERROR_INTERRUPTED and leaves no partial output. Called on the calling thread. */
 struct wd_progress {
     bool (*report)(void *user, const char *stage, uint64_t done, uint64_t total);
