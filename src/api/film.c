@@ -142,6 +142,8 @@ static void count_kept_picture(struct wd_film *film)
 
 enum wd_result wd_film_add_kept(struct wd_film *film, uint64_t *frames)
 {
+    if (!wd_given(film, NULL) || !wd_given(frames, &film->log))
+        return WD_ERROR_INPUT;
     enum wd_result result = check_whole(film) ? WD_OK : WD_ERROR_OUTPUT;
     if (result == WD_OK && film->store.stream && film->frames < film->frame_count) {
         if (film->pattern)
@@ -186,7 +188,7 @@ static enum wd_result add_picture(struct wd_film *film, const struct wd_picture 
 enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture)
 {
     struct file_mark mark;
-    if (!wd_given(picture, &film->log))
+    if (!wd_given(film, NULL) || !wd_given(picture, &film->log))
         return WD_ERROR_INPUT;
     if (!check_whole(film))
         return WD_ERROR_OUTPUT;

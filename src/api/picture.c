@@ -9,6 +9,8 @@
 
 void wd_picture_finish(struct wd_picture *picture)
 {
+    if (!picture)
+        return;
     free(picture->display);
     free(picture->color);
     free(picture->depth_m);

@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "scene/nearest.h"
 #include "weald/vulkan.h"
 
 enum { MAX_SAMPLES = 65536 };
@@ -41,10 +42,11 @@ static enum wd_result create(struct wd_renderer **result, const struct wd_gpu_pa
     return WD_OK;
 }
 
-static bool check_create(struct wd_renderer **renderer, const struct wd_renderer_params *params)
+static bool check_create(struct wd_renderer **renderer, const struct wd_renderer_params *params,
+                         const char *function)
 {
     *renderer = NULL;
-    return wd_given(params, NULL) &&
+    return wd_check_given(params, function, "params", NULL) &&
            wd_check_choice(params->validation, WD_VALIDATION_ON + 1, "validation", &params->log);
 }
 
@@ -60,7 +62,7 @@ static struct wd_gpu_params gpu_params(const struct wd_renderer_params *params)
 enum wd_result wd_renderer_create(struct wd_renderer **renderer,
                                   const struct wd_renderer_params *params)
 {
-    if (!check_create(renderer, params))
+    if (!check_create(renderer, params, __func__))
         return WD_ERROR_INPUT;
     const struct wd_gpu_params gpu = gpu_params(params);
     return create(renderer, &gpu, params);
@@ -71,7 +73,7 @@ enum wd_result wd_renderer_create_presenting(struct wd_renderer **renderer,
                                              uint32_t instance_extension_count,
                                              const struct wd_renderer_params *params)
 {
-    if (!check_create(renderer, params) ||
+    if (!check_create(renderer, params, __func__) ||
         (instance_extension_count && !wd_given(instance_extensions, &params->log)))
         return WD_ERROR_INPUT;
     struct wd_gpu_params gpu = gpu_params(params);
@@ -85,7 +87,7 @@ enum wd_result wd_renderer_create_vulkan(struct wd_renderer **renderer,
                                          const struct wd_vulkan_handles *handles,
                                          const struct wd_renderer_params *params)
 {
-    if (!check_create(renderer, params) || !wd_given(handles, &params->log))
+    if (!check_create(renderer, params, __func__) || !wd_given(handles, &params->log))
         return WD_ERROR_INPUT;
     const struct wd_gpu_external external = {handles->instance, handles->physical_device,
                                              handles->device, handles->queue,
@@ -194,6 +196,20 @@ static bool make_room(struct wd_renderer *renderer, const struct wd_render_param
                     pixels);
 }
 
+static enum wd_result no_such_method(const char *name, const struct wd_log *log)
+{
+    const char *const *names = wd_method_names();
+    size_t count = 0;
+    while (names[count])
+        count++;
+    const char *nearest = wd_nearest_name(name, names, count);
+    char *list = wd_join(names, count, ", ");
+    wd_error(log, "no method \"%.200s\"%s%s%s; there are: %s", name, nearest ? ", did you mean \"" : "",
+             nearest ? nearest : "", nearest ? "\"" : "", list);
+    free(list);
+    return WD_ERROR_INPUT;
+}
+
 enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
                                    const struct wd_render_params *params, uint32_t max_samples,
                                    enum wd_frame_light light, struct wd_picture *picture)
@@ -206,10 +222,8 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
         return WD_ERROR_INPUT;
     const char *name = params->method ? params->method : renderer->forest->scene.method;
     const struct wd_method *method = wd_method_find(name);
-    if (!method) {
-        wd_error(&renderer->log, "no method \"%s\": see wd_method_names", name);
-        return WD_ERROR_INPUT;
-    }
+    if (!method)
+        return no_such_method(name, &renderer->log);
     if (!wd_method_can_draw(method, &renderer->forest->world, &renderer->log))
         return WD_ERROR_INPUT;
     renderer->no_memory = renderer->gpu.no_memory = false;

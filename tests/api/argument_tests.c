@@ -152,6 +152,9 @@ static void unknown_names_list_all(void **state)
                  "did you mean \"walk\"; there are: over, walk");
     assert_input(suite, wd_forest_get_path_camera(suite->forest, "zzz", 0, &camera, NULL),
                  "no path \"zzz\"; there are: fly");
+    struct wd_render_params params = suite_params(suite->forest, "over");
+    params.method = "octre";
+    assert_refused(suite, &params, "no method \"octre\", did you mean \"octree\"; there are: ");
 }
 
 /* Of many the first, how many more there are, and the one that was meant. */
@@ -207,6 +210,8 @@ static void nothing_is_made_of_nothing(void **state)
     const struct wd_film_params no_path = {.width = 8, .height = 8};
     const struct wd_reference_params reference_params = {.log = *log};
     const struct wd_renderer_params renderer_params = {.gpu = "software", .log = *log};
+    const struct wd_picture picture = {0};
+    uint64_t frames;
     struct wd_specimen *specimen;
     struct wd_forest *forest;
     struct wd_film *film;
@@ -220,6 +225,9 @@ static void nothing_is_made_of_nothing(void **state)
     assert_input(suite, wd_film_open(&film, NULL, log), "wd_film_open: params is NULL");
     assert_input(suite, wd_reference_create(&reference, NULL, &reference_params),
                  "wd_reference_create: forest is NULL");
+    assert_input(suite, wd_film_add_kept(NULL, &frames), "");
+    assert_input(suite, wd_film_add(NULL, &picture), "");
+    wd_picture_finish(NULL);
     assert_input(suite, wd_renderer_create_vulkan(&renderer, NULL, &renderer_params),
                  "wd_renderer_create_vulkan: handles is NULL");
     assert_input(suite, wd_renderer_create_presenting(&renderer, NULL, 1, &renderer_params),
