@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "tree/model_beside.h"
 #include "tree/model_obj.h"
 
 struct text {
@@ -176,7 +177,9 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
 {
     size_t size;
     (void)io;
-    char *bytes = strchr(mode, 'w') ? NULL : read_whole(path, &size);
+    char *there = strchr(mode, 'w') ? NULL : wd_model_find(path);
+    char *bytes = there ? read_whole(there, &size) : NULL;
+    free(there);
     struct text *text = bytes ? calloc(1, sizeof *text) : NULL;
     struct aiFile *file = text ? calloc(1, sizeof *file) : NULL;
     if (!file) {
@@ -195,8 +198,22 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
 struct aiFileIO *wd_model_io(const char *path, bool *skins)
 {
     *skins = has_skins(path);
-    struct aiFileIO *io = *skins || wd_model_is_obj(path) ? calloc(1, sizeof *io) : NULL;
+    bool others = wd_model_is_obj(path) || wd_has_ending(path, ".gltf"); /* names of files beside it */
+    struct aiFileIO *io = *skins || others ? calloc(1, sizeof *io) : NULL;
     if (io)
         *io = (struct aiFileIO){.OpenProc = open_file, .CloseProc = close_file};
     return io;
+}
+
+bool wd_model_has_word(const char *path, const char *word)
+{
+    enum { ENOUGH = 1 << 20 };
+    FILE *stream = fopen(path, "rb");
+    char *head = stream ? malloc(ENOUGH) : NULL;
+    size_t size = head ? fread(head, 1, ENOUGH, stream) : 0;
+    bool found = size > 0 && memmem(head, size, word, strlen(word));
+    free(head);
+    if (stream)
+        fclose(stream);
+    return found;
 }
