@@ -216,10 +216,10 @@ static bool looks_like_leaf(const struct wd_model_materials *materials,
 {
     float color[3];
     int name = score_name(material->file->name);
+    if (material->picture >= 0 && materials->pictures[material->picture].holes)
+        return true; /* cards, of twigs with their leaves where the name is that of a branch */
     if (name != 0)
         return name > 0;
-    if (material->picture >= 0 && materials->pictures[material->picture].holes)
-        return true;
     mean_color(materials, material, color);
     return is_green(color) || material->file->two_sided;
 }
@@ -271,6 +271,12 @@ bool wd_model_materials_init(struct wd_model_materials *materials, const struct 
                          species->model.leaf_count, true, log) &&
               apply_list(materials, path, "wood", species->model.wood, species->model.wood_count,
                          false, log);
+    for (size_t i = 0; i < materials->count && ok; i++) {
+        const struct wd_model_material *material = &materials->items[i];
+        if (material->used && !material->leaf && material->picture >= 0 && materials->pictures[material->picture].holes)
+            wd_warn(log, "%s: material %s is wood, but its texture has holes, which are filled far off: among \"leaves\" "
+                    "they stay", path, material->file->name);
+    }
     for (size_t i = 0; i < materials->count && ok; i++)
         if (materials->items[i].leaf)
             darken_leaf(materials, &materials->items[i], species->model.leaf_reflectance);

@@ -93,9 +93,12 @@ static void open_scene(struct parse *parse, const char *path)
         steps |= aiProcess_GlobalScale;
     struct aiPropertyStore *store = aiCreatePropertyStore();
     aiSetImportPropertyFloat(store, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 70);
-    bool skins;
-    struct aiFileIO *io = wd_model_io(path, &skins);
-    if (skins)
+    struct wd_model_traits traits;
+    struct aiFileIO *io = wd_model_io(path, &traits);
+    if (traits.whole_numbers)
+        give_up(parse, "has its %s as whole numbers (quantized), which are not read; export it with floats",
+                traits.whole_numbers);
+    if (traits.skins)
         keep_warning("Warn,: has skins, which are not read: its vertices stand as they are in the file; apply "
                      "the pose before the export for another", (void *)&parse->header);
     parse->scene = aiImportFileExWithProperties(path, steps, io, store);

@@ -147,6 +147,42 @@ static void colours_of_vertices_count_as_leaves_colours(void **state)
     assert_in_range(tints[1] >> 8 & 255, 19, 22);
 }
 
+/* Of a texture's coordinates, as the format has it, and of positions by an extension. */
+static void whole_numbers_for_places_are_refused(void **state)
+{
+    static const char *const names[] = {"POSITION", "TEXCOORD_0"};
+    char text[1024];
+    (void)state;
+    for (size_t i = 0; i < 2; i++) {
+        snprintf(text, sizeof text, "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"primitives\": [{\"attributes\": "
+                 "{\"NORMAL\": 0, \"%s\": 1}}]}], \"accessors\": [{\"componentType\": 5126}, {\"componentType\": 5123}]}",
+                 names[i]);
+        write_text("whole.gltf", text);
+        struct result *result = import("whole.gltf");
+        assert_false(result->ok);
+        expect_message(result, names[i]);
+        expect_message(result, "as whole numbers (quantized)");
+        drop(result);
+    }
+}
+
+static void cards_of_branches_are_leaves(void **state)
+{
+    (void)state;
+    write_texture("cards.png");
+    write_text("cards.mtl", "newmtl Karte\nmap_Kd cards.png\nnewmtl Branches\nmap_Kd cards.png\nmap_d cards.png\n");
+    write_text("cards.obj", "mtllib cards.mtl\n" CARD "usemtl Branches\nf 1/1 2/2 3/3\n");
+    struct result *result = import("cards.obj");
+    assert_true(result->ok);
+    assert_int_equal(test_leaf_triangles(&result->import.model.full), 3);
+    drop(result);
+    write_text("cards.json", "{\"name\": \"cards\", \"model\": {\"file\": \"cards.obj\", \"wood\": [\"Branches\"]}}");
+    result = import("cards.json");
+    assert_true(result->ok);
+    expect_message(result, "material Branches is wood, but its texture has holes");
+    drop(result);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -156,6 +192,8 @@ int main(void)
         cmocka_unit_test(sizes_of_no_tree_are_told),
         cmocka_unit_test(lower_levels_are_left_out),
         cmocka_unit_test(normals_turn_with_stretched_surfaces),
+        cmocka_unit_test(whole_numbers_for_places_are_refused),
+        cmocka_unit_test(cards_of_branches_are_leaves),
         cmocka_unit_test(colours_of_vertices_count_as_leaves_colours),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
