@@ -271,12 +271,6 @@ bool wd_model_materials_init(struct wd_model_materials *materials, const struct 
                          species->model.leaf_count, true, log) &&
               apply_list(materials, path, "wood", species->model.wood, species->model.wood_count,
                          false, log);
-    for (size_t i = 0; i < materials->count && ok; i++) {
-        const struct wd_model_material *material = &materials->items[i];
-        if (material->used && !material->leaf && material->picture >= 0 && materials->pictures[material->picture].holes)
-            wd_warn(log, "%s: material %s is wood, but its texture has holes, which are filled far off: among \"leaves\" "
-                    "they stay", path, material->file->name);
-    }
     for (size_t i = 0; i < materials->count && ok; i++)
         if (materials->items[i].leaf)
             darken_leaf(materials, &materials->items[i], species->model.leaf_reflectance);

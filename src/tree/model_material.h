@@ -30,7 +30,7 @@ struct wd_model_materials {
 };
 
 /* Loads the pictures of the used materials and tells leaves from wood: by the species' own lists,
- * else by words in the names of material and meshes, by holes in the texture, by two-sidedness, by
+ * else by holes in the texture, by words in the names of material and meshes, by two-sidedness, by
  * green. A picture that cannot be read is a warning, and the material's colour stands in.
  * Fails on a list that names a material that is not there. */
 bool wd_model_materials_init(struct wd_model_materials *materials, const struct wd_model_file *file,
