@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "output/film.h"
 #include "tree/export.h"
+#include "tree/model_beside.h"
 #include "tree/model_obj.h"
 
 /* --- outputs ----------------------------------------------------------------------------- */
@@ -107,7 +108,7 @@ static bool check_texture(const struct wd_species *species, const char *texture,
 {
     if (!texture[0] || texture[0] == '*')
         return true;
-    char *path = wd_model_texture_path(species->model.file, texture);
+    char *path = wd_model_beside(species->model.file, texture);
     bool ok = check_source(path, "texture", species->name, outputs, log);
     free(path);
     return ok;

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "tree/clip_mesh.h"
 #include "tree/import_parts.h"
+#include "tree/model_io.h"
 #include "tree/model_obj.h"
 #include "tree/model_reduce.h"
 #include "tree/openness.h"
@@ -18,7 +19,10 @@ enum {
     REDUCED_WOOD_TRIANGLES = 1600,
     REDUCED_LEAF_TRIANGLES = 5200,  /* at least */
     REDUCED_MOST_TRIANGLES = 30000,
+    TALLEST_TREE_M = 130,
 };
+
+static const float SMALLEST_TREE_M = 0.01f;
 
 /* --- axes and units ---------------------------------------------------------------------- */
 
@@ -65,7 +69,6 @@ static const float unit_m[] = {[WD_UNIT_M] = 1,         [WD_UNIT_CM] = 0.01f, [W
 
 static float guess_scale(const struct wd_species *species, float tall)
 {
-    enum { TALLEST_TREE_M = 130 };
     if (species->model.height_m > 0)
         return species->model.height_m / tall;
     if (species->model.unit != WD_UNIT_AUTO)
@@ -75,8 +78,8 @@ static float guess_scale(const struct wd_species *species, float tall)
     return tall * 0.01f <= TALLEST_TREE_M ? 0.01f : 0.001f;
 }
 
-/* Middle of the wood's lowest two percent of the height, at its very bottom. */
-static void find_foot(struct wd_import_work *work, float tall, float foot[3])
+/* Middle of the wood's lowest two percent of the height, at its very bottom. Returns how wide they are. */
+static float find_foot(struct wd_import_work *work, float tall, float foot[3])
 {
     struct box all = empty_box, low = empty_box;
     for (int pass = 0; pass < 2; pass++) {
@@ -95,6 +98,20 @@ static void find_foot(struct wd_import_work *work, float tall, float foot[3])
     foot[0] = 0.5f * (low.low[0] + low.high[0]);
     foot[1] = 0.5f * (low.low[1] + low.high[1]);
     foot[2] = all.low[2];
+    return fmaxf(low.high[0] - low.low[0], low.high[1] - low.low[1]);
+}
+
+/* What is read well and still is no tree as meant. */
+static void warn_of_size(const struct wd_import_work *work, float tall_m, float wide_m)
+{
+    const char *file = work->species->model.file;
+    if (tall_m < SMALLEST_TREE_M || tall_m > TALLEST_TREE_M * 1.01f)
+        wd_warn(work->log, "%s: is %.3g m high with 1 unit = %g m; its height (\"height_m\", or --height for one "
+                "tree) sets it right", file, (double)tall_m, (double)work->metres_a_unit);
+    if (work->wood_corners && wide_m > tall_m)
+        wd_warn(work->log, "%s: stands on wood %.3g m wide, but is only %.3g m high: it may lie on its side (\"up\" "
+                "sets that right), have ground with it, or be more than one tree", file, (double)wide_m,
+                (double)tall_m);
 }
 
 static bool settle_frame(struct wd_import_work *work, struct frame *frame)
@@ -114,8 +131,9 @@ static bool settle_frame(struct wd_import_work *work, struct frame *frame)
         return wd_error(work->log, "%s: the model has no height along its %c axis",
                         work->species->model.file, "?xyz"[work->up]);
     frame->scale = guess_scale(work->species, tall);
-    find_foot(work, tall, frame->foot);
+    float wide = find_foot(work, tall, frame->foot);
     work->metres_a_unit = frame->scale;
+    warn_of_size(work, tall * frame->scale, wide * frame->scale);
     return true;
 }
 
@@ -213,18 +231,11 @@ static void report(const struct wd_import_work *work)
 /* glTF extensions for pictures of other kinds leave materials without any that can be found. */
 static void warn_of_pictures(const struct wd_import_work *work)
 {
-    enum { ENOUGH = 1 << 20 };
     static const char *const unread[] = {"EXT_texture_webp", "KHR_texture_basisu"};
-    FILE *stream = fopen(work->species->model.file, "rb");
-    char *head = wd_alloc(ENOUGH);
-    size_t size = stream ? fread(head, 1, ENOUGH, stream) : 0;
     for (size_t i = 0; i < sizeof unread / sizeof *unread; i++)
-        if (memmem(head, size, unread[i], strlen(unread[i])))
+        if (wd_model_has_word(work->species->model.file, unread[i]))
             wd_warn(work->log, "%s: its textures come by %s, which is not read: materials' colours "
                     "stand in", work->species->model.file, unread[i]);
-    free(head);
-    if (stream)
-        fclose(stream);
 }
 
 /* Of materials without a library the importing library makes one grey. */

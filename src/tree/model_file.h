@@ -22,7 +22,8 @@ struct wd_file_material {
     float color[4];       /* linear, alpha last */
     char texture[512];    /* file beside the model, "*N": embedded image N, or "" */
     char cutout[512];     /* a texture of opacity apart, or "" */
-    uint8_t two_sided, blended; /* blended: the file says that alpha counts */
+    uint8_t two_sided;
+    uint8_t says_alpha, blended; /* whether the file says if alpha counts; and that it does */
 };
 
 struct wd_file_image {

@@ -51,6 +51,10 @@ static bool decode_jpeg(struct wd_model_image *image, const uint8_t *bytes, size
         *why = "it is larger than 16384 pixels a side";
         ok = false;
     }
+    if (ok && (space == TJCS_CMYK || space == TJCS_YCCK)) {
+        *why = "it is a CMYK JPEG; RGB and grey are read";
+        ok = false;
+    }
     if (ok) {
         *image = (struct wd_model_image){(uint32_t)width, (uint32_t)height,
                                          wd_alloc((size_t)width * (size_t)height * 4)};

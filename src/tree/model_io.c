@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "tree/model_beside.h"
+#include "tree/model_gltf.h"
 #include "tree/model_obj.h"
 
 struct text {
@@ -104,14 +106,19 @@ static void mend(struct text *text, const char *path)
     hide_skins(text, path);
 }
 
-static bool has_skins(const char *path)
+static struct wd_model_traits traits_of(const char *path)
 {
     struct text text = {0};
+    struct wd_model_traits traits = {0};
     if (wd_has_ending(path, ".gltf") || wd_has_ending(path, ".glb"))
         text.bytes = read_whole(path, &text.size);
-    bool skins = text.bytes && hide_skins(&text, path) > 0;
+    if (text.bytes) {
+        struct text json = json_of(&text, path);
+        traits.whole_numbers = json.bytes ? wd_gltf_whole_numbers(json.bytes, json.size) : NULL;
+        traits.skins = hide_skins(&text, path) > 0;
+    }
     free(text.bytes);
-    return skins;
+    return traits;
 }
 
 /* --- what assimp asks for ---------------------------------------------------------------- */
@@ -176,7 +183,9 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
 {
     size_t size;
     (void)io;
-    char *bytes = strchr(mode, 'w') ? NULL : read_whole(path, &size);
+    char *there = strchr(mode, 'w') ? NULL : wd_model_find(path);
+    char *bytes = there ? read_whole(there, &size) : NULL;
+    free(there);
     struct text *text = bytes ? calloc(1, sizeof *text) : NULL;
     struct aiFile *file = text ? calloc(1, sizeof *file) : NULL;
     if (!file) {
@@ -192,11 +201,25 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     return file;
 }
 
-struct aiFileIO *wd_model_io(const char *path, bool *skins)
+struct aiFileIO *wd_model_io(const char *path, struct wd_model_traits *traits)
 {
-    *skins = has_skins(path);
-    struct aiFileIO *io = *skins || wd_model_is_obj(path) ? calloc(1, sizeof *io) : NULL;
+    *traits = traits_of(path);
+    bool others = wd_model_is_obj(path) || wd_has_ending(path, ".gltf"); /* names of files beside it */
+    struct aiFileIO *io = traits->skins || others ? calloc(1, sizeof *io) : NULL;
     if (io)
         *io = (struct aiFileIO){.OpenProc = open_file, .CloseProc = close_file};
     return io;
+}
+
+bool wd_model_has_word(const char *path, const char *word)
+{
+    enum { ENOUGH = 1 << 20 };
+    FILE *stream = fopen(path, "rb");
+    char *head = stream ? malloc(ENOUGH) : NULL;
+    size_t size = head ? fread(head, 1, ENOUGH, stream) : 0;
+    bool found = size > 0 && memmem(head, size, word, strlen(word));
+    free(head);
+    if (stream)
+        fclose(stream);
+    return found;
 }

@@ -9,6 +9,7 @@
 #include "base/color.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "tree/model_beside.h"
 
 enum { MAX_TEXTURE_BYTES = 256 << 20 };
 
@@ -20,22 +21,6 @@ struct loader {
     const char *path;
     const struct wd_log *log;
 };
-
-char *wd_model_texture_path(const char *model_path, const char *texture)
-{
-    char *name = wd_strdup(texture);
-    for (char *c = name; *c; c++)
-        if (*c == '\\')
-            *c = '/';
-    char *found = wd_path_beside(model_path, name);
-    const char *slash = strrchr(name, '/');
-    if (!wd_file_exists(found) && slash) {
-        free(found);
-        found = wd_path_beside(model_path, slash + 1);
-    }
-    free(name);
-    return found;
-}
 
 static bool decode_embedded(const struct loader *loader, const char *texture,
                             struct wd_model_image *image, const char **why)
@@ -57,7 +42,7 @@ static bool load_image(const struct loader *loader, const char *texture, const c
     if (texture[0] == '*') {
         ok = decode_embedded(loader, texture, image, &why);
     } else {
-        char *path = wd_model_texture_path(loader->path, texture), *bytes = NULL;
+        char *path = wd_model_beside(loader->path, texture), *bytes = NULL;
         size_t size;
         if (wd_file_exists(path) &&
             wd_file_read(path, MAX_TEXTURE_BYTES, loader->log, &bytes, &size))
@@ -86,6 +71,19 @@ static void cut_out(struct wd_model_image *image, const struct wd_model_image *c
             image->rgba[4 * ((size_t)y * image->width + x) + 3] = alpha ? from[3] : from[1];
         }
     }
+}
+
+/* Formats without a word on it (all but glTF) leave alpha to the texture: of leaves a hole, of bark often gloss.
+ * Holes are clear, and many. */
+static bool has_clear_texels(const struct wd_model_image *image)
+{
+    size_t count = (size_t)image->width * image->height, clear = 0, between = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint8_t alpha = image->rgba[4 * i + 3];
+        clear += alpha < 16;
+        between += alpha >= 16 && alpha < 240;
+    }
+    return clear > count / 20 && clear < count && between < clear;
 }
 
 /* Mean of the texels that show; holes get that colour, so that filtering never darkens an edge. */
@@ -142,7 +140,7 @@ static int load_picture(const struct loader *loader, const struct wd_file_materi
         cut_out(&picture.image, &cutout);
         wd_model_image_finish(&cutout);
     }
-    settle(&picture, material->blended);
+    settle(&picture, material->blended || (!material->says_alpha && has_clear_texels(&picture.image)));
     *wd_push(materials->pictures, materials->picture_count, materials->picture_capacity) = picture;
     return (int)materials->picture_count - 1;
 }
@@ -181,12 +179,33 @@ static void mean_color(const struct wd_model_materials *materials,
                    (material->picture >= 0 ? materials->pictures[material->picture].mean[k] : 1);
 }
 
+/* By how many corners of triangles have a colour. */
+static void mean_of_vertices(struct wd_model_materials *materials, const struct wd_model_file *file)
+{
+    double (*sums)[4] = wd_alloc_array(materials->count + 1, sizeof *sums);
+    memset(sums, 0, (materials->count + 1) * sizeof *sums);
+    for (uint32_t i = 0; i < file->mesh_count; i++) {
+        const struct wd_file_mesh *mesh = &file->meshes[i];
+        double *sum = sums[mesh->material];
+        for (uint32_t k = 0; k < mesh->index_count; k++)
+            for (int c = 0; c < 3; c++)
+                sum[c] += file->vertices[file->indices[mesh->first_index + k]].rgba[c];
+        sum[3] += 255.0 * mesh->index_count;
+    }
+    for (size_t i = 0; i < materials->count; i++)
+        for (int c = 0; c < 3; c++)
+            materials->items[i].vertex_mean[c] = sums[i][3] > 0 ? (float)(sums[i][c] / sums[i][3]) : 1;
+    free(sums);
+}
+
 /* Not what is white, blue or violet: petals keep their colour. */
 static void darken_leaf(struct wd_model_materials *materials, struct wd_model_material *material,
                         float most)
 {
     float color[3];
     mean_color(materials, material, color);
+    for (int k = 0; k < 3; k++)
+        color[k] *= material->vertex_mean[k];
     float luminance = 0.2126f * color[0] + 0.7152f * color[1] + 0.0722f * color[2];
     for (int k = 0; k < 3 && luminance > most && color[1] > 1.3f * color[2]; k++)
         material->color[k] *= most / luminance;
@@ -197,10 +216,10 @@ static bool looks_like_leaf(const struct wd_model_materials *materials,
 {
     float color[3];
     int name = score_name(material->file->name);
+    if (material->picture >= 0 && materials->pictures[material->picture].holes)
+        return true; /* cards, of twigs with their leaves where the name is that of a branch */
     if (name != 0)
         return name > 0;
-    if (material->picture >= 0 && materials->pictures[material->picture].holes)
-        return true;
     mean_color(materials, material, color);
     return is_green(color) || material->file->two_sided;
 }
@@ -247,6 +266,7 @@ bool wd_model_materials_init(struct wd_model_materials *materials, const struct 
             material->color[k] = fminf(fmaxf(material->file->color[k], 0), 1); /* 0 of NaN */
         material->leaf = looks_like_leaf(materials, material);
     }
+    mean_of_vertices(materials, file);
     bool ok = apply_list(materials, path, "leaves", species->model.leaves,
                          species->model.leaf_count, true, log) &&
               apply_list(materials, path, "wood", species->model.wood, species->model.wood_count,

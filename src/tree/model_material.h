@@ -19,6 +19,7 @@ struct wd_model_material {
     bool used;      /* by a triangle */
     bool leaf;
     float color[3]; /* linear multiplier of the picture, or the colour itself */
+    float vertex_mean[3]; /* mean of the vertices' colours, which multiply it, too */
 };
 
 struct wd_model_materials {
@@ -29,15 +30,11 @@ struct wd_model_materials {
 };
 
 /* Loads the pictures of the used materials and tells leaves from wood: by the species' own lists,
- * else by words in the names of material and meshes, by holes in the texture, by two-sidedness, by
+ * else by holes in the texture, by words in the names of material and meshes, by two-sidedness, by
  * green. A picture that cannot be read is a warning, and the material's colour stands in.
  * Fails on a list that names a material that is not there. */
 bool wd_model_materials_init(struct wd_model_materials *materials, const struct wd_model_file *file,
                              const struct wd_species *species, const struct wd_log *log);
 void wd_model_materials_finish(struct wd_model_materials *materials);
-
-/* The file of a texture that is not embedded: beside the model; else, for paths of the artist's own
- * machine, its last part. free() it. */
-char *wd_model_texture_path(const char *model_path, const char *texture);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "tree/model_beside.h"
 
 bool wd_model_is_obj(const char *path)
 {
@@ -62,11 +63,19 @@ static char *find_library(const char *path, bool *materials)
         char *name = after_word(start, "mtllib");
         *materials = *materials || after_word(start, "usemtl");
         if (name)
-            found = wd_path_beside(path, name);
+            found = wd_model_beside(path, name);
     }
     free(line);
     if (file)
         fclose(file);
+    if (found && !wd_file_exists(found)) { /* assimp takes the one of the model's own name then */
+        char *own = wd_format("%.*smtl", (int)(strlen(path) - strlen("obj")), path);
+        char *there = wd_model_find(own);
+        free(own);
+        if (there)
+            free(found);
+        found = there ? there : found;
+    }
     return found;
 }
 

@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -22,7 +23,7 @@
 /* One mesh of the scene where a node puts it. */
 struct placed {
     const struct aiMesh *mesh;
-    struct aiMatrix4x4 transform;
+    struct aiMatrix4x4 transform, normals;
 };
 
 struct parse {
@@ -33,6 +34,7 @@ struct parse {
     int file;
     uint8_t *base;
     uint64_t offsets[7];
+    unsigned lower_levels; /* nodes that are left out */
 };
 
 static _Noreturn void give_up(const struct parse *parse, const char *format, ...)
@@ -65,13 +67,14 @@ static bool is_large(const char *path)
     return stat(path, &status) == 0 && status.st_size > enough;
 }
 
-/* What assimp warns of, as triangles that it drops, is told: the first of it whole. */
+/* What assimp warns of, as triangles that it drops, is told: the first of it whole. Not that meshes share
+ * vertices, of which each has some that it does not use: nothing is lost. */
 static void keep_warning(const char *line, char *user)
 {
-    static const char mark[] = "Warn,";
+    static const char mark[] = "Warn,", shared[] = "There are unreferenced vertices";
     struct wd_model_header *header = (void *)user;
     const char *text = strstr(line, ": ");
-    if (strncmp(line, mark, strlen(mark)) != 0 || !text)
+    if (strncmp(line, mark, strlen(mark)) != 0 || !text || strstr(text, shared))
         return;
     if (header->warning_count++ == 0)
         snprintf(header->message, sizeof header->message, "%.*s", (int)strcspn(text + 2, "\n"),
@@ -90,12 +93,17 @@ static void open_scene(struct parse *parse, const char *path)
         steps |= aiProcess_GlobalScale;
     struct aiPropertyStore *store = aiCreatePropertyStore();
     aiSetImportPropertyFloat(store, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 70);
-    bool skins;
-    struct aiFileIO *io = wd_model_io(path, &skins);
-    if (skins)
+    struct wd_model_traits traits;
+    struct aiFileIO *io = wd_model_io(path, &traits);
+    if (traits.whole_numbers)
+        give_up(parse, "has its %s as whole numbers (quantized), which are not read; export it with floats",
+                traits.whole_numbers);
+    if (traits.skins)
         keep_warning("Warn,: has skins, which are not read: its vertices stand as they are in the file; apply "
                      "the pose before the export for another", (void *)&parse->header);
     parse->scene = aiImportFileExWithProperties(path, steps, io, store);
+    if (!parse->scene && wd_model_has_word(path, "EXT_meshopt_compression"))
+        give_up(parse, "is compressed by EXT_meshopt_compression, which is not read; export it without");
     if (!parse->scene)
         give_up(parse, "is not a model that can be read: %s", aiGetErrorString());
     if (!parse->scene->mRootNode || parse->scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE)
@@ -103,6 +111,53 @@ static void open_scene(struct parse *parse, const char *path)
 }
 
 /* --- nodes ------------------------------------------------------------------------------- */
+
+/* Length of a name without the level of detail that it ends with, as Tree_LOD2 does; 0: with none. */
+static size_t stem_of_level(const struct aiString *name, unsigned long *level)
+{
+    static const char mark[] = "lod";
+    const char *text = name->data;
+    size_t end = strnlen(text, sizeof name->data - 1), stem = end;
+    while (stem > 0 && text[stem - 1] >= '0' && text[stem - 1] <= '9')
+        stem--;
+    if (stem == end || end - stem > 2 || stem < strlen(mark) ||
+        strncasecmp(text + stem - strlen(mark), mark, strlen(mark)) != 0)
+        return 0;
+    *level = strtoul(text + stem, NULL, 10);
+    return stem;
+}
+
+/* Levels of detail of one tree stand in one place; common exporters write all of them as nodes side by side. */
+static bool is_lower_level(const struct aiNode *parent, const struct aiNode *node)
+{
+    unsigned long level, other;
+    size_t stem = stem_of_level(&node->mName, &level);
+    for (unsigned i = 0; stem && level && i < parent->mNumChildren; i++) {
+        const struct aiString *name = &parent->mChildren[i]->mName;
+        if (stem_of_level(name, &other) == stem && other < level &&
+            strncasecmp(name->data, node->mName.data, stem) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* Turns normals as planes turn, not as arrows: what stretches a surface along an axis tilts them away from it. */
+static struct aiMatrix4x4 normal_matrix(const struct aiMatrix4x4 *m)
+{
+    const float rows[3][3] = {{m->a1, m->a2, m->a3}, {m->b1, m->b2, m->b3}, {m->c1, m->c2, m->c3}};
+    float most = 0, out[3][3], side = aiMatrix4Determinant(m) < 0 ? -1 : 1;
+    for (int i = 0; i < 9; i++)
+        most = fmaxf(most, fabsf(rows[i / 3][i % 3]));
+    most = most > 0 ? most : 1;
+    for (int i = 0; i < 3; i++) {
+        const float *a = rows[(i + 1) % 3], *b = rows[(i + 2) % 3];
+        for (int k = 0, l = 1, n = 2; k < 3; k++, l = (l + 1) % 3, n = (n + 1) % 3)
+            out[i][k] = side * (a[l] / most * (b[n] / most) - a[n] / most * (b[l] / most));
+    }
+    return (struct aiMatrix4x4){.a1 = out[0][0], .a2 = out[0][1], .a3 = out[0][2],
+                                .b1 = out[1][0], .b2 = out[1][1], .b3 = out[1][2],
+                                .c1 = out[2][0], .c2 = out[2][1], .c3 = out[2][2]};
+}
 
 static void place(struct parse *parse, const struct aiMesh *mesh,
                   const struct aiMatrix4x4 *transform)
@@ -127,7 +182,7 @@ static void place(struct parse *parse, const struct aiMesh *mesh,
         if (!parse->placed)
             give_up(parse, "has more meshes than fit into memory");
     }
-    parse->placed[parse->placed_count++] = (struct placed){mesh, *transform};
+    parse->placed[parse->placed_count++] = (struct placed){mesh, *transform, normal_matrix(transform)};
     header->vertex_count += mesh->mNumVertices;
     header->index_count += 3 * mesh->mNumFaces;
     header->mesh_count++;
@@ -144,7 +199,10 @@ static void walk(struct parse *parse, const struct aiNode *node, struct aiMatrix
     for (unsigned i = 0; i < node->mNumMeshes; i++)
         place(parse, parse->scene->mMeshes[node->mMeshes[i]], &transform);
     for (unsigned i = 0; i < node->mNumChildren; i++)
-        walk(parse, node->mChildren[i], transform, depth + 1);
+        if (is_lower_level(node, node->mChildren[i]))
+            parse->lower_levels++;
+        else
+            walk(parse, node->mChildren[i], transform, depth + 1);
 }
 
 /* --- vertices ---------------------------------------------------------------------------- */
@@ -166,7 +224,7 @@ static void put_vertex(struct wd_file_vertex *to, const struct placed *from, uns
     const struct aiMesh *mesh = from->mesh;
     apply(&from->transform, &mesh->mVertices[i], 1, to->position);
     if (mesh->mNormals)
-        apply(&from->transform, &mesh->mNormals[i], 0, to->normal);
+        apply(&from->normals, &mesh->mNormals[i], 0, to->normal);
     if (mesh->mTextureCoords[0]) {
         to->uv[0] = mesh->mTextureCoords[0][i].x;
         to->uv[1] = mesh->mTextureCoords[0][i].y;
@@ -290,6 +348,7 @@ static void put_material(struct wd_file_material *to, const struct aiMaterial *m
     memcpy(to->color, (float[4]){color.r, color.g, color.b, color.a}, sizeof to->color);
     aiGetMaterialIntegerArray(material, AI_MATKEY_TWOSIDED, &two_sided, NULL);
     to->two_sided = two_sided != 0;
+    to->says_alpha = gltf || to->cutout[0];
     if (get_name(material, "$mat.gltf.alphaMode", &text))
         to->blended = strcmp(text.data, "OPAQUE") != 0;
     else
@@ -330,6 +389,12 @@ void wd_model_parse(const char *path, int file)
     open_scene(&parse, path);
     walk(&parse, parse.scene->mRootNode, identity, 0);
     const struct aiScene *scene = parse.scene;
+    if (parse.lower_levels) {
+        char line[128];
+        snprintf(line, sizeof line, "Warn,: has lower levels of detail, by their names; left out: %u nodes",
+                 parse.lower_levels);
+        keep_warning(line, (void *)&parse.header);
+    }
     if (parse.header.index_count == 0)
         give_up(&parse, "has no triangles");
     if (scene->mNumMaterials > WD_MODEL_MAX_MATERIALS || scene->mNumTextures > WD_MODEL_MAX_IMAGES)

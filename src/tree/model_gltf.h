@@ -1,0 +1,11 @@
+/* model_gltf.h: what a glTF file says that the importing library takes for something else. */
+#ifndef WD_TREE_MODEL_GLTF_H
+#define WD_TREE_MODEL_GLTF_H
+
+#include <stddef.h>
+
+/* The attribute ("POSITION", "NORMAL", "TEXCOORD_0") of some mesh in the JSON that is stored as whole numbers, whose
+ * bits assimp 5.2 takes for floats; NULL: none, or no JSON. */
+const char *wd_gltf_whole_numbers(const char *json, size_t size);
+
+#endif
