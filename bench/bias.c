@@ -51,7 +51,7 @@ static const int shifts[BIAS_HEIGHTS] = {1, 2, 4, 4}; /* squared: pictures a for
 static const uint32_t cover_samples[BIAS_HEIGHTS] = {1, 1, 16, 64};
 const double bias_elevation_deg[BIAS_VIEWS] = {4, 40};
 
-static bool write_scene(struct bias_stand *stand, const char *species)
+static bool write_scene(struct bias_stand *stand, const char *species, bool clouds)
 {
     char path[80], root[1024];
     snprintf(stand->folder, sizeof stand->folder, "/tmp/weald-lod-XXXXXX");
@@ -75,9 +75,9 @@ static bool write_scene(struct bias_stand *stand, const char *species)
                        "\"species\": {\"tree\": \"%s/%s\"},\n"
                        "\"inventories\": [{\"file\": \"trees.csv\", \"frame\": \"local\"}],\n"
                        "\"sun\": {\"azimuth_deg\": 215, \"elevation_deg\": 40},\n"
-                       "\"wind\": {\"speed_mps\": 0}, \"fog\": {\"visibility_m\": 10000000},\n"
+                       "\"sky\": {\"cover\": %d}, \"wind\": {\"speed_mps\": 0}, \"fog\": {\"visibility_m\": 10000000},\n"
                        "\"quality\": {\"shadow_distance_m\": %g}}\n",
-                long_m, wide_m, root, species, SHADOWS_OVER_EYE * EYE_HEIGHTS * stand->height_m);
+                long_m, wide_m, root, species, clouds, SHADOWS_OVER_EYE * EYE_HEIGHTS * stand->height_m);
     }
     ok = (!trees || fclose(trees) == 0) && (!scene || fclose(scene) == 0) && ok;
     if (!ok)
@@ -295,7 +295,7 @@ bool bias_measure(struct bias *bias, struct wd_renderer *renderer, const struct 
     return true;
 }
 
-bool bias_stand_init(struct bias_stand *stand, const char *path)
+bool bias_stand_init(struct bias_stand *stand, const char *path, bool clouds)
 {
     struct wd_arena arena = {0};
     struct wd_species species;
@@ -308,7 +308,7 @@ bool bias_stand_init(struct bias_stand *stand, const char *path)
     stand->width_m = fmin(reach_m + 0.15 * height_m, 1.6 * height_m);
     stand->spacing_m = fmin(reach_m + 0.4 * height_m, 1.6 * height_m);
     wd_arena_finish(&arena);
-    return write_scene(stand, path);
+    return write_scene(stand, path, clouds);
 }
 
 struct wd_forest *bias_forest(const struct bias_stand *stand, const struct bias_form *form)

@@ -36,8 +36,8 @@ struct bias {
     double coverage_pct, radiance_pct, error_pct;
 };
 
-/* Makes the scene of a species' file; false, with a message, on failure. */
-bool bias_stand_init(struct bias_stand *stand, const char *species);
+/* Makes the scene of a species' file, under a clear sky or under clouds; false, with a message, on failure. */
+bool bias_stand_init(struct bias_stand *stand, const char *species, bool clouds);
 void bias_stand_finish(struct bias_stand *stand); /* removes the scene's files */
 
 /* A forest of the stand in that form; NULL on failure. */

@@ -111,7 +111,7 @@ static bool run_species(struct lod_bench *bench, const char *species)
     struct bias_stand stand;
     char path[300];
     snprintf(path, sizeof path, "species/%s.json", species);
-    bool ok = bias_stand_init(&stand, path);
+    bool ok = bias_stand_init(&stand, path, bench->choice->clouds);
     stand.quick = bench->choice->quick;
     for (int form = 0; form < BIAS_FORMS && ok; form++)
         if (form == 0 || bench->choice->forms >> form & 1)

@@ -11,6 +11,7 @@ struct lod_choice {
     unsigned heights;           /* bit i: bias_height_px[i] */
     bool used;                  /* forms only where they are drawn by default */
     bool quick;                 /* of bias_stand */
+    bool clouds;                /* not a clear sky */
 };
 
 struct lod_case {

@@ -1,4 +1,4 @@
-/* Errors of reduced forms: lod-error [--quick] [--form NAME]... [--px HEIGHT]... [SPECIES]...
+/* Errors of reduced forms: lod-error [--quick] [--clouds] [--form NAME]... [--px HEIGHT]... [SPECIES]...
  * Without a form, a height or a species: all of them. Quick: with 16 samples a pixel to compare with, not 64. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -52,6 +52,8 @@ int main(int argc, char **argv)
             ok = add_height(&choice.heights, argv[++i]);
         else if (strcmp(argv[i], "--quick") == 0)
             choice.quick = true;
+        else if (strcmp(argv[i], "--clouds") == 0)
+            choice.clouds = true;
         else if (argv[i][0] != '-' && count < MAX_SPECIES)
             species[count++] = argv[i];
         else
@@ -60,7 +62,7 @@ int main(int argc, char **argv)
     choice.forms = choice.forms ? choice.forms : ~0u;
     choice.heights = choice.heights ? choice.heights : ~0u;
     if (!ok) {
-        fprintf(stderr, "usage: lod-error [--quick] [--form NAME]... [--px HEIGHT]... [SPECIES]...\n");
+        fprintf(stderr, "usage: lod-error [--quick] [--clouds] [--form NAME]... [--px HEIGHT]... [SPECIES]...\n");
         return 2;
     }
     if (!lod_run(&worst, &choice))

@@ -264,7 +264,7 @@ vec3 free_disc_light(vec3 eye, wd_crown crown, wd_lit_leaves model)
     float flatter = max(unpackHalf2x16(model.rough_flat).y - FLAT_FROM, 0.0);
     float each = mix(1.0, 1.07, from_above) * mix(0.95, 1.01, with_light) * (1.0 + FLAT_LEAVES * flatter);
     float by_depth = mix(1.05, 0.975, smoothstep(0.25, 0.95, frame.sun_direction.z)) * mix(1.06, 0.99, with_light);
-    return mix(vec3(1.0), vec3(each, by_depth, mix(1.0, 1.06, from_above)), is_tree(crown));
+    return mix(vec3(1.0), vec3(each, by_depth, mix(1.0, 1.03, from_above)), is_tree(crown));
 }
 
 bool is_disc(wd_pixel pixel)
@@ -290,6 +290,9 @@ const float NEIGHBOURS_OVER = 0.75;
  * of open ones less (low_sky of each model): by how much brighter an upright face's is than an even sky's. So much more of
  * clouds of leaves, whose mean normal alone is known; by path-traced oaks, spruces and birches. */
 const float LOW_SKY_CLOUD = 0.11;
+
+/* And of discs. By path-traced rows of five species at 8 to 128 px, under clouds and under a clear sky. */
+const float LOW_SKY_DISCS = 0.25;
 
 /* Between slender crowns of a stand an eye looks down to their lower parts, which one place for all of a card does not
  * tell: share of the sky's light. By path-traced stands of spruces, birches and pines under clouds. */
@@ -318,7 +321,8 @@ void light_past_neighbours(inout wd_alone alone, wd_pixel pixel, wd_crown crown,
     alone.known = mix(alone.share, 1.0, from_above);
     vec4 side = eye_side(-pixel.direction, alone.outside);
     alone.side = mix(vec4(1.0), side, one_leaf ? alone.share : 0.0);
-    float low_sky = unpackHalf2x16(model.again_low).y + (one_leaf ? 0.0 : LOW_SKY_CLOUD);
+    float more_low = is_disc(pixel) ? LOW_SKY_DISCS * is_tree(crown) : one_leaf ? 0.0 : LOW_SKY_CLOUD;
+    float low_sky = unpackHalf2x16(model.again_low).y + more_low;
     alone.lets.xy *= 1.0 + alone.share * low_sky * brighter_low_sky();
     alone.lets.xy *= is_disc(pixel) ? mix(1.0, free_disc_light(-pixel.direction, crown, model).z, alone.share) : 1.0;
     alone.lets.xy *= one_leaf ? 1.0 : mix(1.0, SLENDER_SKY, slenderness(crown) * (alone.known - alone.share));
