@@ -26,7 +26,7 @@ double wd_comparison_value(const struct wd_comparison *comparison, uint32_t inde
 
 /* Compares two pictures that both have colour and tree ids.
  *   error_map  NULL, or room for width * height: FLIP of each pixel
- * Errors: WD_ERROR_INPUT (sizes differ, a layer is missing). Thread-safe. */
+ * Errors: WD_ERROR_INPUT (sizes differ or are 0, a layer is missing, a colour is no finite number). Thread-safe. */
 enum wd_result wd_picture_compare(struct wd_comparison *comparison,
                                   const struct wd_picture *reference,
                                   const struct wd_picture *picture, float *error_map,

@@ -96,6 +96,16 @@ static void compare_radiance(struct wd_comparison *comparison, const struct wd_p
     comparison->coverage_bias_pct = over_pct(covered[1], covered[0]);
 }
 
+static bool check_colors(const struct wd_picture *picture, const char *name, const struct wd_log *log)
+{
+    size_t values = 3 * (size_t)picture->width * picture->height;
+    for (size_t i = 0; i < values; i++)
+        if (!isfinite(picture->color[i]))
+            return wd_error(log, "the %s has a colour that is no finite number, in column %zu of row %zu", name,
+                            i / 3 % picture->width, i / 3 / picture->width);
+    return true;
+}
+
 static bool check(const struct wd_picture *reference, const struct wd_picture *picture,
                   const struct wd_log *log)
 {
@@ -105,9 +115,11 @@ static bool check(const struct wd_picture *reference, const struct wd_picture *p
         return wd_error(log, "the reference has %u x %u pixels, the picture %u x %u: both must have "
                              "the same size",
                         reference->width, reference->height, picture->width, picture->height);
+    if (!reference->width || !reference->height)
+        return wd_error(log, "pictures without pixels cannot be compared");
     if (!reference->color || !picture->color)
         return wd_error(log, "pictures are compared by their colour layer, which one lacks");
-    return true;
+    return check_colors(reference, "reference", log) && check_colors(picture, "picture", log);
 }
 
 enum wd_result wd_picture_compare(struct wd_comparison *comparison,

@@ -233,10 +233,22 @@ static bool resume(struct work *work)
            take_samples(work, path);
 }
 
+/* Told before the hours of work that it is to keep. */
+static bool can_write(const char *path, const struct wd_log *log)
+{
+    struct wd_output_file file;
+    bool ok = wd_output_open(&file, path, log);
+    if (ok)
+        wd_output_discard(&file);
+    return ok;
+}
+
 static enum wd_result trace(struct work *work)
 {
     const char *path = work->params->checkpoint;
     double begin_s = wd_clock_s();
+    if (path && !can_write(path, &work->reference->log))
+        return WD_ERROR_OUTPUT;
     do {
         work->written_s = wd_clock_s();
         work->job.stopped = work->pause = false;

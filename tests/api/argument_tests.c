@@ -247,6 +247,13 @@ static void nothing_is_written_of_nothing(void **state)
     assert_input(suite, wd_picture_write(NULL, "a.png", log), "wd_picture_write: picture is NULL");
     assert_input(suite, wd_picture_read_exr(&read, NULL, log), "wd_picture_read_exr: path is NULL");
     assert_input(suite, wd_picture_compare(&comparison, NULL, &picture, NULL, log), "reference is NULL");
+    float color[3] = {0, NAN, 0};
+    uint32_t tree = 0;
+    struct wd_picture broken = {.width = 1, .height = 1, .color = color, .tree_id = &tree}, empty = broken;
+    empty.width = 0;
+    assert_input(suite, wd_picture_compare(&comparison, &broken, &broken, NULL, log),
+                 "the reference has a colour that is no finite number, in column 0 of row 0");
+    assert_input(suite, wd_picture_compare(&comparison, &empty, &empty, NULL, log), "without pixels");
     assert_input(suite, wd_forest_write(suite->forest, NULL, 0, NULL, log),
                  "wd_forest_write: path is NULL");
     assert_input(suite, wd_forest_check_output(suite->forest, NULL, 0, log),

@@ -136,6 +136,24 @@ static void test_fewer_samples(void **state)
     wd_reference_destroy(&reference);
 }
 
+/* A checkpoint that cannot be written is told before paths are traced. */
+static void test_no_folder(void **state)
+{
+    struct suite *suite = suite_of(state);
+    struct wd_reference *reference = open_reference(suite, NULL);
+    struct wd_reference_picture_params params = picture_params(suite);
+    struct wd_reference_stats stats;
+    struct wd_picture picture;
+    params.checkpoint = suite_path(suite, "none/picture.partial");
+    suite_clear(suite);
+    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_OUTPUT);
+    assert_true(suite_logged(suite, "none/picture.partial"));
+    assert_null(picture.color);
+    wd_reference_get_stats(reference, &stats);
+    assert_int_equal(stats.rays, 0);
+    wd_reference_destroy(&reference);
+}
+
 /* Turned leaves on the same trees are another picture. */
 static void test_other_leaves(void **state)
 {
@@ -262,6 +280,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(layers_need_no_paths, &suite),
         cmocka_unit_test_prestate(test_resume, &suite),
         cmocka_unit_test_prestate(test_fewer_samples, &suite),
+        cmocka_unit_test_prestate(test_no_folder, &suite),
         cmocka_unit_test_prestate(test_other_leaves, &suite),
         cmocka_unit_test_prestate(test_bad_input, &suite),
     };
