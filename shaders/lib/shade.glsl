@@ -291,7 +291,7 @@ const float NEIGHBOURS_OVER = 0.75;
  * clouds of leaves, whose mean normal alone is known; by path-traced oaks, spruces and birches. */
 const float LOW_SKY_CLOUD = 0.11;
 
-/* And of discs. By path-traced rows of five species at 8 to 128 px, under clouds and under a clear sky. */
+/* And of discs. By path-traced rows of oaks, birches, spruces and pines at 8 to 128 px, under clouds and a clear sky. */
 const float LOW_SKY_DISCS = 0.25;
 
 /* Between slender crowns of a stand an eye looks down to their lower parts, which one place for all of a card does not

@@ -226,7 +226,7 @@ static void pale_leaves_light_each_other(void **state)
     assert_true(found.trees_pct > 0.5 && found.trees_pct < 7);
 }
 
-/* Of grass: +1.8 %, half as bright where they are lit as in a sward, -13 % by a table of tufts half as wide. */
+/* Of grass: +1.8 %, and half as bright where they are lit as in a sward. */
 static void tufts_stand_free(void **state)
 {
     (void)state;
