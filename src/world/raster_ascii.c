@@ -1,6 +1,5 @@
 /* raster_ascii.c: whether an ESRI ASCII grid holds what its header says. GDAL takes words for 0 and does not look
  * beyond the cells that it wants. */
-#include <cpl_vsi.h>
 #include <ctype.h>
 #include <string.h>
 #include <strings.h>

@@ -1,7 +1,5 @@
 #include "world/raster_crs.h"
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,6 +54,8 @@ const char *wd_gdal_reason(struct wd_gdal_scope *scope)
 
 OGRSpatialReferenceH wd_crs_parse(const char *crs, const char *subject, const struct wd_log *log)
 {
+    if (!wd_gdal_load(subject, log))
+        return NULL;
     struct wd_gdal_scope scope;
     wd_gdal_enter(&scope, subject, log);
     OGRSpatialReferenceH parsed = OSRNewSpatialReference(NULL);

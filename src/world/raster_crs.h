@@ -2,9 +2,8 @@
 #ifndef WD_WORLD_RASTER_CRS_H
 #define WD_WORLD_RASTER_CRS_H
 
-#include <ogr_srs_api.h>
-
 #include "weald/types.h"
+#include "world/gdal.h"
 
 /* While entered, GDAL's warnings go to `log` and its last failure is kept for our own message;
  * nothing reaches standard error. Scopes nest; leave in the reverse order. */

@@ -1,8 +1,6 @@
 /* raster_mapping.c: from places in a frame to pixels of a source. */
 #include "world/raster_source.h"
 
-#include <cpl_string.h>
-#include <gdal_alg.h>
 #include <math.h>
 #include <stdlib.h>
 

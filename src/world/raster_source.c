@@ -39,8 +39,6 @@ static bool open_band(struct wd_raster_source *source, int64_t band, const char 
                       struct wd_gdal_scope *scope)
 {
     const struct wd_log *log = scope->log;
-    if (GDALGetDriverCount() == 0)
-        GDALAllRegister();
     source->dataset = GDALOpenEx(source->path, GDAL_OF_RASTER | GDAL_OF_READONLY, NULL, NULL, NULL);
     if (!source->dataset)
         return wd_error(log, "%s: %s: is not a raster that GDAL can read%s%s", key, source->path,
@@ -82,6 +80,8 @@ bool wd_source_open(struct wd_raster_source *source, const char *base, const cha
     *source = (struct wd_raster_source){0};
     if (!name || !name[0])
         return wd_error(log, "%s: names no file", key);
+    if (!wd_gdal_load(key, log))
+        return false;
     source->path = wd_path_beside(base, name);
     struct wd_gdal_scope scope;
     wd_gdal_enter(&scope, source->path, log);

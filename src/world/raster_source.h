@@ -2,8 +2,6 @@
 #ifndef WD_WORLD_RASTER_SOURCE_H
 #define WD_WORLD_RASTER_SOURCE_H
 
-#include <gdal.h>
-
 #include "weald/types.h"
 #include "world/raster_crs.h"
 

@@ -95,6 +95,12 @@ expect 0 'elm.csv: ok' check "$scratch/elm.csv"
 echo 'no raster' >"$scratch/ground.tif"
 change rows '.terrain = {"kind": "raster", "file": "ground.tif"}'
 expect 1 'ground.tif.* not a raster' check "$scratch/rows.json"
+# GDAL is loaded where a raster is met, and told of where it is none.
+mkdir "$scratch/broken"
+for version in $(seq 28 60); do : >"$scratch/broken/libgdal.so.$version"; done
+broken="LD_LIBRARY_PATH='$scratch/broken' '$weald'"
+check 'a missing GDAL is told' sh -c "$broken check '$scratch/rows.json' 2>&1 | grep -q 'GDAL.* cannot be loaded: .*libgdal'"
+check 'and not asked for without a raster' sh -c "$broken check '$tiny'"
 # Nor is anything ok that cannot be planted or seen.
 change rows '.inventories = [{"file": "elm.csv", "species": {"*": "oak"}, "offset_m": [1e7, 0]}]'
 expect 1 'elm.csv: no tree stands on the ground' check "$scratch/rows.json"
