@@ -9,7 +9,7 @@ run: deps ## build, then show scenes/valley.json: in a window, or as out/valley.
 	@scripts/build.sh $(BUILD)
 	@scripts/run.sh $(BUILD)
 
-test: ## every test, on software Vulkan, with sanitizers and a second compiler
+test: ## every test, on software Vulkan, and with sanitizers by a second compiler
 	@scripts/deps.sh test
 	@scripts/test.sh $(BUILD)
 
@@ -42,7 +42,7 @@ install: build ## install program, library, headers and manual below PREFIX
 	@meson install -C $(BUILD)
 
 clean: ## remove everything built and rendered
-	rm -rf build build-asan build-o0 out
+	rm -rf build build-asan out
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)

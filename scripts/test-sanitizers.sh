@@ -1,7 +1,7 @@
 #!/bin/sh
 # The tests that need no GPU, under AddressSanitizer and UndefinedBehaviorSanitizer. By clang, whose
-# sanitized tests take three quarters of the time of gcc's; what draws is hardly run here and compiled
-# at -O0, which takes a third of the time.
+# sanitized tests take three quarters of the time of gcc's, and whose worlds and trees must be those of the release's
+# compiler; what draws is hardly run here and compiled at -O0, which takes a third of the time.
 set -eu
 cd "$(dirname "$0")/.."
 build="build-asan"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "tree/leaf_spray.h"
 
 /* The index list of all leaves with the same triangles. */
 struct pattern {
@@ -163,25 +164,6 @@ static void describe_leaves(struct wd_mesh_range ranges[2], const struct wd_tree
             sqrtf((float)full->leaf_count / (float)reduced->leaf_count);
 }
 
-/* Kites have two triangles, needles one. */
-static float grain_of(const struct wd_tree_mesh *twig)
-{
-    float twice_m2 = 0;
-    uint32_t leaf_triangles = 0;
-    for (uint32_t i = 0; i < twig->index_count; i += 3) {
-        const struct wd_tree_vertex *corners[3];
-        for (int k = 0; k < 3; k++)
-            corners[k] = &twig->vertices[twig->indices[i + k]];
-        if (!(corners[0]->kind & WD_VERTEX_LEAF))
-            continue;
-        const float *a = corners[0]->position_m, *b = corners[1]->position_m, *c = corners[2]->position_m;
-        twice_m2 += wd_v3_length(wd_v3_cross(WD_V3(b[0] - a[0], b[1] - a[1], b[2] - a[2]),
-                                             WD_V3(c[0] - a[0], c[1] - a[1], c[2] - a[2])));
-        leaf_triangles++;
-    }
-    return leaf_triangles ? sqrtf(twice_m2 / (float)leaf_triangles) : 0;
-}
-
 static void place_model(struct building *building, uint32_t index)
 {
     const struct wd_tree_model *model = &building->models[index];
@@ -200,7 +182,7 @@ static void place_model(struct building *building, uint32_t index)
     describe_leaves(meshes->ranges[index], model);
     place_mesh(building, &twig->mesh, &model->spray);
     place_mesh(building, &twig->shade, &model->spray_shade);
-    twig->shade_grain = grain_of(&model->spray_shade);
+    twig->shade_grain = wd_leaf_spray_grain(&model->spray_shade);
     twig->first_leaf = (uint32_t)building->leaves;
     twig->leaf_count = model->leaf_count + model->flower_count;
     twig->box = model->leaf_box;

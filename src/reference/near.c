@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "shared/hash.h"
+#include "tree/leaf_spray.h"
 #include "tree/vec.h"
 
 /* Of twigs in all. With 1.5 million, as in pictures, those are nearer than the drawn ones: see docs/performance.md. */
@@ -38,7 +39,14 @@ static struct wd_vec3 placed(const float m[12], struct wd_vec3 p)
 struct wd_trace_near_leaf {
     uint32_t index;
     float distance_m, chance;
+    bool plain; /* a tenth of the triangles */
 };
+static const float PLAIN_PX = 0.5f;
+
+static const struct wd_tree_mesh *twig_of(const struct wd_tree_model *grown, const struct wd_trace_near_leaf *leaf)
+{
+    return leaf->plain ? &grown->spray_shade : &grown->spray;
+}
 
 /* Whether the leaf's twig is in the picture, or its shadow where it falls on what is no farther off than leaves that
  * are twigs, on the other side of the eye, too. */
@@ -58,6 +66,7 @@ static void gather(struct wd_trace_near_tree *at, const struct wd_trace_near_sce
     const float *m = at->transform;
     float widest = wd_maxf(wd_v3_length(WD_V3(m[0], m[1], m[2])), wd_v3_length(WD_V3(m[6], m[7], m[8])));
     float reach_m = WD_SPRAY_NONE_M * grown->spray_reach;
+    float grain = wd_leaf_spray_grain(&grown->spray_shade), plain_rad = PLAIN_PX * wd_trace_pixel_rad(scene->view);
     for (uint32_t i = 0; i < grown->sets[0][WD_SET_LEAVES].leaf_count; i++) {
         const struct wd_tree_leaf *leaf = &grown->leaves[i];
         struct wd_vec3 foot = placed(m, wd_leaf_foot(*leaf, grown->leaf_box));
@@ -65,9 +74,10 @@ static void gather(struct wd_trace_near_tree *at, const struct wd_trace_near_sce
         if (square > reach_m * reach_m)
             continue;
         float distance_m = sqrtf(square), chance = wd_spray_chance(i, wd_tree_random(*tree));
-        if (chance < wd_spray_share(distance_m, grown->spray_reach) &&
-            matters(scene, foot, 2 * widest * wd_leaf_size_m(*leaf, grown->leaf_box), reach_m))
-            *wd_push(at->leaves, at->count, at->capacity) = (struct wd_trace_near_leaf){i, distance_m, chance};
+        float size_m = widest * wd_leaf_size_m(*leaf, grown->leaf_box);
+        if (chance < wd_spray_share(distance_m, grown->spray_reach) && matters(scene, foot, 2 * size_m, reach_m))
+            *wd_push(at->leaves, at->count, at->capacity) =
+                (struct wd_trace_near_leaf){i, distance_m, chance, grain * size_m < plain_rad * distance_m};
     }
 }
 
@@ -77,12 +87,14 @@ static bool is_twig(const struct wd_trace_near_leaf *leaf, float reach)
     return leaf->chance < wd_spray_share(leaf->distance_m, reach);
 }
 
-static uint64_t count_of(const struct wd_trace_near_tree *at, float reach)
+/* Triangles of a tree's twigs. */
+static uint64_t count_of(const struct wd_trace_near_tree *at, const struct wd_tree_model *grown, float reach)
 {
-    uint64_t twigs = 0;
+    uint64_t indices = 0;
     for (size_t i = 0; i < at->count; i++)
-        twigs += is_twig(&at->leaves[i], reach);
-    return twigs;
+        if (is_twig(&at->leaves[i], reach))
+            indices += twig_of(grown, &at->leaves[i])->index_count / grown->spray_forms;
+    return indices / 3;
 }
 
 static uint64_t count_triangles(const struct wd_trace_near *near, const struct wd_trace_near_scene *scene,
@@ -92,7 +104,7 @@ static uint64_t count_triangles(const struct wd_trace_near *near, const struct w
     for (size_t i = 0; i < near->count; i++) {
         const struct wd_trace_near_tree *at = &near->trees[i];
         const struct wd_tree_model *grown = &wd_trace_model_of(scene->models, &scene->trees[at->tree])->grown;
-        sum += count_of(at, scale * grown->spray_reach) * (grown->spray.index_count / grown->spray_forms / 3);
+        sum += count_of(at, grown, scale * grown->spray_reach);
     }
     return sum;
 }
@@ -107,10 +119,10 @@ static uint32_t tinted(uint32_t tint, uint32_t leaf)
     return product;
 }
 
-static void add_twig(struct wd_tree_mesh *mesh, const struct wd_tree_model *grown, uint32_t leaf)
+static void add_twig(struct wd_tree_mesh *mesh, const struct wd_tree_model *grown, const struct wd_trace_near_leaf *leaf)
 {
-    const struct wd_tree_leaf *from = &grown->leaves[leaf];
-    const struct wd_tree_mesh *twig = &grown->spray;
+    const struct wd_tree_leaf *from = &grown->leaves[leaf->index];
+    const struct wd_tree_mesh *twig = twig_of(grown, leaf);
     struct wd_vec3 foot = wd_leaf_foot(*from, grown->leaf_box);
     struct wd_vec3 shading = wd_leaf_shading(from->shading);
     struct wd_leaf_axes axes = wd_leaf_axes_of(from->turn);
@@ -164,7 +176,7 @@ static void make_mesh(struct wd_tree_mesh *mesh, const struct wd_trace_near_tree
     for (uint32_t leaf = 0; leaf < set->leaf_count; leaf++, next += set->index_count) {
         bool candidate = near < end && near->index == leaf;
         if (candidate && is_twig(near, reach))
-            add_twig(mesh, grown, leaf);
+            add_twig(mesh, grown, near);
         else
             add_triangles(mesh, full->indices + next, set->index_count);
         near += candidate;
@@ -183,7 +195,7 @@ void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_near_
         struct wd_trace_near_tree *at = &near->trees[i];
         const struct wd_trace_model *model = wd_trace_model_of(scene->models, &scene->trees[at->tree]);
         float reach = scale * model->grown.spray_reach;
-        if (count_of(at, reach) > 0) {
+        if (count_of(at, &model->grown, reach) > 0) {
             at->model = wd_alloc(sizeof *at->model);
             *at->model = (struct wd_trace_model){.model = model->model, .look = model->look};
             make_mesh(&at->model->grown.full, at, &model->grown, reach);

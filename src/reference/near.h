@@ -32,8 +32,9 @@ struct wd_trace_near_scene {
 };
 
 /* Makes the meshes and scenes of the trees added: leaves that are near, and are in the picture or throw their shadow on
- * what is near there, are twigs, by the rule that pictures are drawn with; fewer, the nearest, where all of them were
- * more than four million triangles (pictures: WD_SPRAY_BUDGET of methods/spray_draw.h). */
+ * what is near there, are twigs, by the rule that pictures are drawn with; plain ones (wd_leaf_spray_shade_mesh) where their
+ * leaves are less than half a pixel wide; fewer, the nearest, where all of them were more than four million triangles
+ * (pictures: WD_SPRAY_BUDGET of methods/spray_draw.h). */
 void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_near_scene *scene);
 void wd_trace_near_finish(struct wd_trace_near *near); /* accepts {0} */
 

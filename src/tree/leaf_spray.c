@@ -1,5 +1,7 @@
 #include "tree/leaf_spray.h"
 
+#include <math.h>
+
 #include "tree/leaf_sprig.h"
 #include "tree/look.h"
 
@@ -242,4 +244,23 @@ void wd_leaf_spray_shade_mesh(struct wd_tree_mesh *mesh, const struct wd_species
 {
     struct spray spray = spray_of(size_m, true);
     make(mesh, species, &spray);
+}
+
+/* Kites have two triangles, needles one. */
+float wd_leaf_spray_grain(const struct wd_tree_mesh *shade)
+{
+    float twice_m2 = 0;
+    uint32_t leaf_triangles = 0;
+    for (uint32_t i = 0; i < shade->index_count; i += 3) {
+        const struct wd_tree_vertex *corners[3];
+        for (int k = 0; k < 3; k++)
+            corners[k] = &shade->vertices[shade->indices[i + k]];
+        if (!(corners[0]->kind & WD_VERTEX_LEAF))
+            continue;
+        const float *a = corners[0]->position_m, *b = corners[1]->position_m, *c = corners[2]->position_m;
+        twice_m2 += wd_v3_length(wd_v3_cross(WD_V3(b[0] - a[0], b[1] - a[1], b[2] - a[2]),
+                                             WD_V3(c[0] - a[0], c[1] - a[1], c[2] - a[2])));
+        leaf_triangles++;
+    }
+    return leaf_triangles ? sqrtf(twice_m2 / (float)leaf_triangles) : 0;
 }

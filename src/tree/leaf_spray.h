@@ -20,5 +20,7 @@ void wd_leaf_spray_mesh(struct wd_tree_mesh *mesh, const struct wd_species *spec
 /* The same twig for shadow maps and pixels that are as wide as its leaves, wider than needles and teeth: leaves as kites
  * in the same places (fronds as from afar), fewer and wider needles, of the same area in all. */
 void wd_leaf_spray_shade_mesh(struct wd_tree_mesh *mesh, const struct wd_species *species, float size_m);
+/* Root of the mean area of the leaves of such a mesh, in units of size_m; 0 where it has none. */
+float wd_leaf_spray_grain(const struct wd_tree_mesh *shade);
 
 #endif

@@ -154,7 +154,7 @@ static void a_dark_floor_is_as_bright_as_traced(void **state)
     check_light("floor of a dark stand", &drawn, &traced, 1.15, 1.15);
 }
 
-/* A bright horizon lights it past the plot's edges: 0.96 to 0.98 of the traced, a place more or less 1.02 to 1.12; 0.83 in
+/* A bright horizon lights it past the plot's edges: 0.95 to 0.96 of the traced, a place more or less 1.02 to 1.12; 0.83 in
  * red, at more places, if leaves of layers are spread evenly from base to top and the low sky that comes in is as dim as a
  * closed stand's. */
 static void the_floor_of_a_plot_is_as_bright_as_traced(void **state)
@@ -211,8 +211,8 @@ static void look_from_within(const struct stand *stand, int places, uint32_t lay
     }
 }
 
-/* Crowns: 0.94 of the traced, 1.03 in blue, most of which wax mirrors; 1.20 in red, without haze, at other places, if leaves let through a share of the side that is seen and what lies lower in crowns is lit as what lies higher.
- * Haze: 0.85 to 0.88 of the traced (at eight places 0.91 to 0.95, level 1.03 to 1.08); 12 times as much in red if no
+/* Crowns: 0.96 of the traced, 1.05 in blue, most of which wax mirrors; 1.20 in red, without haze, at other places, if leaves let through a share of the side that is seen and what lies lower in crowns is lit as what lies higher.
+ * Haze: 0.84 to 0.88 of the traced (at eight places 0.91 to 0.95, level 1.03 to 1.08); 12 times as much in red if no
  * tree shades it. */
 static void a_dark_stand_from_within_is_as_bright_as_traced(void **state)
 {
@@ -347,7 +347,7 @@ static void fog_in_a_stand_is_as_bright_as_traced(void **state)
     check_light("fog within a dark stand", &drawn.haze, &traced.haze, 1.1, 1.1);
 }
 
-/* 0.994; at other places 0.978 if discs are as large from below as from above. */
+/* 0.993; at other places 0.978 if discs are as large from below as from above. */
 static void crowns_from_within_hide_as_much_of_the_sky_as_traced(void **state)
 {
     (void)state;

@@ -6,10 +6,20 @@
 #include "reference/surface.h"
 #include "tree/vec.h"
 
-static const float LEAF_M = 0.5f, TWIG_M = 0.6f, EDGE_M = 0.08f; /* heights; within the leaf's rim */
+static const float LEAF_M = 0.5f, TWIG_M = 0.6f, PLAIN_M = 0.65f, EDGE_M = 0.08f; /* heights; within the leaf's rim */
 
-/* A leaf 0.2 m wide, level, which stands for a smaller one a little higher. */
-static void make_model(struct made_scene *made, struct wd_tree_leaf *leaf)
+/* A quad of the leaf's twig, in units of the leaf. */
+static void make_twig(struct made_scene *made, struct wd_tree_mesh *twig, float wide, float above)
+{
+    made_scene_add_quad(made, WD_V3(-0.5f * wide, -0.5f * wide, above), WD_V3(wide, 0, 0), WD_V3(0, wide, 0),
+                        WD_VERTEX_LEAF);
+    *twig = made->model.grown.full;
+    made->model.grown.full = (struct wd_tree_mesh){0};
+}
+
+/* A leaf 0.2 m wide, level, which stands for a smaller one a little higher; a plain one of `plain` of its width is
+ * higher yet. */
+static void make_model(struct made_scene *made, struct wd_tree_leaf *leaf, float plain)
 {
     const struct wd_leaf_stand stand = {.position_m = {0, 0, LEAF_M},
                                         .axis = {0, 1, 0},
@@ -28,12 +38,17 @@ static void make_model(struct made_scene *made, struct wd_tree_leaf *leaf)
     grown->spray_forms = 1;
     grown->sets[0][WD_SET_LEAVES] =
         (struct wd_leaf_set){.corner_count = 4, .index_count = 6, .leaf_count = 1};
-    made_scene_add_quad(made, WD_V3(-0.25f, -0.25f, 0.5f), WD_V3(0.5f, 0, 0), WD_V3(0, 0.5f, 0),
-                        WD_VERTEX_LEAF);
-    grown->spray = grown->full;
-    grown->full = (struct wd_tree_mesh){0};
+    make_twig(made, &grown->spray, 0.5f, 0.5f);
+    make_twig(made, &grown->spray_shade, plain, 0.75f);
     made_scene_add_quad(made, WD_V3(-0.1f, -0.1f, LEAF_M), WD_V3(0.2f, 0, 0), WD_V3(0, 0.2f, 0),
                         WD_VERTEX_LEAF);
+}
+
+static void finish(struct made_scene *made)
+{
+    wd_tree_mesh_finish(&made->model.grown.spray);
+    wd_tree_mesh_finish(&made->model.grown.spray_shade);
+    made_scene_finish(made);
 }
 
 /* How high over the foot of a tree a ray from above meets it. */
@@ -58,7 +73,7 @@ static void leaves_by_the_eye_are_twigs(void **state)
     (void)state;
     struct made_scene made;
     struct wd_tree_leaf leaf;
-    make_model(&made, &leaf);
+    make_model(&made, &leaf, 0.5f);
     made_scene_add_tree(&made, 30, 0, -1);
     made_scene_add_tree(&made, 1, 2, -1);
     made_scene_add_tree(&made, -30, 0, -1);
@@ -69,8 +84,7 @@ static void leaves_by_the_eye_are_twigs(void **state)
     assert_float_equal(height_at(&made, &made.trees[1], 0), TWIG_M, 1e-3);
     assert_float_equal(height_at(&made, &made.trees[1], EDGE_M), 0, 0);
     assert_float_equal(height_at(&made, &made.trees[2], 0), LEAF_M, 1e-3);
-    wd_tree_mesh_finish(&made.model.grown.spray);
-    made_scene_finish(&made);
+    finish(&made);
 }
 
 /* What a picture does not show is as the model has it, so that what it shows can all be twigs: of trees behind
@@ -88,7 +102,7 @@ static void twigs_are_where_the_picture_shows_them(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct made_scene made;
         struct wd_tree_leaf leaf;
-        make_model(&made, &leaf);
+        make_model(&made, &leaf, 0.5f);
         made.frame.sun_direction[0] = cases[i].sun.x;
         made.frame.sun_direction[1] = cases[i].sun.y;
         made.frame.sun_direction[2] = cases[i].sun.z;
@@ -100,14 +114,30 @@ static void twigs_are_where_the_picture_shows_them(void **state)
         assert_float_equal(height_at(&made, &made.trees[0], 0), cases[i].behind_m, 1e-3);
         assert_float_equal(height_at(&made, &made.trees[1], 0), cases[i].beside_m, 1e-3);
         assert_float_equal(height_at(&made, &made.trees[2], 0), TWIG_M, 1e-3);
-        wd_tree_mesh_finish(&made.model.grown.spray);
-        made_scene_finish(&made);
+        finish(&made);
+    }
+}
+
+/* Pixels are 0.9 / 32 rad: 2.3 m off half of one is 3 cm wide. */
+static void twigs_of_leaves_that_pixels_cannot_show_are_plain(void **state)
+{
+    (void)state;
+    const float wide[2] = {0.25f, 0.1f}, high_m[2] = {TWIG_M, PLAIN_M};
+    for (int i = 0; i < 2; i++) {
+        struct made_scene made;
+        struct wd_tree_leaf leaf;
+        make_model(&made, &leaf, wide[i]);
+        made_scene_add_tree(&made, 1, 2, -1);
+        made_scene_build(&made);
+        assert_float_equal(height_at(&made, &made.trees[0], 0), high_m[i], 1e-3);
+        finish(&made);
     }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(leaves_by_the_eye_are_twigs),
+                                       cmocka_unit_test(twigs_of_leaves_that_pixels_cannot_show_are_plain),
                                        cmocka_unit_test(twigs_are_where_the_picture_shows_them)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
