@@ -13,6 +13,7 @@ struct wd_reference;
 
 struct wd_reference_params {
     unsigned threads; /* 0: one a processor; changes no picture */
+    const char *cache_dir; /* of textures, as the renderer's; NULL: $XDG_CACHE_HOME/weald; "": no cache */
     struct wd_progress progress;
     struct wd_log log;
 };

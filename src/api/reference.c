@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "forest/looks.h"
 #include "reference/checkpoint.h"
 #include "reference/display.h"
 #include "shared/air.h"
@@ -53,6 +54,24 @@ static RTCDevice open_device(struct wd_reference *reference)
     return device;
 }
 
+_Static_assert(WD_TRACE_MAP_BYTES == WD_LOOK_MAP_BYTES, "textures as those of pictures");
+
+static void get_look(void *user, const struct wd_species *species, uint8_t *albedo_detail)
+{
+    wd_look_get(albedo_detail, user, species);
+}
+
+static bool make_models(struct wd_reference *reference, const char *cache_dir)
+{
+    char *directory = cache_dir ? wd_strdup(cache_dir) : wd_cache_directory();
+    struct wd_bake_cache cache = {.directory = directory, .log = &reference->shared_log.log};
+    const struct wd_trace_looks looks = {get_look, &cache};
+    bool ok = wd_trace_models_init(&reference->models, reference->device, &reference->forest->scene, &looks,
+                                   reference->threads, &reference->shared_log.log);
+    free(directory);
+    return ok;
+}
+
 enum wd_result wd_reference_create(struct wd_reference **result, const struct wd_forest *forest,
                                    const struct wd_reference_params *params)
 {
@@ -72,8 +91,7 @@ enum wd_result wd_reference_create(struct wd_reference **result, const struct wd
         wd_reference_destroy(&reference);
         return WD_ERROR_MEMORY;
     }
-    if (!wd_trace_models_init(&reference->models, reference->device, &forest->scene,
-                              reference->threads, &reference->shared_log.log)) {
+    if (!make_models(reference, params->cache_dir)) {
         wd_reference_destroy(&reference);
         return WD_ERROR_INPUT;
     }

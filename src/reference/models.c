@@ -5,7 +5,6 @@
 
 #include "base/jobs.h"
 #include "base/memory.h"
-#include "tree/look_map.h"
 
 /* Alpha below which a texel is a hole. */
 enum { WD_LOOK_HOLE = 128 };
@@ -102,6 +101,7 @@ void wd_trace_model_build(struct wd_trace_model *model, RTCDevice device)
 struct preparation {
     struct wd_trace_models *models;
     const struct wd_scene *scene;
+    const struct wd_trace_looks *looks;
     const struct wd_log *log;
     atomic_bool failed;
 };
@@ -112,14 +112,9 @@ static void make_look(void *user, size_t index)
     struct preparation *work = user;
     const struct wd_species *species = &work->scene->species[index];
     struct wd_trace_look *look = &work->models->looks[index];
-    look->albedo = wd_alloc(WD_LOOK_LAYERS * WD_TRACE_MAP_BYTES);
-    look->detail = wd_alloc(WD_LOOK_LAYERS * WD_TRACE_MAP_BYTES);
-    for (uint32_t layer = 0; layer < WD_LOOK_LAYERS; layer++) {
-        size_t offset = layer * WD_TRACE_MAP_BYTES;
-        const struct wd_look_map map = {WD_TRACE_LOOK_SIZE, look->albedo + offset,
-                                        look->detail + offset};
-        wd_look_map_fill(&map, species, layer);
-    }
+    look->albedo = wd_alloc(2 * WD_LOOK_LAYERS * WD_TRACE_MAP_BYTES);
+    look->detail = look->albedo + WD_LOOK_LAYERS * WD_TRACE_MAP_BYTES;
+    work->looks->get(work->looks->user, species, look->albedo);
     for (size_t i = 3; species->imported && i < WD_LOOK_LAYERS * WD_TRACE_MAP_BYTES; i += 4)
         look->has_holes |= look->albedo[i] < WD_LOOK_HOLE;
 }
@@ -142,8 +137,8 @@ static void grow(void *user, size_t index)
     wd_trace_model_build(model, models->device);
 }
 
-bool wd_trace_models_init(struct wd_trace_models *models, RTCDevice device,
-                          const struct wd_scene *scene, unsigned threads, const struct wd_log *log)
+bool wd_trace_models_init(struct wd_trace_models *models, RTCDevice device, const struct wd_scene *scene,
+                          const struct wd_trace_looks *looks, unsigned threads, const struct wd_log *log)
 {
     uint32_t species = (uint32_t)scene->species_file_count;
     *models = (struct wd_trace_models){
@@ -154,7 +149,7 @@ bool wd_trace_models_init(struct wd_trace_models *models, RTCDevice device,
         .looks = wd_alloc_array(species, sizeof *models->looks),
     };
     models->models = wd_alloc_array(models->count, sizeof *models->models);
-    struct preparation work = {models, scene, log, false};
+    struct preparation work = {models, scene, looks, log, false};
     wd_jobs_run(threads, species, make_look, &work);
     wd_jobs_run(threads, models->count, grow, &work);
     if (!atomic_load(&work.failed))
@@ -170,10 +165,8 @@ void wd_trace_models_finish(struct wd_trace_models *models)
             rtcReleaseScene(models->models[i].scene);
         wd_tree_model_finish(&models->models[i].grown);
     }
-    for (uint32_t i = 0; i < models->species_count; i++) {
+    for (uint32_t i = 0; i < models->species_count; i++)
         free(models->looks[i].albedo);
-        free(models->looks[i].detail);
-    }
     free(models->models);
     free(models->looks);
     *models = (struct wd_trace_models){0};

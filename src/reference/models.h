@@ -12,7 +12,7 @@
 #define WD_TRACE_LOOK_SIZE 256
 #define WD_TRACE_MAP_BYTES ((size_t)4 * WD_TRACE_LOOK_SIZE * WD_TRACE_LOOK_SIZE)
 struct wd_trace_look {
-    uint8_t *albedo, *detail; /* WD_LOOK_LAYERS * WD_TRACE_MAP_BYTES each */
+    uint8_t *albedo, *detail; /* WD_LOOK_LAYERS * WD_TRACE_MAP_BYTES each, one after the other */
     bool has_holes;           /* texels of less than half alpha */
 };
 
@@ -31,10 +31,15 @@ struct wd_trace_models {
     RTCDevice device;
 };
 
+/* Fills a species' textures: all of their albedo, then all detail. Called by several threads. */
+struct wd_trace_looks {
+    void (*get)(void *user, const struct wd_species *species, uint8_t *albedo_detail);
+    void *user;
+};
+
 /* Grows every individual and builds its scene. `scene` is read during the call only. */
-bool wd_trace_models_init(struct wd_trace_models *models, RTCDevice device,
-                          const struct wd_scene *scene, unsigned threads,
-                          const struct wd_log *log);
+bool wd_trace_models_init(struct wd_trace_models *models, RTCDevice device, const struct wd_scene *scene,
+                          const struct wd_trace_looks *looks, unsigned threads, const struct wd_log *log);
 void wd_trace_models_finish(struct wd_trace_models *models); /* accepts {0} */
 
 /* Builds the scene of a model whose mesh and look are set. */

@@ -1,4 +1,5 @@
 /* The path tracer through the public interface: it sees what the renderer draws; bad input. */
+#include <glob.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -270,6 +271,28 @@ static void test_bad_input(void **state)
     wd_reference_destroy(&reference);
 }
 
+static size_t textures_kept(struct suite *suite, const char *cache_dir)
+{
+    const struct wd_reference_params params = {.cache_dir = cache_dir, .log = suite->log};
+    struct wd_reference *reference;
+    char pattern[1280];
+    glob_t found;
+    assert_int_equal(wd_reference_create(&reference, suite->forest, &params), WD_OK);
+    wd_reference_destroy(&reference);
+    snprintf(pattern, sizeof pattern, "%s/looks-*.bin", suite->scratch);
+    assert_true(glob(pattern, 0, NULL, &found) != GLOB_ABORTED);
+    size_t count = found.gl_pathc;
+    globfree(&found);
+    return count;
+}
+
+static void textures_are_kept_where_asked(void **state)
+{
+    struct suite *suite = suite_of(state);
+    assert_int_equal(textures_kept(suite, ""), 0);
+    assert_true(textures_kept(suite, suite->scratch) > 0);
+}
+
 int main(int argc, char **argv)
 {
     static struct suite suite;
@@ -278,6 +301,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(test_agreement, &suite),
         cmocka_unit_test_prestate(layers_need_no_paths, &suite),
+        cmocka_unit_test_prestate(textures_are_kept_where_asked, &suite),
         cmocka_unit_test_prestate(test_resume, &suite),
         cmocka_unit_test_prestate(test_fewer_samples, &suite),
         cmocka_unit_test_prestate(test_no_folder, &suite),
