@@ -84,7 +84,7 @@ static bool choose_metric(struct bench *bench)
 {
     const char *wanted = bench->session->options->metric;
     const char *const *names = wd_comparison_names();
-    bench->metric = bench->suite->measures & BENCH_POPPING ? BENCH_POPPING_MEAN : BENCH_COMPARISON;
+    bench->metric = bench->suite->measures & BENCH_POPPING ? BENCH_POPPING_MEAN : BENCH_FLIP;
     if (!wanted)
         return true;
     for (uint32_t i = 0; names[i]; i++) {

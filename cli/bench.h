@@ -23,6 +23,10 @@ enum bench_column {
     BENCH_DEVICE_MB,
     BENCH_HOST_MB, /* peak of the program so far */
     BENCH_COMPARISON, /* the members of struct wd_comparison */
+    BENCH_FLIP = BENCH_COMPARISON,
+    BENCH_SSIM,
+    BENCH_BLOCKS = BENCH_COMPARISON + 3,
+    BENCH_BIAS, /* of radiance, trees and coverage, the last of the comparison */
     BENCH_NOISE_FLIP = BENCH_COMPARISON + 7, /* of the reference: what its picture is away from where
                                                 more samples would bring it, by FLIP */
     BENCH_NOISE_BLOCKS,                      /* and by block_rmse_pct */
@@ -144,7 +148,9 @@ void bench_column_title(uint32_t column, char title[64]);
 /* Which of the style sheet's colours a method has. */
 uint32_t bench_method_color(const char *method);
 bool bench_same_place(const struct bench_row *a, const struct bench_row *b);
-/* Whether no method at that place is both faster and lower in `column`. */
+/* What the better of two values in `column` is: "lower", "higher" or "nearer to 0". */
+const char *bench_better(uint32_t column);
+/* Whether no method at that place is both faster and better in `column`. */
 bool bench_is_best(const struct bench *bench, const struct bench_row *row, uint32_t column);
 
 /* A name as it stands in columns of results and in files' names. */

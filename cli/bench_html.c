@@ -162,8 +162,8 @@ static void print_strip(FILE *to, const struct bench *bench, const struct bench_
         fprintf(to,
                 "<figcaption><b class=\"m%u\">%s</b> FLIP %.3f, blocks %.2g %%, %.4g "
                 "ms</figcaption></figure>\n",
-                bench_method_color(row->method), row->method, row->values[BENCH_COMPARISON],
-                row->values[BENCH_COMPARISON + 3], row->values[BENCH_FRAME_MS]);
+                bench_method_color(row->method), row->method, row->values[BENCH_FLIP],
+                row->values[BENCH_BLOCKS], row->values[BENCH_FRAME_MS]);
     }
     fputs("</div>\n", to);
 }
@@ -183,7 +183,7 @@ static uint32_t second_column(const struct bench *bench)
         return BENCH_POPPING_P999;
     if (!(bench->suite->measures & BENCH_ERROR))
         return BENCH_DEVICE_MB;
-    return bench->metric == BENCH_COMPARISON ? BENCH_COMPARISON + 3 : BENCH_COMPARISON;
+    return bench->metric == BENCH_FLIP ? BENCH_BLOCKS : BENCH_FLIP;
 }
 
 static void print_plots(FILE *to, const struct bench *bench, const struct bench_row *place)
@@ -268,8 +268,8 @@ static void print_glance(FILE *to, const struct bench *bench)
         print_glance_row(to, bench, bench->methods[m], error);
     fputs("</table></div>\n", to);
     if (error)
-        fprintf(to, "<p class=\"faint\">Shaded: no other method is both faster and lower in %s."
-                    "</p>\n", title);
+        fprintf(to, "<p class=\"faint\">Shaded: no other method is both faster and %s in %s.</p>\n",
+                bench_better(bench->metric), title);
 }
 
 static void print_effort(FILE *to, const struct bench *bench)

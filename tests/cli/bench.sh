@@ -29,6 +29,30 @@ check 'frames counted, the noise of the reference told' jq -e \
     "$out/results.json"
 check 'the machine in the report' grep -q 'llvmpipe' "$out/report.html"
 
+# what is best by a metric of which more is better, or of which 0 is
+# shaded METRIC OCTREE SEPARATE: $scratch/shaded has the methods that the report shades by these values, octree's time
+# being twice that of separate
+shaded() {
+    awk -F, -v OFS=, -v column="$1" 'NR == 2 { for (i = 1; i <= NF; i++) at[$i] = i }
+        NR > 2 { slow = $3 == "octree"; $at["frame_ms"] = slow ? 20 : 10; $at[column] = slow ? '"$2"' : '"$3"' } 1' \
+        "$scratch/rows.csv" >"$out/results.csv"
+    expect 0 'report.html' bench "$grove" --suite quality --quick --methods octree,separate --gpu software \
+        --metric "$1" -o "$out"
+    sed 's/<tr>/\n/g' "$out/report.html" | sed -n 's/.*<td class="m[0-9]">\([a-z]*\)<.*class="best".*/\1/p' | tr '\n' ' ' \
+        >"$scratch/shaded"
+}
+cp "$out/results.csv" "$scratch/rows.csv"
+shaded ssim 0.9 0.8
+check 'more of SSIM is better' grep -qx 'octree separate ' "$scratch/shaded"
+check 'and so it is told' grep -q 'both faster and higher in SSIM' "$out/report.html"
+shaded ssim 0.7 0.8
+check 'less of it is worse' grep -qx 'separate ' "$scratch/shaded"
+shaded radiance_bias_pct 1 -5
+check 'a bias is better the nearer it is to 0' grep -qx 'octree separate ' "$scratch/shaded"
+shaded flip 0.2 0.1
+check 'less of FLIP is better' grep -qx 'separate ' "$scratch/shaded"
+cp "$scratch/rows.csv" "$out/results.csv"
+
 # an interruption in the middle of a line: what is whole stays, the rest is measured again
 rows=$(grep -c '^grove,' "$out/results.csv")
 head -n 3 "$out/results.csv" >"$scratch/cut"
