@@ -132,9 +132,11 @@ static enum wd_result add_kept_pixels(struct wd_film *film)
 static void count_kept_picture(struct wd_film *film)
 {
     struct file_mark kept, there;
-    if (!wd_film_store_read(&film->store, &kept, sizeof kept))
-        return;
-    if (mark_of(&there, film, film->frames) && there.size == kept.size && there.hash == kept.hash)
+    if (!wd_film_store_read(&film->store, &kept, sizeof kept)) {
+        char *next = wd_film_frame_name(film->pattern, film->frames);
+        wd_output_sweep(next); /* where a kill came */
+        free(next);
+    } else if (mark_of(&there, film, film->frames) && there.size == kept.size && there.hash == kept.hash)
         film->writer.frames = ++film->frames;
     else
         wd_film_store_unread(&film->store);

@@ -99,6 +99,12 @@ check 'every picture left is whole' test "$bad" -eq 0
 check 'nothing else is left' sh -c "! ls -A '$out' | grep -vE '^s-[0-9]{5}\\.png$|^s-%05d\\.png\\.partial$'"
 said=$(sed -n 's/.*finished \([0-9]*\) of.*/\1/p' "$scratch/log")
 sum=$(cksum <"$out/s-00001.png")
+printf half >"$out/.2147483646.2147483647-s-$(printf %05d "$said").png" # as a kill leaves the frame that is being written
+start 's-%05d.png' 4000
+check 'the same command goes on' await grep -q "going on after $said of 4000" "$scratch/log"
+check 'nothing of a killed process is left' await sh -c "! ls -A '$out' | grep -q '^\.2147'"
+stop INT 130
+said=$(sed -n 's/.*finished \([0-9]*\) of.*/\1/p' "$scratch/log")
 printf '#' >>"$out/s-00002.png"
 start 's-%05d.png' 4000
 check 'the same command goes on where a picture is no more what it was' \
