@@ -53,8 +53,11 @@ static const struct cli_option option_table[] = {
     {"path", 0, "NAME", CLI_KIND_TEXT, AT(path), 0, 0, PICTURE_COMMANDS,
      "a camera path of the scene"},
     {"size", 0, "WxH", CLI_KIND_SIZE, AT(size_px), 1, CLI_MAX_SIZE_PX,
-     PICTURE_COMMANDS | CLI_GROW | CLI_BENCH,
+     PICTURE_COMMANDS | CLI_GROW,
      "pixels, 1 to 16384 each way (default: the scene's; of single trees 900x900; of a sheet's cells 230x230)"},
+    {"size", 0, "WxH", CLI_KIND_SIZE, AT(size_px), 1, CLI_MAX_SIZE_PX, CLI_BENCH,
+     "pixels of the frames that times are of, not of errors and popping (default: 800x600, --quick 320x240; of scale "
+     "from the road and from 9 km 1920x1080)"},
     {"samples", 0, "N", CLI_KIND_WHOLE, AT(samples), 1, 65536,
      CLI_RENDER | CLI_GROW,
      "pictures averaged into one (default: the scene's; of single trees 16)"},
@@ -72,7 +75,8 @@ static const struct cli_option option_table[] = {
     {"methods", 0, "A,B,...", CLI_KIND_TEXT, AT(methods), 0, 0, CLI_BENCH,
      "the methods to measure (default: the suite's)"},
     {"metric", 0, "NAME", CLI_KIND_TEXT, AT(metric), 0, 0, CLI_BENCH,
-     "the error that plots and the table show (default: flip)"},
+     "the error that plots and the table show: flip, ssim, rmse_pct, block_rmse_pct, radiance_bias_pct, tree_bias_pct or "
+     "coverage_bias_pct (default: flip); of seeds and quality"},
     {"reference", 0, NULL, CLI_KIND_FLAG, AT(reference), 0, 0, CLI_RENDER,
      "trace paths on the processor: the truth, slow (default: 64 samples)"},
     {"bounces", 0, "N", CLI_KIND_WHOLE, AT(bounces), 1, 1000, CLI_RENDER,

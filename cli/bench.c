@@ -87,6 +87,9 @@ static bool choose_metric(struct bench *bench)
     bench->metric = bench->suite->measures & BENCH_POPPING ? BENCH_POPPING_MEAN : BENCH_FLIP;
     if (!wanted)
         return true;
+    if (!(bench->suite->measures & BENCH_ERROR))
+        return cli_fail(bench->session, "--metric is of errors against the reference, which the suite %s does not measure",
+                        bench->suite->name);
     for (uint32_t i = 0; names[i]; i++) {
         if (strcmp(names[i], wanted) == 0) {
             bench->metric = BENCH_COMPARISON + i;
@@ -213,7 +216,7 @@ static enum wd_result measure_row(struct bench_stage *stage, const struct wd_cam
     return result;
 }
 
-const struct bench_view *bench_find_view(const struct bench_suite *suite, const char *camera)
+static const struct bench_view *find_view(const struct bench_suite *suite, const char *camera)
 {
     for (const struct bench_view *view = suite->views; view->camera; view++)
         if (strcmp(view->camera, camera) == 0)
@@ -221,9 +224,18 @@ const struct bench_view *bench_find_view(const struct bench_suite *suite, const 
     return NULL;
 }
 
+void bench_frame_size(const struct bench *bench, const char *camera, uint32_t size_px[2])
+{
+    const struct cli_options *options = bench->session->options;
+    const struct bench_view *view = find_view(bench->suite, camera);
+    bool own_size = view && !options->quick && !options->size_px[0];
+    size_px[0] = own_size ? view->width : bench->effort.width;
+    size_px[1] = own_size ? view->height : bench->effort.height;
+}
+
 static bool is_measured(const struct bench_suite *suite, uint32_t index, const char *camera)
 {
-    return index == 0 || suite->cameras == BENCH_EVERY_CAMERA || bench_find_view(suite, camera);
+    return index == 0 || suite->cameras == BENCH_EVERY_CAMERA || find_view(suite, camera);
 }
 
 static enum wd_result measure_cameras(struct bench_stage *stage)

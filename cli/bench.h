@@ -107,8 +107,8 @@ bool bench_results_fit(const struct bench_stage *stage);
 const struct bench_row *bench_results_find(const struct bench *bench, const char *scene,
                                            const char *camera, const char *method);
 
-/* The view of the suite that the camera's name stands for; NULL: none. */
-const struct bench_view *bench_find_view(const struct bench_suite *suite, const char *camera);
+/* Pixels of the frames that are timed from a camera. */
+void bench_frame_size(const struct bench *bench, const char *camera, uint32_t size_px[2]);
 
 /* Measures into `*row`. WD_ERROR_INTERRUPTED when asked to stop. */
 enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_camera *camera,

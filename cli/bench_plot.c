@@ -346,7 +346,7 @@ void bench_print_growth(FILE *to, const struct bench *bench, uint32_t column)
     plot.x.from = LEFT, plot.x.to = RIGHT;
     plot.y.from = BOTTOM, plot.y.to = TOP;
     print_frame(to, &plot, "trees");
-    for (size_t i = 0; bench->methods[i]; i++)
-        print_growth_line(to, &plot, bench->methods[i], &labels);
+    for (const char *const *method = wd_method_names(); *method; method++)
+        print_growth_line(to, &plot, *method, &labels);
     fprintf(to, "</svg>\n");
 }

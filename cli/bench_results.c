@@ -224,14 +224,17 @@ static void print_json_text(FILE *to, const char *text)
     fputc('"', to);
 }
 
-static void print_json_row(FILE *to, const struct bench_row *row)
+static void print_json_row(FILE *to, const struct bench *bench, const struct bench_row *row)
 {
+    uint32_t size_px[2];
+    bench_frame_size(bench, row->camera, size_px);
     fprintf(to, "    {\"scene\": ");
     print_json_text(to, row->scene);
     fprintf(to, ", \"camera\": ");
     print_json_text(to, row->camera);
     fprintf(to, ", \"method\": ");
     print_json_text(to, row->method);
+    fprintf(to, ", \"frame_px\": [%u, %u]", size_px[0], size_px[1]);
     for (uint32_t i = 0; i < BENCH_COLUMNS; i++)
         if (isfinite(row->values[i]))
             fprintf(to, ", \"%s\": %.6g", bench_column_name(i), row->values[i]);
@@ -243,12 +246,22 @@ static void print_json_row(FILE *to, const struct bench_row *row)
 static void print_json(FILE *to, const struct bench *bench)
 {
     char *machine = bench_machine_text(bench);
-    fprintf(to, "{\n  \"suite\": \"%s\", \"effort\": \"%s\",\n  \"machine\": ", bench->suite->name,
-            bench->effort.name);
+    const struct bench_effort *e = &bench->effort;
+    const struct cli_words *settings = &bench->session->options->settings;
+    fprintf(to, "{\n  \"suite\": \"%s\", \"effort\": \"%s\", \"settings\": [", bench->suite->name, e->name);
+    for (uint32_t i = 0; i < settings->count; i++) {
+        fputs(i ? ", " : "", to);
+        print_json_text(to, settings->words[i]);
+    }
+    fprintf(to, "],\n");
+    if (bench->suite->measures & BENCH_ERROR)
+        fprintf(to, "  \"error_px\": [%u, %u], \"error_samples\": %u, \"reference_samples\": %u,\n", e->truth_width,
+                e->truth_height, e->samples, e->truth_samples);
+    fprintf(to, "  \"machine\": ");
     print_json_text(to, machine);
     fprintf(to, ",\n  \"rows\": [\n");
     for (size_t i = 0; i < bench->row_count; i++) {
-        print_json_row(to, &bench->rows[i]);
+        print_json_row(to, bench, &bench->rows[i]);
         fprintf(to, "%s\n", i + 1 < bench->row_count ? "," : "");
     }
     fprintf(to, "  ]\n}\n");

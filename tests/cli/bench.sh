@@ -86,6 +86,22 @@ if [ "$weald" ]; then
     expect 1 'reference/grove-.* 40 x 30 pixels, not 128 x 96' bench "$grove" --suite quality --quick --methods octree --gpu software -o "$out"
 fi
 
+# times alone: no metric; what is set and how large frames are is told, names are no markup, earlier methods stay
+named=$scratch/named.json
+sed -e 's|"south"|"<u>road"|' -e "s|\.\./\.\./species|$root/species|g" "$grove" >"$named"
+expect 2 'which the suite density does not measure' bench "$named" --suite density --metric ssim -o "$scratch/named"
+for method in octree separate; do
+    expect 0 report.html bench "$named" --suite density --quick --size 64x48 --methods "$method" --gpu software \
+        --set wind.speed_mps=0 -o "$scratch/named"
+done
+check 'JSON tells what was set and the size' jq -e \
+    '.settings == ["wind.speed_mps=0"] and (.rows | length == 2) and all(.rows[]; .frame_px == [64, 48])' \
+    "$scratch/named/results.json"
+check 'the report tells it' grep -q 'of 64 x 48 pixels, one sample a pixel. Of every scene is set: wind.speed_mps=0' \
+    "$scratch/named/report.html"
+check 'names are no markup' sh -c "! grep -q '<u>' '$scratch/named/report.html'"
+check 'both methods at a glance' [ "$(sed -n '/At a glance/,/<.table>/p' "$scratch/named/report.html" | grep -cE '>(octree|separate)<')" -eq 2 ]
+
 # a camera's name that would part columns and folders; a scene that has changed since
 far=$scratch/far.json
 sed -e 's|"south"|"9 km, north/west"|' -e "s|\.\./\.\./species|$root/species|g" "$grove" >"$far"
