@@ -1,12 +1,15 @@
 #include "bench.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "args.h"
 
@@ -161,6 +164,16 @@ static bool make_directories(struct bench *bench)
             return false;
     }
     return true;
+}
+
+/* Until the program ends. File systems without locks go without. */
+static bool lock_directory(const struct bench *bench)
+{
+    int directory = open(bench->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (directory < 0 || flock(directory, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+        return true;
+    close(directory);
+    return cli_fail(bench->session, "%s: another process is at work in this directory", bench->directory);
 }
 
 static bool prepare(struct bench *bench)
@@ -402,7 +415,7 @@ enum cli_status cli_bench(struct cli_session *session)
     struct bench bench = {.session = session};
     if (!prepare(&bench))
         return CLI_USAGE;
-    if (!make_directories(&bench) || !bench_results_load(&bench))
+    if (!make_directories(&bench) || !lock_directory(&bench) || !bench_results_load(&bench))
         return CLI_FAILED;
     if (bench.resumed)
         cli_say(session, "%s: %zu results are there already\n", bench.directory, bench.resumed);

@@ -62,6 +62,12 @@ run '1 results are there already'
 check 'all rows again' [ "$(grep -c '^grove,' "$out/results.csv")" -eq "$rows" ]
 expect 1 'another suite' bench "$grove" --suite scale --quick -o "$out"
 
+# one process at a time
+exec 9<"$out"
+flock 9
+expect 1 'another process is at work' bench "$grove" --suite quality --quick --gpu software -o "$out"
+exec 9<&-
+
 # a report that cannot be written
 mv "$out/report.html" "$scratch/report.html"
 mkdir "$out/report.html"
