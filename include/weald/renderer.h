@@ -138,7 +138,8 @@ struct wd_picture {
     double time_s;           /* at this time of the wind */
     char *about;         /* both, and what ids and places refer to, as JSON: scene, seed, time_s, camera (as in struct
                             wd_camera), origin_m and crs (as in struct wd_forest_info; null: none), species (names; the
-                            species layer holds index + 1). Files (.exr) have it as the attribute "weald", and
+                            species layer holds index + 1), conditions (date, clock, sun, clouds, visibility, wind and
+                            snow, by the keys of scenes). Files (.exr) have it as the attribute "weald", and
                             worldToCamera: from the local frame to x right, y up, -z ahead, rows times matrix */
 };
 
