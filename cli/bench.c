@@ -13,6 +13,8 @@
 
 #include "args.h"
 
+enum { NAME_SIZE = 41 }; /* of a scene in the results, where a setting may follow */
+
 /* Quick: fewer and smaller views than the papers', baking them takes most of a first run. */
 static const struct bench_effort QUICK = {
     .name = "quick",
@@ -176,6 +178,28 @@ static bool lock_directory(const struct bench *bench)
     return cli_fail(bench->session, "%s: another process is at work in this directory", bench->directory);
 }
 
+/* What results call a scene. */
+static void name_of(const char *path, char name[NAME_SIZE])
+{
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
+    snprintf(name, NAME_SIZE, "%.*s", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
+}
+
+static bool check_names(const struct bench *bench)
+{
+    const struct cli_options *options = bench->session->options;
+    for (int i = 1; i < options->operand_count; i++)
+        for (int k = 0; k < i; k++) {
+            char name[NAME_SIZE], other[NAME_SIZE];
+            name_of(options->operands[i], name);
+            name_of(options->operands[k], other);
+            if (strcmp(name, other) == 0)
+                return cli_fail(bench->session, "%s and %s would both be \"%s\" in the results: rename one",
+                                options->operands[k], options->operands[i], name);
+        }
+    return true;
+}
+
 static bool prepare(struct bench *bench)
 {
     const struct cli_options *options = bench->session->options;
@@ -183,7 +207,7 @@ static bool prepare(struct bench *bench)
     bench->effort = options->quick ? QUICK : FULL;
     if (!bench->directory)
         return cli_fail(bench->session, "no directory named: add -o DIR for results and report");
-    if (!choose_suite(bench) || !choose_metric(bench) || !choose_methods(bench))
+    if (!choose_suite(bench) || !choose_metric(bench) || !choose_methods(bench) || !check_names(bench))
         return false;
     if (options->size_px[0]) {
         bench->effort.width = options->size_px[0];
@@ -373,15 +397,6 @@ static char *scene_path(const char *name)
     return path;
 }
 
-static void name_of(const char *path, char name[64])
-{
-    const char *slash = strrchr(path, '/');
-    snprintf(name, 64, "%s", slash ? slash + 1 : path);
-    char *dot = strrchr(name, '.');
-    if (dot)
-        *dot = 0;
-}
-
 /* The scenes of the suite, or those named on the command line. */
 static enum wd_result run_suite(struct bench *bench)
 {
@@ -393,13 +408,13 @@ static enum wd_result run_suite(struct bench *bench)
             break;
         char *path = options->operand_count ? strdup(options->operands[i])
                                             : scene_path(suite->scenes[i]);
-        char name[64], label[64];
+        char name[NAME_SIZE], label[64];
         name_of(path, name);
         for (int s = 0; result == WD_OK && (s == 0 || (i == 0 && suite->settings[s])); s++) {
             const char *setting = options->operand_count || i > 0 ? NULL : suite->settings[s];
             const char *value = setting ? strchr(setting, '=') + 1 : NULL;
             char whole[256];
-            snprintf(whole, sizeof whole, "%.40s%s%s", name, value ? " " : "", value ? value : "");
+            snprintf(whole, sizeof whole, "%s%s%s", name, value ? " " : "", value ? value : "");
             bench_label(label, whole);
             result = run_scene(bench, path, label, setting);
             if (options->operand_count)

@@ -168,8 +168,8 @@ static bool read_rows(struct bench *bench, FILE *file, const char *path)
     free(heads);
     if (!same)
         return cli_fail(bench->session,
-                        "%s: holds results of another suite, effort or size; name another "
-                        "directory or remove it",
+                        "%s: holds results of another suite, effort, size, --set or version of weald; name "
+                        "another directory or remove it",
                         path);
     while (fgets(line, sizeof line, file)) {
         struct bench_row row = {0};

@@ -13,6 +13,7 @@ expect 2 'no method "octre", did you mean octree' bench --suite quality --method
 expect 2 'no metric "flop", did you mean flip' bench --suite quality --metric flop -o "$out"
 expect 1 'No such file' bench --suite quality -o "$scratch/none/bench"
 expect 1 'No such file|cannot' bench "$scratch/none.json" --suite quality --quick -o "$out"
+expect 2 'would both be "grove" in the results' bench "$grove" "$scratch/grove.json" --suite quality -o "$out"
 rm -rf "$out"
 
 run() {
