@@ -321,7 +321,7 @@ static enum wd_result open_renderer(struct bench_stage *stage)
     if (result == WD_OK)
         snprintf(bench->device, sizeof bench->device, "%s",
                  wd_renderer_device_name(stage->renderer));
-    return result;
+    return result == WD_OK && !bench_machine_fits(bench) ? WD_ERROR_INPUT : result;
 }
 
 /* All methods but continuum keep every tree. */

@@ -161,6 +161,8 @@ bool bench_write(const struct bench *bench, const char *name,
 /* DIRECTORY/NAME as printf's; free() it. */
 __attribute__((format(printf, 2, 3))) char *bench_path(const struct bench *bench,
                                                        const char *format, ...);
+/* Whether results that are there, if any, are of the same device; else it is said. Writes down what this machine is. */
+bool bench_machine_fits(const struct bench *bench);
 /* Words of the machine and device, a line each; free() it. */
 char *bench_machine_text(const struct bench *bench);
 double bench_percentile(double *values, size_t count, double share); /* sorts them */

@@ -283,6 +283,9 @@ static void print_cell(double value, const char *format, int width)
 
 void bench_print_table(const struct bench *bench)
 {
+    const bool errors = bench->suite->measures & (BENCH_ERROR | BENCH_POPPING);
+    const char *metric = bench_column_name(bench->metric);
+    const int width = strlen(metric) > 10 ? (int)strlen(metric) : 10;
     char last[160] = "";
     for (size_t i = 0; i < bench->row_count; i++) {
         const struct bench_row *row = &bench->rows[i];
@@ -291,8 +294,11 @@ void bench_print_table(const struct bench *bench)
         if (strcmp(place, last) != 0) {
             printf("%s%s: %.0f trees, ready in %.1f s\n", i ? "\n" : "", place,
                    row->values[BENCH_TREES], row->values[BENCH_START_S]);
-            printf("%-12s %10s %8s %8s %8s %8s %10s %8s %10s\n", "method", "median ms", "p95",
-                   "GPU", "CPU", "draws", "triangles", "MB", bench_column_name(bench->metric));
+            printf("%-12s %10s %8s %8s %8s %8s %10s %10s", "method", "median ms", "p95 ms", "GPU ms", "CPU ms", "draws",
+                   "triangles", "device MB");
+            if (errors)
+                printf(" %*s", width, metric);
+            printf("\n");
         }
         snprintf(last, sizeof last, "%s", place);
         printf("%-12s", row->method);
@@ -302,8 +308,9 @@ void bench_print_table(const struct bench *bench)
         print_cell(row->values[BENCH_CPU_MS], "%.1f", 8);
         print_cell(row->values[BENCH_DRAWS], "%.0f", 8);
         print_cell(row->values[BENCH_TRIANGLES], "%.0f", 10);
-        print_cell(row->values[BENCH_DEVICE_MB], "%.0f", 8);
-        print_cell(row->values[bench->metric], "%.4f", 10);
+        print_cell(row->values[BENCH_DEVICE_MB], "%.0f", 10);
+        if (errors)
+            print_cell(row->values[bench->metric], "%.4f", width);
         printf("\n");
     }
 }

@@ -97,10 +97,16 @@ fi
 named=$scratch/named.json
 sed -e 's|"south"|"<u>road"|' -e "s|\.\./\.\./species|$root/species|g" "$grove" >"$named"
 expect 2 'which the suite density does not measure' bench "$named" --suite density --metric ssim -o "$scratch/named"
-for method in octree separate; do
-    expect 0 report.html bench "$named" --suite density --quick --size 64x48 --methods "$method" --gpu software \
+timed() { # timed STATUS PATTERN METHOD
+    expect "$1" "$2" bench "$named" --suite density --quick --size 64x48 --methods "$3" --gpu software \
         --set wind.speed_mps=0 -o "$scratch/named"
-done
+}
+timed 0 '^method +median ms +p95 ms +GPU ms +CPU ms +draws +triangles +device MB$' octree
+cp "$scratch/named/machine.txt" "$scratch/machine.txt"
+sed -i 's/^device: .*/device: another/' "$scratch/named/machine.txt"
+timed 1 'holds results of the device: another, not of llvmpipe' separate
+cp "$scratch/machine.txt" "$scratch/named/machine.txt"
+timed 0 report.html separate
 check 'JSON tells what was set and the size' jq -e \
     '.settings == ["wind.speed_mps=0"] and (.rows | length == 2) and all(.rows[]; .frame_px == [64, 48])' \
     "$scratch/named/results.json"
