@@ -63,6 +63,8 @@ static const struct cli_option option_table[] = {
      "pictures averaged into one (default: the scene's; of single trees 16)"},
     {"frames", 0, "N", CLI_KIND_WHOLE, AT(frames), 1, 10000000, CLI_RENDER,
      "frames of a film, spread evenly over the path (default: the path at its own speed)"},
+    {"only", 0, "A-B", CLI_KIND_TEXT, AT(only), 0, 0, CLI_RENDER,
+     "of a film's numbered files those from number A to B, as for one of many machines (default: all, from 0)"},
     {"fps", 0, "N", CLI_KIND_REAL, AT(frames_per_second),
      WD_LEAST_FRAMES_PER_SECOND, WD_MOST_FRAMES_PER_SECOND, CLI_RENDER,
      "frames a second of a film, and of a still's motion (default: 24)"},

@@ -55,6 +55,29 @@ jq '.wind.speed_mps = 0 | .cameras = [range(5) | {name: "c\(.)", position_m: [10
     expect 0 . render "$scratch/keys.json" -o "$out/still.png" --camera c3 $size
 }
 check 'frame 3 is the key 3' cmp "$out/still.png" "$out/k-3.png"
+
+# Parts of it: as in the whole, each with its own checkpoint.
+mkdir "$out/parts"
+# shellcheck disable=SC2086
+{
+    part="render $scratch/keys.json -o $out/parts/k-%d.png --path p --frames 5 $size"
+    touch "$out/parts/k-%d.png.partial" "$out/parts/k-%d.png.4.partial"
+    expect 0 '3 frames' $part --only 1-3
+    check 'and no others' test ! -e "$out/parts/k-0.png" -a ! -e "$out/parts/k-4.png"
+    for i in 1 2 3; do
+        check "frame $i alone is as in the whole" cmp "$out/k-$i.png" "$out/parts/k-$i.png"
+    done
+    check 'checkpoints of other parts stay' test "$(find "$out/parts" -name '*.partial' | wc -l)" -eq 2
+    rm "$out/parts"/*.partial
+    printf '%s\n' "$part --only 2-3" "$part --only 4-4" >"$scratch/parts"
+    expect 0 'parts: 1 lines left out' batch "$scratch/parts" --skip-existing
+    check 'frame 4 alone is as in the whole' cmp "$out/k-4.png" "$out/parts/k-4.png"
+    expect 1 'the film has frames 0 to 4' $part --only 3-5
+    expect 2 'found no two numbers' $part --only 3-2
+    expect 2 'found no two numbers' $part --only 3
+    expect 2 'is for numbered files' render "$scratch/keys.json" -o "$out/k.mp4" --only 1-2 $size
+}
+rm -r "$out/parts"
 rm -f "$out"/*
 
 # start NAME FRAMES OPTION...: a film in the background
