@@ -118,7 +118,7 @@ static void leave_out_done(struct batch *batch)
     uint32_t left_out = 0;
     for (uint32_t i = 0; i < batch->count; i++) {
         const struct line *line = &batch->lines[i];
-        bool done = line->command && line->options.output && cli_output_is_done(line->options.output);
+        bool done = line->command && line->options.output && cli_output_is_done(line->options.output, line->options.only);
         left_out += batch->lines[i].left_out = done;
     }
     if (left_out && !batch->session->options->quiet)

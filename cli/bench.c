@@ -1,14 +1,19 @@
 #include "bench.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "args.h"
+
+enum { NAME_SIZE = 41 }; /* of a scene in the results, where a setting may follow */
 
 /* Quick: fewer and smaller views than the papers', baking them takes most of a first run. */
 static const struct bench_effort QUICK = {
@@ -84,9 +89,12 @@ static bool choose_metric(struct bench *bench)
 {
     const char *wanted = bench->session->options->metric;
     const char *const *names = wd_comparison_names();
-    bench->metric = bench->suite->measures & BENCH_POPPING ? BENCH_POPPING_MEAN : BENCH_COMPARISON;
+    bench->metric = bench->suite->measures & BENCH_POPPING ? BENCH_POPPING_MEAN : BENCH_FLIP;
     if (!wanted)
         return true;
+    if (!(bench->suite->measures & BENCH_ERROR))
+        return cli_fail(bench->session, "--metric is of errors against the reference, which the suite %s does not measure",
+                        bench->suite->name);
     for (uint32_t i = 0; names[i]; i++) {
         if (strcmp(names[i], wanted) == 0) {
             bench->metric = BENCH_COMPARISON + i;
@@ -160,6 +168,38 @@ static bool make_directories(struct bench *bench)
     return true;
 }
 
+/* Until the program ends. File systems without locks go without. */
+static bool lock_directory(const struct bench *bench)
+{
+    int directory = open(bench->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (directory < 0 || flock(directory, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+        return true;
+    close(directory);
+    return cli_fail(bench->session, "%s: another process is at work in this directory", bench->directory);
+}
+
+/* What results call a scene. */
+static void name_of(const char *path, char name[NAME_SIZE])
+{
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
+    snprintf(name, NAME_SIZE, "%.*s", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
+}
+
+static bool check_names(const struct bench *bench)
+{
+    const struct cli_options *options = bench->session->options;
+    for (int i = 1; i < options->operand_count; i++)
+        for (int k = 0; k < i; k++) {
+            char name[NAME_SIZE], other[NAME_SIZE];
+            name_of(options->operands[i], name);
+            name_of(options->operands[k], other);
+            if (strcmp(name, other) == 0)
+                return cli_fail(bench->session, "%s and %s would both be \"%s\" in the results: rename one",
+                                options->operands[k], options->operands[i], name);
+        }
+    return true;
+}
+
 static bool prepare(struct bench *bench)
 {
     const struct cli_options *options = bench->session->options;
@@ -167,7 +207,7 @@ static bool prepare(struct bench *bench)
     bench->effort = options->quick ? QUICK : FULL;
     if (!bench->directory)
         return cli_fail(bench->session, "no directory named: add -o DIR for results and report");
-    if (!choose_suite(bench) || !choose_metric(bench) || !choose_methods(bench))
+    if (!choose_suite(bench) || !choose_metric(bench) || !choose_methods(bench) || !check_names(bench))
         return false;
     if (options->size_px[0]) {
         bench->effort.width = options->size_px[0];
@@ -213,7 +253,7 @@ static enum wd_result measure_row(struct bench_stage *stage, const struct wd_cam
     return result;
 }
 
-const struct bench_view *bench_find_view(const struct bench_suite *suite, const char *camera)
+static const struct bench_view *find_view(const struct bench_suite *suite, const char *camera)
 {
     for (const struct bench_view *view = suite->views; view->camera; view++)
         if (strcmp(view->camera, camera) == 0)
@@ -221,9 +261,18 @@ const struct bench_view *bench_find_view(const struct bench_suite *suite, const 
     return NULL;
 }
 
+void bench_frame_size(const struct bench *bench, const char *camera, uint32_t size_px[2])
+{
+    const struct cli_options *options = bench->session->options;
+    const struct bench_view *view = find_view(bench->suite, camera);
+    bool own_size = view && !options->quick && !options->size_px[0];
+    size_px[0] = own_size ? view->width : bench->effort.width;
+    size_px[1] = own_size ? view->height : bench->effort.height;
+}
+
 static bool is_measured(const struct bench_suite *suite, uint32_t index, const char *camera)
 {
-    return index == 0 || suite->cameras == BENCH_EVERY_CAMERA || bench_find_view(suite, camera);
+    return index == 0 || suite->cameras == BENCH_EVERY_CAMERA || find_view(suite, camera);
 }
 
 static enum wd_result measure_cameras(struct bench_stage *stage)
@@ -272,7 +321,7 @@ static enum wd_result open_renderer(struct bench_stage *stage)
     if (result == WD_OK)
         snprintf(bench->device, sizeof bench->device, "%s",
                  wd_renderer_device_name(stage->renderer));
-    return result;
+    return result == WD_OK && !bench_machine_fits(bench) ? WD_ERROR_INPUT : result;
 }
 
 /* All methods but continuum keep every tree. */
@@ -348,15 +397,6 @@ static char *scene_path(const char *name)
     return path;
 }
 
-static void name_of(const char *path, char name[64])
-{
-    const char *slash = strrchr(path, '/');
-    snprintf(name, 64, "%s", slash ? slash + 1 : path);
-    char *dot = strrchr(name, '.');
-    if (dot)
-        *dot = 0;
-}
-
 /* The scenes of the suite, or those named on the command line. */
 static enum wd_result run_suite(struct bench *bench)
 {
@@ -368,13 +408,13 @@ static enum wd_result run_suite(struct bench *bench)
             break;
         char *path = options->operand_count ? strdup(options->operands[i])
                                             : scene_path(suite->scenes[i]);
-        char name[64], label[64];
+        char name[NAME_SIZE], label[64];
         name_of(path, name);
         for (int s = 0; result == WD_OK && (s == 0 || (i == 0 && suite->settings[s])); s++) {
             const char *setting = options->operand_count || i > 0 ? NULL : suite->settings[s];
             const char *value = setting ? strchr(setting, '=') + 1 : NULL;
             char whole[256];
-            snprintf(whole, sizeof whole, "%.40s%s%s", name, value ? " " : "", value ? value : "");
+            snprintf(whole, sizeof whole, "%s%s%s", name, value ? " " : "", value ? value : "");
             bench_label(label, whole);
             result = run_scene(bench, path, label, setting);
             if (options->operand_count)
@@ -390,7 +430,7 @@ enum cli_status cli_bench(struct cli_session *session)
     struct bench bench = {.session = session};
     if (!prepare(&bench))
         return CLI_USAGE;
-    if (!make_directories(&bench) || !bench_results_load(&bench))
+    if (!make_directories(&bench) || !lock_directory(&bench) || !bench_results_load(&bench))
         return CLI_FAILED;
     if (bench.resumed)
         cli_say(session, "%s: %zu results are there already\n", bench.directory, bench.resumed);

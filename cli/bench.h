@@ -23,6 +23,10 @@ enum bench_column {
     BENCH_DEVICE_MB,
     BENCH_HOST_MB, /* peak of the program so far */
     BENCH_COMPARISON, /* the members of struct wd_comparison */
+    BENCH_FLIP = BENCH_COMPARISON,
+    BENCH_SSIM,
+    BENCH_BLOCKS = BENCH_COMPARISON + 3,
+    BENCH_BIAS, /* of radiance, trees and coverage, the last of the comparison */
     BENCH_NOISE_FLIP = BENCH_COMPARISON + 7, /* of the reference: what its picture is away from where
                                                 more samples would bring it, by FLIP */
     BENCH_NOISE_BLOCKS,                      /* and by block_rmse_pct */
@@ -103,8 +107,8 @@ bool bench_results_fit(const struct bench_stage *stage);
 const struct bench_row *bench_results_find(const struct bench *bench, const char *scene,
                                            const char *camera, const char *method);
 
-/* The view of the suite that the camera's name stands for; NULL: none. */
-const struct bench_view *bench_find_view(const struct bench_suite *suite, const char *camera);
+/* Pixels of the frames that are timed from a camera. */
+void bench_frame_size(const struct bench *bench, const char *camera, uint32_t size_px[2]);
 
 /* Measures into `*row`. WD_ERROR_INTERRUPTED when asked to stop. */
 enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_camera *camera,
@@ -144,7 +148,9 @@ void bench_column_title(uint32_t column, char title[64]);
 /* Which of the style sheet's colours a method has. */
 uint32_t bench_method_color(const char *method);
 bool bench_same_place(const struct bench_row *a, const struct bench_row *b);
-/* Whether no method at that place is both faster and lower in `column`. */
+/* What the better of two values in `column` is: "lower", "higher" or "nearer to 0". */
+const char *bench_better(uint32_t column);
+/* Whether no method at that place is both faster and better in `column`. */
 bool bench_is_best(const struct bench *bench, const struct bench_row *row, uint32_t column);
 
 /* A name as it stands in columns of results and in files' names. */
@@ -155,6 +161,8 @@ bool bench_write(const struct bench *bench, const char *name,
 /* DIRECTORY/NAME as printf's; free() it. */
 __attribute__((format(printf, 2, 3))) char *bench_path(const struct bench *bench,
                                                        const char *format, ...);
+/* Whether results that are there, if any, are of the same device; else it is said. Writes down what this machine is. */
+bool bench_machine_fits(const struct bench *bench);
 /* Words of the machine and device, a line each; free() it. */
 char *bench_machine_text(const struct bench *bench);
 double bench_percentile(double *values, size_t count, double share); /* sorts them */

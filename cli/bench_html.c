@@ -162,8 +162,8 @@ static void print_strip(FILE *to, const struct bench *bench, const struct bench_
         fprintf(to,
                 "<figcaption><b class=\"m%u\">%s</b> FLIP %.3f, blocks %.2g %%, %.4g "
                 "ms</figcaption></figure>\n",
-                bench_method_color(row->method), row->method, row->values[BENCH_COMPARISON],
-                row->values[BENCH_COMPARISON + 3], row->values[BENCH_FRAME_MS]);
+                bench_method_color(row->method), row->method, row->values[BENCH_FLIP],
+                row->values[BENCH_BLOCKS], row->values[BENCH_FRAME_MS]);
     }
     fputs("</div>\n", to);
 }
@@ -183,7 +183,7 @@ static uint32_t second_column(const struct bench *bench)
         return BENCH_POPPING_P999;
     if (!(bench->suite->measures & BENCH_ERROR))
         return BENCH_DEVICE_MB;
-    return bench->metric == BENCH_COMPARISON ? BENCH_COMPARISON + 3 : BENCH_COMPARISON;
+    return bench->metric == BENCH_FLIP ? BENCH_BLOCKS : BENCH_FLIP;
 }
 
 static void print_plots(FILE *to, const struct bench *bench, const struct bench_row *place)
@@ -228,6 +228,15 @@ static bool is_first_of_place(const struct bench *bench, size_t index)
     return true;
 }
 
+/* Also of methods that an earlier run left in the directory. */
+static bool has_rows(const struct bench *bench, const char *method)
+{
+    for (size_t i = 0; i < bench->row_count; i++)
+        if (strcmp(bench->rows[i].method, method) == 0)
+            return true;
+    return false;
+}
+
 static void print_glance_row(FILE *to, const struct bench *bench, const char *method, bool error)
 {
     fprintf(to, "<tr><td class=\"m%u\">%s</td>", bench_method_color(method), method);
@@ -254,7 +263,9 @@ static void print_glance(FILE *to, const struct bench *bench)
         if (is_first_of_place(bench, i)) {
             fprintf(to, "<th colspan=\"%d\">", error ? 2 : 1);
             print_escaped(to, bench->rows[i].scene);
-            fprintf(to, "<br>%s</th>", bench->rows[i].camera);
+            fputs("<br>", to);
+            print_escaped(to, bench->rows[i].camera);
+            fputs("</th>", to);
         }
     fputs("</tr>\n<tr><th>method</th>", to);
     for (size_t i = 0; i < bench->row_count; i++)
@@ -264,12 +275,13 @@ static void print_glance(FILE *to, const struct bench *bench)
                 fprintf(to, "<th class=\"text\">%s</th>", title);
         }
     fputs("</tr>\n", to);
-    for (size_t m = 0; bench->methods[m]; m++)
-        print_glance_row(to, bench, bench->methods[m], error);
+    for (const char *const *method = wd_method_names(); *method; method++)
+        if (has_rows(bench, *method))
+            print_glance_row(to, bench, *method, error);
     fputs("</table></div>\n", to);
     if (error)
-        fprintf(to, "<p class=\"faint\">Shaded: no other method is both faster and lower in %s."
-                    "</p>\n", title);
+        fprintf(to, "<p class=\"faint\">Shaded: no other method is both faster and %s in %s.</p>\n",
+                bench_better(bench->metric), title);
 }
 
 static void print_effort(FILE *to, const struct bench *bench)
@@ -277,8 +289,15 @@ static void print_effort(FILE *to, const struct bench *bench)
     const struct bench_effort *effort = &bench->effort;
     fprintf(to,
             "<p class=\"faint\">Effort \"%s\". Times: medians of up to %u frames of %u x %u "
-            "pixels, one sample a pixel.",
+            "pixels",
             effort->name, effort->frames, effort->width, effort->height);
+    for (const struct bench_view *view = bench->suite->views; view->camera; view++) {
+        uint32_t size_px[2];
+        bench_frame_size(bench, view->camera, size_px);
+        if (size_px[0] != effort->width)
+            fprintf(to, " (from the camera \"%s\" %u x %u)", view->camera, size_px[0], size_px[1]);
+    }
+    fputs(", one sample a pixel.", to);
     if (bench->suite->measures & BENCH_ERROR)
         fprintf(to,
                 " Errors: %u samples a pixel against %u traced paths a pixel, at %u x %u.",
@@ -288,7 +307,12 @@ static void print_effort(FILE *to, const struct bench *bench)
                 " Popping: change between %u frames 0.25 m apart beyond the change of the "
                 "path-traced ones (%u paths a pixel), in blocks of 4 x 4 pixels, %u x %u in all.",
                 effort->steps, effort->step_samples, effort->step_width, effort->step_height);
-    fputs("</p>\n", to);
+    const struct cli_words *settings = &bench->session->options->settings;
+    for (uint32_t i = 0; i < settings->count; i++) {
+        fputs(i ? ", " : " Of every scene is set: ", to);
+        print_escaped(to, settings->words[i]);
+    }
+    fputs(settings->count ? ".</p>\n" : "</p>\n", to);
 }
 
 static void print_report(FILE *to, const struct bench *bench)

@@ -64,6 +64,23 @@ static char *describe_machine(const struct bench *bench)
     return text;
 }
 
+bool bench_machine_fits(const struct bench *bench)
+{
+    char *path = bench_path(bench, "machine.txt"), *before = bench->resumed ? remembered(path) : NULL;
+    char *now = describe_machine(bench);
+    size_t device = strcspn(now, "\n");
+    bool fits = !before || (strcspn(before, "\n") == device && memcmp(before, now, device) == 0);
+    if (fits)
+        remember(path, now);
+    else
+        cli_fail(bench->session, "%s: holds results of the %.*s, not of %s; name another directory or remove it",
+                 bench->directory, (int)strcspn(before, "\n"), before, bench->device);
+    free(path);
+    free(before);
+    free(now);
+    return fits;
+}
+
 char *bench_machine_text(const struct bench *bench)
 {
     char *path = bench_path(bench, "machine.txt"), *text = NULL;

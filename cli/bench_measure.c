@@ -76,13 +76,12 @@ enum wd_result bench_measure_time(struct bench_stage *stage, const struct wd_cam
                                   struct bench_row *row)
 {
     const struct bench_effort *effort = &stage->bench->effort;
-    const struct bench_view *view = bench_find_view(stage->bench->suite, row->camera);
-    const struct cli_options *options = stage->bench->session->options;
-    bool own_size = view && !options->quick && !options->size_px[0];
+    uint32_t size_px[2];
+    bench_frame_size(stage->bench, row->camera, size_px);
     struct wd_render_params params = {
         .camera = *camera,
-        .width = own_size ? view->width : effort->width,
-        .height = own_size ? view->height : effort->height,
+        .width = size_px[0],
+        .height = size_px[1],
         .samples = 1,
         .method = row->method,
     };

@@ -1,5 +1,5 @@
-/* Plots of the report, as SVG: time against error, one dot a method, the best at the lower left; and
- * time or memory against trees, one line a method. Colours are the style sheet's. */
+/* Plots of the report, as SVG: time against error, one dot a method, the best at the left, low or,
+ * of SSIM, high; and time or memory against trees, one line a method. Colours are the style sheet's. */
 #include "bench.h"
 
 #include <math.h>
@@ -23,14 +23,31 @@ bool bench_same_place(const struct bench_row *a, const struct bench_row *b)
     return !strcmp(a->scene, b->scene) && !strcmp(a->camera, b->camera);
 }
 
+static bool is_bias(uint32_t column)
+{
+    return column >= BENCH_BIAS && column < BENCH_NOISE_FLIP;
+}
+
+const char *bench_better(uint32_t column)
+{
+    return column == BENCH_SSIM ? "higher" : is_bias(column) ? "nearer to 0" : "lower";
+}
+
+/* The value as one of which less is better. */
+static double badness(const struct bench_row *row, uint32_t column)
+{
+    double value = row->values[column];
+    return column == BENCH_SSIM ? -value : is_bias(column) ? fabs(value) : value;
+}
+
 bool bench_is_best(const struct bench *bench, const struct bench_row *row, uint32_t column)
 {
-    const double ms = row->values[BENCH_FRAME_MS], error = row->values[column];
+    const double ms = row->values[BENCH_FRAME_MS], error = badness(row, column);
     for (size_t i = 0; i < bench->row_count; i++) {
         const struct bench_row *other = &bench->rows[i];
-        const double *values = other->values;
-        if (bench_same_place(other, row) && values[BENCH_FRAME_MS] <= ms &&
-            values[column] <= error && (values[BENCH_FRAME_MS] < ms || values[column] < error))
+        const double other_ms = other->values[BENCH_FRAME_MS], other_error = badness(other, column);
+        if (bench_same_place(other, row) && other_ms <= ms && other_error <= error &&
+            (other_ms < ms || other_error < error))
             return false;
     }
     return isfinite(ms) && isfinite(error);
@@ -235,9 +252,9 @@ static void print_best(FILE *to, const struct plot *plot)
 
 static void print_noise(FILE *to, const struct plot *plot)
 {
-    uint32_t column = plot->y_column == BENCH_COMPARISON       ? BENCH_NOISE_FLIP
-                      : plot->y_column == BENCH_COMPARISON + 3 ? BENCH_NOISE_BLOCKS
-                                                               : BENCH_COLUMNS;
+    uint32_t column = plot->y_column == BENCH_FLIP     ? BENCH_NOISE_FLIP
+                      : plot->y_column == BENCH_BLOCKS ? BENCH_NOISE_BLOCKS
+                                                     : BENCH_COLUMNS;
     double noise = column < BENCH_COLUMNS ? plot->place->values[column] : NAN;
     if (!(noise > plot->y.low && noise < plot->y.high))
         return;
@@ -329,7 +346,7 @@ void bench_print_growth(FILE *to, const struct bench *bench, uint32_t column)
     plot.x.from = LEFT, plot.x.to = RIGHT;
     plot.y.from = BOTTOM, plot.y.to = TOP;
     print_frame(to, &plot, "trees");
-    for (size_t i = 0; bench->methods[i]; i++)
-        print_growth_line(to, &plot, bench->methods[i], &labels);
+    for (const char *const *method = wd_method_names(); *method; method++)
+        print_growth_line(to, &plot, *method, &labels);
     fprintf(to, "</svg>\n");
 }

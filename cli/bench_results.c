@@ -168,8 +168,8 @@ static bool read_rows(struct bench *bench, FILE *file, const char *path)
     free(heads);
     if (!same)
         return cli_fail(bench->session,
-                        "%s: holds results of another suite, effort or size; name another "
-                        "directory or remove it",
+                        "%s: holds results of another suite, effort, size, --set or version of weald; name "
+                        "another directory or remove it",
                         path);
     while (fgets(line, sizeof line, file)) {
         struct bench_row row = {0};
@@ -224,14 +224,17 @@ static void print_json_text(FILE *to, const char *text)
     fputc('"', to);
 }
 
-static void print_json_row(FILE *to, const struct bench_row *row)
+static void print_json_row(FILE *to, const struct bench *bench, const struct bench_row *row)
 {
+    uint32_t size_px[2];
+    bench_frame_size(bench, row->camera, size_px);
     fprintf(to, "    {\"scene\": ");
     print_json_text(to, row->scene);
     fprintf(to, ", \"camera\": ");
     print_json_text(to, row->camera);
     fprintf(to, ", \"method\": ");
     print_json_text(to, row->method);
+    fprintf(to, ", \"frame_px\": [%u, %u]", size_px[0], size_px[1]);
     for (uint32_t i = 0; i < BENCH_COLUMNS; i++)
         if (isfinite(row->values[i]))
             fprintf(to, ", \"%s\": %.6g", bench_column_name(i), row->values[i]);
@@ -243,12 +246,22 @@ static void print_json_row(FILE *to, const struct bench_row *row)
 static void print_json(FILE *to, const struct bench *bench)
 {
     char *machine = bench_machine_text(bench);
-    fprintf(to, "{\n  \"suite\": \"%s\", \"effort\": \"%s\",\n  \"machine\": ", bench->suite->name,
-            bench->effort.name);
+    const struct bench_effort *e = &bench->effort;
+    const struct cli_words *settings = &bench->session->options->settings;
+    fprintf(to, "{\n  \"suite\": \"%s\", \"effort\": \"%s\", \"settings\": [", bench->suite->name, e->name);
+    for (uint32_t i = 0; i < settings->count; i++) {
+        fputs(i ? ", " : "", to);
+        print_json_text(to, settings->words[i]);
+    }
+    fprintf(to, "],\n");
+    if (bench->suite->measures & BENCH_ERROR)
+        fprintf(to, "  \"error_px\": [%u, %u], \"error_samples\": %u, \"reference_samples\": %u,\n", e->truth_width,
+                e->truth_height, e->samples, e->truth_samples);
+    fprintf(to, "  \"machine\": ");
     print_json_text(to, machine);
     fprintf(to, ",\n  \"rows\": [\n");
     for (size_t i = 0; i < bench->row_count; i++) {
-        print_json_row(to, &bench->rows[i]);
+        print_json_row(to, bench, &bench->rows[i]);
         fprintf(to, "%s\n", i + 1 < bench->row_count ? "," : "");
     }
     fprintf(to, "  ]\n}\n");
@@ -270,6 +283,9 @@ static void print_cell(double value, const char *format, int width)
 
 void bench_print_table(const struct bench *bench)
 {
+    const bool errors = bench->suite->measures & (BENCH_ERROR | BENCH_POPPING);
+    const char *metric = bench_column_name(bench->metric);
+    const int width = strlen(metric) > 10 ? (int)strlen(metric) : 10;
     char last[160] = "";
     for (size_t i = 0; i < bench->row_count; i++) {
         const struct bench_row *row = &bench->rows[i];
@@ -278,8 +294,11 @@ void bench_print_table(const struct bench *bench)
         if (strcmp(place, last) != 0) {
             printf("%s%s: %.0f trees, ready in %.1f s\n", i ? "\n" : "", place,
                    row->values[BENCH_TREES], row->values[BENCH_START_S]);
-            printf("%-12s %10s %8s %8s %8s %8s %10s %8s %10s\n", "method", "median ms", "p95",
-                   "GPU", "CPU", "draws", "triangles", "MB", bench_column_name(bench->metric));
+            printf("%-12s %10s %8s %8s %8s %8s %10s %10s", "method", "median ms", "p95 ms", "GPU ms", "CPU ms", "draws",
+                   "triangles", "device MB");
+            if (errors)
+                printf(" %*s", width, metric);
+            printf("\n");
         }
         snprintf(last, sizeof last, "%s", place);
         printf("%-12s", row->method);
@@ -289,8 +308,9 @@ void bench_print_table(const struct bench *bench)
         print_cell(row->values[BENCH_CPU_MS], "%.1f", 8);
         print_cell(row->values[BENCH_DRAWS], "%.0f", 8);
         print_cell(row->values[BENCH_TRIANGLES], "%.0f", 10);
-        print_cell(row->values[BENCH_DEVICE_MB], "%.0f", 8);
-        print_cell(row->values[bench->metric], "%.4f", 10);
+        print_cell(row->values[BENCH_DEVICE_MB], "%.0f", 10);
+        if (errors)
+            print_cell(row->values[bench->metric], "%.4f", width);
         printf("\n");
     }
 }

@@ -13,6 +13,44 @@ double cli_frames_per_second(const struct cli_options *options)
     return options->frames_per_second > 0 ? options->frames_per_second : DEFAULT_FRAMES_PER_SECOND;
 }
 
+/* The numbers of "A-B"; false where the text is another. */
+static bool parse_only(const char *text, uint64_t *first, uint64_t *last)
+{
+    char same[48];
+    unsigned a, b;
+    if (sscanf(text, "%u-%u", &a, &b) != 2)
+        return false;
+    *first = a;
+    *last = b;
+    snprintf(same, sizeof same, "%u-%u", a, b);
+    return a <= b && strcmp(text, same) == 0;
+}
+
+bool cli_only_check(struct cli_session *session, bool numbered)
+{
+    const struct cli_options *options = session->options;
+    uint64_t first, last;
+    if (!options->only)
+        return true;
+    if (!numbered)
+        return cli_fail(session, "--only is for numbered files, like frame-%%05d.png");
+    if (options->budget_ms > 0)
+        return cli_fail(session, "--only and --budget-ms exclude each other: a frame's error follows from those before");
+    return parse_only(options->only, &first, &last) ||
+           cli_fail(session, "--only %s: found no two numbers like 100-199, the lower one first", options->only);
+}
+
+static bool settle_only(struct cli_film *film)
+{
+    const char *only = film->session->options->only;
+    uint64_t last = film->frame_count - 1;
+    if (only && (!parse_only(only, &film->first_frame, &last) || last >= film->frame_count))
+        return cli_fail(film->session, "--only %s: the film has frames 0 to %llu", only,
+                        (unsigned long long)film->frame_count - 1);
+    film->frames_wanted = last - film->first_frame + 1;
+    return true;
+}
+
 static bool settle_frames(struct cli_film *film)
 {
     const struct cli_options *options = film->session->options;
@@ -44,7 +82,7 @@ enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
 {
     *film = (struct cli_film){.session = session, .forest = forest, .plan = plan};
     film->budget = wd_budget_of(session->options->budget_ms);
-    if (!settle_frames(film))
+    if (!settle_frames(film) || !settle_only(film))
         return WD_ERROR_INPUT;
     enum wd_result result = check_output(film);
     if (result != WD_OK)
@@ -54,6 +92,7 @@ enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
         .width = plan->params.width,
         .height = plan->params.height,
         .frames_per_second = film->frames_per_second,
+        .first_frame = film->first_frame,
     };
     return wd_film_open(&film->output, &params, &session->log);
 }
@@ -108,7 +147,7 @@ static void note_time(struct cli_film *film, const struct cli_painter *painter)
 
 static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *painter)
 {
-    uint64_t frame = film->frames_done;
+    uint64_t frame = film->first_frame + film->frames_done;
     struct wd_render_params params = film->plan->params;
     struct wd_camera previous;
     struct wd_picture picture = {0};
@@ -139,13 +178,13 @@ static uint64_t film_key(const struct cli_film *film, uint64_t key)
     const struct cli_options *options = film->session->options;
     const struct wd_render_params *params = &film->plan->params;
     char *text;
-    if (asprintf(&text, "%s\n%s\n%s\n%d %llu %u %.17g %ux%u %u %d %u %d %u %.17g %.17g %.17g",
+    if (asprintf(&text, "%s\n%s\n%s\n%d %llu %u %.17g %ux%u %u %d %u %d %u %.17g %.17g %.17g %llu",
                  film->path ? film->path : "", options->camera ? options->camera : "",
                  params->method ? params->method : "", film->plan->kind,
                  (unsigned long long)film->frame_count, options->frames, film->frames_per_second,
                  params->width, params->height, params->samples, params->view, params->layers,
                  options->reference, options->bounces, params->time_s, params->max_error_px,
-                 options->budget_ms) < 0)
+                 options->budget_ms, (unsigned long long)film->frames_wanted) < 0)
         abort();
     key = cli_key_text(key, text);
     free(text);
@@ -157,7 +196,7 @@ static enum wd_result take_kept(struct cli_film *film, const struct cli_painter 
 {
     uint64_t key = painter->renderer ? wd_renderer_key(painter->renderer)
                                      : wd_reference_key(film->forest), before;
-    enum wd_result result = wd_film_keep(film->output, film_key(film, key), film->frame_count);
+    enum wd_result result = wd_film_keep(film->output, film_key(film, key), film->frames_wanted);
     do {
         before = film->frames_done;
         if (result == WD_OK && cli_session_interrupted(film->session))
@@ -168,15 +207,15 @@ static enum wd_result take_kept(struct cli_film *film, const struct cli_painter 
     if (film->frames_done)
         cli_say(film->session, "%s: going on after %llu of %llu frames\n",
                 film->session->options->output, (unsigned long long)film->frames_done,
-                (unsigned long long)film->frame_count);
+                (unsigned long long)film->frames_wanted);
     return result;
 }
 
 enum wd_result cli_film_shoot(struct cli_film *film, struct cli_painter *painter)
 {
     enum wd_result result = take_kept(film, painter);
-    while (result == WD_OK && film->frames_done < film->frame_count) {
-        cli_session_film_progress(film->session, film->frames_done, film->frame_count);
+    while (result == WD_OK && film->frames_done < film->frames_wanted) {
+        cli_session_film_progress(film->session, film->frames_done, film->frames_wanted);
         if (cli_session_interrupted(film->session))
             return WD_ERROR_INTERRUPTED;
         result = shoot_frame(film, painter);
@@ -187,7 +226,7 @@ enum wd_result cli_film_shoot(struct cli_film *film, struct cli_painter *painter
 static void say_kept(struct cli_film *film, enum wd_result result)
 {
     char what[128];
-    unsigned long long done = film->frames_done, count = film->frame_count;
+    unsigned long long done = film->frames_done, count = film->frames_wanted;
     if (result == WD_OK)
         snprintf(what, sizeof what, "%llu frame%s, ", done, done == 1 ? "" : "s");
     else

@@ -12,11 +12,14 @@ struct cli_film {
     const char *path;  /* NULL: the camera stands still */
     double duration_s; /* of the path */
     double frames_per_second;
-    uint64_t frame_count, frames_done;
+    uint64_t frame_count; /* of the whole film */
+    uint64_t first_frame, frames_wanted, frames_done;
     struct wd_budget budget; /* with --budget-ms */
     uint64_t over_budget;    /* frames that took longer */
 };
 
+/* Whether --only, if it is given, can be followed. */
+bool cli_only_check(struct cli_session *session, bool numbered);
 /* As asked for, or as usual. */
 double cli_frames_per_second(const struct cli_options *options);
 /* Where a camera was that goes on to `next` as it came `here`. */

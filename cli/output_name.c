@@ -24,8 +24,8 @@ enum cli_output_kind cli_output_kind(const char *path)
     return wd_film_has_ending(path) ? CLI_OUTPUT_FILM : CLI_OUTPUT_UNKNOWN;
 }
 
-/* A file's own name, or, of a name with %d or %05d, that of frame 0. */
-static char *first_name(const char *path)
+/* A file's own name, or, of a name with %d or %05d, that of the first frame. */
+static char *first_name(const char *path, int first)
 {
     const char *slash = strrchr(path, '/'), *percent = slash ? slash + 1 : path;
     size_t digits = 0;
@@ -34,16 +34,17 @@ static char *first_name(const char *path)
         percent++;
     if (!percent || digits > 3)
         return strdup(path);
-    if (asprintf(&name, percent[1] == '0' ? "%.*s%0*d%s" : "%.*s%*d%s", (int)(percent - path), path, atoi(percent + 1), 0,
+    if (asprintf(&name, percent[1] == '0' ? "%.*s%0*d%s" : "%.*s%*d%s", (int)(percent - path), path, atoi(percent + 1), first,
                  percent + digits + 2) < 0)
         name = NULL;
     return name;
 }
 
-bool cli_output_is_done(const char *path)
+bool cli_output_is_done(const char *path, const char *only)
 {
-    char *partial = NULL, *first = first_name(path);
-    if (asprintf(&partial, "%s.partial", path) < 0)
+    int number = only ? atoi(only) : 0;
+    char *partial = NULL, *first = first_name(path, number);
+    if ((number ? asprintf(&partial, "%s.%d.partial", path, number) : asprintf(&partial, "%s.partial", path)) < 0)
         partial = NULL;
     bool done = first && partial && access(first, F_OK) == 0 && access(partial, F_OK) != 0;
     free(first);

@@ -15,8 +15,9 @@ enum cli_output_kind {
 
 enum cli_output_kind cli_output_kind(const char *path);
 
-/* Whether the file, or the first of numbered ones, is there, and no FILE.partial to go on from. */
-bool cli_output_is_done(const char *path);
+/* Whether the file, or the first of numbered ones, of those of --only where that is given, is there, and no FILE.partial
+ * to go on from. */
+bool cli_output_is_done(const char *path, const char *only);
 
 /* Whether a file could be put at `path` now: the directory exists and takes files, nothing but a
  * plain file is in the way. Complains and returns false if not. Leaves nothing behind. */

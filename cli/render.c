@@ -76,6 +76,8 @@ static bool make_plan(struct cli_session *session, struct cli_plan *plan)
                         "%s holds one frame; for %u name a .mp4 or a pattern like "
                         "frame-%%05d.png",
                         options->output, options->frames);
+    if (!cli_only_check(session, plan->kind > CLI_OUTPUT_FILM))
+        return false;
     if (options->camera && options->path)
         return cli_fail(session, "--camera and --path exclude each other");
     if (options->reference && options->method)

@@ -138,7 +138,8 @@ struct wd_picture {
     double time_s;           /* at this time of the wind */
     char *about;         /* both, and what ids and places refer to, as JSON: scene, seed, time_s, camera (as in struct
                             wd_camera), origin_m and crs (as in struct wd_forest_info; null: none), species (names; the
-                            species layer holds index + 1). Files (.exr) have it as the attribute "weald", and
+                            species layer holds index + 1), conditions (date, clock, sun, clouds, visibility, wind and
+                            snow, by the keys of scenes). Files (.exr) have it as the attribute "weald", and
                             worldToCamera: from the local frame to x right, y up, -z ahead, rows times matrix */
 };
 
@@ -227,6 +228,7 @@ struct wd_film_params {
     uint32_t width, height;   /* of every frame; even for a film in one file */
     double frames_per_second; /* WD_LEAST_FRAMES_PER_SECOND..WD_MOST_FRAMES_PER_SECOND; 0: 30. Numbered
                                  pictures do not tell of it */
+    uint64_t first_frame;     /* number of the first of numbered pictures */
 };
 /* Errors: WD_ERROR_INPUT (name, size or rate), WD_ERROR_OUTPUT (of a film in one file a folder that is not there, no ffmpeg). */
 enum wd_result wd_film_open(struct wd_film **film, const struct wd_film_params *params,
@@ -236,8 +238,8 @@ enum wd_result wd_film_open(struct wd_film **film, const struct wd_film_params *
  * which the film goes on; WD_ERROR_OUTPUT, after which it cannot: frames to come are refused with the same, and so is
  * wd_film_commit. What wd_film_keep has kept by then stays. */
 enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture);
-/* Keeps finished frames, or for numbered pictures their checksums, in PATH.partial until the film has
- * `frame_count` of them: a film that was stopped or killed can be gone on with. `key` is a hash of all
+/* Keeps finished frames, or for numbered pictures their checksums, in PATH.partial (PATH.FIRST.partial where `first_frame`
+ * is above 0) until the film has `frame_count` of them: a film that was stopped or killed can be gone on with. `key` is a hash of all
  * that the frames follow from (wd_renderer_key, wd_forest_key, and what the caller chose). To be called
  * once, before the first frame. A film of 3840 x 2160 takes about 15 MB a frame.
  * Errors: WD_ERROR_INPUT (a second time, or after a frame); WD_ERROR_OUTPUT, also where PATH.partial is of

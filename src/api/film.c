@@ -19,7 +19,7 @@ struct wd_film {
     bool failed;                  /* a frame could not be written: the film has a gap there */
     uint32_t width, height;
     size_t frame_bytes;
-    uint64_t frames, frame_count;
+    uint64_t first_frame, frames, frame_count;
     struct wd_film_store store;   /* once wd_film_keep was called */
     struct wd_log log;
 };
@@ -62,6 +62,7 @@ enum wd_result wd_film_open(struct wd_film **result, const struct wd_film_params
         film->pattern = film->path;
     film->width = params->width;
     film->height = params->height;
+    film->first_frame = film->writer.frames = film->pattern ? params->first_frame : 0;
     film->frame_bytes = (size_t)params->width * params->height * 3;
     *result = film;
     return WD_OK;
@@ -89,9 +90,15 @@ struct file_mark {
 };
 static const size_t MAX_PICTURE_BYTES = (size_t)1 << 36;
 
-static bool mark_of(struct file_mark *mark, const struct wd_film *film, uint64_t frame)
+/* Of the picture that comes next. */
+static char *next_name(const struct wd_film *film)
 {
-    char *path = wd_film_frame_name(film->pattern, frame), *data;
+    return wd_film_frame_name(film->pattern, film->first_frame + film->frames);
+}
+
+static bool mark_of_next(struct file_mark *mark, const struct wd_film *film)
+{
+    char *path = next_name(film), *data;
     size_t size;
     bool ok = wd_file_exists(path) && wd_file_read(path, MAX_PICTURE_BYTES, &wd_log_quiet, &data, &size);
     if (ok) {
@@ -110,7 +117,8 @@ enum wd_result wd_film_keep(struct wd_film *film, uint64_t key, uint64_t frame_c
         wd_error(&film->log, "%s: wd_film_keep is to be called once, before the first frame", film->path);
         return WD_ERROR_INPUT;
     }
-    char *path = wd_format("%s.partial", film->path);
+    char *path = film->first_frame ? wd_format("%s.%llu.partial", film->path, (unsigned long long)film->first_frame)
+                                   : wd_format("%s.partial", film->path);
     bool ok = wd_film_store_open(&film->store, path, key, &film->log);
     film->frame_count = frame_count;
     free(path);
@@ -132,10 +140,12 @@ static enum wd_result add_kept_pixels(struct wd_film *film)
 static void count_kept_picture(struct wd_film *film)
 {
     struct file_mark kept, there;
-    if (!wd_film_store_read(&film->store, &kept, sizeof kept))
-        return;
-    if (mark_of(&there, film, film->frames) && there.size == kept.size && there.hash == kept.hash)
-        film->writer.frames = ++film->frames;
+    if (!wd_film_store_read(&film->store, &kept, sizeof kept)) {
+        char *next = next_name(film);
+        wd_output_sweep(next); /* where a kill came */
+        free(next);
+    } else if (mark_of_next(&there, film) && there.size == kept.size && there.hash == kept.hash)
+        film->writer.frames = film->first_frame + ++film->frames;
     else
         wd_film_store_unread(&film->store);
 }
@@ -165,7 +175,7 @@ static enum wd_result add_picture(struct wd_film *film, const struct wd_picture 
         return WD_ERROR_INPUT;
     }
     if (film->layers) {
-        char *path = wd_film_frame_name(film->pattern, film->frames);
+        char *path = next_name(film);
         enum wd_result result = wd_picture_write(picture, path, &film->log);
         free(path);
         return result;
@@ -194,7 +204,7 @@ enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *pictur
         return WD_ERROR_OUTPUT;
     enum wd_result result = add_picture(film, picture);
     if (result == WD_OK && film->pattern && film->store.stream &&
-        !(mark_of(&mark, film, film->frames) &&
+        !(mark_of_next(&mark, film) &&
           wd_film_store_add(&film->store, &mark, sizeof mark, &film->log)))
         result = WD_ERROR_OUTPUT;
     film->frames += result == WD_OK;

@@ -15,6 +15,17 @@ static json_t *vector(const double *v, size_t count)
     return array;
 }
 
+/* Season, weather and light, by the scene's own keys. */
+static json_t *conditions(const struct wd_scene *scene)
+{
+    return json_pack("{s:{s:s?, s:s?}, s:{s:f, s:f}, s:{s:f}, s:{s:f}, s:{s:f, s:f}, s:{s:f}}",
+                     "time", "date", scene->time.date, "clock", scene->time.clock,
+                     "sun", "azimuth_deg", scene->sun.azimuth_deg, "elevation_deg", scene->sun.elevation_deg,
+                     "sky", "cover", scene->sky.cover, "fog", "visibility_m", scene->fog.visibility_m,
+                     "wind", "speed_mps", scene->wind.speed_mps, "direction_deg", scene->wind.direction_deg,
+                     "ground", "snow", scene->ground.snow);
+}
+
 static char *about(const struct wd_picture *picture, const struct wd_forest *forest)
 {
     const struct wd_camera *camera = &picture->camera;
@@ -22,13 +33,13 @@ static char *about(const struct wd_picture *picture, const struct wd_forest *for
     json_t *species = json_array();
     for (size_t i = 0; i < forest->scene.species_file_count; i++)
         json_array_append_new(species, json_string(forest->scene.species_files[i].name));
-    json_t *root = json_pack("{s:s?, s:I, s:f, s:{s:o, s:f, s:f, s:f}, s:o, s:s?, s:o}",
+    json_t *root = json_pack("{s:s?, s:I, s:f, s:{s:o, s:f, s:f, s:f}, s:o, s:s?, s:o, s:o}",
                              "scene", forest->scene.name, "seed", (json_int_t)forest->world.seed,
                              "time_s", picture->time_s, "camera",
                              "position_m", vector(camera->position_m, 3), "yaw_rad", camera->yaw_rad,
                              "pitch_rad", camera->pitch_rad, "fov_rad", camera->fov_rad,
                              "origin_m", vector(terrain->origin_m, 2), "crs", terrain->crs,
-                             "species", species);
+                             "species", species, "conditions", conditions(&forest->scene));
     char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
     json_decref(root);
     return text;

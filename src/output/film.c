@@ -91,7 +91,7 @@ static bool check_sequence(const char *path, const struct wd_log *log)
     if (!wd_film_sequence_check(path, log))
         return false;
     if (!wd_has_ending(path, ".png"))
-        return wd_error(log, "%s: frames of a film are .png files", path);
+        return wd_error(log, "%s: numbered frames are .png or .exr files", path);
     return true;
 }
 

@@ -13,6 +13,7 @@ expect 2 'no method "octre", did you mean octree' bench --suite quality --method
 expect 2 'no metric "flop", did you mean flip' bench --suite quality --metric flop -o "$out"
 expect 1 'No such file' bench --suite quality -o "$scratch/none/bench"
 expect 1 'No such file|cannot' bench "$scratch/none.json" --suite quality --quick -o "$out"
+expect 2 'would both be "grove" in the results' bench "$grove" "$scratch/grove.json" --suite quality -o "$out"
 rm -rf "$out"
 
 run() {
@@ -29,6 +30,30 @@ check 'frames counted, the noise of the reference told' jq -e \
     "$out/results.json"
 check 'the machine in the report' grep -q 'llvmpipe' "$out/report.html"
 
+# what is best by a metric of which more is better, or of which 0 is
+# shaded METRIC OCTREE SEPARATE: $scratch/shaded has the methods that the report shades by these values, octree's time
+# being twice that of separate
+shaded() {
+    awk -F, -v OFS=, -v column="$1" 'NR == 2 { for (i = 1; i <= NF; i++) at[$i] = i }
+        NR > 2 { slow = $3 == "octree"; $at["frame_ms"] = slow ? 20 : 10; $at[column] = slow ? '"$2"' : '"$3"' } 1' \
+        "$scratch/rows.csv" >"$out/results.csv"
+    expect 0 'report.html' bench "$grove" --suite quality --quick --methods octree,separate --gpu software \
+        --metric "$1" -o "$out"
+    sed 's/<tr>/\n/g' "$out/report.html" | sed -n 's/.*<td class="m[0-9]">\([a-z]*\)<.*class="best".*/\1/p' | tr '\n' ' ' \
+        >"$scratch/shaded"
+}
+cp "$out/results.csv" "$scratch/rows.csv"
+shaded ssim 0.9 0.8
+check 'more of SSIM is better' grep -qx 'octree separate ' "$scratch/shaded"
+check 'and so it is told' grep -q 'both faster and higher in SSIM' "$out/report.html"
+shaded ssim 0.7 0.8
+check 'less of it is worse' grep -qx 'separate ' "$scratch/shaded"
+shaded radiance_bias_pct 1 -5
+check 'a bias is better the nearer it is to 0' grep -qx 'octree separate ' "$scratch/shaded"
+shaded flip 0.2 0.1
+check 'less of FLIP is better' grep -qx 'separate ' "$scratch/shaded"
+cp "$scratch/rows.csv" "$out/results.csv"
+
 # an interruption in the middle of a line: what is whole stays, the rest is measured again
 rows=$(grep -c '^grove,' "$out/results.csv")
 head -n 3 "$out/results.csv" >"$scratch/cut"
@@ -37,6 +62,12 @@ cp "$scratch/cut" "$out/results.csv"
 run '1 results are there already'
 check 'all rows again' [ "$(grep -c '^grove,' "$out/results.csv")" -eq "$rows" ]
 expect 1 'another suite' bench "$grove" --suite scale --quick -o "$out"
+
+# one process at a time
+exec 9<"$out"
+flock 9
+expect 1 'another process is at work' bench "$grove" --suite quality --quick --gpu software -o "$out"
+exec 9<&-
 
 # a report that cannot be written
 mv "$out/report.html" "$scratch/report.html"
@@ -61,6 +92,28 @@ if [ "$weald" ]; then
     cp "$scratch/heads" "$out/results.csv"
     expect 1 'reference/grove-.* 40 x 30 pixels, not 128 x 96' bench "$grove" --suite quality --quick --methods octree --gpu software -o "$out"
 fi
+
+# times alone: no metric; what is set and how large frames are is told, names are no markup, earlier methods stay
+named=$scratch/named.json
+sed -e 's|"south"|"<u>road"|' -e "s|\.\./\.\./species|$root/species|g" "$grove" >"$named"
+expect 2 'which the suite density does not measure' bench "$named" --suite density --metric ssim -o "$scratch/named"
+timed() { # timed STATUS PATTERN METHOD
+    expect "$1" "$2" bench "$named" --suite density --quick --size 64x48 --methods "$3" --gpu software \
+        --set wind.speed_mps=0 -o "$scratch/named"
+}
+timed 0 '^method +median ms +p95 ms +GPU ms +CPU ms +draws +triangles +device MB$' octree
+cp "$scratch/named/machine.txt" "$scratch/machine.txt"
+sed -i 's/^device: .*/device: another/' "$scratch/named/machine.txt"
+timed 1 'holds results of the device: another, not of llvmpipe' separate
+cp "$scratch/machine.txt" "$scratch/named/machine.txt"
+timed 0 report.html separate
+check 'JSON tells what was set and the size' jq -e \
+    '.settings == ["wind.speed_mps=0"] and (.rows | length == 2) and all(.rows[]; .frame_px == [64, 48])' \
+    "$scratch/named/results.json"
+check 'the report tells it' grep -q 'of 64 x 48 pixels, one sample a pixel. Of every scene is set: wind.speed_mps=0' \
+    "$scratch/named/report.html"
+check 'names are no markup' sh -c "! grep -q '<u>' '$scratch/named/report.html'"
+check 'both methods at a glance' [ "$(sed -n '/At a glance/,/<.table>/p' "$scratch/named/report.html" | grep -cE '>(octree|separate)<')" -eq 2 ]
 
 # a camera's name that would part columns and folders; a scene that has changed since
 far=$scratch/far.json

@@ -55,6 +55,29 @@ jq '.wind.speed_mps = 0 | .cameras = [range(5) | {name: "c\(.)", position_m: [10
     expect 0 . render "$scratch/keys.json" -o "$out/still.png" --camera c3 $size
 }
 check 'frame 3 is the key 3' cmp "$out/still.png" "$out/k-3.png"
+
+# Parts of it: as in the whole, each with its own checkpoint.
+mkdir "$out/parts"
+# shellcheck disable=SC2086
+{
+    part="render $scratch/keys.json -o $out/parts/k-%d.png --path p --frames 5 $size"
+    touch "$out/parts/k-%d.png.partial" "$out/parts/k-%d.png.4.partial"
+    expect 0 '3 frames' $part --only 1-3
+    check 'and no others' test ! -e "$out/parts/k-0.png" -a ! -e "$out/parts/k-4.png"
+    for i in 1 2 3; do
+        check "frame $i alone is as in the whole" cmp "$out/k-$i.png" "$out/parts/k-$i.png"
+    done
+    check 'checkpoints of other parts stay' test "$(find "$out/parts" -name '*.partial' | wc -l)" -eq 2
+    rm "$out/parts"/*.partial
+    printf '%s\n' "$part --only 2-3" "$part --only 4-4" >"$scratch/parts"
+    expect 0 'parts: 1 lines left out' batch "$scratch/parts" --skip-existing
+    check 'frame 4 alone is as in the whole' cmp "$out/k-4.png" "$out/parts/k-4.png"
+    expect 1 'the film has frames 0 to 4' $part --only 3-5
+    expect 2 'found no two numbers' $part --only 3-2
+    expect 2 'found no two numbers' $part --only 3
+    expect 2 'is for numbered files' render "$scratch/keys.json" -o "$out/k.mp4" --only 1-2 $size
+}
+rm -r "$out/parts"
 rm -f "$out"/*
 
 # start NAME FRAMES OPTION...: a film in the background
@@ -99,6 +122,12 @@ check 'every picture left is whole' test "$bad" -eq 0
 check 'nothing else is left' sh -c "! ls -A '$out' | grep -vE '^s-[0-9]{5}\\.png$|^s-%05d\\.png\\.partial$'"
 said=$(sed -n 's/.*finished \([0-9]*\) of.*/\1/p' "$scratch/log")
 sum=$(cksum <"$out/s-00001.png")
+printf half >"$out/.2147483646.2147483647-s-$(printf %05d "$said").png" # as a kill leaves the frame that is being written
+start 's-%05d.png' 4000
+check 'the same command goes on' await grep -q "going on after $said of 4000" "$scratch/log"
+check 'nothing of a killed process is left' await sh -c "! ls -A '$out' | grep -q '^\.2147'"
+stop INT 130
+said=$(sed -n 's/.*finished \([0-9]*\) of.*/\1/p' "$scratch/log")
 printf '#' >>"$out/s-00002.png"
 start 's-%05d.png' 4000
 check 'the same command goes on where a picture is no more what it was' \

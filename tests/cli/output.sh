@@ -19,7 +19,8 @@ out=$scratch/out
     draw 'pixel.png: 1x1' render "$tiny" -o "$out/pixel.png" $soft --size 1x1
     draw 'own.png: ' render "$tiny" -o "$out/own.png" $soft --method continuum
     draw 'coarse.png: ' render "$tiny" -o "$out/coarse.png" $soft --method continuum --max-error 8
-    draw 'matte.exr: ' render "$tiny" -o "$out/matte.exr" $soft --samples 4 --layers color,cryptomatte
+    draw 'matte.exr: ' render "$tiny" -o "$out/matte.exr" $soft --samples 4 --layers color,cryptomatte \
+        --set time.date=2026-10-18 --set wind.speed_mps=7 --set ground.snow=0.25
     draw 'layers.exr: ' render "$tiny" -o "$out/layers.exr" $soft
     drawn
     expect 0 'validate.png: ' render "$tiny" -o "$out/validate.png" $soft --gpu-validate
@@ -48,6 +49,9 @@ for layer in Z N.X albedo.R species tree_id velocity.X; do
 done
 for key in name hash conversion manifest MurmurHash3_32 uint32_to_float32 tree_1; do
     check "a matte's header holds $key" grep -aqF "$key" "$out/matte.exr"
+done
+for key in '"time":{"date":"2026-10-18","clock":null}' '"wind":{"speed_mps":7.0,' '"snow":0.25'; do
+    check "pictures tell of their weather: $key" grep -aqF "$key" "$out/matte.exr"
 done
 check 'a matte holds no other layer' sh -c "! grep -aqF albedo '$out/matte.exr'"
 check '--quiet prints nothing' sh -c \

@@ -178,7 +178,7 @@ static void names_and_sizes_are_checked(void **state)
         {{"/tmp/%d-%d.png", 64, 48}, "not a name for a sequence"},
         {{"/tmp/%d/a.png", 64, 48}, "films are .mp4"},
         {{"/tmp/%d/%q.png", 64, 48}, "not a name for a sequence"},
-        {{"/tmp/%03d.mp4", 64, 48}, "frames of a film are .png files"},
+        {{"/tmp/%03d.mp4", 64, 48}, "numbered frames are .png or .exr files"},
         {{"/tmp/%999999d.png", 64, 48}, "not a name for a sequence"},
         {{"/nowhere/at/all/a.mp4", 64, 48}, "No such file or directory"},
     };
