@@ -27,6 +27,9 @@ struct viewer_push {
     bool fast;                       /* five times the speed */
 };
 
+/* Without `fast`, in the gait and at the factor of now. */
+double viewer_motion_speed_mps(const struct viewer_motion *motion);
+
 struct viewer_ground {
     double (*height_m)(const void *user, double x_m, double y_m);
     const void *user;

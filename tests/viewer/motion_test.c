@@ -54,6 +54,20 @@ static void flies_where_it_looks(void **state)
     assert_float_equal(motion.camera.position_m[2], 230, 1e-9);
 }
 
+static void two_keys_are_no_faster_than_one(void **state)
+{
+    (void)state;
+    struct viewer_motion motion = at(0, 0, 200, VIEWER_FLY);
+    viewer_motion_step(&motion, &(struct viewer_push){.forward_s = 1, .right_s = 1, .up_s = 1}, 1, &on_flat);
+    const double *p = motion.camera.position_m;
+    assert_float_equal(p[0], 20 / sqrt(3), 1e-9);
+    assert_float_equal(p[1], 20 / sqrt(3), 1e-9);
+    assert_float_equal(p[2], 200 + 20 / sqrt(3), 1e-9);
+    motion = at(0, 0, 100 + VIEWER_EYE_M, VIEWER_WALK);
+    viewer_motion_step(&motion, &(struct viewer_push){.forward_s = 1, .right_s = -1, .up_s = 1}, 1, &on_flat);
+    assert_float_equal(hypot(p[0], p[1]), viewer_motion_speed_mps(&motion), 1e-9);
+}
+
 static void flying_stays_above_the_ground(void **state)
 {
     (void)state;
@@ -127,6 +141,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(flies_where_it_looks),
+        cmocka_unit_test(two_keys_are_no_faster_than_one),
         cmocka_unit_test(flying_stays_above_the_ground),
         cmocka_unit_test(walking_follows_the_ground),
         cmocka_unit_test(walking_looks_up_without_rising),
