@@ -16,15 +16,15 @@ static const SDL_Scancode hold_keys[VIEWER_HOLD_KEYS] = {
 
 static const struct binding {
     SDL_Keycode key;
-    Uint16 modifiers; /* one of these must be down; 0: none may */
+    Uint16 modifiers; /* one of these must be down; 0: whatever is, but for a binding before */
     void (*act)(struct viewer_state *viewer);
 } bindings[] = {
     {SDLK_f, 0, viewer_act_gait},         {SDLK_m, 0, viewer_act_method},
     {SDLK_l, 0, viewer_act_lod},          {SDLK_t, 0, viewer_act_times},
     {SDLK_h, 0, viewer_act_help},         {SDLK_g, 0, viewer_act_grab},
     {SDLK_b, 0, viewer_act_accumulate},
-    {SDLK_p, 0, viewer_act_play},         {SDLK_c, 0, viewer_act_next_camera},
-    {SDLK_ESCAPE, 0, viewer_act_quit},    {SDLK_c, KMOD_SHIFT, viewer_act_save_camera},
+    {SDLK_p, 0, viewer_act_play},         {SDLK_c, KMOD_SHIFT, viewer_act_save_camera},
+    {SDLK_ESCAPE, 0, viewer_act_quit},    {SDLK_c, 0, viewer_act_next_camera},
     {SDLK_F12, 0, viewer_act_screenshot}, {SDLK_F9, 0, viewer_act_report},
 };
 
@@ -52,6 +52,14 @@ static double take(struct viewer_hold *hold, double now_s)
     return held_s;
 }
 
+/* Where the keyboard has letters of another script, the Latin ones by their places. */
+static SDL_Keycode letter(const SDL_Keysym *key)
+{
+    bool latin = key->sym < 0x80 || (key->sym & SDLK_SCANCODE_MASK);
+    bool place = key->scancode >= SDL_SCANCODE_A && key->scancode <= SDL_SCANCODE_Z;
+    return latin || !place ? key->sym : SDLK_a + (SDL_Keycode)(key->scancode - SDL_SCANCODE_A);
+}
+
 static void key_event(struct viewer_state *viewer, const SDL_KeyboardEvent *event)
 {
     double now_s = viewer_seconds();
@@ -66,10 +74,14 @@ static void key_event(struct viewer_state *viewer, const SDL_KeyboardEvent *even
     }
     if (event->type != SDL_KEYDOWN || event->repeat)
         return;
-    bool shift = (event->keysym.mod & KMOD_SHIFT) != 0;
-    for (size_t i = 0; i < sizeof bindings / sizeof *bindings; i++)
-        if (bindings[i].key == event->keysym.sym && (bindings[i].modifiers != 0) == shift)
-            bindings[i].act(viewer);
+    SDL_Keycode key = letter(&event->keysym);
+    for (size_t i = 0; i < sizeof bindings / sizeof *bindings; i++) {
+        const struct binding *binding = &bindings[i];
+        if (binding->key == key && (!binding->modifiers || (event->keysym.mod & binding->modifiers))) {
+            binding->act(viewer);
+            return;
+        }
+    }
 }
 
 static void window_event(struct viewer_state *viewer, const SDL_WindowEvent *event)
