@@ -30,14 +30,23 @@ static void print_quality(const struct viewer_state *viewer, char *text, size_t 
         snprintf(text, size, "   error at most %g px", viewer_error_px(viewer));
 }
 
+/* With two digits that count, and none of them an exponent. */
+static int decimals(double value)
+{
+    return value < 1 ? 2 : value < 10 ? 1 : 0;
+}
+
 static void print_status(const struct viewer_state *viewer, char *text, size_t size)
 {
     const double *p = viewer->motion.camera.position_m;
+    double speed_mps = viewer_motion_speed_mps(&viewer->motion);
     char quality[64];
     print_quality(viewer, quality, sizeof quality);
-    snprintf(text, size, "%s   %s x%.2g   %.1f, %.1f, %.1f m   %.0f ms a frame%s   H: help",
-             viewer->method, viewer->motion.gait == VIEWER_WALK ? "on foot" : "flying",
-             viewer->motion.speed_factor, p[0], p[1], p[2], viewer->frame_ms, quality);
+    snprintf(text, size,
+             "%s   %s, %.*f m/s   %.1f, %.1f, %.1f m, %.1f above ground   %.*f ms a frame%s   H: help",
+             viewer->method, viewer->motion.gait == VIEWER_WALK ? "on foot" : "flying", decimals(speed_mps), speed_mps,
+             p[0], p[1], p[2], p[2] - wd_forest_ground_m(viewer->forest, p[0], p[1]), decimals(viewer->frame_ms),
+             viewer->frame_ms, quality);
 }
 
 static void print_times(const struct viewer_state *viewer, char *text, size_t size)
