@@ -62,12 +62,29 @@ static void stand(struct viewer_motion *motion, double eye_m, double dt_s)
     }
 }
 
+void viewer_motion_land(struct viewer_motion *motion, const struct viewer_ground *ground)
+{
+    double *p = motion->camera.position_m;
+    p[2] = ground->height_m(ground->user, p[0], p[1]) + VIEWER_EYE_M;
+    motion->fall_mps = 0;
+    motion->grounded = true;
+}
+
+/* Beyond that nothing is drawn. */
+static void keep_near(double position_m[3])
+{
+    const double most_m = 0.99 * WD_MOST_PLACE_M;
+    for (int i = 0; i < 3; i++)
+        position_m[i] = fmin(fmax(position_m[i], -most_m), most_m);
+}
+
 void viewer_motion_step(struct viewer_motion *motion, const struct viewer_push *push, double dt_s,
                         const struct viewer_ground *ground)
 {
     struct wd_camera *camera = &motion->camera;
     turn(camera, push);
     move(motion, push);
+    keep_near(camera->position_m);
     double ground_m = ground->height_m(ground->user, camera->position_m[0], camera->position_m[1]);
     if (motion->gait == VIEWER_WALK) {
         stand(motion, ground_m + VIEWER_EYE_M, dt_s);

@@ -35,8 +35,11 @@ struct viewer_ground {
     const void *user;
 };
 
-/* Moves by `push`, then lets `dt_s` of gravity pass. Afterwards the camera is never below the
- * ground plus its clearance; on foot it stands at VIEWER_EYE_M above it, or is falling to there. */
+/* Stands below, or above, where the camera is. */
+void viewer_motion_land(struct viewer_motion *motion, const struct viewer_ground *ground);
+
+/* Moves by `push`, then lets `dt_s` of gravity pass. Afterwards the camera is within what can be drawn, and never
+ * below the ground plus its clearance; on foot it stands at VIEWER_EYE_M above it, or is falling to there. */
 void viewer_motion_step(struct viewer_motion *motion, const struct viewer_push *push, double dt_s,
                         const struct viewer_ground *ground);
 

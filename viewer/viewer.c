@@ -98,6 +98,10 @@ static enum wd_result choose_start(struct viewer_state *viewer)
     struct wd_camera unused;
     enum wd_result result =
         wd_forest_get_camera(viewer->forest, params->camera, &viewer->motion.camera);
+    if (result == WD_OK && params->walk) {
+        struct viewer_ground ground = viewer_ground(viewer);
+        viewer_motion_land(&viewer->motion, &ground);
+    }
     if (result == WD_OK && params->path)
         result = wd_forest_get_path_camera(viewer->forest, params->path, 0, &unused, NULL);
     return result;

@@ -211,7 +211,7 @@ ended 0 'closing the window ends the viewer'
 
 start --walk --camera west --view lod
 ask
-holds '.gait == "walk" and .view == "lod" and .camera == "west" and .saved_cameras == 1' ||
+holds '.gait == "walk" and .view == "lod" and .camera == "west" and .saved_cameras == 1 and '"$on_ground" ||
     fail "options"
 echo "ok   options"
 remember

@@ -119,6 +119,25 @@ static void falls_from_a_cliff(void **state)
     assert_float_equal(motion.fall_mps, 0, 0);
 }
 
+static void landing_does_not_fall(void **state)
+{
+    (void)state;
+    struct viewer_motion motion = at(0, 50, 80, VIEWER_WALK);
+    viewer_motion_land(&motion, &on_slope);
+    assert_true(motion.grounded);
+    assert_float_equal(motion.camera.position_m[2], 15 + VIEWER_EYE_M, 1e-9);
+}
+
+static void flying_ends_where_nothing_is_drawn(void **state)
+{
+    (void)state;
+    struct viewer_motion motion = at(0, 0, 200, VIEWER_FLY);
+    motion.camera.yaw_rad = -M_PI / 4;
+    viewer_motion_step(&motion, &(struct viewer_push){.forward_s = 1e6, .up_s = 1e6}, 1, &on_flat);
+    for (int i = 0; i < 3; i++)
+        assert_true(fabs(motion.camera.position_m[i]) < WD_MOST_PLACE_M);
+}
+
 static void one_long_step_lands(void **state)
 {
     (void)state;
@@ -146,6 +165,8 @@ int main(void)
         cmocka_unit_test(walking_follows_the_ground),
         cmocka_unit_test(walking_looks_up_without_rising),
         cmocka_unit_test(falls_from_a_cliff),
+        cmocka_unit_test(landing_does_not_fall),
+        cmocka_unit_test(flying_ends_where_nothing_is_drawn),
         cmocka_unit_test(one_long_step_lands),
         cmocka_unit_test(looking_stops_short_of_straight_up),
     };
