@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -138,6 +139,56 @@ static char *screenshot_name(const char *directory)
         free(name);
     }
     return NULL;
+}
+
+/* Of one picture more, of ids alone: its trees stand as those that are shown do. */
+static uint32_t tree_at(struct viewer_state *viewer, uint32_t x, uint32_t y)
+{
+    struct wd_render_params params = {
+        .camera = viewer->motion.camera,
+        .time_s = viewer->now_s - viewer->begin_s,
+        .previous_time_s = viewer->now_s - viewer->begin_s,
+        .width = viewer->swapchain.extent.width,
+        .height = viewer->swapchain.extent.height,
+        .method = viewer->method,
+        .layers = WD_LAYER_TREE_ID,
+        .max_error_px = viewer_error_px(viewer),
+    };
+    struct wd_picture picture = {0};
+    uint32_t id = 0;
+    if (wd_renderer_wait(viewer->renderer) == WD_OK &&
+        wd_renderer_render(viewer->renderer, &params, &picture) == WD_OK)
+        id = picture.tree_id[(size_t)y * params.width + x];
+    wd_picture_finish(&picture);
+    return id;
+}
+
+static double distance_m(const double a_m[3], const double b_m[3])
+{
+    return hypot(hypot(a_m[0] - b_m[0], a_m[1] - b_m[1]), a_m[2] - b_m[2]);
+}
+
+void viewer_act_pick(struct viewer_state *viewer, int x, int y)
+{
+    int width, height;
+    struct wd_tree_info tree;
+    struct wd_species_info species;
+    SDL_GetWindowSize(viewer->window, &width, &height);
+    const VkExtent2D extent = viewer->swapchain.extent;
+    if (x < 0 || y < 0 || x >= width || y >= height || !extent.width || !extent.height)
+        return;
+    viewer->picked_id = tree_at(viewer, (uint32_t)x * extent.width / (uint32_t)width,
+                                (uint32_t)y * extent.height / (uint32_t)height);
+    if (!viewer->picked_id)
+        viewer_notice(viewer, "no tree there");
+    else if (wd_forest_get_tree(viewer->forest, viewer->picked_id, &tree) &&
+             wd_forest_get_species(viewer->forest, tree.species, &species))
+        viewer_notice(viewer, "tree %u: %s (%s)\n%.1f m high, crown %.1f m wide\nat %.1f, %.1f, %.1f m, %.1f m away",
+                      tree.id, species.name, species.latin ? species.latin : "?", tree.height_m,
+                      tree.crown_diameter_m, tree.position_m[0], tree.position_m[1], tree.position_m[2],
+                      distance_m(tree.position_m, viewer->motion.camera.position_m));
+    else
+        viewer_notice(viewer, "tree %u, planted on demand", viewer->picked_id);
 }
 
 void viewer_act_screenshot(struct viewer_state *viewer)

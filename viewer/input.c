@@ -112,6 +112,23 @@ static void window_event(struct viewer_state *viewer, const SDL_WindowEvent *eve
     }
 }
 
+/* A mouse that is grabbed points nowhere: it picks what is in the middle. */
+static void mouse_button(struct viewer_state *viewer, const SDL_MouseButtonEvent *event)
+{
+    bool down = event->type == SDL_MOUSEBUTTONDOWN;
+    int x = event->x, y = event->y;
+    if (event->button == SDL_BUTTON_RIGHT && !viewer->grabbed)
+        SDL_SetRelativeMouseMode(down ? SDL_TRUE : SDL_FALSE);
+    if (event->button != SDL_BUTTON_LEFT || !down)
+        return;
+    if (viewer->grabbed) {
+        SDL_GetWindowSize(viewer->window, &x, &y);
+        x /= 2;
+        y /= 2;
+    }
+    viewer_act_pick(viewer, x, y);
+}
+
 static void mouse_motion(struct viewer_state *viewer, const SDL_MouseMotionEvent *event)
 {
     if (!viewer->grabbed && !(event->state & SDL_BUTTON_RMASK))
@@ -141,8 +158,7 @@ void viewer_input_event(struct viewer_state *viewer, const SDL_Event *event)
         break;
     case SDL_MOUSEBUTTONDOWN:
     case SDL_MOUSEBUTTONUP:
-        if (event->button.button == SDL_BUTTON_RIGHT && !viewer->grabbed)
-            SDL_SetRelativeMouseMode(event->type == SDL_MOUSEBUTTONDOWN ? SDL_TRUE : SDL_FALSE);
+        mouse_button(viewer, &event->button);
         break;
     case SDL_MOUSEMOTION:
         mouse_motion(viewer, &event->motion);

@@ -46,6 +46,7 @@ struct viewer_state {
     double begin_s, now_s, step_s;
     uint64_t frame_count;
     unsigned screenshot_count;
+    uint32_t picked_id; /* 0: no tree */
     double frame_ms; /* from frame to frame, smoothed */
     struct wd_budget budget; /* where the parameters ask for one */
     char notice[256];
@@ -81,6 +82,8 @@ void viewer_act_play(struct viewer_state *viewer);
 void viewer_act_next_camera(struct viewer_state *viewer);
 void viewer_act_save_camera(struct viewer_state *viewer);
 void viewer_act_screenshot(struct viewer_state *viewer);
+/* Tells of the tree at a place of the window, in its own units. */
+void viewer_act_pick(struct viewer_state *viewer, int x, int y);
 void viewer_act_report(struct viewer_state *viewer);
 void viewer_notice(struct viewer_state *viewer, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

@@ -122,6 +122,12 @@ holds '.gait == "fly" and .width == 320 and .height == 240 and .camera == "south
     fail "the beginning"
 echo "ok   the beginning"
 
+xdotool click 1
+expect 'the left button tells of a tree' '.picked_id > 0 and .picked_id <= 200'
+xdotool mousemove --window "$window" 160 238 click 1
+expect 'and of none where there is ground' '.picked_id == 0'
+xdotool mousemove --window "$window" 160 120
+
 remember
 hold_key w 0.5
 expect 'W flies forward (north)' '.position_m[1] > $before.position_m[1] + 5'
