@@ -228,8 +228,8 @@ echo "ok   five frames a second"
 xdotool key Escape
 ended 0 'Escape ends the viewer'
 
-start --method continuum --set planting=on_demand
-expect 'trees on demand' '.method == "continuum" and .frames > 2'
+start --camera saved-1 --method continuum --set planting=on_demand
+expect 'trees on demand, from a saved camera' '.method == "continuum" and .frames > 2 and .camera == "saved-1"'
 xdotool key m
 remember
 expect 'M leaves the method that alone can draw them' '.method == "continuum" and
