@@ -156,10 +156,12 @@ static uint32_t tree_at(struct viewer_state *viewer, uint32_t x, uint32_t y)
     };
     struct wd_picture picture = {0};
     uint32_t id = 0;
+    double begin_s = viewer_seconds();
     if (wd_renderer_wait(viewer->renderer) == WD_OK &&
         wd_renderer_render(viewer->renderer, &params, &picture) == WD_OK)
         id = picture.tree_id[(size_t)y * params.width + x];
     wd_picture_finish(&picture);
+    viewer_input_pause(viewer, viewer_seconds() - begin_s);
     return id;
 }
 
@@ -210,9 +212,11 @@ void viewer_act_screenshot(struct viewer_state *viewer)
         .max_error_px = viewer_error_px(viewer),
     };
     struct wd_picture picture = {0};
+    double begin_s = viewer_seconds();
     bool ok = wd_renderer_wait(viewer->renderer) == WD_OK &&
               wd_renderer_render(viewer->renderer, &params, &picture) == WD_OK &&
               wd_picture_write(&picture, name, &viewer->params->log) == WD_OK;
+    viewer_input_pause(viewer, viewer_seconds() - begin_s);
     viewer->screenshot_count += ok;
     viewer_notice(viewer, ok ? "%s" : "%s could not be written", name);
     wd_picture_finish(&picture);

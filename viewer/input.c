@@ -171,6 +171,14 @@ void viewer_input_event(struct viewer_state *viewer, const SDL_Event *event)
     }
 }
 
+void viewer_input_pause(struct viewer_state *viewer, double paused_s)
+{
+    viewer->begin_s += paused_s;
+    viewer->now_s += paused_s;
+    for (int i = 0; i < VIEWER_HOLD_KEYS; i++)
+        viewer->holds[i].since_s += paused_s;
+}
+
 void viewer_input_step(struct viewer_state *viewer)
 {
     double held_s[VIEWER_HOLD_KEYS];

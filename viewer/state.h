@@ -66,6 +66,8 @@ double viewer_error_px(const struct viewer_state *viewer);
 
 /* --- input.c */
 void viewer_input_event(struct viewer_state *viewer, const SDL_Event *event);
+/* Lets no time have passed in a pause that ends now: neither wind, path nor camera leap after a picture. */
+void viewer_input_pause(struct viewer_state *viewer, double paused_s);
 /* Moves the camera by all that was pressed since the last call. */
 void viewer_input_step(struct viewer_state *viewer);
 

@@ -1,4 +1,5 @@
 /* What keys do, told by events without a window. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -57,6 +58,21 @@ static void keys_that_are_held_when_focus_is_lost_are_let_go(void **state)
     assert_false(viewer.holds[VIEWER_FORWARD].down);
 }
 
+static void no_time_passes_in_a_pause(void **state)
+{
+    (void)state;
+    double begun_s = viewer_seconds();
+    struct viewer_state viewer = {.begin_s = begun_s - 7, .now_s = begun_s};
+    press(&viewer, (SDL_Keysym){.scancode = SDL_SCANCODE_W, .sym = SDLK_w}, 0);
+    viewer.holds[VIEWER_FORWARD].since_s -= 60;
+    viewer_input_pause(&viewer, 60); /* as after a picture that took a minute */
+    SDL_Event up = {.key = {.type = SDL_KEYUP, .keysym = {.scancode = SDL_SCANCODE_W, .sym = SDLK_w}}};
+    viewer_input_event(&viewer, &up);
+    assert_true(viewer.holds[VIEWER_FORWARD].held_s < 30);
+    assert_true(fabs(viewer.now_s - (begun_s + 60)) < 1e-3);
+    assert_true(fabs(viewer.now_s - viewer.begin_s - 7) < 1e-3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -64,6 +80,7 @@ int main(void)
         cmocka_unit_test(keys_act_while_shift_makes_fast),
         cmocka_unit_test(letters_of_other_scripts_act_by_place),
         cmocka_unit_test(keys_that_are_held_when_focus_is_lost_are_let_go),
+        cmocka_unit_test(no_time_passes_in_a_pause),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
