@@ -39,14 +39,25 @@ void viewer_act_gait(struct viewer_state *viewer)
     viewer_notice(viewer, walking ? "flying" : "on foot");
 }
 
-void viewer_act_method(struct viewer_state *viewer)
+static void step_method(struct viewer_state *viewer, int step)
 {
     const char *const *names = wd_method_names();
-    size_t i = 0;
-    while (names[i] && strcmp(names[i], viewer->method))
-        i++;
-    viewer->method = names[i] && names[i + 1] ? names[i + 1] : names[0];
+    int count = 0, i = 0;
+    for (; names[count]; count++)
+        if (!strcmp(names[count], viewer->method))
+            i = count;
+    viewer->method = names[(i + count + step) % count];
     viewer_notice(viewer, "method %s", viewer->method);
+}
+
+void viewer_act_method(struct viewer_state *viewer)
+{
+    step_method(viewer, 1);
+}
+
+void viewer_act_method_before(struct viewer_state *viewer)
+{
+    step_method(viewer, -1);
 }
 
 void viewer_act_lod(struct viewer_state *viewer)

@@ -19,7 +19,8 @@ static const struct binding {
     Uint16 modifiers; /* one of these must be down; 0: whatever is, but for a binding before */
     void (*act)(struct viewer_state *viewer);
 } bindings[] = {
-    {SDLK_f, 0, viewer_act_gait},         {SDLK_m, 0, viewer_act_method},
+    {SDLK_f, 0, viewer_act_gait},         {SDLK_m, KMOD_SHIFT, viewer_act_method_before},
+    {SDLK_m, 0, viewer_act_method},
     {SDLK_l, 0, viewer_act_lod},          {SDLK_t, 0, viewer_act_times},
     {SDLK_h, 0, viewer_act_help},         {SDLK_g, 0, viewer_act_grab},
     {SDLK_b, 0, viewer_act_accumulate},

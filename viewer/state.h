@@ -74,6 +74,7 @@ void viewer_input_step(struct viewer_state *viewer);
 /* --- actions.c: what keys do */
 void viewer_act_gait(struct viewer_state *viewer);
 void viewer_act_method(struct viewer_state *viewer);
+void viewer_act_method_before(struct viewer_state *viewer);
 void viewer_act_lod(struct viewer_state *viewer);
 void viewer_act_accumulate(struct viewer_state *viewer);
 void viewer_act_times(struct viewer_state *viewer);

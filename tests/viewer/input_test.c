@@ -35,6 +35,22 @@ static void keys_act_while_shift_makes_fast(void **state)
     assert_true(viewer.quit);
 }
 
+static void methods_go_both_ways(void **state)
+{
+    (void)state;
+    struct viewer_state viewer = {.method = wd_method_names()[0]};
+    SDL_Keysym m = {.scancode = SDL_SCANCODE_M, .sym = SDLK_m}, shift_m = m;
+    shift_m.mod = KMOD_LSHIFT;
+    press(&viewer, shift_m, 0);
+    assert_string_not_equal(viewer.method, wd_method_names()[0]);
+    press(&viewer, m, 0);
+    assert_string_equal(viewer.method, wd_method_names()[0]);
+    press(&viewer, m, 0);
+    assert_string_equal(viewer.method, wd_method_names()[1]);
+    press(&viewer, shift_m, 0);
+    assert_string_equal(viewer.method, wd_method_names()[0]);
+}
+
 static void letters_of_other_scripts_act_by_place(void **state)
 {
     (void)state;
@@ -78,6 +94,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(keys_act_once_however_long_they_are_held),
         cmocka_unit_test(keys_act_while_shift_makes_fast),
+        cmocka_unit_test(methods_go_both_ways),
         cmocka_unit_test(letters_of_other_scripts_act_by_place),
         cmocka_unit_test(keys_that_are_held_when_focus_is_lost_are_let_go),
         cmocka_unit_test(no_time_passes_in_a_pause),
