@@ -39,6 +39,17 @@ void viewer_act_gait(struct viewer_state *viewer)
     viewer_notice(viewer, walking ? "flying" : "on foot");
 }
 
+static const char *level_legend(const char *method)
+{
+    if (!strcmp(method, "continuum"))
+        return "green: leaves, brown: wood";
+    if (!strcmp(method, "zfield"))
+        return "red: mesh, yellow: reduced mesh, blue: z-field, purple: far forest on the ground";
+    if (!strcmp(method, "impostor"))
+        return "red: mesh, yellow: reduced mesh, blue: billboard, purple: impostor";
+    return "red: mesh, yellow: reduced mesh, blue: billboard";
+}
+
 static void step_method(struct viewer_state *viewer, int step)
 {
     const char *const *names = wd_method_names();
@@ -47,7 +58,9 @@ static void step_method(struct viewer_state *viewer, int step)
         if (!strcmp(names[count], viewer->method))
             i = count;
     viewer->method = names[(i + count + step) % count];
-    viewer_notice(viewer, "method %s", viewer->method);
+    bool levels = viewer->view == WD_VIEW_LOD;
+    viewer_notice(viewer, "method %s%s%s", viewer->method, levels ? "\n" : "",
+                  levels ? level_legend(viewer->method) : "");
 }
 
 void viewer_act_method(struct viewer_state *viewer)
@@ -64,7 +77,7 @@ void viewer_act_lod(struct viewer_state *viewer)
 {
     viewer->view = viewer->view == WD_VIEW_LOD ? WD_VIEW_LIT : WD_VIEW_LOD;
     if (viewer->view == WD_VIEW_LOD)
-        viewer_notice(viewer, "red: mesh, yellow: reduced mesh, blue: billboard");
+        viewer_notice(viewer, "%s", level_legend(viewer->method));
 }
 
 void viewer_act_accumulate(struct viewer_state *viewer)

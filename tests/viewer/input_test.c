@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -51,6 +52,19 @@ static void methods_go_both_ways(void **state)
     assert_string_equal(viewer.method, wd_method_names()[0]);
 }
 
+static void levels_are_explained_by_method(void **state)
+{
+    (void)state;
+    struct viewer_state viewer = {.method = "octree"};
+    SDL_Keysym l = {.scancode = SDL_SCANCODE_L, .sym = SDLK_l};
+    press(&viewer, l, 0);
+    assert_non_null(strstr(viewer.notice, "blue: billboard"));
+    press(&viewer, l, 0);
+    viewer.method = "continuum";
+    press(&viewer, l, 0);
+    assert_null(strstr(viewer.notice, "billboard"));
+}
+
 static void letters_of_other_scripts_act_by_place(void **state)
 {
     (void)state;
@@ -95,6 +109,7 @@ int main(void)
         cmocka_unit_test(keys_act_once_however_long_they_are_held),
         cmocka_unit_test(keys_act_while_shift_makes_fast),
         cmocka_unit_test(methods_go_both_ways),
+        cmocka_unit_test(levels_are_explained_by_method),
         cmocka_unit_test(letters_of_other_scripts_act_by_place),
         cmocka_unit_test(keys_that_are_held_when_focus_is_lost_are_let_go),
         cmocka_unit_test(no_time_passes_in_a_pause),
