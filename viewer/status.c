@@ -61,12 +61,16 @@ static void print_times(const struct viewer_state *viewer, char *text, size_t si
             (size_t)snprintf(text + used, size - used, "  %-20s %8.2f %7.2f\n",
                              stats.passes[i].name, stats.passes[i].gpu_ms, stats.passes[i].cpu_ms);
     if (used < size)
+        used += (size_t)snprintf(text + used, size - used, "submitted in %.1f ms", stats.frame_ms);
+    if (used < size && stats.gpu_ms > 0) /* some devices have no true clock */
+        used += (size_t)snprintf(text + used, size - used, ", drawn in %.1f ms", stats.gpu_ms);
+    if (used < size)
         snprintf(text + used, size - used,
-                 "submitted in %.1f ms, drawn in %.1f ms\n"
+                 "\n"
                  "trees: %llu mesh, %llu reduced, %llu billboard\n"
                  "%llu draw calls, %llu triangles\n"
                  "device memory %.1f MB, at most %.1f MB",
-                 stats.frame_ms, stats.gpu_ms, (unsigned long long)stats.trees_mesh,
+                 (unsigned long long)stats.trees_mesh,
                  (unsigned long long)stats.trees_reduced, (unsigned long long)stats.trees_billboard,
                  (unsigned long long)stats.draw_calls, (unsigned long long)stats.triangles,
                  (double)stats.device_bytes / 1e6, (double)stats.device_bytes_peak / 1e6);
