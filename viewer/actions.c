@@ -9,6 +9,7 @@
 #include "state.h"
 
 #define NOTICE_SECONDS 4.0
+#define NOTICE_FRAMES 3 /* at least: a method's first may take longer */
 #define SCREENSHOT_SAMPLES 4
 
 void viewer_notice(struct viewer_state *viewer, const char *format, ...)
@@ -18,6 +19,7 @@ void viewer_notice(struct viewer_state *viewer, const char *format, ...)
     vsnprintf(viewer->notice, sizeof viewer->notice, format, args);
     va_end(args);
     viewer->notice_until_s = viewer_seconds() + NOTICE_SECONDS;
+    viewer->notice_until_frame = viewer->frame_count + NOTICE_FRAMES;
 }
 
 static double ground_m(const void *forest, double x_m, double y_m)

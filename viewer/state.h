@@ -51,6 +51,7 @@ struct viewer_state {
     struct wd_budget budget; /* where the parameters ask for one */
     char notice[256];
     double notice_until_s;
+    uint64_t notice_until_frame; /* the later of both */
     bool accumulates;
     bool grabbed, times_shown, help_shown, quit;
     bool stale;     /* the swapchain no longer fits the window */

@@ -84,7 +84,9 @@ struct viewer_panels_content viewer_status(const struct viewer_state *viewer,
         print_times(viewer, texts->times, sizeof texts->times);
     return (struct viewer_panels_content){
         .status = texts->status,
-        .notice = viewer->now_s < viewer->notice_until_s ? viewer->notice : NULL,
+        .notice = viewer->now_s < viewer->notice_until_s || viewer->frame_count < viewer->notice_until_frame
+                      ? viewer->notice
+                      : NULL,
         .times = viewer->times_shown ? texts->times : NULL,
         .help = viewer->help_shown ? help_text : NULL,
     };

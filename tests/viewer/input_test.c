@@ -59,6 +59,7 @@ static void levels_are_explained_by_method(void **state)
     SDL_Keysym l = {.scancode = SDL_SCANCODE_L, .sym = SDLK_l};
     press(&viewer, l, 0);
     assert_non_null(strstr(viewer.notice, "blue: billboard"));
+    assert_true(viewer.notice_until_frame > viewer.frame_count + 1); /* however slow frames are */
     press(&viewer, l, 0);
     viewer.method = "continuum";
     press(&viewer, l, 0);
