@@ -156,6 +156,7 @@ bool cli_error_check(struct cli_session *session);
 bool cli_bound_check(struct cli_session *session, const struct wd_forest *forest);
 /* The same for --camera and --path. */
 bool cli_places_check(struct cli_session *session, const struct wd_forest *forest);
+bool cli_path_check(struct cli_session *session, const struct wd_forest *forest);
 
 enum cli_status cli_render(struct cli_session *session);
 enum cli_status cli_grow(struct cli_session *session);

@@ -7,8 +7,9 @@
 static const char controls[] =
     "  W A S D        move            right button   look around (or G to grab the mouse)\n"
     "  Q E            down, up        Shift          five times as fast; the wheel sets the speed\n"
-    "  F              fly or walk     M              next method\n"
+    "  F              fly or walk     M, Shift+M     next method, the one before\n"
     "  L              colour by level of detail      T  times and tree counts\n"
+    "  left button    tell of a tree: id, species, height\n"
     "  B              one sample a frame, or many gathered over frames\n"
     "  C, Shift+C     next camera, save this one     P  play the path\n"
     "  F9, F12        report line, screenshot        H  help        Esc  quit\n";

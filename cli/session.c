@@ -278,9 +278,13 @@ static bool check_place(struct cli_session *session, const struct wd_forest *for
     return found;
 }
 
+bool cli_path_check(struct cli_session *session, const struct wd_forest *forest)
+{
+    return check_place(session, forest, "path", session->options->path, wd_forest_path_name);
+}
+
 bool cli_places_check(struct cli_session *session, const struct wd_forest *forest)
 {
-    const struct cli_options *options = session->options;
-    return check_place(session, forest, "camera", options->camera, wd_forest_camera_name) &&
-           check_place(session, forest, "path", options->path, wd_forest_path_name);
+    return check_place(session, forest, "camera", session->options->camera, wd_forest_camera_name) &&
+           cli_path_check(session, forest);
 }

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 #include "state.h"
 
 #define NOTICE_SECONDS 4.0
+#define NOTICE_FRAMES 3 /* at least: a method's first may take longer */
 #define SCREENSHOT_SAMPLES 4
 
 void viewer_notice(struct viewer_state *viewer, const char *format, ...)
@@ -17,6 +19,7 @@ void viewer_notice(struct viewer_state *viewer, const char *format, ...)
     vsnprintf(viewer->notice, sizeof viewer->notice, format, args);
     va_end(args);
     viewer->notice_until_s = viewer_seconds() + NOTICE_SECONDS;
+    viewer->notice_until_frame = viewer->frame_count + NOTICE_FRAMES;
 }
 
 static double ground_m(const void *forest, double x_m, double y_m)
@@ -38,21 +41,45 @@ void viewer_act_gait(struct viewer_state *viewer)
     viewer_notice(viewer, walking ? "flying" : "on foot");
 }
 
-void viewer_act_method(struct viewer_state *viewer)
+static const char *level_legend(const char *method)
+{
+    if (!strcmp(method, "continuum"))
+        return "green: leaves, brown: wood";
+    if (!strcmp(method, "zfield"))
+        return "red: mesh, yellow: reduced mesh, blue: z-field, purple: far forest on the ground";
+    if (!strcmp(method, "impostor"))
+        return "red: mesh, yellow: reduced mesh, blue: billboard, purple: impostor";
+    return "red: mesh, yellow: reduced mesh, blue: billboard";
+}
+
+static void step_method(struct viewer_state *viewer, int step)
 {
     const char *const *names = wd_method_names();
-    size_t i = 0;
-    while (names[i] && strcmp(names[i], viewer->method))
-        i++;
-    viewer->method = names[i] && names[i + 1] ? names[i + 1] : names[0];
-    viewer_notice(viewer, "method %s", viewer->method);
+    int count = 0, i = 0;
+    for (; names[count]; count++)
+        if (!strcmp(names[count], viewer->method))
+            i = count;
+    viewer->method = names[(i + count + step) % count];
+    bool levels = viewer->view == WD_VIEW_LOD;
+    viewer_notice(viewer, "method %s%s%s", viewer->method, levels ? "\n" : "",
+                  levels ? level_legend(viewer->method) : "");
+}
+
+void viewer_act_method(struct viewer_state *viewer)
+{
+    step_method(viewer, 1);
+}
+
+void viewer_act_method_before(struct viewer_state *viewer)
+{
+    step_method(viewer, -1);
 }
 
 void viewer_act_lod(struct viewer_state *viewer)
 {
     viewer->view = viewer->view == WD_VIEW_LOD ? WD_VIEW_LIT : WD_VIEW_LOD;
     if (viewer->view == WD_VIEW_LOD)
-        viewer_notice(viewer, "red: mesh, yellow: reduced mesh, blue: billboard");
+        viewer_notice(viewer, "%s", level_legend(viewer->method));
 }
 
 void viewer_act_accumulate(struct viewer_state *viewer)
@@ -140,6 +167,58 @@ static char *screenshot_name(const char *directory)
     return NULL;
 }
 
+/* Of one picture more, of ids alone: its trees stand as those that are shown do. */
+static uint32_t tree_at(struct viewer_state *viewer, uint32_t x, uint32_t y)
+{
+    struct wd_render_params params = {
+        .camera = viewer->motion.camera,
+        .time_s = viewer->now_s - viewer->begin_s,
+        .previous_time_s = viewer->now_s - viewer->begin_s,
+        .width = viewer->swapchain.extent.width,
+        .height = viewer->swapchain.extent.height,
+        .method = viewer->method,
+        .layers = WD_LAYER_TREE_ID,
+        .max_error_px = viewer_error_px(viewer),
+    };
+    struct wd_picture picture = {0};
+    uint32_t id = 0;
+    double begin_s = viewer_seconds();
+    if (wd_renderer_wait(viewer->renderer) == WD_OK &&
+        wd_renderer_render(viewer->renderer, &params, &picture) == WD_OK)
+        id = picture.tree_id[(size_t)y * params.width + x];
+    wd_picture_finish(&picture);
+    viewer_input_pause(viewer, viewer_seconds() - begin_s);
+    return id;
+}
+
+static double distance_m(const double a_m[3], const double b_m[3])
+{
+    return hypot(hypot(a_m[0] - b_m[0], a_m[1] - b_m[1]), a_m[2] - b_m[2]);
+}
+
+void viewer_act_pick(struct viewer_state *viewer, int x, int y)
+{
+    int width, height;
+    struct wd_tree_info tree;
+    struct wd_species_info species;
+    SDL_GetWindowSize(viewer->window, &width, &height);
+    const VkExtent2D extent = viewer->swapchain.extent;
+    if (x < 0 || y < 0 || x >= width || y >= height || !extent.width || !extent.height)
+        return;
+    viewer->picked_id = tree_at(viewer, (uint32_t)x * extent.width / (uint32_t)width,
+                                (uint32_t)y * extent.height / (uint32_t)height);
+    if (!viewer->picked_id)
+        viewer_notice(viewer, "no tree there");
+    else if (wd_forest_get_tree(viewer->forest, viewer->picked_id, &tree) &&
+             wd_forest_get_species(viewer->forest, tree.species, &species))
+        viewer_notice(viewer, "tree %u: %s (%s)\n%.1f m high, crown %.1f m wide\nat %.1f, %.1f, %.1f m, %.1f m away",
+                      tree.id, species.name, species.latin ? species.latin : "?", tree.height_m,
+                      tree.crown_diameter_m, tree.position_m[0], tree.position_m[1], tree.position_m[2],
+                      distance_m(tree.position_m, viewer->motion.camera.position_m));
+    else
+        viewer_notice(viewer, "tree %u, planted on demand", viewer->picked_id);
+}
+
 void viewer_act_screenshot(struct viewer_state *viewer)
 {
     char *name = screenshot_name(viewer->params->screenshot_dir);
@@ -159,9 +238,11 @@ void viewer_act_screenshot(struct viewer_state *viewer)
         .max_error_px = viewer_error_px(viewer),
     };
     struct wd_picture picture = {0};
+    double begin_s = viewer_seconds();
     bool ok = wd_renderer_wait(viewer->renderer) == WD_OK &&
               wd_renderer_render(viewer->renderer, &params, &picture) == WD_OK &&
               wd_picture_write(&picture, name, &viewer->params->log) == WD_OK;
+    viewer_input_pause(viewer, viewer_seconds() - begin_s);
     viewer->screenshot_count += ok;
     viewer_notice(viewer, ok ? "%s" : "%s could not be written", name);
     wd_picture_finish(&picture);

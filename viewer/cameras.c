@@ -156,6 +156,27 @@ static bool write_cameras(struct viewer_cameras *cameras)
     return true;
 }
 
+const struct viewer_saved_camera *viewer_cameras_find(const struct viewer_cameras *cameras, const char *name)
+{
+    for (size_t i = 0; i < cameras->count; i++)
+        if (!strcmp(cameras->saved[i].name, name))
+            return &cameras->saved[i];
+    return NULL;
+}
+
+/* Lines may have been taken out of the file. */
+static char *fresh_name(const struct viewer_cameras *cameras)
+{
+    char *name = NULL;
+    for (size_t i = cameras->count + 1;; i++) {
+        if (asprintf(&name, "saved-%zu", i) < 0)
+            return NULL;
+        if (!viewer_cameras_find(cameras, name))
+            return name;
+        free(name);
+    }
+}
+
 bool viewer_cameras_save(struct viewer_cameras *cameras, const struct wd_camera *camera)
 {
     struct viewer_saved_camera *saved =
@@ -163,8 +184,8 @@ bool viewer_cameras_save(struct viewer_cameras *cameras, const struct wd_camera 
     if (!saved)
         return viewer_error(cameras->log, "out of memory");
     cameras->saved = saved;
-    char *name = NULL;
-    if (asprintf(&name, "saved-%zu", cameras->count + 1) < 0)
+    char *name = fresh_name(cameras);
+    if (!name)
         return viewer_error(cameras->log, "out of memory");
     saved[cameras->count++] = (struct viewer_saved_camera){name, *camera};
     if (!write_cameras(cameras))

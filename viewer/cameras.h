@@ -23,6 +23,9 @@ bool viewer_cameras_init(struct viewer_cameras *cameras, const char *scene_path,
                          const struct wd_log *log);
 void viewer_cameras_finish(struct viewer_cameras *cameras);
 
+/* NULL if none is called so. */
+const struct viewer_saved_camera *viewer_cameras_find(const struct viewer_cameras *cameras, const char *name);
+
 /* Appends a camera under a fresh name and writes the file. */
 bool viewer_cameras_save(struct viewer_cameras *cameras, const struct wd_camera *camera);
 

@@ -16,15 +16,16 @@ static const SDL_Scancode hold_keys[VIEWER_HOLD_KEYS] = {
 
 static const struct binding {
     SDL_Keycode key;
-    Uint16 modifiers; /* one of these must be down; 0: none may */
+    Uint16 modifiers; /* one of these must be down; 0: whatever is, but for a binding before */
     void (*act)(struct viewer_state *viewer);
 } bindings[] = {
-    {SDLK_f, 0, viewer_act_gait},         {SDLK_m, 0, viewer_act_method},
+    {SDLK_f, 0, viewer_act_gait},         {SDLK_m, KMOD_SHIFT, viewer_act_method_before},
+    {SDLK_m, 0, viewer_act_method},
     {SDLK_l, 0, viewer_act_lod},          {SDLK_t, 0, viewer_act_times},
     {SDLK_h, 0, viewer_act_help},         {SDLK_g, 0, viewer_act_grab},
     {SDLK_b, 0, viewer_act_accumulate},
-    {SDLK_p, 0, viewer_act_play},         {SDLK_c, 0, viewer_act_next_camera},
-    {SDLK_ESCAPE, 0, viewer_act_quit},    {SDLK_c, KMOD_SHIFT, viewer_act_save_camera},
+    {SDLK_p, 0, viewer_act_play},         {SDLK_c, KMOD_SHIFT, viewer_act_save_camera},
+    {SDLK_ESCAPE, 0, viewer_act_quit},    {SDLK_c, 0, viewer_act_next_camera},
     {SDLK_F12, 0, viewer_act_screenshot}, {SDLK_F9, 0, viewer_act_report},
 };
 
@@ -52,6 +53,14 @@ static double take(struct viewer_hold *hold, double now_s)
     return held_s;
 }
 
+/* Where the keyboard has letters of another script, the Latin ones by their places. */
+static SDL_Keycode letter(const SDL_Keysym *key)
+{
+    bool latin = key->sym < 0x80 || (key->sym & SDLK_SCANCODE_MASK);
+    bool place = key->scancode >= SDL_SCANCODE_A && key->scancode <= SDL_SCANCODE_Z;
+    return latin || !place ? key->sym : SDLK_a + (SDL_Keycode)(key->scancode - SDL_SCANCODE_A);
+}
+
 static void key_event(struct viewer_state *viewer, const SDL_KeyboardEvent *event)
 {
     double now_s = viewer_seconds();
@@ -66,10 +75,14 @@ static void key_event(struct viewer_state *viewer, const SDL_KeyboardEvent *even
     }
     if (event->type != SDL_KEYDOWN || event->repeat)
         return;
-    bool shift = (event->keysym.mod & KMOD_SHIFT) != 0;
-    for (size_t i = 0; i < sizeof bindings / sizeof *bindings; i++)
-        if (bindings[i].key == event->keysym.sym && (bindings[i].modifiers != 0) == shift)
-            bindings[i].act(viewer);
+    SDL_Keycode key = letter(&event->keysym);
+    for (size_t i = 0; i < sizeof bindings / sizeof *bindings; i++) {
+        const struct binding *binding = &bindings[i];
+        if (binding->key == key && (!binding->modifiers || (event->keysym.mod & binding->modifiers))) {
+            binding->act(viewer);
+            return;
+        }
+    }
 }
 
 static void window_event(struct viewer_state *viewer, const SDL_WindowEvent *event)
@@ -98,6 +111,23 @@ static void window_event(struct viewer_state *viewer, const SDL_WindowEvent *eve
     default:
         break;
     }
+}
+
+/* A mouse that is grabbed points nowhere: it picks what is in the middle. */
+static void mouse_button(struct viewer_state *viewer, const SDL_MouseButtonEvent *event)
+{
+    bool down = event->type == SDL_MOUSEBUTTONDOWN;
+    int x = event->x, y = event->y;
+    if (event->button == SDL_BUTTON_RIGHT && !viewer->grabbed)
+        SDL_SetRelativeMouseMode(down ? SDL_TRUE : SDL_FALSE);
+    if (event->button != SDL_BUTTON_LEFT || !down)
+        return;
+    if (viewer->grabbed) {
+        SDL_GetWindowSize(viewer->window, &x, &y);
+        x /= 2;
+        y /= 2;
+    }
+    viewer_act_pick(viewer, x, y);
 }
 
 static void mouse_motion(struct viewer_state *viewer, const SDL_MouseMotionEvent *event)
@@ -129,8 +159,7 @@ void viewer_input_event(struct viewer_state *viewer, const SDL_Event *event)
         break;
     case SDL_MOUSEBUTTONDOWN:
     case SDL_MOUSEBUTTONUP:
-        if (event->button.button == SDL_BUTTON_RIGHT && !viewer->grabbed)
-            SDL_SetRelativeMouseMode(event->type == SDL_MOUSEBUTTONDOWN ? SDL_TRUE : SDL_FALSE);
+        mouse_button(viewer, &event->button);
         break;
     case SDL_MOUSEMOTION:
         mouse_motion(viewer, &event->motion);
@@ -141,6 +170,14 @@ void viewer_input_event(struct viewer_state *viewer, const SDL_Event *event)
     default:
         break;
     }
+}
+
+void viewer_input_pause(struct viewer_state *viewer, double paused_s)
+{
+    viewer->begin_s += paused_s;
+    viewer->now_s += paused_s;
+    for (int i = 0; i < VIEWER_HOLD_KEYS; i++)
+        viewer->holds[i].since_s += paused_s;
 }
 
 void viewer_input_step(struct viewer_state *viewer)

@@ -27,13 +27,19 @@ struct viewer_push {
     bool fast;                       /* five times the speed */
 };
 
+/* Without `fast`, in the gait and at the factor of now. */
+double viewer_motion_speed_mps(const struct viewer_motion *motion);
+
 struct viewer_ground {
     double (*height_m)(const void *user, double x_m, double y_m);
     const void *user;
 };
 
-/* Moves by `push`, then lets `dt_s` of gravity pass. Afterwards the camera is never below the
- * ground plus its clearance; on foot it stands at VIEWER_EYE_M above it, or is falling to there. */
+/* Stands below, or above, where the camera is. */
+void viewer_motion_land(struct viewer_motion *motion, const struct viewer_ground *ground);
+
+/* Moves by `push`, then lets `dt_s` of gravity pass. Afterwards the camera is within what can be drawn, and never
+ * below the ground plus its clearance; on foot it stands at VIEWER_EYE_M above it, or is falling to there. */
 void viewer_motion_step(struct viewer_motion *motion, const struct viewer_push *push, double dt_s,
                         const struct viewer_ground *ground);
 

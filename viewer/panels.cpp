@@ -4,6 +4,7 @@
 #include <backends/imgui_impl_sdl.h>
 #include <backends/imgui_impl_vulkan.h>
 
+static const float MARGIN = 8.0f; /* pixels */
 static const ImGuiWindowFlags bare =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_AlwaysAutoResize |
     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
@@ -41,14 +42,20 @@ extern "C" void viewer_panels_event(const SDL_Event *event)
     ImGui_ImplSDL2_ProcessEvent(event);
 }
 
+/* Text that is wider than the window is wrapped at words. */
 static void panel(const char *name, const char *text, ImVec2 place, ImVec2 pivot)
 {
     if (!text)
         return;
+    const float around = 2.0f * (MARGIN + ImGui::GetStyle().WindowPadding.x);
+    const float width = ImGui::GetIO().DisplaySize.x - around;
     ImGui::SetNextWindowPos(place, ImGuiCond_Always, pivot);
     ImGui::SetNextWindowBgAlpha(0.6f);
-    if (ImGui::Begin(name, nullptr, bare))
+    if (ImGui::Begin(name, nullptr, bare)) {
+        ImGui::PushTextWrapPos(ImGui::GetStyle().WindowPadding.x + (width > 1.0f ? width : 1.0f));
         ImGui::TextUnformatted(text);
+        ImGui::PopTextWrapPos();
+    }
     ImGui::End();
 }
 
@@ -59,10 +66,9 @@ extern "C" void viewer_panels_draw(const struct viewer_panels_content *content,
     ImGui_ImplSDL2_NewFrame();
     ImGui::NewFrame();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const float margin = 8.0f;
-    panel("status", content->status, ImVec2(margin, size.y - margin), ImVec2(0.0f, 1.0f));
-    panel("notice", content->notice, ImVec2(size.x - margin, margin), ImVec2(1.0f, 0.0f));
-    panel("times", content->times, ImVec2(margin, margin), ImVec2(0.0f, 0.0f));
+    panel("status", content->status, ImVec2(MARGIN, size.y - MARGIN), ImVec2(0.0f, 1.0f));
+    panel("notice", content->notice, ImVec2(size.x - MARGIN, MARGIN), ImVec2(1.0f, 0.0f));
+    panel("times", content->times, ImVec2(MARGIN, MARGIN), ImVec2(0.0f, 0.0f));
     panel("help", content->help, ImVec2(size.x * 0.5f, size.y * 0.5f), ImVec2(0.5f, 0.5f));
     ImGui::Render();
     ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);

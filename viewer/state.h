@@ -46,10 +46,12 @@ struct viewer_state {
     double begin_s, now_s, step_s;
     uint64_t frame_count;
     unsigned screenshot_count;
+    uint32_t picked_id; /* 0: no tree */
     double frame_ms; /* from frame to frame, smoothed */
     struct wd_budget budget; /* where the parameters ask for one */
     char notice[256];
     double notice_until_s;
+    uint64_t notice_until_frame; /* the later of both */
     bool accumulates;
     bool grabbed, times_shown, help_shown, quit;
     bool stale;     /* the swapchain no longer fits the window */
@@ -65,12 +67,15 @@ double viewer_error_px(const struct viewer_state *viewer);
 
 /* --- input.c */
 void viewer_input_event(struct viewer_state *viewer, const SDL_Event *event);
+/* Lets no time have passed in a pause that ends now: neither wind, path nor camera leap after a picture. */
+void viewer_input_pause(struct viewer_state *viewer, double paused_s);
 /* Moves the camera by all that was pressed since the last call. */
 void viewer_input_step(struct viewer_state *viewer);
 
 /* --- actions.c: what keys do */
 void viewer_act_gait(struct viewer_state *viewer);
 void viewer_act_method(struct viewer_state *viewer);
+void viewer_act_method_before(struct viewer_state *viewer);
 void viewer_act_lod(struct viewer_state *viewer);
 void viewer_act_accumulate(struct viewer_state *viewer);
 void viewer_act_times(struct viewer_state *viewer);
@@ -81,6 +86,8 @@ void viewer_act_play(struct viewer_state *viewer);
 void viewer_act_next_camera(struct viewer_state *viewer);
 void viewer_act_save_camera(struct viewer_state *viewer);
 void viewer_act_screenshot(struct viewer_state *viewer);
+/* Tells of the tree at a place of the window, in its own units. */
+void viewer_act_pick(struct viewer_state *viewer, int x, int y);
 void viewer_act_report(struct viewer_state *viewer);
 void viewer_notice(struct viewer_state *viewer, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

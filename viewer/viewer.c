@@ -30,6 +30,14 @@ bool wd_viewer_display_present(const struct wd_log *log)
     return real || viewer_error(log, "no window can be opened: there is no display");
 }
 
+bool wd_viewer_camera_saved(const char *scene_path, const char *name, const struct wd_log *log)
+{
+    struct viewer_cameras cameras;
+    bool saved = viewer_cameras_init(&cameras, scene_path, log) && viewer_cameras_find(&cameras, name);
+    viewer_cameras_finish(&cameras);
+    return saved;
+}
+
 static bool open_window(struct viewer_state *viewer)
 {
     const struct wd_viewer_params *params = viewer->params;
@@ -77,6 +85,27 @@ static bool open_swapchain(struct viewer_state *viewer)
            viewer_overlay_init(&viewer->overlay, &viewer->swapchain);
 }
 
+static enum wd_result choose_camera(struct viewer_state *viewer)
+{
+    const char *wanted = viewer->params->camera, *name;
+    const struct viewer_saved_camera *saved = NULL;
+    uint32_t index = 0, found = UINT32_MAX;
+    for (; (name = wd_forest_camera_name(viewer->forest, index)); index++)
+        if (found == UINT32_MAX && (!wanted || !strcmp(name, wanted)))
+            found = index;
+    if (found == UINT32_MAX)
+        saved = viewer_cameras_find(&viewer->cameras, wanted);
+    if (saved) {
+        viewer->camera_index = index + (uint32_t)(saved - viewer->cameras.saved);
+        viewer->camera_name = saved->name;
+        viewer->motion.camera = saved->camera;
+        return WD_OK;
+    }
+    viewer->camera_index = found;
+    viewer->camera_name = wd_forest_camera_name(viewer->forest, found);
+    return wd_forest_get_camera(viewer->forest, wanted, &viewer->motion.camera);
+}
+
 static enum wd_result choose_start(struct viewer_state *viewer)
 {
     const struct wd_viewer_params *params = viewer->params;
@@ -89,15 +118,12 @@ static enum wd_result choose_start(struct viewer_state *viewer)
     viewer->path_time_s = params->path ? 0 : -1;
     viewer->budget = wd_budget_of(params->budget_ms);
     viewer->accumulates = !params->single;
-    viewer->camera_name =
-        params->camera ? params->camera : wd_forest_camera_name(viewer->forest, 0);
-    const char *name;
-    for (uint32_t i = 0; (name = wd_forest_camera_name(viewer->forest, i)); i++)
-        if (!strcmp(name, viewer->camera_name))
-            viewer->camera_index = i;
     struct wd_camera unused;
-    enum wd_result result =
-        wd_forest_get_camera(viewer->forest, params->camera, &viewer->motion.camera);
+    enum wd_result result = choose_camera(viewer);
+    if (result == WD_OK && params->walk) {
+        struct viewer_ground ground = viewer_ground(viewer);
+        viewer_motion_land(&viewer->motion, &ground);
+    }
     if (result == WD_OK && params->path)
         result = wd_forest_get_path_camera(viewer->forest, params->path, 0, &unused, NULL);
     return result;
@@ -105,11 +131,11 @@ static enum wd_result choose_start(struct viewer_state *viewer)
 
 static enum wd_result open_viewer(struct viewer_state *viewer)
 {
+    if (!viewer_cameras_init(&viewer->cameras, viewer->params->scene_path, &viewer->params->log))
+        return WD_ERROR_INPUT;
     enum wd_result result = choose_start(viewer);
     if (result != WD_OK)
         return result;
-    if (!viewer_cameras_init(&viewer->cameras, viewer->params->scene_path, &viewer->params->log))
-        return WD_ERROR_INPUT;
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     if (SDL_Init(SDL_INIT_VIDEO)) {
         viewer_error(&viewer->params->log, "no window can be opened: %s", SDL_GetError());

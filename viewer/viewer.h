@@ -6,7 +6,7 @@
 
 struct wd_viewer_params {
     const char *scene_path; /* its name is on the window; saved cameras lie beside it */
-    const char *camera;     /* NULL: the first */
+    const char *camera;     /* of the scene, or saved; NULL: the first */
     const char *path;       /* played from the beginning; NULL: none */
     const char *method;     /* NULL: the scene's */
     enum wd_view_mode view;
@@ -29,6 +29,9 @@ struct wd_viewer_params {
 
 /* Whether a window could be opened here; says why not. */
 bool wd_viewer_display_present(const struct wd_log *log);
+
+/* Whether a camera of that name was saved beside the scene; a file that cannot be understood is told. */
+bool wd_viewer_camera_saved(const char *scene_path, const char *name, const struct wd_log *log);
 
 /* Shows `forest` until the window is closed or Escape is pressed: WD_OK. */
 enum wd_result wd_viewer_run(const struct wd_forest *forest, const struct wd_viewer_params *params);

@@ -60,7 +60,8 @@ bool wd_method_get_option(uint32_t method_index, uint32_t option_index,
 /* What pixels show. */
 enum wd_view_mode {
     WD_VIEW_LIT,
-    WD_VIEW_LOD,     /* trees coloured by level of detail: red mesh, yellow reduced, blue billboard */
+    WD_VIEW_LOD,     /* trees coloured by level of detail: red mesh, yellow reduced, blue billboard, purple impostor
+                        or far forest; of continuum, which has no levels, leaves green and wood brown */
     WD_VIEW_ALBEDO,
     WD_VIEW_NORMAL,
     WD_VIEW_TREE_ID,

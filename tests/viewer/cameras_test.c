@@ -35,6 +35,25 @@ static int leave_scratch(void **state)
     return chdir("/") || rmdir(*state);
 }
 
+static void names_are_not_given_twice(void **state)
+{
+    (void)state;
+    struct viewer_cameras cameras;
+    const struct wd_camera camera = {{1, 2, 3}, 0, 0, 1};
+    FILE *file = fopen("scene.cameras.json", "w");
+    assert_non_null(file);
+    fputs("{\"cameras\": [{\"name\": \"saved-2\", \"position_m\": [7, 0, 0], \"yaw_deg\": 0, \"pitch_deg\": 0, "
+          "\"fov_deg\": 50}]}", file);
+    fclose(file);
+    assert_true(viewer_cameras_init(&cameras, "./scene.json", &test_log));
+    assert_true(viewer_cameras_save(&cameras, &camera));
+    assert_string_equal(cameras.saved[1].name, "saved-3");
+    assert_float_equal(viewer_cameras_find(&cameras, "saved-2")->camera.position_m[0], 7, 0);
+    assert_null(viewer_cameras_find(&cameras, "saved-1"));
+    viewer_cameras_finish(&cameras);
+    unlink("scene.cameras.json");
+}
+
 static void come_back_exactly(void **state)
 {
     (void)state;
@@ -103,6 +122,7 @@ static void an_unwritable_scene_folder_gives_way(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names_are_not_given_twice),
         cmocka_unit_test(come_back_exactly),
         cmocka_unit_test(bad_files_are_refused),
         cmocka_unit_test(an_unwritable_scene_folder_gives_way),

@@ -122,6 +122,12 @@ holds '.gait == "fly" and .width == 320 and .height == 240 and .camera == "south
     fail "the beginning"
 echo "ok   the beginning"
 
+xdotool click 1
+expect 'the left button tells of a tree' '.picked_id > 0 and .picked_id <= 200'
+xdotool mousemove --window "$window" 160 238 click 1
+expect 'and of none where there is ground' '.picked_id == 0'
+xdotool mousemove --window "$window" 160 120
+
 remember
 hold_key w 0.5
 expect 'W flies forward (north)' '.position_m[1] > $before.position_m[1] + 5'
@@ -211,7 +217,7 @@ ended 0 'closing the window ends the viewer'
 
 start --walk --camera west --view lod
 ask
-holds '.gait == "walk" and .view == "lod" and .camera == "west" and .saved_cameras == 1' ||
+holds '.gait == "walk" and .view == "lod" and .camera == "west" and .saved_cameras == 1 and '"$on_ground" ||
     fail "options"
 echo "ok   options"
 remember
@@ -222,8 +228,8 @@ echo "ok   five frames a second"
 xdotool key Escape
 ended 0 'Escape ends the viewer'
 
-start --method continuum --set planting=on_demand
-expect 'trees on demand' '.method == "continuum" and .frames > 2'
+start --camera saved-1 --method continuum --set planting=on_demand
+expect 'trees on demand, from a saved camera' '.method == "continuum" and .frames > 2 and .camera == "saved-1"'
 xdotool key m
 remember
 expect 'M leaves the method that alone can draw them' '.method == "continuum" and

@@ -54,6 +54,20 @@ static void flies_where_it_looks(void **state)
     assert_float_equal(motion.camera.position_m[2], 230, 1e-9);
 }
 
+static void two_keys_are_no_faster_than_one(void **state)
+{
+    (void)state;
+    struct viewer_motion motion = at(0, 0, 200, VIEWER_FLY);
+    viewer_motion_step(&motion, &(struct viewer_push){.forward_s = 1, .right_s = 1, .up_s = 1}, 1, &on_flat);
+    const double *p = motion.camera.position_m;
+    assert_float_equal(p[0], 20 / sqrt(3), 1e-9);
+    assert_float_equal(p[1], 20 / sqrt(3), 1e-9);
+    assert_float_equal(p[2], 200 + 20 / sqrt(3), 1e-9);
+    motion = at(0, 0, 100 + VIEWER_EYE_M, VIEWER_WALK);
+    viewer_motion_step(&motion, &(struct viewer_push){.forward_s = 1, .right_s = -1, .up_s = 1}, 1, &on_flat);
+    assert_float_equal(hypot(p[0], p[1]), viewer_motion_speed_mps(&motion), 1e-9);
+}
+
 static void flying_stays_above_the_ground(void **state)
 {
     (void)state;
@@ -105,6 +119,25 @@ static void falls_from_a_cliff(void **state)
     assert_float_equal(motion.fall_mps, 0, 0);
 }
 
+static void landing_does_not_fall(void **state)
+{
+    (void)state;
+    struct viewer_motion motion = at(0, 50, 80, VIEWER_WALK);
+    viewer_motion_land(&motion, &on_slope);
+    assert_true(motion.grounded);
+    assert_float_equal(motion.camera.position_m[2], 15 + VIEWER_EYE_M, 1e-9);
+}
+
+static void flying_ends_where_nothing_is_drawn(void **state)
+{
+    (void)state;
+    struct viewer_motion motion = at(0, 0, 200, VIEWER_FLY);
+    motion.camera.yaw_rad = -M_PI / 4;
+    viewer_motion_step(&motion, &(struct viewer_push){.forward_s = 1e6, .up_s = 1e6}, 1, &on_flat);
+    for (int i = 0; i < 3; i++)
+        assert_true(fabs(motion.camera.position_m[i]) < WD_MOST_PLACE_M);
+}
+
 static void one_long_step_lands(void **state)
 {
     (void)state;
@@ -127,10 +160,13 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(flies_where_it_looks),
+        cmocka_unit_test(two_keys_are_no_faster_than_one),
         cmocka_unit_test(flying_stays_above_the_ground),
         cmocka_unit_test(walking_follows_the_ground),
         cmocka_unit_test(walking_looks_up_without_rising),
         cmocka_unit_test(falls_from_a_cliff),
+        cmocka_unit_test(landing_does_not_fall),
+        cmocka_unit_test(flying_ends_where_nothing_is_drawn),
         cmocka_unit_test(one_long_step_lands),
         cmocka_unit_test(looking_stops_short_of_straight_up),
     };
