@@ -49,7 +49,7 @@ static const struct cli_option option_table[] = {
     {"max-trees", 0, "N", CLI_KIND_WHOLE, AT(max_trees), 1, UINT32_MAX, CLI_EXPORT,
      "refuse forests of more trees than this (default: 1000000; of a .csv any number)"},
     {"camera", 0, "NAME", CLI_KIND_TEXT, AT(camera), 0, 0, PICTURE_COMMANDS,
-     "a camera of the scene (default: its first)"},
+     "a camera of the scene, or one that the viewer saved (default: the scene's first)"},
     {"path", 0, "NAME", CLI_KIND_TEXT, AT(path), 0, 0, PICTURE_COMMANDS,
      "a camera path of the scene"},
     {"size", 0, "WxH", CLI_KIND_SIZE, AT(size_px), 1, CLI_MAX_SIZE_PX,

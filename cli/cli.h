@@ -156,7 +156,8 @@ bool cli_error_check(struct cli_session *session);
 bool cli_bound_check(struct cli_session *session, const struct wd_forest *forest);
 /* The same for --camera and --path. */
 bool cli_places_check(struct cli_session *session, const struct wd_forest *forest);
-bool cli_path_check(struct cli_session *session, const struct wd_forest *forest);
+/* That of --camera, of the scene or saved by the viewer; the scene's first. */
+enum wd_result cli_camera(const struct cli_session *session, const struct wd_forest *forest, struct wd_camera *camera);
 
 enum cli_status cli_render(struct cli_session *session);
 enum cli_status cli_grow(struct cli_session *session);

@@ -58,11 +58,10 @@ static bool settle_frames(struct cli_film *film)
     film->path = options->path;
     if (!film->path && !options->camera)
         film->path = wd_forest_path_name(film->forest, 0);
-    struct wd_camera camera;
     enum wd_result result =
         film->path
-            ? wd_forest_get_path_camera(film->forest, film->path, 0, &camera, &film->duration_s)
-            : wd_forest_get_camera(film->forest, options->camera, &camera);
+            ? wd_forest_get_path_camera(film->forest, film->path, 0, &film->camera, &film->duration_s)
+            : cli_camera(film->session, film->forest, &film->camera);
     double seconds = film->path ? film->duration_s : STANDING_SECONDS;
     film->frame_count = options->frames;
     if (!film->frame_count)
@@ -102,8 +101,9 @@ enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
 static enum wd_result frame_camera(const struct cli_film *film, uint64_t frame,
                                    struct wd_camera *camera)
 {
+    *camera = film->camera;
     if (!film->path)
-        return wd_forest_get_camera(film->forest, film->session->options->camera, camera);
+        return WD_OK;
     double time_s = (double)frame / film->frames_per_second;
     if (film->session->options->frames)
         time_s = film->frame_count > 1
@@ -177,10 +177,12 @@ static uint64_t film_key(const struct cli_film *film, uint64_t key)
 {
     const struct cli_options *options = film->session->options;
     const struct wd_render_params *params = &film->plan->params;
+    const struct wd_camera *camera = &film->camera;
     char *text;
-    if (asprintf(&text, "%s\n%s\n%s\n%d %llu %u %.17g %ux%u %u %d %u %d %u %.17g %.17g %.17g %llu",
-                 film->path ? film->path : "", options->camera ? options->camera : "",
-                 params->method ? params->method : "", film->plan->kind,
+    if (asprintf(&text,
+                 "%s\n%.17g %.17g %.17g %.17g %.17g %.17g\n%s\n%d %llu %u %.17g %ux%u %u %d %u %d %u %.17g %.17g %.17g %llu",
+                 film->path ? film->path : "", camera->position_m[0], camera->position_m[1], camera->position_m[2],
+                 camera->yaw_rad, camera->pitch_rad, camera->fov_rad, params->method ? params->method : "", film->plan->kind,
                  (unsigned long long)film->frame_count, options->frames, film->frames_per_second,
                  params->width, params->height, params->samples, params->view, params->layers,
                  options->reference, options->bounces, params->time_s, params->max_error_px,

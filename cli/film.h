@@ -10,6 +10,7 @@ struct cli_film {
     const struct cli_plan *plan;
     struct wd_film *output;
     const char *path;  /* NULL: the camera stands still */
+    struct wd_camera camera; /* at the beginning */
     double duration_s; /* of the path */
     double frames_per_second;
     uint64_t frame_count; /* of the whole film */

@@ -46,7 +46,7 @@ static const struct cli_command commands[] = {
      cli_export},
     {"view", CLI_VIEW, "SCENE", 1, 1, "walk or fly through a scene in a window",
      "Opens a window to walk and fly through a scene. Cameras saved with Shift+C go to\n"
-     "SCENE.cameras.json beside the scene, or to the working directory; --camera names these, too.",
+     "SCENE.cameras.json beside the scene, or to the working directory; --camera names these, too, also of weald render.",
      "  weald view scenes/valley.json\n"
      "  weald view scenes/valley.json --walk --size 1920x1080\n"
      "  weald view scenes/valley.json --gpu software --size 480x270\n",

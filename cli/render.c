@@ -141,7 +141,7 @@ static enum wd_result choose_camera(struct cli_session *session, const struct wd
     const struct cli_options *options = session->options;
     double at_s = options->time_s, before_s = at_s - step_s(options), after_s = at_s + step_s(options);
     enum wd_result result = options->path ? wd_forest_get_path_camera(forest, options->path, at_s, camera, NULL)
-                                          : wd_forest_get_camera(forest, options->camera, camera);
+                                          : cli_camera(session, forest, camera);
     *previous = *camera;
     if (result != WD_OK || !options->path)
         return result;

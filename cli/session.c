@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "args.h"
+#include "viewer/viewer.h"
 
 #define QUIET_SECONDS 2.0
 #define REDRAW_SECONDS 0.1
@@ -278,13 +279,29 @@ static bool check_place(struct cli_session *session, const struct wd_forest *for
     return found;
 }
 
-bool cli_path_check(struct cli_session *session, const struct wd_forest *forest)
+/* --camera names one that the viewer saved, not one of the scene's. */
+static bool is_saved(const struct cli_session *session, const struct wd_forest *forest, struct wd_camera *camera)
 {
-    return check_place(session, forest, "path", session->options->path, wd_forest_path_name);
+    const struct cli_options *options = session->options;
+    const char *own;
+    if (!options->camera)
+        return false;
+    for (uint32_t i = 0; (own = wd_forest_camera_name(forest, i)); i++)
+        if (!strcmp(own, options->camera))
+            return false;
+    return wd_viewer_saved_camera(camera, options->operands[0], options->camera, &session->log);
 }
 
 bool cli_places_check(struct cli_session *session, const struct wd_forest *forest)
 {
-    return check_place(session, forest, "camera", session->options->camera, wd_forest_camera_name) &&
-           cli_path_check(session, forest);
+    const struct cli_options *options = session->options;
+    struct wd_camera camera;
+    return (is_saved(session, forest, &camera) ||
+            check_place(session, forest, "camera", options->camera, wd_forest_camera_name)) &&
+           check_place(session, forest, "path", options->path, wd_forest_path_name);
+}
+
+enum wd_result cli_camera(const struct cli_session *session, const struct wd_forest *forest, struct wd_camera *camera)
+{
+    return is_saved(session, forest, camera) ? WD_OK : wd_forest_get_camera(forest, session->options->camera, camera);
 }

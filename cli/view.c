@@ -39,9 +39,7 @@ enum cli_status cli_view(struct cli_session *session)
         return CLI_NO_DISPLAY;
     struct wd_forest *forest = NULL;
     enum wd_result result = cli_forest_open(session, &forest);
-    bool saved = options->camera && wd_viewer_camera_saved(options->operands[0], options->camera, &session->log);
-    if (result == WD_OK && !((saved ? cli_path_check(session, forest) : cli_places_check(session, forest)) &&
-                             cli_bound_check(session, forest)))
+    if (result == WD_OK && !(cli_places_check(session, forest) && cli_bound_check(session, forest)))
         result = WD_ERROR_INPUT;
     if (result == WD_OK)
         result = wd_viewer_run(forest, &params);

@@ -30,12 +30,15 @@ bool wd_viewer_display_present(const struct wd_log *log)
     return real || viewer_error(log, "no window can be opened: there is no display");
 }
 
-bool wd_viewer_camera_saved(const char *scene_path, const char *name, const struct wd_log *log)
+bool wd_viewer_saved_camera(struct wd_camera *camera, const char *scene_path, const char *name, const struct wd_log *log)
 {
     struct viewer_cameras cameras;
-    bool saved = viewer_cameras_init(&cameras, scene_path, log) && viewer_cameras_find(&cameras, name);
+    const struct viewer_saved_camera *saved =
+        viewer_cameras_init(&cameras, scene_path, log) ? viewer_cameras_find(&cameras, name) : NULL;
+    if (saved)
+        *camera = saved->camera;
     viewer_cameras_finish(&cameras);
-    return saved;
+    return saved != NULL;
 }
 
 static bool open_window(struct viewer_state *viewer)

@@ -30,8 +30,8 @@ struct wd_viewer_params {
 /* Whether a window could be opened here; says why not. */
 bool wd_viewer_display_present(const struct wd_log *log);
 
-/* Whether a camera of that name was saved beside the scene; a file that cannot be understood is told. */
-bool wd_viewer_camera_saved(const char *scene_path, const char *name, const struct wd_log *log);
+/* A camera that was saved beside the scene. False: none is called so, or the file cannot be understood, which is told. */
+bool wd_viewer_saved_camera(struct wd_camera *camera, const char *scene_path, const char *name, const struct wd_log *log);
 
 /* Shows `forest` until the window is closed or Escape is pressed: WD_OK. */
 enum wd_result wd_viewer_run(const struct wd_forest *forest, const struct wd_viewer_params *params);

@@ -53,6 +53,12 @@ done
 for key in '"time":{"date":"2026-10-18","clock":null}' '"wind":{"speed_mps":7.0,' '"snow":0.25'; do
     check "pictures tell of their weather: $key" grep -aqF "$key" "$out/matte.exr"
 done
+# A camera that the viewer saved, in the working directory.
+echo '{"cameras": [{"name": "saved-1", "position_m": [31, 21.5, 30], "yaw_deg": 0, "pitch_deg": -90, "fov_deg": 40}]}' \
+    >"$out/tiny.cameras.json"
+# shellcheck disable=SC2086
+(cd "$out" && "$weald" render "$tiny" -o saved.exr $soft --camera saved-1 --size 16x9 -q)
+check 'a saved camera is one of --camera' grep -aqF '"position_m":[31.0,21.5,30.0]' "$out/saved.exr"
 check 'a matte holds no other layer' sh -c "! grep -aqF albedo '$out/matte.exr'"
 check '--quiet prints nothing' sh -c \
     "'$weald' render '$tiny' -o '$out/q.png' $soft --quiet 2>&1 | ( ! grep . )"
