@@ -63,6 +63,8 @@ static const struct cli_option option_table[] = {
      "pictures averaged into one (default: the scene's; of single trees 16)"},
     {"frames", 0, "N", CLI_KIND_WHOLE, AT(frames), 1, 10000000, CLI_RENDER,
      "frames of a film, spread evenly over the path (default: the path at its own speed)"},
+    {"clock", 0, "HH:MM", CLI_KIND_TEXT, AT(clock), 0, 0, CLI_RENDER,
+     "hour that the sun stands by, in place of the scene's; HH:MM-HH:MM: of a film's first and last frame"},
     {"only", 0, "A-B", CLI_KIND_TEXT, AT(only), 0, 0, CLI_RENDER,
      "of a film's numbered files those from number A to B, as for one of many machines (default: all, from 0)"},
     {"fps", 0, "N", CLI_KIND_REAL, AT(frames_per_second),

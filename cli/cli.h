@@ -44,7 +44,7 @@ struct cli_words {
 struct cli_options {
     char **operands;
     int operand_count;
-    const char *output, *camera, *path, *only, *method, *seed, *data, *gpu;
+    const char *output, *camera, *path, *clock, *only, *method, *seed, *data, *gpu;
     const char *screenshots, *report;
     const char *suite, *metric, *methods;
     uint32_t size_px[2];

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "clock.h"
+
 #define DEFAULT_FRAMES_PER_SECOND 24.0
 #define STANDING_SECONDS 4.0
 
@@ -76,6 +78,14 @@ static enum wd_result check_output(const struct cli_film *film)
                                   &film->session->log);
 }
 
+/* NULL: where the scene has it. */
+static enum wd_result frame_sun(const struct cli_film *film, uint64_t frame, struct wd_sun *place, const struct wd_sun **sun)
+{
+    uint64_t last = film->frame_count - 1;
+    *sun = film->session->options->clock ? place : NULL;
+    return *sun ? cli_clock_sun(film->session, film->forest, last ? (double)frame / (double)last : 0, place) : WD_OK;
+}
+
 enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
                              const struct wd_forest *forest, const struct cli_plan *plan)
 {
@@ -83,7 +93,11 @@ enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
     film->budget = wd_budget_of(session->options->budget_ms);
     if (!settle_frames(film) || !settle_only(film))
         return WD_ERROR_INPUT;
-    enum wd_result result = check_output(film);
+    struct wd_sun place;
+    const struct wd_sun *sun;
+    enum wd_result result = frame_sun(film, 0, &place, &sun);
+    if (result == WD_OK)
+        result = check_output(film);
     if (result != WD_OK)
         return result;
     struct wd_film_params params = {
@@ -151,7 +165,10 @@ static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *pai
     struct wd_render_params params = film->plan->params;
     struct wd_camera previous;
     struct wd_picture picture = {0};
+    struct wd_sun place;
     enum wd_result result = frame_camera(film, frame, &params.camera);
+    if (result == WD_OK)
+        result = frame_sun(film, frame, &place, &params.sun);
     if (result == WD_OK)
         result = previous_camera(film, frame, &params.camera, &previous);
     if (film->session->options->budget_ms > 0)
@@ -180,9 +197,11 @@ static uint64_t film_key(const struct cli_film *film, uint64_t key)
     const struct wd_camera *camera = &film->camera;
     char *text;
     if (asprintf(&text,
-                 "%s\n%.17g %.17g %.17g %.17g %.17g %.17g\n%s\n%d %llu %u %.17g %ux%u %u %d %u %d %u %.17g %.17g %.17g %llu",
-                 film->path ? film->path : "", camera->position_m[0], camera->position_m[1], camera->position_m[2],
-                 camera->yaw_rad, camera->pitch_rad, camera->fov_rad, params->method ? params->method : "", film->plan->kind,
+                 "%s\n%s\n%.17g %.17g %.17g %.17g %.17g %.17g\n"
+                 "%s\n%d %llu %u %.17g %ux%u %u %d %u %d %u %.17g %.17g %.17g %llu",
+                 film->path ? film->path : "", options->clock ? options->clock : "", camera->position_m[0],
+                 camera->position_m[1], camera->position_m[2], camera->yaw_rad, camera->pitch_rad, camera->fov_rad,
+                 params->method ? params->method : "", film->plan->kind,
                  (unsigned long long)film->frame_count, options->frames, film->frames_per_second,
                  params->width, params->height, params->samples, params->view, params->layers,
                  options->reference, options->bounces, params->time_s, params->max_error_px,

@@ -11,6 +11,7 @@ static const char controls[] =
     "  L              colour by level of detail      T  times and tree counts\n"
     "  left button    tell of a tree: id, species, height\n"
     "  B              one sample a frame, or many gathered over frames\n"
+    "  O, Shift+O     sun a quarter of an hour later, earlier\n"
     "  C, Shift+C     next camera, save this one     P  play the path\n"
     "  F9, F12        report line, screenshot        H  help        Esc  quit\n";
 

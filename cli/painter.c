@@ -39,6 +39,7 @@ enum wd_result cli_painter_paint(struct cli_painter *painter, const struct wd_re
         return wd_renderer_render(painter->renderer, params, picture);
     const struct wd_reference_picture_params reference = {
         .camera = params->camera,
+        .sun = params->sun,
         .time_s = params->time_s,
         .width = params->width,
         .height = params->height,

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "clock.h"
 #include "film.h"
 #include "output_name.h"
 
@@ -76,7 +77,7 @@ static bool make_plan(struct cli_session *session, struct cli_plan *plan)
                         "%s holds one frame; for %u name a .mp4 or a pattern like "
                         "frame-%%05d.png",
                         options->output, options->frames);
-    if (!cli_only_check(session, plan->kind > CLI_OUTPUT_FILM))
+    if (!cli_only_check(session, plan->kind > CLI_OUTPUT_FILM) || !cli_clock_check(session, plan->film))
         return false;
     if (options->camera && options->path)
         return cli_fail(session, "--camera and --path exclude each other");
@@ -159,11 +160,15 @@ static enum wd_result render_picture(struct cli_session *session, const struct w
     struct cli_painter painter = {0};
     struct wd_picture picture = {0};
     struct wd_camera previous = {.fov_rad = 0};
+    struct wd_sun sun;
     enum wd_result result = choose_camera(session, forest, &plan->params.camera, &previous);
+    if (result == WD_OK && session->options->clock)
+        result = cli_clock_sun(session, forest, 0, &sun);
     if (result == WD_OK)
         result = cli_painter_open(&painter, session, forest, plan);
     struct wd_render_params params = plan->params;
     params.previous_camera = &previous;
+    params.sun = session->options->clock ? &sun : NULL;
     if (result == WD_OK)
         result = cli_painter_paint(&painter, &params, &picture);
     if (result == WD_OK)

@@ -9,6 +9,7 @@
 #include "state.h"
 
 #define NOTICE_SECONDS 4.0
+#define SUN_STEP_H 0.25
 #define NOTICE_FRAMES 3 /* at least: a method's first may take longer */
 #define SCREENSHOT_SAMPLES 4
 
@@ -73,6 +74,29 @@ void viewer_act_method(struct viewer_state *viewer)
 void viewer_act_method_before(struct viewer_state *viewer)
 {
     step_method(viewer, -1);
+}
+
+static void move_sun(struct viewer_state *viewer, double hours)
+{
+    if (!wd_forest_sun_moves(viewer->forest)) {
+        viewer_notice(viewer, "the sun is the sky map's and stays");
+        return;
+    }
+    viewer->sun = wd_forest_sun_later(viewer->forest, &viewer->sun, hours);
+    viewer->sun_moved = true;
+    double elevation_deg = viewer->sun.elevation_deg;
+    viewer_notice(viewer, "sun %.1f degrees %s the horizon, azimuth %.0f", fabs(elevation_deg),
+                  elevation_deg < 0 ? "below" : "above", viewer->sun.azimuth_deg);
+}
+
+void viewer_act_later(struct viewer_state *viewer)
+{
+    move_sun(viewer, SUN_STEP_H);
+}
+
+void viewer_act_earlier(struct viewer_state *viewer)
+{
+    move_sun(viewer, -SUN_STEP_H);
 }
 
 void viewer_act_lod(struct viewer_state *viewer)
@@ -228,6 +252,7 @@ void viewer_act_screenshot(struct viewer_state *viewer)
     }
     struct wd_render_params params = {
         .camera = viewer->motion.camera,
+        .sun = viewer_sun(viewer),
         .time_s = viewer->now_s - viewer->begin_s,
         .previous_time_s = viewer->now_s - viewer->begin_s,
         .width = viewer->swapchain.extent.width,

@@ -21,6 +21,7 @@ static const struct binding {
 } bindings[] = {
     {SDLK_f, 0, viewer_act_gait},         {SDLK_m, KMOD_SHIFT, viewer_act_method_before},
     {SDLK_m, 0, viewer_act_method},
+    {SDLK_o, KMOD_SHIFT, viewer_act_earlier}, {SDLK_o, 0, viewer_act_later},
     {SDLK_l, 0, viewer_act_lod},          {SDLK_t, 0, viewer_act_times},
     {SDLK_h, 0, viewer_act_help},         {SDLK_g, 0, viewer_act_grab},
     {SDLK_b, 0, viewer_act_accumulate},

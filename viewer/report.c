@@ -25,10 +25,11 @@ static json_t *state_json(const struct viewer_state *viewer, const char *event)
         viewer->motion.gait == VIEWER_WALK ? "walk" : "fly", "method", viewer->method, "view",
         view_name(viewer->view), "camera", viewer->camera_name);
     json_t *more = json_pack(
-        "{s:I, s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:f, s:b, s:b, s:b, s:b, s:i, s:s}", "width",
+        "{s:I, s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:f, s:f, s:b, s:b, s:b, s:b, s:i, s:s}", "width",
         (json_int_t)viewer->swapchain.extent.width, "height",
         (json_int_t)viewer->swapchain.extent.height, "frames", (json_int_t)viewer->frame_count,
-        "screenshots", (int)viewer->screenshot_count, "picked_id", (json_int_t)viewer->picked_id, "speed_factor", viewer->motion.speed_factor,
+        "screenshots", (int)viewer->screenshot_count, "picked_id", (json_int_t)viewer->picked_id,
+        "sun_elevation_deg", viewer->sun.elevation_deg, "speed_factor", viewer->motion.speed_factor,
         "error_px", viewer_error_px(viewer), "budget_ms",
         viewer_has_budget(viewer) ? viewer->budget.target_ms : 0.0, "frame_ms", viewer->frame_ms, "times", viewer->times_shown, "help", viewer->help_shown,
         "accumulates", viewer->accumulates, "path_playing", viewer->path_time_s >= 0, "saved_cameras", (int)viewer->cameras.count,

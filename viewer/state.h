@@ -42,6 +42,8 @@ struct viewer_state {
     const char *camera_name; /* of the camera last jumped to */
     uint32_t camera_index;   /* the scene's first, then the saved ones */
     enum wd_view_mode view;
+    struct wd_sun sun; /* where it stands, once it */
+    bool sun_moved;
     double path_time_s; /* < 0: no path is played */
     double begin_s, now_s, step_s;
     uint64_t frame_count;
@@ -65,6 +67,9 @@ bool viewer_has_budget(const struct viewer_state *viewer);
 /* As in struct wd_render_params. */
 double viewer_error_px(const struct viewer_state *viewer);
 
+/* As in struct wd_render_params. */
+const struct wd_sun *viewer_sun(const struct viewer_state *viewer);
+
 /* --- input.c */
 void viewer_input_event(struct viewer_state *viewer, const SDL_Event *event);
 /* Lets no time have passed in a pause that ends now: neither wind, path nor camera leap after a picture. */
@@ -76,6 +81,9 @@ void viewer_input_step(struct viewer_state *viewer);
 void viewer_act_gait(struct viewer_state *viewer);
 void viewer_act_method(struct viewer_state *viewer);
 void viewer_act_method_before(struct viewer_state *viewer);
+/* A quarter of an hour. */
+void viewer_act_later(struct viewer_state *viewer);
+void viewer_act_earlier(struct viewer_state *viewer);
 void viewer_act_lod(struct viewer_state *viewer);
 void viewer_act_accumulate(struct viewer_state *viewer);
 void viewer_act_times(struct viewer_state *viewer);

@@ -88,6 +88,11 @@ static bool open_swapchain(struct viewer_state *viewer)
            viewer_overlay_init(&viewer->overlay, &viewer->swapchain);
 }
 
+const struct wd_sun *viewer_sun(const struct viewer_state *viewer)
+{
+    return viewer->sun_moved ? &viewer->sun : NULL;
+}
+
 static enum wd_result choose_camera(struct viewer_state *viewer)
 {
     const char *wanted = viewer->params->camera, *name;
@@ -116,6 +121,7 @@ static enum wd_result choose_start(struct viewer_state *viewer)
     wd_forest_get_render_defaults(viewer->forest, &defaults);
     viewer->method = params->method ? params->method : defaults.method;
     viewer->view = params->view;
+    viewer->sun = wd_forest_sun(viewer->forest);
     viewer->motion.speed_factor = 1;
     viewer->motion.gait = params->walk ? VIEWER_WALK : VIEWER_FLY;
     viewer->path_time_s = params->path ? 0 : -1;
@@ -228,6 +234,7 @@ static enum wd_result draw_forest(struct viewer_state *viewer,
     double time_s = viewer->now_s - viewer->begin_s;
     struct wd_render_params params = {
         .camera = viewer->motion.camera,
+        .sun = viewer_sun(viewer),
         .time_s = time_s,
         .previous_time_s = time_s - viewer->step_s,
         .width = viewer->swapchain.extent.width,

@@ -146,6 +146,23 @@ enum wd_result wd_forest_get_path_camera(const struct wd_forest *forest, const c
                                          double time_s, struct wd_camera *camera,
                                          double *duration_s);
 
+/* Where the sun stands. */
+struct wd_sun {
+    double azimuth_deg;   /* clockwise from north */
+    double elevation_deg; /* of its middle over the horizon, -90..90; where twilight is over the moon stands in for it */
+};
+
+/* Where the scene has it. */
+struct wd_sun wd_forest_sun(const struct wd_forest *forest);
+/* Whether pictures may have it elsewhere: not under a sky map, whose light does not move. */
+bool wd_forest_sun_moves(const struct wd_forest *forest);
+/* Where it stands at an hour of the scene's clock on its date, -24..48: before 0 and past 24 it is another day. WD_ERROR_INPUT
+ * where the scene has no date, latitude or longitude. */
+enum wd_result wd_forest_sun_at(const struct wd_forest *forest, double hour, struct wd_sun *sun);
+/* Where it will stand `hours` later (earlier, below 0) on its way of a day about the sky's pole at the scene's latitude,
+ * 45 degrees north where it has none. */
+struct wd_sun wd_forest_sun_later(const struct wd_forest *forest, const struct wd_sun *sun, double hours);
+
 /* Whether `path` can be written without loss of what the forest was read from: its scene, species,
  * models, inventories, rasters, sky and clips, whatever links lead there. Writing pictures and films does
  * not ask; wd_forest_write (weald/tree.h) does.

@@ -32,6 +32,7 @@ enum wd_reference_places { WD_REFERENCE_WHOLE_PIXELS, WD_REFERENCE_MIDDLES };
 
 struct wd_reference_picture_params {
     struct wd_camera camera;
+    const struct wd_sun *sun; /* in place of where the scene has it; NULL: there. Refused under a sky map */
     double time_s;          /* of the wind; within 1e9 of 0 */
     uint32_t width, height; /* 1..16384 each */
     uint32_t samples;       /* paths a pixel; 0: 64 */

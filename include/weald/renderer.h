@@ -96,6 +96,7 @@ enum wd_time_mode { WD_TIME_OFF, WD_TIME_PASSES };
 struct wd_render_params {
     struct wd_camera camera;
     const struct wd_camera *previous_camera; /* for velocity; NULL: the camera stood still */
+    const struct wd_sun *sun; /* in place of where the scene has it; NULL: there. Refused under a sky map */
     double time_s;          /* of the wind; within 1e9 of 0, as the next */
     double previous_time_s; /* for velocity */
     uint32_t width, height; /* 1..16384 each */
@@ -111,7 +112,7 @@ struct wd_render_params {
                                are chosen alike. */
     /* WD_ACCUMULATE: one jittered sample, laid over what the pictures before this one of the same renderer,
      * method, view and size have shown of the same surfaces: moved along with camera and wind, and begun
-     * anew where something else has come into view. For live views; `samples`, previous_camera and
+     * anew where something else has come into view, and whole where the sun stands elsewhere. For live views; `samples`, previous_camera and
      * previous_time_s are not used. A still camera in a still world comes to the picture of many samples. */
     enum wd_accumulation accumulation;
     enum wd_time_mode timing; /* per-pass times, at some cost */
@@ -136,8 +137,9 @@ struct wd_picture {
     uint32_t *rank_tree; /* WD_RANKS a pixel: ids of trees by falling coverage; 0: no more */
     float *rank_share;   /* and the share of the pixel's samples that show each */
     struct wd_camera camera; /* that took it, */
+    struct wd_sun sun;       /* under this sun, */
     double time_s;           /* at this time of the wind */
-    char *about;         /* both, and what ids and places refer to, as JSON: scene, seed, time_s, camera (as in struct
+    char *about;         /* these, and what ids and places refer to, as JSON: scene, seed, time_s, camera (as in struct
                             wd_camera), origin_m and crs (as in struct wd_forest_info; null: none), species (names; the
                             species layer holds index + 1), conditions (date, clock, sun, clouds, visibility, wind and
                             snow, by the keys of scenes). Files (.exr) have it as the attribute "weald", and

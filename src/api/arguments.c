@@ -5,6 +5,7 @@
 
 #include "base/dmath.h"
 #include "base/log.h"
+#include "world/world.h"
 
 static const double MOST_S = 1.0e9;
 static const double DEGREE = WD_PI / 180.0;
@@ -54,6 +55,18 @@ bool wd_check_time(double time_s, const char *name, const struct wd_log *log)
 {
     return fabs(time_s) <= MOST_S ||
            wd_error(log, "%s is %g: within %g s of 0 is possible", name, time_s, MOST_S);
+}
+
+bool wd_check_sun(const struct wd_sun *sun, const struct wd_world *world, const struct wd_log *log)
+{
+    if (!sun)
+        return true;
+    if (world->sky.width)
+        return wd_error(log, "sun is given: only the scene's own is possible under a sky map, whose light does not move");
+    if (!isfinite(sun->azimuth_deg))
+        return wd_error(log, "sun.azimuth_deg is %g: it must be finite", sun->azimuth_deg);
+    return fabs(sun->elevation_deg) <= 90 ||
+           wd_error(log, "sun.elevation_deg is %g: -90 to 90 are possible", sun->elevation_deg);
 }
 
 bool wd_check_choice(int64_t value, int64_t count, const char *name, const struct wd_log *log)

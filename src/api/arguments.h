@@ -4,6 +4,8 @@
 
 #include "weald/renderer.h"
 
+struct wd_world;
+
 /* Each logs what was found and what is right, by the name that the public headers give it. */
 
 /* Whether `pointer`, a parameter or what one points to, is there: `wd_given(params->source, log)`. */
@@ -20,6 +22,9 @@ bool wd_check_camera(const struct wd_camera *camera, const char *name, const str
 
 /* A time of the wind: within 1e9 seconds of 0, where doubles still tell frames apart. */
 bool wd_check_time(double time_s, const char *name, const struct wd_log *log);
+
+/* Where a sun in place of the scene's stands; NULL is one. No sky map's light moves. */
+bool wd_check_sun(const struct wd_sun *sun, const struct wd_world *world, const struct wd_log *log);
 
 /* One of the values 0 .. count - 1 of an enum. */
 bool wd_check_choice(int64_t value, int64_t count, const char *name, const struct wd_log *log);

@@ -118,6 +118,7 @@ struct work {
     const struct wd_reference_picture_params *params;
     uint32_t samples, layers;
     struct wd_frame_uniforms frame;
+    struct wd_sun sun;
     struct wd_trace_scene scene;
     struct wd_tracer tracer;
     struct wd_trace_job job;
@@ -150,6 +151,7 @@ static bool check(const struct wd_reference *reference,
     return wd_check_size(params->width, params->height, log) &&
            wd_check_samples(params->samples, MAX_SAMPLES, log) &&
            wd_check_camera(&params->camera, "camera", log) &&
+           wd_check_sun(params->sun, &reference->forest->world, log) &&
            wd_check_time(params->time_s, "time_s", log) &&
            wd_check_choice(params->places, WD_REFERENCE_MIDDLES + 1, "places", log) &&
            check_layers(params->layers, log);
@@ -196,7 +198,8 @@ static bool prepare(struct work *work)
     work->frame.width = params->width;
     work->frame.height = params->height;
     wd_surroundings_set_camera(&work->frame, params->camera.position_m);
-    wd_surroundings_fill(&work->frame, &forest->scene, &forest->world);
+    work->sun = params->sun ? *params->sun : wd_forest_sun(forest);
+    wd_surroundings_fill(&work->frame, &forest->scene, &forest->world, &work->sun);
     work->job.view = wd_trace_view_of(&params->camera, params->width, params->height);
     work->job.view.lens_m = (float)wd_scene_lens_radius_m(&forest->scene, params->camera.fov_rad);
     work->job.view.focus_m = (float)forest->scene.lens.focus_m;
@@ -326,7 +329,7 @@ static void fill_picture(struct work *work, struct wd_picture *picture)
         free(picture->color);
         picture->color = NULL;
     }
-    wd_picture_settle(picture, forest, &work->params->camera, work->params->time_s);
+    wd_picture_settle(picture, forest, &work->params->camera, &work->sun, work->params->time_s);
 }
 
 enum wd_result wd_reference_render(struct wd_reference *reference,

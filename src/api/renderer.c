@@ -174,6 +174,7 @@ static bool check(const struct wd_renderer *renderer, const struct wd_render_par
            wd_check_choice(params->accumulation, WD_ACCUMULATE + 1, "accumulation", log) &&
            wd_check_choice(params->timing, WD_TIME_PASSES + 1, "timing", log) &&
            wd_check_camera(&params->camera, "camera", log) &&
+           wd_check_sun(params->sun, &renderer->forest->world, log) &&
            wd_check_time(params->time_s, "time_s", log) &&
            (params->accumulation == WD_ACCUMULATE || check_motion(params, log));
 }
@@ -235,6 +236,7 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
         .method = method,
         .camera = params->camera,
         .previous_camera = params->previous_camera ? *params->previous_camera : params->camera,
+        .sun = params->sun ? *params->sun : wd_forest_sun(renderer->forest),
         .time_s = params->time_s,
         .previous_time_s = params->previous_time_s,
         .width = params->width,
@@ -344,7 +346,7 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
         result = wd_renderer_failure(renderer);
     wd_coverage_finish(&renderer->coverage);
     if (result == WD_OK)
-        wd_picture_settle(picture, renderer->forest, &params->camera, params->time_s);
+        wd_picture_settle(picture, renderer->forest, &params->camera, &renderer->frame.params.sun, params->time_s);
     else
         wd_picture_finish(picture);
     return result;

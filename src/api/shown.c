@@ -16,11 +16,12 @@ static json_t *vector(const double *v, size_t count)
 }
 
 /* Season, weather and light, by the scene's own keys. */
-static json_t *conditions(const struct wd_scene *scene)
+static json_t *conditions(const struct wd_scene *scene, const struct wd_sun *sun)
 {
+    bool own = sun->azimuth_deg == scene->sun.azimuth_deg && sun->elevation_deg == scene->sun.elevation_deg;
     return json_pack("{s:{s:s?, s:s?}, s:{s:f, s:f}, s:{s:f}, s:{s:f}, s:{s:f, s:f}, s:{s:f}}",
-                     "time", "date", scene->time.date, "clock", scene->time.clock,
-                     "sun", "azimuth_deg", scene->sun.azimuth_deg, "elevation_deg", scene->sun.elevation_deg,
+                     "time", "date", scene->time.date, "clock", own ? scene->time.clock : NULL,
+                     "sun", "azimuth_deg", sun->azimuth_deg, "elevation_deg", sun->elevation_deg,
                      "sky", "cover", scene->sky.cover, "fog", "visibility_m", scene->fog.visibility_m,
                      "wind", "speed_mps", scene->wind.speed_mps, "direction_deg", scene->wind.direction_deg,
                      "ground", "snow", scene->ground.snow);
@@ -39,7 +40,7 @@ static char *about(const struct wd_picture *picture, const struct wd_forest *for
                              "position_m", vector(camera->position_m, 3), "yaw_rad", camera->yaw_rad,
                              "pitch_rad", camera->pitch_rad, "fov_rad", camera->fov_rad,
                              "origin_m", vector(terrain->origin_m, 2), "crs", terrain->crs,
-                             "species", species, "conditions", conditions(&forest->scene));
+                             "species", species, "conditions", conditions(&forest->scene, &picture->sun));
     char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
     json_decref(root);
     return text;
@@ -62,10 +63,11 @@ struct wd_vec3 wd_ray_through(const struct wd_rays *rays, uint32_t x, uint32_t y
     return wd_v3_add(row, wd_v3_scale(wd_v3_of(rays->right), (float)x));
 }
 
-void wd_picture_settle(struct wd_picture *picture, const struct wd_forest *forest,
-                       const struct wd_camera *camera, double time_s)
+void wd_picture_settle(struct wd_picture *picture, const struct wd_forest *forest, const struct wd_camera *camera,
+                       const struct wd_sun *sun, double time_s)
 {
     picture->camera = *camera;
+    picture->sun = *sun;
     picture->time_s = time_s;
     picture->about = about(picture, forest);
 }

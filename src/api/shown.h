@@ -13,9 +13,9 @@ bool wd_picture_make_room(struct wd_picture *picture, uint32_t width, uint32_t h
 void *wd_picture_try_scratch(uint32_t width, uint32_t height, size_t bytes_a_pixel,
                              const struct wd_log *log);
 
-/* Of a picture whose layers are there: camera, time and `about`. */
-void wd_picture_settle(struct wd_picture *picture, const struct wd_forest *forest,
-                       const struct wd_camera *camera, double time_s);
+/* Of a picture whose layers are there: camera, sun, time and `about`. */
+void wd_picture_settle(struct wd_picture *picture, const struct wd_forest *forest, const struct wd_camera *camera,
+                       const struct wd_sun *sun, double time_s);
 
 /* Directions through the middles of a picture's pixels, not of unit length. */
 struct wd_rays {

@@ -52,10 +52,11 @@ static void prepare_gathering(struct wd_frame *frame)
     struct wd_frame_params *params = &frame->params;
     struct wd_gathered *gathered = &frame->gathered;
     if (params->gathering == WD_GATHER_OFF || gathered->method != params->method ||
-        gathered->view_mode != params->view_mode || frame->accumulate.width != params->width ||
+        gathered->view_mode != params->view_mode || gathered->sun.azimuth_deg != params->sun.azimuth_deg ||
+        gathered->sun.elevation_deg != params->sun.elevation_deg || frame->accumulate.width != params->width ||
         frame->accumulate.height != params->height) {
         wd_accumulate_pass_reset(&frame->accumulate);
-        *gathered = (struct wd_gathered){.method = params->method, .view_mode = params->view_mode};
+        *gathered = (struct wd_gathered){.method = params->method, .view_mode = params->view_mode, .sun = params->sun};
     }
     if (params->gathering == WD_GATHER_OFF)
         return;
@@ -459,6 +460,7 @@ static void prepare_recording(struct recording *r, uint32_t index)
         .forest = params->forest,
         .camera = params->camera,
         .previous_camera = params->previous_camera,
+        .sun = params->sun,
         .time_s = params->time_s,
         .previous_time_s = params->previous_time_s,
         .width = params->width,

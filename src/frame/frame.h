@@ -15,6 +15,7 @@ struct wd_frame_params {
     struct wd_forest_device *forest;
     const struct wd_method *method;
     struct wd_camera camera, previous_camera;
+    struct wd_sun sun;
     double time_s, previous_time_s;
     uint32_t width, height;
     uint32_t samples;
@@ -48,6 +49,7 @@ struct wd_frame {
     struct wd_accumulate_pass accumulate;
     struct wd_gathered {             /* what accumulate holds */
         struct wd_camera camera;
+        struct wd_sun sun;
         double time_s;
         const struct wd_method *method;
         uint32_t view_mode;

@@ -155,7 +155,7 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
     struct wd_view steady;
     fill_camera(uniforms, view, &steady, params);
     fill_previous(uniforms, params);
-    wd_surroundings_fill(uniforms, scene, forest->world);
+    wd_surroundings_fill(uniforms, scene, forest->world, &params->sun);
     memcpy(uniforms->leaf_scatter, forest->leaf_scatter, sizeof uniforms->leaf_scatter);
     struct wd_cascades_params sun = {
         .view = &steady, /* all samples look into the first one's maps */

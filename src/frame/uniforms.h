@@ -11,6 +11,7 @@ enum { WD_FINE_SAMPLES = 4 };
 struct wd_uniforms_params {
     const struct wd_forest_device *forest;
     struct wd_camera camera, previous_camera;
+    struct wd_sun sun;
     double time_s, previous_time_s;
     uint32_t width, height, shadow_size;
     uint32_t adds; /* as in struct wd_frame_uniforms */

@@ -24,16 +24,17 @@ bool wd_scene_check_time(void *object, const struct wd_keys_place *place)
     return true;
 }
 
-static void set_sun(struct wd_scene *scene, struct wd_moment moment)
+bool wd_scene_sun_at(const struct wd_scene *scene, double hour, double *azimuth_deg, double *elevation_deg)
 {
     const struct wd_scene_time *time = &scene->time;
+    struct wd_moment moment;
     double offset = isnan(time->utc_offset_h) ? floor(time->longitude_deg / 15 + 0.5)
                                               : time->utc_offset_h;
-    if (!wd_clock_parse(&moment.hours, time->clock))
-        return;
-    moment.hours -= offset;
-    wd_sun_position(&moment, time->latitude_deg, time->longitude_deg, &scene->sun.azimuth_deg,
-                    &scene->sun.elevation_deg);
+    if (!time->date || !wd_date_parse(&moment, time->date) || isnan(time->latitude_deg + time->longitude_deg))
+        return false;
+    moment.hours = hour - offset;
+    wd_sun_position(&moment, time->latitude_deg, time->longitude_deg, azimuth_deg, elevation_deg);
+    return true;
 }
 
 /* Species show the season, but for artists' models, which tell of one alone; south of the equator it is half
@@ -67,7 +68,8 @@ bool wd_scene_apply_time(struct wd_scene *scene, const struct wd_keys_place *pla
         scene->sun.elevation_deg = DEFAULT_ELEVATION_DEG;
     if (!scene->time.date || !wd_date_parse(&moment, scene->time.date))
         return true; /* a wrong one has been reported */
-    if (scene->time.clock && !isnan(scene->time.latitude_deg + scene->time.longitude_deg))
-        set_sun(scene, moment);
+    double hour;
+    if (scene->time.clock && wd_clock_parse(&hour, scene->time.clock))
+        wd_scene_sun_at(scene, hour, &scene->sun.azimuth_deg, &scene->sun.elevation_deg);
     return set_season(scene, &moment, wd_keys_log(place));
 }

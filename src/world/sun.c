@@ -133,11 +133,17 @@ static void set_map(struct wd_frame_uniforms *uniforms, const struct wd_scene *s
     wd_skylight_fill(uniforms, wd_sky_map_mean, map);
 }
 
-void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene,
+struct wd_sun wd_sun_of(const struct wd_scene *scene)
+{
+    return (struct wd_sun){scene->sun.azimuth_deg, scene->sun.elevation_deg};
+}
+
+void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene, const struct wd_sun *at,
                  const struct wd_sky_map *map)
 {
-    float elevation_deg = (float)scene->sun.elevation_deg;
-    double azimuth_deg = scene->sun.azimuth_deg;
+    const struct wd_sun sun = at ? *at : wd_sun_of(scene);
+    float elevation_deg = (float)sun.elevation_deg;
+    double azimuth_deg = sun.azimuth_deg;
     bool moon = elevation_deg < MOON_FROM_ELEVATION_DEG;
     if (moon) {
         elevation_deg = MOON_ELEVATION_DEG;

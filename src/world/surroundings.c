@@ -57,11 +57,11 @@ static void fill_ground(struct wd_frame_uniforms *uniforms, const struct wd_scen
 }
 
 void wd_surroundings_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene,
-                          const struct wd_world *world)
+                          const struct wd_world *world, const struct wd_sun *sun)
 {
     fill_weather(uniforms, scene);
     fill_ground(uniforms, scene, world);
-    wd_sun_fill(uniforms, scene, world->sky.width ? &world->sky : NULL);
+    wd_sun_fill(uniforms, scene, sun, world->sky.width ? &world->sky : NULL);
 }
 
 void wd_surroundings_set_camera(struct wd_frame_uniforms *uniforms, const double position_m[3])

@@ -7,9 +7,9 @@
 #include "world/world.h"
 
 /* Fills the members of `*uniforms` for sun, sky, fog, wind, water and ground; of the world, terrain
- * and sky count. */
+ * and sky count. `sun`: where it stands, NULL: where the scene has it. */
 void wd_surroundings_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene,
-                          const struct wd_world *world);
+                          const struct wd_world *world, const struct wd_sun *sun);
 
 /* Splits a place of the local frame into whole millimetres and the rest. */
 void wd_surroundings_set_camera(struct wd_frame_uniforms *uniforms, const double position_m[3]);

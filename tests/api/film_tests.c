@@ -100,7 +100,7 @@ static void wrong_films_are_input(void **state)
         {"s-%s.png", 32, 24, WD_ERROR_INPUT, "not a name for a sequence"},
         {"s-%s.exr", 32, 24, WD_ERROR_INPUT, "not a name for a sequence"},
         {"two-%d-%d.png", 32, 24, WD_ERROR_INPUT, "not a name for a sequence"},
-        {"jpg-%d.jpg", 32, 24, WD_ERROR_INPUT, ".png files"},
+        {"jpg-%d.jpg", 32, 24, WD_ERROR_INPUT, ".png or .exr files"},
         {"none-%d.exr", 0, 24, WD_ERROR_INPUT, "found 0 x 32 pixels"},
         {"no.gif", 32, 24, WD_ERROR_INPUT, "films end in"},
         {"nowhere/a.mp4", 32, 24, WD_ERROR_OUTPUT, "No such file"},

@@ -173,6 +173,124 @@ static void another_sun_is_another_forest(void **state)
     assert_true(keys[0] != keys[1]);
 }
 
+/* --- a sun that stands elsewhere ------------------------------------------------------------ */
+
+static const struct wd_sun EVENING = {250, 8};
+
+static void expect_alike(const struct wd_picture *a, const struct wd_picture *b)
+{
+    assert_memory_equal(a->color, b->color, (size_t)a->width * a->height * 3 * sizeof *a->color);
+}
+
+/* What is drawn and traced under a sun in place of the scene's is what a scene that has it there shows. */
+static void a_sun_of_a_picture_is_that_of_a_scene(void **state)
+{
+    (void)state;
+    static const char *const settings[] = {"sun.azimuth_deg=250", "sun.elevation_deg=8", NULL};
+    const struct wd_forest_params evening = {.scene_path = suite.small_path, .settings = settings, .log = suite.log};
+    struct wd_forest *there = NULL;
+    assert_int_equal(wd_forest_create(&there, &evening), WD_OK);
+    struct wd_render_params params = suite_params(suite.forest, "walk");
+    params.layers = WD_LAYER_COLOR;
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, there), WD_OK);
+    struct wd_picture wanted = suite_render(&suite, &params), traced = {0};
+    suite_trace(&suite, there, &params, 1, &traced);
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, suite.forest), WD_OK);
+    struct wd_picture noon = suite_render(&suite, &params);
+    params.sun = &EVENING;
+    struct wd_picture found = suite_render(&suite, &params), found_traced = {0};
+    suite_trace(&suite, suite.forest, &params, 1, &found_traced);
+    assert_memory_not_equal(noon.color, wanted.color, (size_t)noon.width * noon.height * 3 * sizeof *noon.color);
+    expect_alike(&found, &wanted);
+    expect_alike(&found_traced, &traced);
+    assert_non_null(strstr(found.about, "\"azimuth_deg\":250.0,\"elevation_deg\":8.0"));
+    wd_picture_finish(&wanted);
+    wd_picture_finish(&traced);
+    wd_picture_finish(&noon);
+    wd_picture_finish(&found);
+    wd_picture_finish(&found_traced);
+    wd_forest_destroy(&there);
+}
+
+/* Frames that are gathered in a live view have one sun. */
+static void a_sun_that_moves_begins_anew(void **state)
+{
+    (void)state;
+    struct wd_render_params params = suite_params(suite.forest, "walk");
+    struct wd_picture pictures[2];
+    params.layers = WD_LAYER_COLOR;
+    params.accumulation = WD_ACCUMULATE;
+    for (int many = 0; many < 2; many++) {
+        params.view = WD_VIEW_ALBEDO; /* forgets what was gathered */
+        for (int i = 0; i < (many ? 5 : 1); i++) {
+            struct wd_picture before = suite_render(&suite, &params);
+            params.view = WD_VIEW_LIT;
+            wd_picture_finish(&before);
+        }
+        params.view = WD_VIEW_LIT;
+        params.sun = &EVENING;
+        pictures[many] = suite_render(&suite, &params);
+        params.sun = NULL;
+    }
+    expect_alike(&pictures[0], &pictures[1]);
+    wd_picture_finish(&pictures[0]);
+    wd_picture_finish(&pictures[1]);
+}
+
+static void impossible_suns_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        struct wd_sun sun;
+        const char *said;
+    } cases[] = {{{0, 91}, "sun.elevation_deg is 91"}, {{0, NAN}, "sun.elevation_deg"}, {{INFINITY, 0}, "sun.azimuth_deg"}};
+    struct wd_render_params params = suite_params(suite.forest, "walk");
+    struct wd_picture picture;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        params.sun = &cases[i].sun;
+        suite_clear(&suite);
+        assert_int_equal(wd_renderer_render(suite.renderer, &params, &picture), WD_ERROR_INPUT);
+        assert_true(suite_logged(&suite, cases[i].said));
+    }
+    struct wd_forest *mapped = NULL;
+    assert_int_equal(open_forest(&mapped, write_map("good.exr", RGB, WIDTH, 0), "sky.turn_deg=0"), WD_OK);
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, mapped), WD_OK);
+    params.sun = &EVENING;
+    suite_clear(&suite);
+    assert_false(wd_forest_sun_moves(mapped));
+    assert_int_equal(wd_renderer_render(suite.renderer, &params, &picture), WD_ERROR_INPUT);
+    assert_true(suite_logged(&suite, "under a sky map"));
+    assert_int_equal(wd_renderer_set_forest(suite.renderer, suite.forest), WD_OK);
+    wd_forest_destroy(&mapped);
+}
+
+/* By the clock where date and place are known; on its circle of the day anywhere. */
+static void the_sun_goes_with_the_hours(void **state)
+{
+    (void)state;
+    static const char *const settings[] = {"time.date=2026-06-21", "time.latitude_deg=48", "time.longitude_deg=11", NULL};
+    const struct wd_forest_params params = {.scene_path = suite.small_path, .settings = settings, .log = suite.log};
+    struct wd_forest *placed = NULL;
+    struct wd_sun morning, later, midnight;
+    suite_clear(&suite);
+    assert_int_equal(wd_forest_sun_at(suite.forest, 9, &morning), WD_ERROR_INPUT);
+    assert_true(suite_logged(&suite, "latitude_deg"));
+    assert_int_equal(wd_forest_create(&placed, &params), WD_OK);
+    assert_int_equal(wd_forest_sun_at(placed, 49, &morning), WD_ERROR_INPUT);
+    assert_int_equal(wd_forest_sun_at(placed, 24, &midnight), WD_OK);
+    assert_true(midnight.elevation_deg < -15);
+    assert_int_equal(wd_forest_sun_at(placed, 9, &morning), WD_OK);
+    for (double hours = -2; hours <= 6; hours += 2) {
+        struct wd_sun circling = wd_forest_sun_later(placed, &morning, hours);
+        assert_int_equal(wd_forest_sun_at(placed, 9 + hours, &later), WD_OK);
+        assert_true(fabs(circling.elevation_deg - later.elevation_deg) < 0.1);
+        assert_true(fabs(circling.azimuth_deg - later.azimuth_deg) < 0.1);
+    }
+    struct wd_sun own = wd_forest_sun(suite.forest), day_later = wd_forest_sun_later(suite.forest, &own, 24);
+    assert_true(fabs(own.azimuth_deg - day_later.azimuth_deg) < 1e-6 && own.elevation_deg == 40);
+    wd_forest_destroy(&placed);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -180,6 +298,10 @@ int main(int argc, char **argv)
         cmocka_unit_test(drawn_as_traced),
         cmocka_unit_test(bad_maps_are_refused),
         cmocka_unit_test(another_sun_is_another_forest),
+        cmocka_unit_test(a_sun_of_a_picture_is_that_of_a_scene),
+        cmocka_unit_test(a_sun_that_moves_begins_anew),
+        cmocka_unit_test(impossible_suns_are_refused),
+        cmocka_unit_test(the_sun_goes_with_the_hours),
     };
     if (argc < 2 || !suite_init(&suite, argv[1]))
         return 1;

@@ -181,6 +181,7 @@ void suite_trace(const struct suite *suite, const struct wd_forest *forest,
 {
     const struct wd_reference_params params = {.log = suite->log};
     const struct wd_reference_picture_params trace = {.camera = render->camera,
+                                                      .sun = render->sun,
                                                       .width = render->width,
                                                       .height = render->height,
                                                       .samples = paths,

@@ -56,6 +56,23 @@ jq '.wind.speed_mps = 0 | .cameras = [range(5) | {name: "c\(.)", position_m: [10
 }
 check 'frame 3 is the key 3' cmp "$out/still.png" "$out/k-3.png"
 
+# The sun of a day: the last frame is a still's at that hour.
+jq '.time = {date: "2026-06-21", latitude_deg: 48, longitude_deg: 11} | del(.sun)' "$scratch/keys.json" >"$scratch/day.json"
+# shellcheck disable=SC2086
+{
+    day="$scratch/day.json $size --camera c3"
+    expect 0 '3 frames' render $day -o "$out/d-%d.png" --frames 3 --clock 05:30-12:00
+    expect 0 . render $day -o "$out/noon.png" --clock 12:00
+    expect 0 . render $day -o "$out/clock.png" --set time.clock=12:00
+    expect 2 'no hour like 17:30' render $day -o "$out/none.png" --clock 25:00
+    expect 2 'no hour like 17:30' render $day -o "$out/none.png" --clock 7
+    expect 2 'a still has one hour' render $day -o "$out/none.png" --clock 05:00-09:00
+    expect 1 'needs date, latitude_deg' render "$scratch/keys.json" $size -o "$out/none.png" --clock 12:00
+}
+check 'an hour is the one of the scene' cmp "$out/noon.png" "$out/clock.png"
+check 'the last frame is of the last hour' cmp "$out/noon.png" "$out/d-2.png"
+check 'the sun moves' sh -c "! cmp -s '$out/d-0.png' '$out/d-1.png' && ! cmp -s '$out/d-1.png' '$out/d-2.png'"
+
 # Parts of it: as in the whole, each with its own checkpoint.
 mkdir "$out/parts"
 # shellcheck disable=SC2086

@@ -26,7 +26,7 @@ static struct wd_frame_uniforms sun_at(double azimuth_deg, double elevation_deg)
     scene.sun.angular_diameter_deg = 0.53;
     scene.sun.strength = scene.sky.strength = 1;
     scene.sky.turbidity = 2.5;
-    wd_sun_fill(&uniforms, &scene, NULL);
+    wd_sun_fill(&uniforms, &scene, NULL, NULL);
     return uniforms;
 }
 

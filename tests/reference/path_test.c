@@ -88,7 +88,7 @@ static void test_sky_energy(void **state)
         made.scene.sun.angular_diameter_deg = 0.53;
         made.scene.sun.strength = made.scene.sky.strength = 1;
         made.scene.sky.turbidity = 3;
-        wd_sun_fill(&made.frame, &made.scene, NULL);
+        wd_sun_fill(&made.frame, &made.scene, NULL, NULL);
         made.tracer.sky = wd_sky_toward;
         made_scene_add_quad(&made, WD_V3(-9, -9, 0), WD_V3(18, 0, 0), WD_V3(0, 18, 0), 0);
         made_scene_add_tree(&made, 0, 0, -2);

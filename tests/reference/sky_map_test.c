@@ -78,7 +78,7 @@ static struct wd_vec3 seen_under(const struct wd_sky_map *map, const struct wd_s
     made_scene_set_look(&made, glossy ? 188 : 255, glossy ? 128 : 0);
     for (int k = 0; k < 3 && glossy; k++)
         made.model.model.transmittance[k] = 10; /* all that is not reflected is let through */
-    wd_sun_fill(&made.frame, scene, map);
+    wd_sun_fill(&made.frame, scene, NULL, map);
     made.tracer.sky_map = map;
     made.tracer.bounces = 100000;
     struct wd_vec3 toward = {0.3f, 0.1f, -1};
@@ -122,7 +122,7 @@ static void test_gradient(void **state)
     struct wd_frame_uniforms frame = {0};
     struct wd_sky_map map;
     map_of(&map, upward, 256, &scene);
-    wd_sun_fill(&frame, &scene, &map);
+    wd_sun_fill(&frame, &scene, NULL, &map);
     assert_near(frame.sky_irradiance[1], 2 * PI / 3, 0.005f);
     assert_near(seen_under(&map, &scene, false, false, 16384).y +
                     -frame.sun_irradiance[1] * frame.sun_direction[2] / PI,
@@ -140,7 +140,7 @@ static void test_turn(void **state)
         struct wd_frame_uniforms frame = {0};
         struct wd_sky_map map;
         map_of(&map, eastern, 128, &scene);
-        wd_sun_fill(&frame, &scene, &map);
+        wd_sun_fill(&frame, &scene, NULL, &map);
         for (int k = 0; k < 4; k++)
             assert_true(k == quarter_of[quarters] ||
                         frame.sky_quarters[k][0] < frame.sky_quarters[quarter_of[quarters]][0]);
@@ -156,7 +156,7 @@ static void test_sun_of_the_map(void **state)
     struct wd_frame_uniforms frame = {0};
     struct wd_sky_map map;
     map_of(&map, sunny, 1024, &scene);
-    wd_sun_fill(&frame, &scene, &map);
+    wd_sun_fill(&frame, &scene, NULL, &map);
     /* turned from south-east to south-west */
     assert_near(frame.sun_direction[0], -0.612372f, 0.004f);
     assert_near(frame.sun_direction[1], -0.612372f, 0.004f);

@@ -169,6 +169,12 @@ xdotool key l
 expect 'L colours by level' '.view == "lod"'
 xdotool key l
 expect 'L again does not' '.view == "lit"'
+remember
+xdotool key o
+expect 'O is a quarter of an hour later' \
+    '((.sun_elevation_deg - $before.sun_elevation_deg) | fabs) | . > 0.1 and . < 3.8'
+xdotool keydown shift key o keyup shift
+expect 'Shift+O earlier' '((.sun_elevation_deg - $before.sun_elevation_deg) | fabs) < 0.001'
 xdotool key t
 expect 'T shows times' '.times'
 xdotool key h

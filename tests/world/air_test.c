@@ -26,7 +26,7 @@ static struct wd_frame_uniforms air_at(double visibility_m, double height_m, dou
     scene.sun.strength = scene.sky.strength = 1;
     scene.sky.turbidity = 2.5;
     wd_surroundings_set_camera(&frame, (const double[3]){0, 0, camera_m});
-    wd_surroundings_fill(&frame, &scene, &world);
+    wd_surroundings_fill(&frame, &scene, &world, NULL);
     return frame;
 }
 
