@@ -110,6 +110,14 @@ fog() {
     convert "$@" +append -quality 88 "$shown/fog.jpg"
 }
 
+# From sunrise to sunset in the valley.
+day() {
+    is_wanted day || return 0
+    render valley "$scratch/day-%d.png" 400x225 --camera overview --frames 6 --clock 04:20-20:40 \
+        --set time.date=2026-06-21 --set time.latitude_deg=48 --set time.longitude_deg=11
+    montage "$scratch"/day-?.png -tile 3x -geometry +2+2 -quality 88 "$shown/day.jpg"
+}
+
 sheet() { # sheet NAME SPECIES...
     is_wanted "$1" || return 0
     sheet_name=$1
@@ -125,6 +133,7 @@ jpeg 3dworld 3dworld 640x400 overview
 jpeg osg osg 640x400 walk
 jpeg intel intel 640x400 walk
 jpeg river river 960x540 bank
+day
 methods overview
 methods walk
 fog
