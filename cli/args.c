@@ -81,6 +81,8 @@ static const struct cli_option option_table[] = {
     {"metric", 0, "NAME", CLI_KIND_TEXT, AT(metric), 0, 0, CLI_BENCH,
      "the error that plots and the table show: flip, ssim, rmse_pct, block_rmse_pct, radiance_bias_pct, tree_bias_pct or "
      "coverage_bias_pct (default: flip); of seeds and quality"},
+    {"against", 0, "DIR", CLI_KIND_TEXT, AT(against), 0, 0, CLI_BENCH,
+     "the directory of an earlier run, also of other code, whose times and errors are printed beside these"},
     {"reference", 0, NULL, CLI_KIND_FLAG, AT(reference), 0, 0, CLI_RENDER,
      "trace paths on the processor: the truth, slow (default: 64 samples)"},
     {"bounces", 0, "N", CLI_KIND_WHOLE, AT(bounces), 1, 1000, CLI_RENDER,

@@ -427,9 +427,11 @@ static enum wd_result run_suite(struct bench *bench)
 
 enum cli_status cli_bench(struct cli_session *session)
 {
-    struct bench bench = {.session = session};
+    struct bench bench = {.session = session}, earlier = {0};
     if (!prepare(&bench))
         return CLI_USAGE;
+    if (session->options->against && !bench_results_load_earlier(&earlier, &bench))
+        return CLI_FAILED;
     if (!make_directories(&bench) || !lock_directory(&bench) || !bench_results_load(&bench))
         return CLI_FAILED;
     if (bench.resumed)
@@ -440,6 +442,8 @@ enum cli_status cli_bench(struct cli_session *session)
     if (result == WD_OK) {
         cli_meter_clear(&session->meter);
         bench_print_table(&bench);
+        if (session->options->against)
+            bench_print_against(&bench, &earlier);
         if (!bench_write_json(&bench) || !bench_write_html(&bench))
             result = WD_ERROR_OUTPUT;
     }
@@ -447,5 +451,6 @@ enum cli_status cli_bench(struct cli_session *session)
         cli_say(session, "%s: results.csv, results.json, report.html, %.1f s\n", bench.directory,
                 cli_seconds() - session->meter.begin_s);
     free(bench.rows);
+    free(earlier.rows);
     return cli_session_status(session, result);
 }

@@ -101,6 +101,8 @@ struct bench_stage {
 
 /* Rows of results on disk: results.csv, a line as soon as it is measured. */
 bool bench_results_load(struct bench *bench);
+/* Rows of the run that --against names; free() them. What it measured otherwise is told. */
+bool bench_results_load_earlier(struct bench *earlier, const struct bench *bench);
 bool bench_results_add(struct bench *bench, const struct bench_row *row);
 /* Whether the rows that are there of the stage's scene, if any, were measured in its forest; else it is said. */
 bool bench_results_fit(const struct bench_stage *stage);
@@ -130,6 +132,7 @@ enum wd_result bench_truth(struct bench_stage *stage, const char *name,
                            struct wd_picture *picture);
 
 void bench_print_table(const struct bench *bench);
+void bench_print_against(const struct bench *bench, const struct bench *earlier);
 bool bench_write_json(const struct bench *bench);
 bool bench_write_html(const struct bench *bench);
 

@@ -152,9 +152,16 @@ bool bench_write(const struct bench *bench, const char *name,
     return ok;
 }
 
-static bool read_rows(struct bench *bench, FILE *file, const char *path)
+/* The first two lines of a file: what was measured, and the names of the columns. */
+struct heads {
+    bool same_measure, same_columns; /* as a run now would write */
+    char measure[512];
+};
+
+static struct heads read_heads(const struct bench *bench, FILE *file)
 {
-    char line[4096], *heads = NULL;
+    struct heads found = {0};
+    char columns[4096], *heads = NULL;
     size_t size = 0;
     FILE *memory = open_memstream(&heads, &size);
     if (!memory)
@@ -162,28 +169,64 @@ static bool read_rows(struct bench *bench, FILE *file, const char *path)
     print_heads(bench, memory);
     fclose(memory);
     size_t first = strcspn(heads, "\n");
-    bool same = fgets(line, sizeof line, file) && strcspn(line, "\n") == first &&
-                strncmp(line, heads, first) == 0 && fgets(line, sizeof line, file) &&
-                strcmp(line, heads + first + 1) == 0;
+    if (fgets(found.measure, sizeof found.measure, file) && fgets(columns, sizeof columns, file)) {
+        found.measure[strcspn(found.measure, "\n")] = 0;
+        found.same_measure = strlen(found.measure) == first && strncmp(found.measure, heads, first) == 0;
+        found.same_columns = strcmp(columns, heads + first + 1) == 0;
+    }
     free(heads);
-    if (!same)
-        return cli_fail(bench->session,
-                        "%s: holds results of another suite, effort, size, --set or version of weald; name "
-                        "another directory or remove it",
-                        path);
+    return found;
+}
+
+static void read_rows(struct bench *bench, FILE *file)
+{
+    char line[4096];
     while (fgets(line, sizeof line, file)) {
         struct bench_row row = {0};
         if (parse_row(line, &row))
             keep(bench, &row);
     }
+}
+
+static bool take_rows(struct bench *bench, FILE *file, const char *path)
+{
+    const struct heads heads = read_heads(bench, file);
+    if (!heads.same_measure || !heads.same_columns)
+        return cli_fail(bench->session,
+                        "%s: holds results of another suite, effort, size, --set or version of weald; name "
+                        "another directory or remove it",
+                        path);
+    read_rows(bench, file);
     return true;
+}
+
+bool bench_results_load_earlier(struct bench *earlier, const struct bench *bench)
+{
+    *earlier = (struct bench){.session = bench->session, .directory = bench->session->options->against};
+    char *path = bench_path(earlier, "results.csv");
+    FILE *file = fopen(path, "r");
+    bool ok = file != NULL;
+    if (!ok)
+        cli_fail(bench->session, "%s: cannot be read: %s; --against names the directory of an earlier run", path,
+                 strerror(errno));
+    const struct heads heads = ok ? read_heads(bench, file) : (struct heads){0};
+    if (ok && !heads.same_columns)
+        ok = cli_fail(bench->session, "%s: is not of this version of weald: its columns are others", path);
+    if (ok)
+        read_rows(earlier, file);
+    if (ok && !heads.same_measure)
+        cli_say(bench->session, "%s: was measured otherwise: %s\n", path, heads.measure + strspn(heads.measure, "# "));
+    if (file)
+        fclose(file);
+    free(path);
+    return ok;
 }
 
 bool bench_results_load(struct bench *bench)
 {
     char *path = bench_path(bench, "results.csv");
     FILE *file = fopen(path, "r");
-    bool ok = !file || read_rows(bench, file, path);
+    bool ok = !file || take_rows(bench, file, path);
     if (file)
         fclose(file);
     bench->resumed = bench->row_count;
@@ -313,4 +356,37 @@ void bench_print_table(const struct bench *bench)
             print_cell(row->values[bench->metric], "%.4f", width);
         printf("\n");
     }
+}
+
+void bench_print_against(const struct bench *bench, const struct bench *earlier)
+{
+    const bool errors = bench->suite->measures & (BENCH_ERROR | BENCH_POPPING);
+    const char *metric = bench_column_name(bench->metric);
+    const int width = strlen(metric) > 10 ? (int)strlen(metric) : 10;
+    size_t found = 0;
+    printf("\nBeside %s:\n%-24s %-12s %10s %10s %6s", earlier->directory, "scene, camera", "method", "median ms", "before",
+           "ratio");
+    if (errors)
+        printf(" %*s %10s %10s", width, metric, "before", "difference");
+    printf("\n");
+    for (size_t i = 0; i < bench->row_count; i++) {
+        const struct bench_row *now = &bench->rows[i];
+        const struct bench_row *before = bench_results_find(earlier, now->scene, now->camera, now->method);
+        char place[160];
+        if (!before)
+            continue;
+        found++;
+        snprintf(place, sizeof place, "%s, %s", now->scene, now->camera);
+        printf("%-24s %-12s", place, now->method);
+        print_cell(now->values[BENCH_FRAME_MS], "%.1f", 10);
+        print_cell(before->values[BENCH_FRAME_MS], "%.1f", 10);
+        print_cell(now->values[BENCH_FRAME_MS] / before->values[BENCH_FRAME_MS], "%.2f", 6);
+        if (errors) {
+            print_cell(now->values[bench->metric], "%.4f", width);
+            print_cell(before->values[bench->metric], "%.4f", 10);
+            print_cell(now->values[bench->metric] - before->values[bench->metric], "%+.4f", 10);
+        }
+        printf("\n");
+    }
+    printf("%zu of %zu rows are in both\n", found, bench->row_count);
 }

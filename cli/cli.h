@@ -46,7 +46,7 @@ struct cli_options {
     int operand_count;
     const char *output, *camera, *path, *clock, *only, *method, *seed, *data, *gpu;
     const char *screenshots, *report;
-    const char *suite, *metric, *methods;
+    const char *suite, *metric, *methods, *against;
     uint32_t size_px[2];
     uint32_t samples, frames, threads, bounces;
     uint32_t variants, max_trees, grow_seed;

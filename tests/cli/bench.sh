@@ -30,6 +30,19 @@ check 'frames counted, the noise of the reference told' jq -e \
     "$out/results.json"
 check 'the machine in the report' grep -q 'llvmpipe' "$out/report.html"
 
+# beside an earlier run, which this one was half as fast as
+mkdir "$scratch/earlier"
+awk -F, -v OFS=, 'NR == 1 { $0 = $0 " fog.visibility_m=500" } NR == 2 { for (i = 1; i <= NF; i++) at[$i] = i }
+    NR > 2 { $at["frame_ms"] /= 2; $at["flip"] -= 0.01 } $3 != "separate"' "$out/results.csv" >"$scratch/earlier/results.csv"
+run_against() { # DIR STATUS PATTERN
+    expect "$2" "$3" bench "$grove" --suite quality --quick --methods octree,separate --gpu software -o "$out" --against "$1"
+}
+run_against "$scratch/earlier" 0 'was measured otherwise: weald bench quality .*fog.visibility_m=500'
+cp "$scratch/output" "$scratch/told"
+check 'times and errors are beside each other' grep -qE 'octree .* 2\.00 .* \+0\.0100$' "$scratch/told"
+check 'and what both have is counted' grep -qE '^1 of 2 rows are in both' "$scratch/told"
+run_against "$scratch/none" 1 'none/results.csv: cannot be read: .*; --against names the directory'
+
 # what is best by a metric of which more is better, or of which 0 is
 # shaded METRIC OCTREE SEPARATE: $scratch/shaded has the methods that the report shades by these values, octree's time
 # being twice that of separate
