@@ -13,3 +13,9 @@ libraries=$(dirname "$(find "$scratch/installed" -name 'libweald.so' | head -1)"
 # Whoever compiles against it needs none of the packages that it is made with, but Vulkan's.
 [ "$(pkg-config --print-requires weald)" = vulkan ]
 [ -z "$(pkg-config --print-requires-private weald)" ]
+# The program finds the library beside itself, but in the system's own prefix, where a loader finds it.
+if [ "$program" != "$scratch/installed/usr/bin/weald" ]; then
+    mv "$scratch/installed" "$scratch/moved"
+    env -u LD_LIBRARY_PATH "$scratch/moved${program#"$scratch/installed"}" --version
+    mv "$scratch/moved" "$scratch/installed"
+fi
