@@ -38,8 +38,9 @@ gallery: build ## the pictures of docs/gallery.md, path-traced ones beside them 
 	@scripts/gallery.sh $(BUILD)
 
 install: build ## install program, library, headers and manual below PREFIX
-	@meson configure $(BUILD) -Dprefix=$(abspath $(PREFIX))
+	@meson configure $(BUILD) -Dprefix="$$(realpath -ms -- '$(PREFIX)')"
 	@meson install -C $(BUILD)
+	@[ -n "$(DESTDIR)" ] || [ "$$(id -u)" != 0 ] || ldconfig
 
 clean: ## remove everything built and rendered
 	rm -rf build build-asan out

@@ -9,6 +9,7 @@ struct wd_gdal_functions wd_gdal;
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 static const char *missing = "";
+static pthread_mutex_t registering = PTHREAD_MUTEX_INITIALIZER;
 
 /* GDAL stays for the life of the process: it cannot be unloaded. */
 static void load(void)
@@ -32,6 +33,12 @@ static void load(void)
 bool wd_gdal_load(const char *subject, const struct wd_log *log)
 {
     pthread_once(&once, load);
-    return !missing || wd_error(log, "%s: GDAL, which reads rasters and coordinate systems, cannot be loaded: %s", subject,
-                                missing);
+    if (missing)
+        return wd_error(log, "%s: GDAL, which reads rasters and coordinate systems, cannot be loaded: %s", subject, missing);
+    /* A host program that uses GDAL, too, may have destroyed the drivers when it was done. */
+    pthread_mutex_lock(&registering);
+    if (wd_gdal.GDALGetDriverCount() == 0)
+        wd_gdal.GDALAllRegister();
+    pthread_mutex_unlock(&registering);
+    return true;
 }

@@ -23,8 +23,8 @@ bool wd_gdal_load(const char *subject, const struct wd_log *log);
     X(CPLQuietErrorHandler) X(CSLDestroy) X(CSLSetNameValue) X(GDALAllRegister) X(GDALClose) \
     X(GDALCreateGenImgProjTransformer2) X(GDALDataTypeIsComplex) X(GDALDestroyGenImgProjTransformer) \
     X(GDALGenImgProjTransform) X(GDALGetBlockSize) X(GDALGetDataCoverageStatus) X(GDALGetDatasetDriver) \
-    X(GDALGetDriverShortName) X(GDALGetGCPCount) X(GDALGetGCPSpatialRef) X(GDALGetGeoTransform) X(GDALGetMaskBand) \
-    X(GDALGetMaskFlags) X(GDALGetRasterBand) X(GDALGetRasterCount) X(GDALGetRasterDataType) \
+    X(GDALGetDriverCount) X(GDALGetDriverShortName) X(GDALGetGCPCount) X(GDALGetGCPSpatialRef) X(GDALGetGeoTransform) \
+    X(GDALGetMaskBand) X(GDALGetMaskFlags) X(GDALGetRasterBand) X(GDALGetRasterCount) X(GDALGetRasterDataType) \
     X(GDALGetRasterNoDataValue) X(GDALGetRasterOffset) X(GDALGetRasterScale) X(GDALGetRasterUnitType) \
     X(GDALGetRasterXSize) X(GDALGetRasterYSize) X(GDALGetSpatialRef) X(GDALInvGeoTransform) X(GDALOpenEx) \
     X(GDALRasterIO) X(GDALSuggestedWarpOutput2) X(OCTDestroyCoordinateTransformation) \
@@ -56,6 +56,7 @@ extern struct wd_gdal_functions {
 #define GDALGetBlockSize wd_gdal.GDALGetBlockSize
 #define GDALGetDataCoverageStatus wd_gdal.GDALGetDataCoverageStatus
 #define GDALGetDatasetDriver wd_gdal.GDALGetDatasetDriver
+#define GDALGetDriverCount wd_gdal.GDALGetDriverCount
 #define GDALGetDriverShortName wd_gdal.GDALGetDriverShortName
 #define GDALGetGCPCount wd_gdal.GDALGetGCPCount
 #define GDALGetGCPSpatialRef wd_gdal.GDALGetGCPSpatialRef

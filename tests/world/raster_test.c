@@ -367,6 +367,25 @@ static void real_land_cover(void **state)
     wd_terrain_finish(&terrain);
 }
 
+static void drivers_that_the_host_destroys_come_back(void **state)
+{
+    (void)state;
+    char file[] = "/tmp/weald-raster-XXXXXX"; /* what is in memory goes with them */
+    int made = mkstemp(file);
+    assert_true(made >= 0);
+    close(made);
+    make_classes(file, 0, NULL);
+    struct wd_terrain terrain = ground(NULL, 0, 0, 1000, 500);
+    struct wd_scene_map map = {.file = file, .crs = "local"};
+    for (int i = 0; i < 2; i++) {
+        struct wd_raster raster = loaded(&map, &terrain, WD_RESAMPLE_NEAREST);
+        wd_raster_finish(&raster);
+        GDALDestroyDriverManager();
+    }
+    wd_terrain_finish(&terrain);
+    unlink(file);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -376,6 +395,7 @@ int main(void)
         cmocka_unit_test_setup(frames_that_cannot_be_matched_are_refused, forget_log),
         cmocka_unit_test_setup(linear_and_max_between_pixels, forget_log),
         cmocka_unit_test_setup(a_crs_beside_the_files_own_is_told, forget_log),
+        cmocka_unit_test_setup(drivers_that_the_host_destroys_come_back, forget_log),
         cmocka_unit_test_setup(maxima_survive_decimation, forget_log),
         cmocka_unit_test_setup(points_are_reprojected, forget_log),
         cmocka_unit_test_setup(real_canopies, forget_log),
