@@ -38,9 +38,10 @@ meson introspect "$build" --tests | grep -q '"name"' ||
 scripts/build.sh "$build"
 
 # Tests of windows wait, and linkers and many tests have one thread: the other build fills the processors
-# meanwhile.
+# meanwhile. The longest tests fill two each: more than half as many as there are processors only wait for another.
 step 'sanitizers and second compiler' scripts/test-sanitizers.sh >"$scratch/others" 2>&1 </dev/null &
-step release meson test -C "$build" --no-rebuild --print-errorlogs
+step release meson test -C "$build" --no-rebuild --print-errorlogs \
+    --num-processes $((($(nproc) + 1) / 2))
 echo 'waiting for the sanitizers'
 wait $!
 cat "$scratch/others"
