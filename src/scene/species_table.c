@@ -295,9 +295,11 @@ static bool check_orders(const struct wd_species *species, const struct wd_keys_
     if (bare && species->order_count > 0)
         return wd_keys_error(place, "orders", "found %zu orders of branches; a %s has none",
                              species->order_count, forms[species->form]);
+    if (!bare && !species->orders)
+        return wd_keys_error(place, NULL, "\"orders\" is missing; a %s has 1 to 3 orders of branches: "
+                             "[ { ... }, ... ]", forms[species->form]);
     if (!bare && (species->order_count < 1 || species->order_count > 3))
-        return wd_keys_error(place, species->order_count ? "orders" : NULL,
-                             "found %zu orders of branches; a %s has 1 to 3",
+        return wd_keys_error(place, "orders", "found %zu orders of branches; a %s has 1 to 3",
                              species->order_count, forms[species->form]);
     return true;
 }
