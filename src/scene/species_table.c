@@ -1,5 +1,7 @@
 #include "scene/species.h"
 
+#include <math.h>
+
 #define FIELD(member) offsetof(struct wd_species, member)
 #define IN(group, member) (offsetof(struct wd_species, group.member) - FIELD(group))
 #define SIZE(group) sizeof(((struct wd_species *)0)->group)
@@ -205,9 +207,10 @@ static const struct wd_keys allometry_table = {"allometry", allometry_keys,
 
 #define GROWTH(member) offsetof(struct wd_site_curve, member)
 static const struct wd_key growth_keys[] = {
-    {"height_a", WD_KEY_DOUBLE, GROWTH(height_a), 0, 150, "30",
-     "Height that old trees tend to, in metres: h = a (1 - exp(-b t))^c, t in years.",
-     .flags = WD_KEY_EXCLUSIVE_MIN},
+    {"height_a", WD_KEY_DOUBLE, GROWTH(height_a), 0, 150,
+     .doc = "Height that old trees tend to, in metres: h = a (1 - exp(-b t))^c, t in years. Without it "
+            "the greatest that the allometry gives.",
+     .flags = WD_KEY_EXCLUSIVE_MIN | WD_KEY_NAN_IF_ABSENT},
     {"height_b", WD_KEY_DOUBLE, GROWTH(height_b), 0, 20, "0.03", "Rate, per year.",
      .flags = WD_KEY_EXCLUSIVE_MIN},
     {"height_c", WD_KEY_DOUBLE, GROWTH(height_c), 0, 10, "1.3",
@@ -325,6 +328,23 @@ static bool check_leaf(const struct wd_species *species, const struct wd_keys_pl
     return true;
 }
 
+/* A tree that its own curves never reach has a stem and an age that say nothing. */
+static void check_curves(struct wd_species *species, const struct wd_keys_place *place)
+{
+    const struct wd_keys_place allometry = {place->reader, place, "allometry", 0};
+    const struct wd_keys_place growth = {place->reader, place, "growth", 0};
+    double typical_m = (double)species->typical_height_m;
+    double most_m = species->allometry.height_a + species->allometry.diameter_at_m;
+    if (isnan(species->growth.height_a))
+        species->growth.height_a = fmax(most_m, typical_m);
+    if (most_m < typical_m)
+        wd_keys_warn(&allometry, "height_a", "found %g; no stem is thick enough for typical_height_m, %g",
+                     species->allometry.height_a, typical_m);
+    if (species->growth.height_a < typical_m)
+        wd_keys_warn(&growth, "height_a", "found %g; no tree grows old enough for typical_height_m, %g",
+                     species->growth.height_a, typical_m);
+}
+
 static bool check_species(void *object, const struct wd_keys_place *place)
 {
     struct wd_species *species = object;
@@ -335,6 +355,7 @@ static bool check_species(void *object, const struct wd_keys_place *place)
         return wd_keys_error(place, "typical_height_m", "found %g; height_range_m allows %g to %g",
                              (double)species->typical_height_m, (double)species->height_range_m[0],
                              (double)species->height_range_m[1]);
+    check_curves(species, place);
     return true;
 }
 

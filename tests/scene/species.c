@@ -9,6 +9,7 @@
 #include "scene/species.h"
 
 #define NAMES "\"name\": \"own\", \"latin\": \"Arbor mea\", "
+#define ORDERS ", \"orders\": [{}]"
 
 struct fixture {
     struct wd_arena arena;
@@ -37,10 +38,40 @@ static void missing_orders_are_named(void **state)
     wd_arena_finish(&f.arena);
 }
 
+/* Without a site curve old trees are as high as the thickest. */
+static void heights_by_age_follow_the_allometry(void **state)
+{
+    (void)state;
+    struct fixture f = {0};
+    assert_true(read_species(&f, "{" NAMES "\"form\": \"broadleaf\", \"typical_height_m\": 80, \"height_range_m\": [1, 100],"
+                                 "\"allometry\": {\"height_a\": 95, \"height_b\": 0.02}" ORDERS "}"));
+    assert_true(wd_species_height_at_age_m(&f.species, 200) > 80);
+    assert_true(read_species(&f, "{" NAMES "\"form\": \"shrub\", \"typical_height_m\": 0.4, \"height_range_m\": [0.1, 1],"
+                                 "\"allometry\": {\"height_a\": 0.6, \"height_b\": 1, \"diameter_at_m\": 0}" ORDERS "}"));
+    assert_true(wd_species_height_at_age_m(&f.species, 200) < 0.61);
+    assert_int_equal(f.log.warnings, 0);
+    wd_arena_finish(&f.arena);
+}
+
+static void curves_too_low_for_the_tree_are_told(void **state)
+{
+    (void)state;
+    struct fixture f = {0};
+    assert_true(read_species(&f, "{" NAMES "\"form\": \"broadleaf\", \"typical_height_m\": 25,\n"
+                                 "\"allometry\": {\"height_a\": 10, \"height_b\": 0.04},\n"
+                                 "\"growth\": {\"height_a\": 3}" ORDERS "}"));
+    assert_true(logged(&f.log, "own.json:2:27: allometry.height_a: found 10; no stem is thick enough"));
+    assert_true(logged(&f.log, "own.json:3:24: growth.height_a: found 3; no tree grows old enough"));
+    assert_int_equal(f.log.warnings, 2);
+    wd_arena_finish(&f.arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(missing_orders_are_named),
+        cmocka_unit_test(heights_by_age_follow_the_allometry),
+        cmocka_unit_test(curves_too_low_for_the_tree_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
