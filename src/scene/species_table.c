@@ -93,7 +93,7 @@ static const struct wd_key leaf_keys[] = {
     {"stalk_cm", WD_KEY_FLOAT, IN(leaf, stalk_cm), 0, 300, "0",
      "Bare foot of a leaf, part of its length, in centimetres."},
     {"arch", WD_KEY_FLOAT, IN(leaf, arch), -1, 4, "0",
-     "Downward bend of a leaf from its foot to its tip, in radians."},
+     "Downward bend of a blade or a leaf in rows of leaflets from its foot to its tip, in radians."},
     {"phyllotaxis", WD_KEY_ENUM, IN(leaf, phyllotaxis), .fallback = "\"alternate\"",
      .doc = "How leaves sit on a twig.", .choices = phyllotaxes},
     {"needles", WD_KEY_ENUM, IN(leaf, needles), .fallback = "\"around\"",
@@ -111,7 +111,7 @@ static const struct wd_key leaf_keys[] = {
      "Width of a leaf or needle in centimetres.", .flags = WD_KEY_EXCLUSIVE_MIN},
     {"droop", WD_KEY_FLOAT, IN(leaf, droop), 0, 1, "0.3", "0 flat to the light, 1 hanging."},
     {"count", WD_KEY_INTEGER, IN(leaf, count), 0, 2000000, "20000",
-     "Leaves (or needle shoots) drawn on a tree of typical height."},
+     "Leaves (or needle shoots) drawn on a tree of typical height; 0: bare twigs as in winter, of snags none."},
     {"area_index", WD_KEY_FLOAT, IN(leaf, area_index), 0, 15, "4",
      "Leaf area, one side, over the area of the crown's projection.",
      .flags = WD_KEY_EXCLUSIVE_MIN},
@@ -132,7 +132,8 @@ static const struct wd_key leaf_keys[] = {
     {"evergreen", WD_KEY_BOOL, IN(leaf, evergreen), .fallback = "false",
      .doc = "Leaves stay and keep their colour through the year."},
     {"months", WD_KEY_FLOATS, IN(leaf, months), 1, 13, "[4.5, 11]",
-     "When leaves unfold and when the last ones fall: 4.5 is mid-April.", .length = 2},
+     "When leaves unfold and when the last ones fall: 4.5 is mid-April. North of the equator, as all months "
+     "here: south of it scenes turn them by half a year.", .length = 2},
     {"flexibility", WD_KEY_FLOAT, IN(leaf, flexibility), 0, 3, "0.4",
      "Turn of a leaf in a wind of 10 m/s, in radians."},
     {0},
@@ -141,7 +142,8 @@ static const struct wd_keys leaf_table = {"leaf", leaf_keys, SIZE(leaf), NULL};
 
 static const struct wd_key flower_keys[] = {
     {"count", WD_KEY_INTEGER, IN(flower, count), 0, 20000, "0",
-     "Flowers (or panicles, plumes) of a plant of typical height; 0 where none are to be seen."},
+     "Flowers (or panicles, plumes) of a plant of typical height; 0 where none are to be seen. The more petals, the "
+     "fewer are drawn: some 3,800 of 5 petals, 950 of 20."},
     {"size_cm", WD_KEY_FLOAT, IN(flower, size_cm), 0, 100, "5",
      "Diameter of a flower, length of a panicle or plume, in centimetres.",
      .flags = WD_KEY_EXCLUSIVE_MIN},
