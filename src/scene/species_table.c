@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "base/dmath.h"
+
 #define FIELD(member) offsetof(struct wd_species, member)
 #define IN(group, member) (offsetof(struct wd_species, group.member) - FIELD(group))
 #define SIZE(group) sizeof(((struct wd_species *)0)->group)
@@ -347,6 +349,22 @@ static void check_curves(struct wd_species *species, const struct wd_keys_place 
                      species->growth.height_a, typical_m);
 }
 
+/* Drawn leaves have the crown's leaf area among them: far too few are giants. Needles come as shoots. */
+static void check_leaf_count(const struct wd_species *species, const struct wd_keys_place *place)
+{
+    const struct wd_keys_place leaf = {place->reader, place, "leaf", 0};
+    enum { MOST_TIMES = 6 };
+    double crown_m = wd_species_crown_of_height_m(species, (double)species->typical_height_m);
+    double length_m = 0.01 * (double)species->leaf.length_cm, width_m = 0.01 * (double)species->leaf.width_cm;
+    double area_m2 = (double)species->leaf.area_index * WD_PI / 4 * crown_m * crown_m;
+    double times = sqrt(area_m2 / ((double)species->leaf.count * 0.6 * length_m * width_m));
+    if (species->order_count > 0 && species->leaf.shape != WD_LEAF_NEEDLES && species->leaf.count > 0 &&
+        times > MOST_TIMES)
+        wd_keys_warn(&leaf, "count", "found %lld; to have area_index, %g, so few leaves of %g x %g cm are drawn %.3g "
+                     "times as long", (long long)species->leaf.count, (double)species->leaf.area_index,
+                     (double)species->leaf.length_cm, (double)species->leaf.width_cm, times);
+}
+
 static bool check_species(void *object, const struct wd_keys_place *place)
 {
     struct wd_species *species = object;
@@ -358,6 +376,7 @@ static bool check_species(void *object, const struct wd_keys_place *place)
                              (double)species->typical_height_m, (double)species->height_range_m[0],
                              (double)species->height_range_m[1]);
     check_curves(species, place);
+    check_leaf_count(species, place);
     return true;
 }
 

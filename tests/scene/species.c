@@ -59,10 +59,27 @@ static void curves_too_low_for_the_tree_are_told(void **state)
     struct fixture f = {0};
     assert_true(read_species(&f, "{" NAMES "\"form\": \"broadleaf\", \"typical_height_m\": 25,\n"
                                  "\"allometry\": {\"height_a\": 10, \"height_b\": 0.04},\n"
-                                 "\"growth\": {\"height_a\": 3}" ORDERS "}"));
+                                 "\"growth\": {\"height_a\": 3}, \"leaf\": {\"count\": 0}" ORDERS "}"));
     assert_true(logged(&f.log, "own.json:2:27: allometry.height_a: found 10; no stem is thick enough"));
     assert_true(logged(&f.log, "own.json:3:24: growth.height_a: found 3; no tree grows old enough"));
     assert_int_equal(f.log.warnings, 2);
+    wd_arena_finish(&f.arena);
+}
+
+static void leaves_drawn_as_giants_are_told(void **state)
+{
+    (void)state;
+    struct fixture f = {0};
+    static const char *const leaves[] = {"\"count\": 60", "\"width_cm\": 0.05", "\"count\": 5000",
+                                         "\"count\": 60, \"shape\": \"needles\"", "\"count\": 0"};
+    for (size_t i = 0; i < sizeof leaves / sizeof *leaves; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "{" NAMES "\"form\": \"broadleaf\", \"typical_height_m\": 25,"
+                 "\"allometry\": {\"height_a\": 30, \"height_b\": 0.04}" ORDERS ",\n\"leaf\": {%s}}", leaves[i]);
+        assert_true(read_species(&f, text));
+        assert_int_equal(f.log.warnings, i < 2);
+        assert_true(i >= 2 || logged(&f.log, "leaf.count: found "));
+    }
     wd_arena_finish(&f.arena);
 }
 
@@ -72,6 +89,7 @@ int main(void)
         cmocka_unit_test(missing_orders_are_named),
         cmocka_unit_test(heights_by_age_follow_the_allometry),
         cmocka_unit_test(curves_too_low_for_the_tree_are_told),
+        cmocka_unit_test(leaves_drawn_as_giants_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
