@@ -158,7 +158,7 @@ static const struct wd_key flower_keys[] = {
     {"center_color", WD_KEY_COLOR, IN(flower, center_color), .fallback = "[0.55, 0.38, 0.05]",
      .doc = "Colour of the middle (linear albedo)."},
     {"months", WD_KEY_FLOATS, IN(flower, months), 1, 13, "[5, 6]",
-     "First and last month of the flowers; may run over the new year.", .length = 2},
+     "First and last month of the flowers: 5 ends with May, 5.4 within it; may run over the new year.", .length = 2},
     {0},
 };
 static const struct wd_keys flower_table = {"flower", flower_keys, SIZE(flower), NULL};

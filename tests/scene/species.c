@@ -66,6 +66,28 @@ static void curves_too_low_for_the_tree_are_told(void **state)
     wd_arena_finish(&f.arena);
 }
 
+static bool in_flower(const struct wd_species *species, float first, float last, double month)
+{
+    struct wd_species own = *species, in;
+    own.flower.count = 10;
+    own.flower.months[0] = first;
+    own.flower.months[1] = last;
+    return wd_species_in_month(&in, &own, month, NULL) && in.flower.count > 0;
+}
+
+static void flowers_last_as_long_as_their_months(void **state)
+{
+    (void)state;
+    struct fixture f = {0};
+    assert_true(read_species(&f, "{" NAMES "\"form\": \"broadleaf\", \"typical_height_m\": 20,"
+                                 "\"allometry\": {\"height_a\": 25, \"height_b\": 0.04}" ORDERS "}"));
+    assert_true(in_flower(&f.species, 4, 5, 5.9) && !in_flower(&f.species, 4, 5, 6));
+    assert_true(in_flower(&f.species, 4.2f, 4.9f, 4.8) && !in_flower(&f.species, 4.2f, 4.9f, 5));
+    assert_true(in_flower(&f.species, 11, 1, 1.9) && !in_flower(&f.species, 11, 1.5f, 1.9));
+    assert_true(in_flower(&f.species, 12, 12, 12.9));
+    wd_arena_finish(&f.arena);
+}
+
 static void leaves_drawn_as_giants_are_told(void **state)
 {
     (void)state;
@@ -89,6 +111,7 @@ int main(void)
         cmocka_unit_test(missing_orders_are_named),
         cmocka_unit_test(heights_by_age_follow_the_allometry),
         cmocka_unit_test(curves_too_low_for_the_tree_are_told),
+        cmocka_unit_test(flowers_last_as_long_as_their_months),
         cmocka_unit_test(leaves_drawn_as_giants_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
