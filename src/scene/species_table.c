@@ -375,6 +375,10 @@ static bool check_species(void *object, const struct wd_keys_place *place)
         return wd_keys_error(place, "typical_height_m", "found %g; height_range_m allows %g to %g",
                              (double)species->typical_height_m, (double)species->height_range_m[0],
                              (double)species->height_range_m[1]);
+    const struct wd_keys_place stems = {place->reader, place, "stems", 0};
+    if (species->stems.count > 1 && species->form != WD_FORM_SHRUB && species->form != WD_FORM_BRAMBLE)
+        wd_keys_warn(&stems, "count", "found %lld; a %s has one stem, shrubs and brambles have several",
+                     (long long)species->stems.count, forms[species->form]);
     check_curves(species, place);
     check_leaf_count(species, place);
     return true;

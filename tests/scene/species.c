@@ -88,6 +88,22 @@ static void flowers_last_as_long_as_their_months(void **state)
     wd_arena_finish(&f.arena);
 }
 
+static void stems_that_do_not_grow_are_told(void **state)
+{
+    (void)state;
+    struct fixture f = {0};
+    static const char *const forms[] = {"broadleaf", "shrub"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "{" NAMES "\"form\": \"%s\", \"typical_height_m\": 4, \"stems\": {\"count\": 3},"
+                 "\"allometry\": {\"height_a\": 5, \"height_b\": 0.1}" ORDERS "}", forms[i]);
+        assert_true(read_species(&f, text));
+        assert_int_equal(f.log.warnings, i == 0);
+        assert_true(i > 0 || logged(&f.log, "stems.count: found 3; a broadleaf has one stem"));
+    }
+    wd_arena_finish(&f.arena);
+}
+
 static void leaves_drawn_as_giants_are_told(void **state)
 {
     (void)state;
@@ -112,6 +128,7 @@ int main(void)
         cmocka_unit_test(heights_by_age_follow_the_allometry),
         cmocka_unit_test(curves_too_low_for_the_tree_are_told),
         cmocka_unit_test(flowers_last_as_long_as_their_months),
+        cmocka_unit_test(stems_that_do_not_grow_are_told),
         cmocka_unit_test(leaves_drawn_as_giants_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
