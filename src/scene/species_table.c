@@ -327,7 +327,7 @@ static bool check_leaf(const struct wd_species *species, const struct wd_keys_pl
                              (double)species->leaf.stalk_cm, (double)species->leaf.length_cm);
     if (!species->leaf.evergreen && species->leaf.months[0] >= species->leaf.months[1])
         return wd_keys_error(&leaf, "months", "leaves unfold in month %g and fall in month %g; "
-                                              "the first must be less",
+                                              "the first must be less, as north of the equator",
                              (double)species->leaf.months[0], (double)species->leaf.months[1]);
     return true;
 }

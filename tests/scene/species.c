@@ -104,6 +104,17 @@ static void stems_that_do_not_grow_are_told(void **state)
     wd_arena_finish(&f.arena);
 }
 
+/* Who writes down a tree of the south learns that its months are turned. */
+static void months_of_the_south_are_refused(void **state)
+{
+    (void)state;
+    struct fixture f = {0};
+    assert_false(read_species(&f, "{" NAMES "\"form\": \"broadleaf\", \"typical_height_m\": 20, \"leaf\": {\"months\": [11, 5]},"
+                                  "\"allometry\": {\"height_a\": 25, \"height_b\": 0.04}" ORDERS "}"));
+    assert_true(logged(&f.log, "leaf.months: leaves unfold in month 11 and fall in month 5; the first must be less, as north"));
+    wd_arena_finish(&f.arena);
+}
+
 static void leaves_drawn_as_giants_are_told(void **state)
 {
     (void)state;
@@ -129,6 +140,7 @@ int main(void)
         cmocka_unit_test(curves_too_low_for_the_tree_are_told),
         cmocka_unit_test(flowers_last_as_long_as_their_months),
         cmocka_unit_test(stems_that_do_not_grow_are_told),
+        cmocka_unit_test(months_of_the_south_are_refused),
         cmocka_unit_test(leaves_drawn_as_giants_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
