@@ -60,7 +60,7 @@ static const struct wd_key layer_keys[] = {
     {"patch_size_m", WD_KEY_DOUBLE, LAYER(patch_size_m), 0, 100000, "150",
      "Size of groves and clearings in metres.", .flags = WD_KEY_EXCLUSIVE_MIN},
     {"height_m", WD_KEY_RANGE, LAYER(height_m), 0, 130, "[14, 28]",
-     "Heights of trees, drawn evenly between, in metres.", .flags = WD_KEY_EXCLUSIVE_MIN},
+     "Heights of trees of any species, drawn evenly between, in metres.", .flags = WD_KEY_EXCLUSIVE_MIN},
     {"aspect", WD_KEY_RANGE, LAYER(aspect), 0.1, 10, "[0.85, 1.15]",
      "Crown width over that of the species at the tree's height, drawn evenly between."},
     {"tint", WD_KEY_DOUBLE, LAYER(tint), 0, 1, "0.3", "Spread of colour between trees."},

@@ -381,13 +381,29 @@ static bool may_hold(const struct wd_scene_inventory *inventory, const struct wd
     return first;
 }
 
-static void note_planted(struct wd_scene *scene)
+/* A layer of heather without heights of its own would be of 14 to 28 m. */
+static void tell_strange_heights(const struct loader *loader, const struct wd_species *species,
+                                 const struct wd_scene *scene, size_t layer)
+{
+    struct wd_keys_place list = {loader->root->reader, loader->root, "layers", 0};
+    struct wd_keys_place place = {loader->root->reader, &list, NULL, layer};
+    const float *wanted = scene->layers[layer].height_m, *range = species->height_range_m;
+    float middle = 0.5f * (wanted[0] + wanted[1]);
+    bool cut = species->clip_box_m[2] > 0, own = scene->layers[layer].placement == WD_PLACE_CANOPY;
+    if (!cut && !own && !(middle >= range[0] && middle <= range[1]))
+        wd_keys_warn(&place, "height_m", "trees of %g to %g m are planted; those of %.60s are %g to %g m high",
+                     (double)wanted[0], (double)wanted[1], species->name, (double)range[0], (double)range[1]);
+}
+
+static void note_planted(const struct loader *loader, struct wd_scene *scene)
 {
     for (size_t i = 0; i < scene->layer_count; i++)
         for (size_t j = 0; j < scene->layers[i].species_count; j++) {
             int index = wd_scene_find_species(scene, scene->layers[i].species[j].name);
-            if (index >= 0)
-                note_heights(&scene->species[index], &scene->layers[i]);
+            if (index < 0)
+                continue;
+            note_heights(&scene->species[index], &scene->layers[i]);
+            tell_strange_heights(loader, &scene->species[index], scene, i);
         }
     for (size_t i = 0; i < scene->species_file_count; i++)
         for (size_t j = 0; j < scene->inventory_count; j++)
@@ -406,7 +422,7 @@ bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *p
     ok = ok && cut_hedges(&loader, scene);
     ok = ok && set_openness(&loader, scene);
     if (ok)
-        note_planted(scene);
+        note_planted(&loader, scene);
     free(loader.own_latin);
     wd_latin_names_finish(&loader.latin);
     wd_species_folders_finish(&loader.folders);

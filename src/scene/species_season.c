@@ -29,9 +29,10 @@ static double mix(double a, double b, double t)
 static bool in_flower(const struct wd_species *species, double month)
 {
     double first = (double)species->flower.months[0], last = (double)species->flower.months[1];
+    double end = last == floor(last) ? last + 1 : last; /* 5: with May; 5.4: within it */
     if (first <= last)
-        return month >= first && month < last + 1;
-    return month >= first || month < last + 1;
+        return month >= first && month < end;
+    return month >= first || month < end;
 }
 
 static struct season season_of(const struct wd_species *species, double month)

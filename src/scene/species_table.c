@@ -1,5 +1,9 @@
 #include "scene/species.h"
 
+#include <math.h>
+
+#include "base/dmath.h"
+
 #define FIELD(member) offsetof(struct wd_species, member)
 #define IN(group, member) (offsetof(struct wd_species, group.member) - FIELD(group))
 #define SIZE(group) sizeof(((struct wd_species *)0)->group)
@@ -91,7 +95,7 @@ static const struct wd_key leaf_keys[] = {
     {"stalk_cm", WD_KEY_FLOAT, IN(leaf, stalk_cm), 0, 300, "0",
      "Bare foot of a leaf, part of its length, in centimetres."},
     {"arch", WD_KEY_FLOAT, IN(leaf, arch), -1, 4, "0",
-     "Downward bend of a leaf from its foot to its tip, in radians."},
+     "Downward bend of a blade or a leaf in rows of leaflets from its foot to its tip, in radians."},
     {"phyllotaxis", WD_KEY_ENUM, IN(leaf, phyllotaxis), .fallback = "\"alternate\"",
      .doc = "How leaves sit on a twig.", .choices = phyllotaxes},
     {"needles", WD_KEY_ENUM, IN(leaf, needles), .fallback = "\"around\"",
@@ -109,7 +113,7 @@ static const struct wd_key leaf_keys[] = {
      "Width of a leaf or needle in centimetres.", .flags = WD_KEY_EXCLUSIVE_MIN},
     {"droop", WD_KEY_FLOAT, IN(leaf, droop), 0, 1, "0.3", "0 flat to the light, 1 hanging."},
     {"count", WD_KEY_INTEGER, IN(leaf, count), 0, 2000000, "20000",
-     "Leaves (or needle shoots) drawn on a tree of typical height."},
+     "Leaves (or needle shoots) drawn on a tree of typical height; 0: bare twigs as in winter, of snags none."},
     {"area_index", WD_KEY_FLOAT, IN(leaf, area_index), 0, 15, "4",
      "Leaf area, one side, over the area of the crown's projection.",
      .flags = WD_KEY_EXCLUSIVE_MIN},
@@ -130,7 +134,8 @@ static const struct wd_key leaf_keys[] = {
     {"evergreen", WD_KEY_BOOL, IN(leaf, evergreen), .fallback = "false",
      .doc = "Leaves stay and keep their colour through the year."},
     {"months", WD_KEY_FLOATS, IN(leaf, months), 1, 13, "[4.5, 11]",
-     "When leaves unfold and when the last ones fall: 4.5 is mid-April.", .length = 2},
+     "When leaves unfold and when the last ones fall: 4.5 is mid-April. North of the equator, as all months "
+     "here: south of it scenes turn them by half a year.", .length = 2},
     {"flexibility", WD_KEY_FLOAT, IN(leaf, flexibility), 0, 3, "0.4",
      "Turn of a leaf in a wind of 10 m/s, in radians."},
     {0},
@@ -139,7 +144,8 @@ static const struct wd_keys leaf_table = {"leaf", leaf_keys, SIZE(leaf), NULL};
 
 static const struct wd_key flower_keys[] = {
     {"count", WD_KEY_INTEGER, IN(flower, count), 0, 20000, "0",
-     "Flowers (or panicles, plumes) of a plant of typical height; 0 where none are to be seen."},
+     "Flowers (or panicles, plumes) of a plant of typical height; 0 where none are to be seen. The more petals, the "
+     "fewer are drawn: some 3,800 of 5 petals, 950 of 20."},
     {"size_cm", WD_KEY_FLOAT, IN(flower, size_cm), 0, 100, "5",
      "Diameter of a flower, length of a panicle or plume, in centimetres.",
      .flags = WD_KEY_EXCLUSIVE_MIN},
@@ -152,7 +158,7 @@ static const struct wd_key flower_keys[] = {
     {"center_color", WD_KEY_COLOR, IN(flower, center_color), .fallback = "[0.55, 0.38, 0.05]",
      .doc = "Colour of the middle (linear albedo)."},
     {"months", WD_KEY_FLOATS, IN(flower, months), 1, 13, "[5, 6]",
-     "First and last month of the flowers; may run over the new year.", .length = 2},
+     "First and last month of the flowers: 5 ends with May, 5.4 within it; may run over the new year.", .length = 2},
     {0},
 };
 static const struct wd_keys flower_table = {"flower", flower_keys, SIZE(flower), NULL};
@@ -205,9 +211,10 @@ static const struct wd_keys allometry_table = {"allometry", allometry_keys,
 
 #define GROWTH(member) offsetof(struct wd_site_curve, member)
 static const struct wd_key growth_keys[] = {
-    {"height_a", WD_KEY_DOUBLE, GROWTH(height_a), 0, 150, "30",
-     "Height that old trees tend to, in metres: h = a (1 - exp(-b t))^c, t in years.",
-     .flags = WD_KEY_EXCLUSIVE_MIN},
+    {"height_a", WD_KEY_DOUBLE, GROWTH(height_a), 0, 150,
+     .doc = "Height that old trees tend to, in metres: h = a (1 - exp(-b t))^c, t in years. Without it "
+            "the greatest that the allometry gives.",
+     .flags = WD_KEY_EXCLUSIVE_MIN | WD_KEY_NAN_IF_ABSENT},
     {"height_b", WD_KEY_DOUBLE, GROWTH(height_b), 0, 20, "0.03", "Rate, per year.",
      .flags = WD_KEY_EXCLUSIVE_MIN},
     {"height_c", WD_KEY_DOUBLE, GROWTH(height_c), 0, 10, "1.3",
@@ -295,9 +302,11 @@ static bool check_orders(const struct wd_species *species, const struct wd_keys_
     if (bare && species->order_count > 0)
         return wd_keys_error(place, "orders", "found %zu orders of branches; a %s has none",
                              species->order_count, forms[species->form]);
+    if (!bare && !species->orders)
+        return wd_keys_error(place, NULL, "\"orders\" is missing; a %s has 1 to 3 orders of branches: "
+                             "[ { ... }, ... ]", forms[species->form]);
     if (!bare && (species->order_count < 1 || species->order_count > 3))
-        return wd_keys_error(place, species->order_count ? "orders" : NULL,
-                             "found %zu orders of branches; a %s has 1 to 3",
+        return wd_keys_error(place, "orders", "found %zu orders of branches; a %s has 1 to 3",
                              species->order_count, forms[species->form]);
     return true;
 }
@@ -318,9 +327,42 @@ static bool check_leaf(const struct wd_species *species, const struct wd_keys_pl
                              (double)species->leaf.stalk_cm, (double)species->leaf.length_cm);
     if (!species->leaf.evergreen && species->leaf.months[0] >= species->leaf.months[1])
         return wd_keys_error(&leaf, "months", "leaves unfold in month %g and fall in month %g; "
-                                              "the first must be less",
+                                              "the first must be less, as north of the equator",
                              (double)species->leaf.months[0], (double)species->leaf.months[1]);
     return true;
+}
+
+/* A tree that its own curves never reach has a stem and an age that say nothing. */
+static void check_curves(struct wd_species *species, const struct wd_keys_place *place)
+{
+    const struct wd_keys_place allometry = {place->reader, place, "allometry", 0};
+    const struct wd_keys_place growth = {place->reader, place, "growth", 0};
+    double typical_m = (double)species->typical_height_m;
+    double most_m = species->allometry.height_a + species->allometry.diameter_at_m;
+    if (isnan(species->growth.height_a))
+        species->growth.height_a = fmax(most_m, typical_m);
+    if (most_m < typical_m)
+        wd_keys_warn(&allometry, "height_a", "found %g; no stem is thick enough for typical_height_m, %g",
+                     species->allometry.height_a, typical_m);
+    if (species->growth.height_a < typical_m)
+        wd_keys_warn(&growth, "height_a", "found %g; no tree grows old enough for typical_height_m, %g",
+                     species->growth.height_a, typical_m);
+}
+
+/* Drawn leaves have the crown's leaf area among them: far too few are giants. Needles come as shoots. */
+static void check_leaf_count(const struct wd_species *species, const struct wd_keys_place *place)
+{
+    const struct wd_keys_place leaf = {place->reader, place, "leaf", 0};
+    enum { MOST_TIMES = 6 };
+    double crown_m = wd_species_crown_of_height_m(species, (double)species->typical_height_m);
+    double length_m = 0.01 * (double)species->leaf.length_cm, width_m = 0.01 * (double)species->leaf.width_cm;
+    double area_m2 = (double)species->leaf.area_index * WD_PI / 4 * crown_m * crown_m;
+    double times = sqrt(area_m2 / ((double)species->leaf.count * 0.6 * length_m * width_m));
+    if (species->order_count > 0 && species->leaf.shape != WD_LEAF_NEEDLES && species->leaf.count > 0 &&
+        times > MOST_TIMES)
+        wd_keys_warn(&leaf, "count", "found %lld; to have area_index, %g, so few leaves of %g x %g cm are drawn %.3g "
+                     "times as long", (long long)species->leaf.count, (double)species->leaf.area_index,
+                     (double)species->leaf.length_cm, (double)species->leaf.width_cm, times);
 }
 
 static bool check_species(void *object, const struct wd_keys_place *place)
@@ -333,6 +375,12 @@ static bool check_species(void *object, const struct wd_keys_place *place)
         return wd_keys_error(place, "typical_height_m", "found %g; height_range_m allows %g to %g",
                              (double)species->typical_height_m, (double)species->height_range_m[0],
                              (double)species->height_range_m[1]);
+    const struct wd_keys_place stems = {place->reader, place, "stems", 0};
+    if (species->stems.count > 1 && species->form != WD_FORM_SHRUB && species->form != WD_FORM_BRAMBLE)
+        wd_keys_warn(&stems, "count", "found %lld; a %s has one stem, shrubs and brambles have several",
+                     (long long)species->stems.count, forms[species->form]);
+    check_curves(species, place);
+    check_leaf_count(species, place);
     return true;
 }
 

@@ -323,16 +323,32 @@ static void lift_leaf(struct wd_leaf *leaf, float reach)
     leaf->normal = wd_v3_square(leaf->normal, leaf->axis);
 }
 
-static void scale_leaves(struct wd_foliage *foliage, const struct wd_species *species,
-                         float area_m2)
+/* Few or narrow leaves that would have to be longer than this share of the tree to have its leaf area leave it less. */
+#define LONGEST_LEAF 0.25f
+
+static float longest_leaf_m(const struct wd_tree_form *form)
 {
-    float unit = wd_leaf_unit_area(species), sum = 0;
-    for (size_t i = 0; i < foliage->count; i++)
+    const struct wd_species *species = form->species;
+    bool needles = species->leaf.shape == WD_LEAF_NEEDLES;
+    float own_m = 0.01f * (needles ? species->leaf.shoot_cm : species->leaf.length_cm);
+    return wd_maxf(LONGEST_LEAF * form->height_m, 1.5f * own_m);
+}
+
+static void scale_leaves(struct wd_foliage *foliage, const struct wd_tree_form *form, float area_m2)
+{
+    float unit = wd_leaf_unit_area(form->species), sum = 0, longest = 0;
+    for (size_t i = 0; i < foliage->count; i++) {
         sum += unit * foliage->leaves[i].size_m * foliage->leaves[i].size_m;
-    float grow = sum > 0 ? sqrtf(area_m2 / sum) : 0;
+        longest = wd_maxf(longest, foliage->leaves[i].size_m);
+    }
+    float grow = sum > 0 ? sqrtf(area_m2 / sum) : 0, most_m = longest_leaf_m(form);
+    if (grow * longest > most_m) {
+        grow = most_m / longest;
+        area_m2 = grow * grow * sum;
+    }
     for (size_t i = 0; i < foliage->count; i++)
         foliage->leaves[i].size_m *= grow;
-    float reach = wd_foliage_reach(foliage, species);
+    float reach = wd_foliage_reach(foliage, form->species);
     for (size_t i = 0; i < foliage->count; i++)
         lift_leaf(&foliage->leaves[i], reach);
     foliage->area_m2 = area_m2;
@@ -473,7 +489,7 @@ void wd_foliage_grow(struct wd_foliage *foliage, const struct wd_skeleton *skele
     }
     place_leaves(foliage, skeleton, form, &carriers, wanted);
     free(carriers.items);
-    scale_leaves(foliage, form->species, area);
+    scale_leaves(foliage, form, area);
     order_leaves(foliage, form->key);
     if (!flowers_before_leaves(form->species))
         choose_flowers(foliage, form, foliage->leaves, foliage->count);

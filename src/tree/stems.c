@@ -15,6 +15,9 @@ float wd_tree_trunk_end(const struct wd_tree_form *form)
     return leader > 0.85f ? 1 : wd_mixf(grown, 1, form->youth);
 }
 
+/* Of one step of a trunk, in shares of its length: more would turn it down to the ground. */
+#define MOST_BEND 0.4f
+
 /* The trunk keeps upright as far as it goes. */
 static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
@@ -32,7 +35,7 @@ static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *
     for (int i = 1; i <= TRUNK_STEPS; i++) {
         float inside = wd_smoothf(form->crown_base_m, form->height_m, p.z);
         drift = wd_v3_mad(wd_v3_scale(drift, 0.45f), wd_random_vec3(&random), 1);
-        float bend = species->trunk_wander * (1 + 4 * loose * inside) * step;
+        float bend = wd_minf(species->trunk_wander * (1 + 4 * loose * inside) * step, MOST_BEND);
         d = wd_v3_mad(d, drift, bend);
         d = wd_v3_add(d, WD_V3(-0.03f * p.x * step, -0.03f * p.y * step, 0.10f * step));
         d = wd_v3_unit(d);

@@ -136,6 +136,17 @@ struct wrong {
     const char *text, *message;
 };
 
+static void heights_of_other_species_are_told(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"layers\": [{\"species\": {\"oak\": 1}},\n{\"species\": {\"fern\": 1}}]}"));
+    assert_true(logged(&f->log, ":2:1: layers[1].height_m: trees of 14 to 28 m are planted; those of fern are"));
+    assert_int_equal(f->log.warnings, 1);
+    assert_true(load(f, "{\"layers\": [{\"species\": {\"fern\": 1}, \"height_m\": [0.5, 1]}, {\"species\": {\"hedge\":"
+                        " 1}}], \"species\": {\"hedge\": \"beech\"}, \"clips\": {\"hedge\": {\"box_m\": [2, 1, 1.8]}}}"));
+    assert_int_equal(f->log.warnings, 0);
+}
+
 static void unknown_species_are_errors(void **state)
 {
     struct fixture *f = *state;
@@ -530,6 +541,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(species_are_found_and_loaded, setup, teardown),
         cmocka_unit_test_setup_teardown(species_by_latin_names, setup, teardown),
         cmocka_unit_test_setup_teardown(latin_names_stay_what_they_mean, setup, teardown),
+        cmocka_unit_test_setup_teardown(heights_of_other_species_are_told, setup, teardown),
         cmocka_unit_test_setup_teardown(unknown_species_are_errors, setup, teardown),
         cmocka_unit_test_setup_teardown(checks_across_keys_hold, setup, teardown),
         cmocka_unit_test_setup_teardown(refused_ground_is_told_once, setup, teardown),

@@ -127,6 +127,37 @@ static void a_stem_stands_on_a_sound_foot(void **state)
     wd_arena_finish(&arena);
 }
 
+/* Whose leaf area would take leaves as long as the tree: few ones, or a width in the wrong unit. */
+static void leaves_are_shorter_than_the_tree(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    for (int i = 0; i < 2; i++) {
+        struct wd_species species = test_species(&arena, "oak");
+        species.leaf.count = i == 0 ? 8 : 200;
+        species.leaf.width_cm = i == 0 ? 6.5f : 1e-3f;
+        struct wd_tree_model model = test_grow_tree(&species, 1, 0, 0);
+        assert_true(model.full.index_count > model.full.wood_index_count);
+        assert_true(model.full.min_m[2] > -0.05f * model.height_m);
+        assert_true(model.full.max_m[0] - model.full.min_m[0] < 0.9f * model.height_m);
+        wd_tree_model_finish(&model);
+    }
+    wd_arena_finish(&arena);
+}
+
+static void trunks_that_wander_stay_above_their_foot(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    struct wd_species species = test_species(&arena, "oak");
+    species.trunk_wander = 2;
+    struct wd_tree_model model = test_grow_tree(&species, 1, 0, 0);
+    assert_true(model.full.min_m[2] > -0.05f * model.height_m);
+    assert_true(model.full.max_m[0] - model.full.min_m[0] < 2 * model.height_m);
+    wd_tree_model_finish(&model);
+    wd_arena_finish(&arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -134,6 +165,8 @@ int main(void)
         cmocka_unit_test(a_stem_stands_on_a_sound_foot),
         cmocka_unit_test(crowded_species_are_bounded),
         cmocka_unit_test(flowers_that_do_not_fit_are_left_out),
+        cmocka_unit_test(leaves_are_shorter_than_the_tree),
+        cmocka_unit_test(trunks_that_wander_stay_above_their_foot),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
