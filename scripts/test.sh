@@ -38,10 +38,9 @@ meson introspect "$build" --tests | grep -q '"name"' ||
 scripts/build.sh "$build"
 
 # Tests of windows wait, and linkers and many tests have one thread: the other build fills the processors
-# meanwhile. The longest tests fill two each: more than half as many as there are processors only wait for another.
+# meanwhile.
 step 'sanitizers and second compiler' scripts/test-sanitizers.sh >"$scratch/others" 2>&1 </dev/null &
-step release meson test -C "$build" --no-rebuild --print-errorlogs \
-    --num-processes $((($(nproc) + 1) / 2))
+step release meson test -C "$build" --no-rebuild --print-errorlogs
 echo 'waiting for the sanitizers'
 wait $!
 cat "$scratch/others"

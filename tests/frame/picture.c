@@ -10,6 +10,7 @@
 #include "forest/sky.h"
 #include "frame/uniforms.h"
 #include "world/placement.h"
+#include "world/sun.h"
 
 static void set_weather(struct wd_scene *scene)
 {
@@ -180,6 +181,7 @@ static bool draw_sample(struct picture_test *test, const struct wd_camera *camer
         .forest = &test->forest,
         .camera = *camera,
         .previous_camera = test->previous_camera ? *test->previous_camera : *camera,
+        .sun = wd_sun_of(&test->scene),
         .width = test->targets.width,
         .height = test->targets.height,
         .shadow_size = 64,

@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "world/sun.h"
 
 /* One device for all tests that ask for the same, with the pipelines that it keeps. */
 enum { MOST_DEVICES = 4 };
@@ -108,6 +109,7 @@ static void record(struct frame_test *test, const char *method, uint32_t camera,
         .forest = &test->forest,
         .method = wd_method_find(method),
         .camera = camera_of(&test->scene.cameras[camera]),
+        .sun = wd_sun_of(&test->scene),
         .width = 320,
         .height = test->height ? test->height : 240,
         .samples = 1,
