@@ -28,6 +28,27 @@ void cli_help_program(FILE *to)
                 "'weald COMMAND --help' tells all about a command.\n");
 }
 
+enum { COLUMNS = 80, TEXT_COLUMN = 28 };
+
+/* From the text's column on, where further lines begin, too. */
+static void print_words(FILE *to, const char *text)
+{
+    for (int column = TEXT_COLUMN; *text;) {
+        int length = (int)strcspn(text, " ");
+        if (column > TEXT_COLUMN && column + 1 + length > COLUMNS) {
+            fprintf(to, "\n%*s", TEXT_COLUMN, "");
+            column = TEXT_COLUMN;
+        } else if (column > TEXT_COLUMN) {
+            fputc(' ', to);
+            column++;
+        }
+        fprintf(to, "%.*s", length, text);
+        column += length;
+        text += length + strspn(text + length, " ");
+    }
+    fputc('\n', to);
+}
+
 static void print_option(FILE *to, const struct cli_option *option)
 {
     char left[64];
@@ -36,7 +57,9 @@ static void print_option(FILE *to, const struct cli_option *option)
         snprintf(letter, sizeof letter, "-%c, ", option->letter);
     snprintf(left, sizeof left, "%s--%s%s%s", letter, option->name, option->value ? " " : "",
              option->value ? option->value : "");
-    fprintf(to, "  %-25s %s\n", left, option->help);
+    if (fprintf(to, "  %-*s ", TEXT_COLUMN - 3, left) > TEXT_COLUMN)
+        fprintf(to, "\n%*s", TEXT_COLUMN, "");
+    print_words(to, option->help);
 }
 
 void cli_help_command(FILE *to, const struct cli_command *command)

@@ -10,6 +10,8 @@ expect 0 '^weald [0-9]+\.[0-9]+' --version
 expect 0 'weald render scenes/valley.json' --help
 for command in render grow export view info check batch schema devices bench methods manual; do
     expect 0 '^Examples:' "$command" --help
+    cp "$scratch/output" "$scratch/help"
+    check 'whose options fit 80 columns' sh -c "! sed -n '/^Options:/,/^\$/p' '$scratch/help' | grep -E '.{81}'"
     expect 0 '^  weald ' "$command" -h
 done
 expect 2 'no command rendr, did you mean render\?' rendr "$tiny"
