@@ -324,11 +324,17 @@ static void print_cell(double value, const char *format, int width)
     printf(" %*s", width, text);
 }
 
+/* Of the column of errors; 0: the suite measures none. */
+static int error_width(const struct bench *bench)
+{
+    int length = (int)strlen(bench_column_name(bench->metric)), width = length > 10 ? length : 10;
+    return bench->suite->measures & (BENCH_ERROR | BENCH_POPPING) ? width : 0;
+}
+
 void bench_print_table(const struct bench *bench)
 {
-    const bool errors = bench->suite->measures & (BENCH_ERROR | BENCH_POPPING);
     const char *metric = bench_column_name(bench->metric);
-    const int width = strlen(metric) > 10 ? (int)strlen(metric) : 10;
+    const int width = error_width(bench);
     char last[160] = "";
     for (size_t i = 0; i < bench->row_count; i++) {
         const struct bench_row *row = &bench->rows[i];
@@ -339,7 +345,7 @@ void bench_print_table(const struct bench *bench)
                    row->values[BENCH_TREES], row->values[BENCH_START_S]);
             printf("%-12s %10s %8s %8s %8s %8s %10s %10s", "method", "median ms", "p95 ms", "GPU ms", "CPU ms", "draws",
                    "triangles", "device MB");
-            if (errors)
+            if (width)
                 printf(" %*s", width, metric);
             printf("\n");
         }
@@ -352,7 +358,7 @@ void bench_print_table(const struct bench *bench)
         print_cell(row->values[BENCH_DRAWS], "%.0f", 8);
         print_cell(row->values[BENCH_TRIANGLES], "%.0f", 10);
         print_cell(row->values[BENCH_DEVICE_MB], "%.0f", 10);
-        if (errors)
+        if (width)
             print_cell(row->values[bench->metric], "%.4f", width);
         printf("\n");
     }
@@ -360,13 +366,12 @@ void bench_print_table(const struct bench *bench)
 
 void bench_print_against(const struct bench *bench, const struct bench *earlier)
 {
-    const bool errors = bench->suite->measures & (BENCH_ERROR | BENCH_POPPING);
     const char *metric = bench_column_name(bench->metric);
-    const int width = strlen(metric) > 10 ? (int)strlen(metric) : 10;
+    const int width = error_width(bench);
     size_t found = 0;
     printf("\nBeside %s:\n%-24s %-12s %10s %10s %6s", earlier->directory, "scene, camera", "method", "median ms", "before",
            "ratio");
-    if (errors)
+    if (width)
         printf(" %*s %10s %10s", width, metric, "before", "difference");
     printf("\n");
     for (size_t i = 0; i < bench->row_count; i++) {
@@ -381,7 +386,7 @@ void bench_print_against(const struct bench *bench, const struct bench *earlier)
         print_cell(now->values[BENCH_FRAME_MS], "%.1f", 10);
         print_cell(before->values[BENCH_FRAME_MS], "%.1f", 10);
         print_cell(now->values[BENCH_FRAME_MS] / before->values[BENCH_FRAME_MS], "%.2f", 6);
-        if (errors) {
+        if (width) {
             print_cell(now->values[bench->metric], "%.4f", width);
             print_cell(before->values[bench->metric], "%.4f", 10);
             print_cell(now->values[bench->metric] - before->values[bench->metric], "%+.4f", 10);

@@ -1,17 +1,17 @@
 #include "clock.h"
 
-#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* "HH:MM" at the beginning of a text; false where it is not. */
 static bool parse_hour(const char *text, double *hour)
 {
-    unsigned hours, minutes;
-    int length = 0;
-    if (sscanf(text, "%2u:%2u%n", &hours, &minutes, &length) != 2 || length != 5 || minutes > 59 ||
-        60 * hours + minutes > 24 * 60)
+    static const char digits[] = "0123456789";
+    if (strspn(text, digits) != 2 || text[2] != ':' || strspn(text + 3, digits) != 2)
         return false;
+    int hours = atoi(text), minutes = atoi(text + 3);
     *hour = hours + minutes / 60.0;
-    return true;
+    return minutes < 60 && *hour <= 24;
 }
 
 /* From and to; a range that goes back ends on the next day. */

@@ -78,12 +78,12 @@ static enum wd_result check_output(const struct cli_film *film)
                                   &film->session->log);
 }
 
-/* NULL: where the scene has it. */
-static enum wd_result frame_sun(const struct cli_film *film, uint64_t frame, struct wd_sun *place, const struct wd_sun **sun)
+/* With --clock. */
+static enum wd_result frame_sun(const struct cli_film *film, uint64_t frame, struct wd_sun *sun)
 {
     uint64_t last = film->frame_count - 1;
-    *sun = film->session->options->clock ? place : NULL;
-    return *sun ? cli_clock_sun(film->session, film->forest, last ? (double)frame / (double)last : 0, place) : WD_OK;
+    double share = last ? (double)frame / (double)last : 0;
+    return film->session->options->clock ? cli_clock_sun(film->session, film->forest, share, sun) : WD_OK;
 }
 
 enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
@@ -93,9 +93,8 @@ enum wd_result cli_film_open(struct cli_film *film, struct cli_session *session,
     film->budget = wd_budget_of(session->options->budget_ms);
     if (!settle_frames(film) || !settle_only(film))
         return WD_ERROR_INPUT;
-    struct wd_sun place;
-    const struct wd_sun *sun;
-    enum wd_result result = frame_sun(film, 0, &place, &sun);
+    struct wd_sun sun;
+    enum wd_result result = frame_sun(film, 0, &sun);
     if (result == WD_OK)
         result = check_output(film);
     if (result != WD_OK)
@@ -165,10 +164,11 @@ static enum wd_result shoot_frame(struct cli_film *film, struct cli_painter *pai
     struct wd_render_params params = film->plan->params;
     struct wd_camera previous;
     struct wd_picture picture = {0};
-    struct wd_sun place;
+    struct wd_sun sun;
     enum wd_result result = frame_camera(film, frame, &params.camera);
     if (result == WD_OK)
-        result = frame_sun(film, frame, &place, &params.sun);
+        result = frame_sun(film, frame, &sun);
+    params.sun = film->session->options->clock ? &sun : NULL;
     if (result == WD_OK)
         result = previous_camera(film, frame, &params.camera, &previous);
     if (film->session->options->budget_ms > 0)

@@ -28,8 +28,8 @@ struct wd_forest_params {
     struct wd_log log;
 };
 
-/* Reads the scene, makes the ground and plants every tree. A forest does not change: for another hour, season or
- * weather make another, with other settings. The same scene and seed give the same
+/* Reads the scene, makes the ground and plants every tree. A forest does not change: for another season or weather
+ * make another, with other settings; pictures may have another sun. The same scene and seed give the same
  * forest on any machine, compiler and number of threads. Takes about a second for a million trees.
  *   forest  receives the new object, NULL on failure; destroy with wd_forest_destroy
  *   params  read during the call only
@@ -156,8 +156,8 @@ struct wd_sun {
 struct wd_sun wd_forest_sun(const struct wd_forest *forest);
 /* Whether pictures may have it elsewhere: not under a sky map, whose light does not move. */
 bool wd_forest_sun_moves(const struct wd_forest *forest);
-/* Where it stands at an hour of the scene's clock on its date, -24..48: before 0 and past 24 it is another day. WD_ERROR_INPUT
- * where the scene has no date, latitude or longitude. */
+/* Where it stands at an hour of the scene's clock on its date, -24..48: before 0 and past 24 it is another day.
+ * WD_ERROR_INPUT where the scene has no date, latitude or longitude. */
 enum wd_result wd_forest_sun_at(const struct wd_forest *forest, double hour, struct wd_sun *sun);
 /* Where it will stand `hours` later (earlier, below 0) on its way of a day about the sky's pole at the scene's latitude,
  * 45 degrees north where it has none. */

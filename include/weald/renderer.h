@@ -112,8 +112,9 @@ struct wd_render_params {
                                are chosen alike. */
     /* WD_ACCUMULATE: one jittered sample, laid over what the pictures before this one of the same renderer,
      * method, view and size have shown of the same surfaces: moved along with camera and wind, and begun
-     * anew where something else has come into view, and whole where the sun stands elsewhere. For live views; `samples`, previous_camera and
-     * previous_time_s are not used. A still camera in a still world comes to the picture of many samples. */
+     * anew where something else has come into view, and whole where the sun stands elsewhere. For live views;
+     * `samples`, previous_camera and previous_time_s are not used. A still camera in a still world comes to the
+     * picture of many samples. */
     enum wd_accumulation accumulation;
     enum wd_time_mode timing; /* per-pass times, at some cost */
 };
@@ -242,9 +243,9 @@ enum wd_result wd_film_open(struct wd_film **film, const struct wd_film_params *
  * wd_film_commit. What wd_film_keep has kept by then stays. */
 enum wd_result wd_film_add(struct wd_film *film, const struct wd_picture *picture);
 /* Keeps finished frames, or for numbered pictures their checksums, in PATH.partial (PATH.FIRST.partial where `first_frame`
- * is above 0) until the film has `frame_count` of them: a film that was stopped or killed can be gone on with. `key` is a hash of all
- * that the frames follow from (wd_renderer_key, wd_forest_key, and what the caller chose). To be called
- * once, before the first frame. A film of 3840 x 2160 takes about 15 MB a frame.
+ * is above 0) until the film has `frame_count` of them: a film that was stopped or killed can be gone on with.
+ * `key` is a hash of all that the frames follow from (wd_renderer_key, wd_forest_key, and what the caller chose).
+ * To be called once, before the first frame. A film of 3840 x 2160 takes about 15 MB a frame.
  * Errors: WD_ERROR_INPUT (a second time, or after a frame); WD_ERROR_OUTPUT, also where PATH.partial is of
  * another key, or in use. */
 enum wd_result wd_film_keep(struct wd_film *film, uint64_t key, uint64_t frame_count);

@@ -257,8 +257,8 @@ const char *wd_scene_table_advice(const char *path);
 bool wd_scene_text_is_species(const char *path, const char *text, size_t size);
 void wd_scene_finish(struct wd_scene *scene);
 
-/* The sun's place at an hour of the scene's clock on its date; below 0 or over 24 is another day. False: the scene has no date,
- * latitude or longitude. */
+/* The sun's place at an hour of the scene's clock on its date; below 0 or over 24 is another day. False: the
+ * scene has no date, latitude or longitude. */
 bool wd_scene_sun_at(const struct wd_scene *scene, double hour, double *azimuth_deg, double *elevation_deg);
 
 const struct wd_scene_camera *wd_scene_find_camera(const struct wd_scene *scene, const char *name);

@@ -65,7 +65,9 @@ jq '.time = {date: "2026-06-21", latitude_deg: 48, longitude_deg: 11} | del(.sun
     expect 0 . render $day -o "$out/noon.png" --clock 12:00
     expect 0 . render $day -o "$out/clock.png" --set time.clock=12:00
     expect 2 'no hour like 17:30' render $day -o "$out/none.png" --clock 25:00
-    expect 2 'no hour like 17:30' render $day -o "$out/none.png" --clock 7
+    for hour in 7 -0:30 +7:30 07:60 24:01 07:30- 05:00-7:00 05:00-07:00x; do
+        expect 2 'no hour like 17:30' render $day -o "$out/none.png" "--clock=$hour"
+    done
     expect 2 'a still has one hour' render $day -o "$out/none.png" --clock 05:00-09:00
     expect 1 'needs date, latitude_deg' render "$scratch/keys.json" $size -o "$out/none.png" --clock 12:00
 }
