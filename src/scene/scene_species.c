@@ -19,6 +19,7 @@ struct loader {
     struct wd_species_folders folders; /* where species without a file are looked for */
     struct wd_latin_names latin;       /* of those, once they are asked for */
     bool has_latin;
+    size_t made_first; /* from here on: what "in_the_open" has made of the file of another */
     const char **own_latin; /* of files, as far as it was asked for; NULL: has none */
     size_t own_count, own_capacity;
 };
@@ -30,6 +31,14 @@ static bool has(const struct loader *loader, const char *name)
             return true;
     }
     return false;
+}
+
+static const char *file_of(const struct loader *loader, const char *name)
+{
+    size_t i = 0;
+    while (strcmp(loader->files[i].name, name) != 0)
+        i++;
+    return loader->files[i].value;
 }
 
 static void add(struct loader *loader, const char *name, const char *file)
@@ -255,6 +264,23 @@ static bool take_inventories(struct loader *loader, const struct wd_scene *scene
     return ok;
 }
 
+/* What stands for a species in the open is of the same file where the scene does not say another. */
+static bool take_in_the_open(struct loader *loader, struct wd_scene *scene)
+{
+    struct wd_keys_place map = {loader->root->reader, loader->root, "in_the_open", 0};
+    bool ok = true;
+    loader->made_first = loader->count;
+    for (size_t i = 0; i < scene->in_the_open_count; i++) {
+        struct wd_string_pair *pair = &scene->in_the_open[i];
+        const char *own = has(loader, pair->name) ? pair->name : find_own_latin(loader, pair->name);
+        if (!own)
+            ok = wd_keys_error(&map, pair->name, "no layer or inventory has the species \"%.60s\"", pair->name);
+        else if (pair->value && !has(loader, pair->value))
+            add(loader, pair->value, file_of(loader, own));
+    }
+    return ok;
+}
+
 static bool load_all(struct loader *loader, struct wd_scene *scene)
 {
     struct wd_arena *arena = wd_keys_arena(loader->root);
@@ -343,6 +369,8 @@ static bool set_openness(const struct loader *loader, struct wd_scene *scene)
 {
     struct wd_keys_place map = {loader->root->reader, loader->root, "openness", 0};
     bool ok = true;
+    for (size_t i = loader->made_first; i < loader->count; i++)
+        scene->species[i].openness = WD_OPEN_OPENNESS;
     for (size_t i = 0; i < scene->openness_count; i++) {
         const struct wd_number_pair *given = &scene->openness[i];
         int index = find_species(scene, given->name);
@@ -351,6 +379,28 @@ static bool set_openness(const struct loader *loader, struct wd_scene *scene)
                                "no layer or inventory has the species \"%.60s\"", given->name);
         else
             scene->species[index].openness = (float)given->value;
+    }
+    return ok;
+}
+
+static bool link_in_the_open(const struct loader *loader, struct wd_scene *scene)
+{
+    struct wd_keys_place map = {loader->root->reader, loader->root, "in_the_open", 0};
+    bool ok = true;
+    for (size_t i = 0; i < scene->in_the_open_count; i++) {
+        const struct wd_string_pair *pair = &scene->in_the_open[i];
+        if (!pair->value) /* an error that has been reported */
+            continue;
+        int from = find_species(scene, pair->name), to = find_species(scene, pair->value);
+        struct wd_species *closed = &scene->species[from], *open = &scene->species[to];
+        if (closed->clip_box_m[2] > 0 || closed->clip_file || open->clip_box_m[2] > 0 || open->clip_file)
+            ok = wd_keys_error(&map, pair->name, "is cut to a shape, or \"%.60s\" is, wherever it stands; allowed are "
+                               "trees that grow freely", pair->value);
+        else if (!(open->openness > closed->openness))
+            ok = wd_keys_error(&map, pair->name, "\"%.60s\" has an openness of %g, \"%.60s\" of %g; what stands in the "
+                               "open must have more", pair->value, (double)open->openness, pair->name,
+                               (double)closed->openness);
+        closed->in_the_open = 1 + (uint32_t)to;
     }
     return ok;
 }
@@ -395,6 +445,15 @@ static void tell_strange_heights(const struct loader *loader, const struct wd_sp
                      (double)wanted[0], (double)wanted[1], species->name, (double)range[0], (double)range[1]);
 }
 
+/* Its trees are some of the other's. */
+static void note_in_the_open(struct wd_scene *scene, const struct wd_string_pair *pair)
+{
+    const float *closed_m = scene->species[find_species(scene, pair->name)].planted_m;
+    float *open_m = scene->species[find_species(scene, pair->value)].planted_m;
+    open_m[0] = open_m[0] > 0 ? fminf(open_m[0], closed_m[0]) : closed_m[0];
+    open_m[1] = fmaxf(open_m[1], closed_m[1]);
+}
+
 static void note_planted(const struct loader *loader, struct wd_scene *scene)
 {
     for (size_t i = 0; i < scene->layer_count; i++)
@@ -409,6 +468,8 @@ static void note_planted(const struct loader *loader, struct wd_scene *scene)
         for (size_t j = 0; j < scene->inventory_count; j++)
             if (scene->species[i].planted_m[1] > 0 && may_hold(&scene->inventories[j], scene, i))
                 scene->species[i].planted_m[1] = scene->species[i].height_range_m[1];
+    for (size_t i = 0; i < scene->in_the_open_count && scene->in_the_open[i].value; i++)
+        note_in_the_open(scene, &scene->in_the_open[i]);
 }
 
 bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *place)
@@ -418,9 +479,11 @@ bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *p
     bool ok = take_entries(&loader, scene);
     ok = take_layers(&loader, scene) && ok;
     ok = take_inventories(&loader, scene) && ok;
+    ok = take_in_the_open(&loader, scene) && ok;
     ok = load_all(&loader, scene) && ok;
     ok = ok && cut_hedges(&loader, scene);
     ok = ok && set_openness(&loader, scene);
+    ok = ok && link_in_the_open(&loader, scene);
     if (ok)
         note_planted(&loader, scene);
     free(loader.own_latin);

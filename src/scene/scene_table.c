@@ -241,6 +241,11 @@ static const struct wd_key scene_keys[] = {
      .doc = "How openly a species' trees have grown: {\"oak\": 1} is as wide and low crowned as in a "
             "meadow, 0 as among close neighbours; without it 0.2, as in a stand. A name of its own in "
             "\"species\" keeps the same species' other trees apart."},
+    {"in_the_open", WD_KEY_STRING_MAP, SCENE(in_the_open), .count_offset = SCENE(in_the_open_count),
+     .doc = "What trees are that stand in the open, by those about them: {\"oak\": \"open oak\"} has oaks with light from "
+            "the sides wide and low crowned, the others as in a stand. A name that \"species\" does not have is of the same "
+            "file, with an openness of 0.8 where \"openness\" says no other; {\"oak\": \"edge oak\", \"edge oak\": "
+            "\"open oak\"} goes in two steps. Stored trees only."},
     {"variants", WD_KEY_INTEGER, SCENE(variants), 1, 64, "5",
      "Individuals grown a species, from half grown to tall; or as low as they are planted where the scene has "
      "saplings of it alone, as under a name of their own in \"species\"."},

@@ -172,6 +172,7 @@ struct wd_species {
         float crown_share;    /* crown diameter over height where allometry.crown_b is 0 */
     } model;
     float openness;           /* in scenes: 0 grown among neighbours .. 1 in the open */
+    uint32_t in_the_open;     /* in scenes: 1 + index of what its trees become that neighbours leave light; 0: of none */
     float planted_m[2];       /* in scenes: lowest and greatest height of its trees; 0, 0: any */
     float clip_box_m[3];      /* width, depth, height of the box that a hedge is cut to; 0: none */
     const char *clip_file;    /* or the closed mesh that it is cut to: clip_box_m is then its size, */
@@ -182,6 +183,8 @@ struct wd_species {
 
 /* Of a species that a scene does not place more openly: the upper trees of a stand. */
 #define WD_STAND_OPENNESS 0.2f
+/* Of one that stands for another's trees in the open. */
+#define WD_OPEN_OPENNESS 0.8f
 
 /* Files of grown species and of species that are an artist's model. */
 extern const struct wd_keys wd_species_keys, wd_species_model_keys;

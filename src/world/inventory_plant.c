@@ -272,7 +272,7 @@ static bool take(struct planting *planting, struct wd_tree_list *list, struct wd
         wd_tree_list_add(list, &planting->trees.trees[i]);
         const struct wd_inventory_tree *from = &planting->inventory->trees[planting->planted[i]];
         wd_tree_tags_set(tags, list->count, wd_tree_tags_get(own, planting->planted[i]));
-        wd_tree_tags_set_row(tags, list->count, (struct wd_tree_row){planting->index, from->row, from->dbh_cm});
+        wd_tree_tags_set_row(tags, list->count, (struct wd_tree_row){planting->index, from->row, from->dbh_cm, from->crown_m > 0});
         report->planted++;
     }
     wd_info(planting->params->log,

@@ -2,6 +2,7 @@
 #ifndef WD_WORLD_TREE_TAGS_H
 #define WD_WORLD_TREE_TAGS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,6 +11,7 @@ struct wd_tree_row {
     uint32_t inventory; /* of the scene */
     uint32_t line;      /* of its file; 0: the tree is none of a file's */
     float dbh_cm;       /* as measured; 0: it was not */
+    bool crown_measured;
 };
 
 /* Texts and rows of some of many trees, by number; `{0}`: no tree has one. */

@@ -9,6 +9,7 @@
 #include "world/cover.h"
 #include "world/far_sward.h"
 #include "world/inventory.h"
+#include "world/neighbours.h"
 #include "world/placement.h"
 #include "world/river.h"
 
@@ -47,6 +48,19 @@ static bool plant_layers(const struct wd_placement_params *params, bool all,
     return true;
 }
 
+static void tell_unasked(const struct wd_scene *scene, const struct wd_scene_layer *layer, const char *name,
+                         const struct wd_log *log)
+{
+    for (size_t i = 0; i < layer->species_count; i++) {
+        int species = wd_scene_find_species(scene, layer->species[i].name);
+        if (species >= 0 && scene->species[species].in_the_open > 0) {
+            wd_warn(log, "%s: %s: is planted on demand, where nobody knows a tree's neighbours: \"in_the_open\" has no "
+                    "effect on it; \"planting\": \"stored\" keeps the trees", scene->path, name);
+            return;
+        }
+    }
+}
+
 /* After the others: their ids follow those of stored trees. */
 static bool add_demand(struct wd_demand *demand, const struct wd_placement_params *params,
                        size_t stored)
@@ -58,6 +72,7 @@ static bool add_demand(struct wd_demand *demand, const struct wd_placement_param
         if (!wd_placement_init(&placement, params, i))
             return false;
         wd_info(params->log, "%s: planted on demand", placement.name);
+        tell_unasked(params->scene, placement.layer, placement.name, params->log);
         wd_demand_add(demand, &placement, params->scene, i, stored);
     }
     return true;
@@ -120,7 +135,8 @@ static bool plant(struct wd_world *world, const struct wd_placement_params *para
     bool on_demand;
     bool ok = wd_demand_wanted(params, &on_demand) &&
               plant_layers(params, !on_demand, list, &layers) &&
-              (!on_demand || add_demand(&world->demand, params, list->count));
+              (!on_demand || add_demand(&world->demand, params, list->count)) &&
+              wd_trees_in_the_open(list, layers.inventory_end, &world->tags, params);
     uint64_t count = list->count;
     ok = ok && wd_progress_report(params->progress, "sorting trees", 0, count);
     if (ok) {

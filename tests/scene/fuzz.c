@@ -22,7 +22,8 @@ static const char scene_text[] =
     "\"oak\"}, \"outside\": \"keep\"}],\n\"water\": {\"enabled\": true, \"color\": \"#102030\"},"
     "\"cameras\": [{\"name\": \"c\", \"position_m\": [1, -2, 3e0], \"look_at_m\": [0, 0, 0]}],"
     "\"paths\": [{\"name\": \"p\", \"keys\": [{\"position_m\": [0, 0, 1]}, {\"position_m\": [1, 0,"
-    " 1], \"absolute\": true}]}], \"method\": \"octree\", \"quality\": {\"width\": 64}}\n";
+    " 1], \"absolute\": true}]}], \"method\": \"octree\", \"in_the_open\": {\"oak\": "
+    "\"far\"}, \"quality\": {\"width\": 64}}\n";
 
 static uint32_t next(uint32_t *seed)
 {

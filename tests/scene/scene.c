@@ -136,6 +136,45 @@ struct wrong {
     const char *text, *message;
 };
 
+/* Of the same file where the scene names no other, with heights of the trees that they stand for. */
+static void trees_in_the_open_are_others(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"species\": {\"wide\": \"oak\"}, \"openness\": {\"edge\": 0.5, \"wide\": 1}, \"in_the_open\": "
+                        "{\"Picea abies\": \"free\", \"oak\": \"edge\", \"edge\": \"wide\"}, "
+                        "\"layers\": [{\"species\": {\"spruce\": 1, \"oak\": 1}, \"height_m\": [9, 20]}]}"));
+    static const struct {
+        const char *name, *file, *next;
+        float openness;
+    } wanted[] = {{"oak", "oak", "edge", 0.2f}, {"edge", "oak", "wide", 0.5f}, {"wide", "oak", NULL, 1},
+                  {"spruce", "spruce", "free", 0.2f}, {"free", "spruce", NULL, 0.8f}};
+    assert_int_equal(f->scene.species_file_count, 5);
+    for (int i = 0; i < 5; i++) {
+        const struct wd_species *species = &f->scene.species[wd_scene_find_species(&f->scene, wanted[i].name)];
+        int next = wanted[i].next ? wd_scene_find_species(&f->scene, wanted[i].next) : -1;
+        assert_string_equal(species->name, wanted[i].file);
+        assert_true(species->openness == wanted[i].openness);
+        assert_int_equal(species->in_the_open, next + 1);
+        assert_true(species->planted_m[0] == 9 && species->planted_m[1] == 20);
+    }
+    assert_int_equal(f->log.errors + f->log.warnings, 0);
+    static const struct wrong cases[] = {
+        {"\"in_the_open\": {\"larch\": \"free\"}", "in_the_open.larch: no layer or inventory has the species \"larch\""},
+        {"\"in_the_open\": {\"oak\": \"free\"}, \"openness\": {\"free\": 0.1}",
+         "in_the_open.oak: \"free\" has an openness of 0.1, \"oak\" of 0.2; what stands in the open must have more"},
+        {"\"in_the_open\": {\"oak\": \"free\"}, \"clips\": {\"oak\": {\"box_m\": [2, 1, 5]}}", "in_the_open.oak: is cut to"},
+        {"\"in_the_open\": {\"oak\": 1}", "in_the_open.oak: found 1"},
+        {"\"in_the_open\": {\"oak\": \"oak\"}", "in_the_open.oak: \"oak\" has an openness of 0.2, \"oak\" of 0.2"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[400];
+        snprintf(text, sizeof text, "{%s, \"layers\": [{\"species\": \"oak\", \"height_m\": [4, 6]}]}", cases[i].text);
+        assert_false(load(f, text));
+        if (!logged(&f->log, cases[i].message))
+            fail_msg("\"%s\" is not told", cases[i].message);
+    }
+}
+
 static void heights_of_other_species_are_told(void **state)
 {
     struct fixture *f = *state;
@@ -541,6 +580,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(species_are_found_and_loaded, setup, teardown),
         cmocka_unit_test_setup_teardown(species_by_latin_names, setup, teardown),
         cmocka_unit_test_setup_teardown(latin_names_stay_what_they_mean, setup, teardown),
+        cmocka_unit_test_setup_teardown(trees_in_the_open_are_others, setup, teardown),
         cmocka_unit_test_setup_teardown(heights_of_other_species_are_told, setup, teardown),
         cmocka_unit_test_setup_teardown(unknown_species_are_errors, setup, teardown),
         cmocka_unit_test_setup_teardown(checks_across_keys_hold, setup, teardown),
