@@ -125,7 +125,7 @@ sheet() { # sheet NAME SPECIES...
     "$build/cli/weald" grow --sheet "$@" --size 150x150 -o "$shown/$sheet_name.png"
 }
 
-png valley valley 1280x720 overview
+png valley valley 1280x720 glade
 jpeg guerrero guerrero 640x400 overview
 jpeg rpi rpi 640x400 overview
 jpeg bruneton bruneton 640x400 slope
