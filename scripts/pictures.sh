@@ -110,6 +110,14 @@ fog() {
     convert "$@" +append -quality 88 "$shown/fog.jpg"
 }
 
+# A meadow whose trees have all grown as in a stand, and as their neighbours let them.
+neighbours() {
+    is_wanted neighbours || return 0
+    render valley "$scratch/stand.png" 560x315 --camera lake --set 'in_the_open={}'
+    render valley "$scratch/open.png" 560x315 --camera lake
+    montage "$scratch/stand.png" "$scratch/open.png" -tile 2x -geometry +0+0 -quality 88 "$shown/neighbours.jpg"
+}
+
 # From sunrise to sunset in the valley.
 day() {
     is_wanted day || return 0
@@ -134,6 +142,7 @@ jpeg osg osg 640x400 walk
 jpeg intel intel 640x400 walk
 jpeg river river 960x540 bank
 day
+neighbours
 methods overview
 methods walk
 fog
