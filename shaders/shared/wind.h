@@ -5,7 +5,8 @@
  * of 61 m and 23 m carried along at the mean speed. Each tree rings at its own frequency, which
  * falls with height (about 0.3 Hz at 20 m; Moore and Maguire 2004), with its own phase.
  * The stem bends like a cantilever: displacement grows with the square of height, and a displaced
- * point comes down by d^2 / 2h so that nothing stretches. */
+ * point comes down by d^2 / 2h so that nothing stretches. Displacement grows with speed, above 10 m/s
+ * with its power of 1.5: drag is by the square, less what crowns give way (Vogel 1989). */
 #ifndef WD_SHARED_WIND_H
 #define WD_SHARED_WIND_H
 
@@ -77,6 +78,16 @@ WD_FUNC float wd_wind_gust(WD_STRUCT wd_wind wind, float x_m, float y_m, float t
     return wind.gust * (0.65f * slow + 0.35f * fast);
 }
 
+/* Displacement of the top over height by the mean wind; what lies down already is bent no further. */
+WD_FUNC float wd_wind_bend(float flexibility, float speed_mps)
+{
+    float bend = flexibility * speed_mps * 0.1f;
+    if (speed_mps > 10.0f)
+        bend *= WD_SQRT(0.1f * speed_mps);
+    float over = bend - 0.35f;
+    return over > 0.0f ? 0.35f + over / (1.0f + 4.0f * over) : bend;
+}
+
 /* Where a point of the stem or crown, `height_m` above the foot, goes from its place at rest. */
 WD_FUNC WD_STRUCT wd_wind_shift wd_wind_offset(WD_STRUCT wd_wind wind,
                                                WD_STRUCT wd_wind_tree tree, float height_m,
@@ -89,7 +100,7 @@ WD_FUNC WD_STRUCT wd_wind_shift wd_wind_offset(WD_STRUCT wd_wind wind,
     float ringing = wd_wind_wave(time_s * wd_wind_rate(hertz) + phase * (1.0f / 65536.0f));
     float sideways = wd_wind_wave(time_s * wd_wind_rate(hertz * 0.83f) + phase * (7.0f / 65536.0f));
     float share = height_m > 0.0f ? height_m / tree.height_m : 0.0f;
-    float bend = tree.flexibility * wind.speed_mps * 0.1f * tree.height_m * share * share;
+    float bend = wd_wind_bend(tree.flexibility, wind.speed_mps) * tree.height_m * share * share;
     float push = bend * (0.6f + 0.6f * gust + 0.4f * wind.gust * ringing);
     float sway = bend * 0.25f * wind.gust * sideways;
     float sum = push * push + sway * sway;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "frame/uniforms.h"
+#include "shared/wind.h"
 
 bool wd_frame_init(struct wd_frame *frame, struct wd_gpu *gpu)
 {
@@ -448,7 +449,7 @@ static double calm_m(const struct wd_forest_device *forest)
     float flexibility = 0.0f;
     for (uint32_t i = 0; i < forest->model_count; i++)
         flexibility = fmaxf(flexibility, forest->host_models[i].flexibility);
-    double bend_m = 0.1 * scene->wind.speed_mps * (double)(flexibility * forest->max_tree_height_m);
+    double bend_m = (double)(wd_wind_bend(flexibility, (float)scene->wind.speed_mps) * forest->max_tree_height_m);
     return fmax(0.5 * scene->wind.gust * bend_m, 1e-6);
 }
 

@@ -51,8 +51,7 @@ static struct reach reach_of(const struct wd_tree_draw *draw, uint32_t tree,
                                         wd_leaf_pixels(forest, draw->view, draw->pass)
                                   : INFINITY,
         .most = wd_leaf_most(forest, draw->view, draw->pass, index, WD_LEVEL_MESH),
-        .bend_m = 0.1f * speed_mps * model->flexibility * WD_TREE_HEIGHT_M(*record) *
-                  (1.0f + 1.5f * gust),
+        .bend_m = wd_wind_bend(model->flexibility, speed_mps) * WD_TREE_HEIGHT_M(*record) * (1.0f + 1.5f * gust),
         .flutter_m = 0.006f * fminf(speed_mps, 12.0f),
     };
 }

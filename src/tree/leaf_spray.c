@@ -72,12 +72,18 @@ struct bearer {
     struct wd_vec3 from, to;
 };
 
-static int gather_bearers(const struct wd_species *species, struct wd_random *random,
-                          struct bearer bearers[SIDE_TWIGS + 1])
+/* Shoots with needles all around bear twelve on a centimetre: a twig of few needles has few side twigs. */
+static int side_twigs(const struct wd_species *species, float needles, float size_m)
 {
-    int sides = species->leaf.needles == WD_NEEDLES_AROUND     ? SIDE_TWIGS
-                : species->leaf.needles == WD_NEEDLES_FASCICLES ? 3
-                                                                : 2;
+    static const float NEEDLES_A_METRE = 1200, SIDE_LENGTH = 0.35f;
+    if (species->leaf.needles != WD_NEEDLES_AROUND)
+        return species->leaf.needles == WD_NEEDLES_FASCICLES ? 3 : 2;
+    float sides = (needles / (NEEDLES_A_METRE * size_m) - 1) / SIDE_LENGTH;
+    return (int)wd_clampf(sides, 2, SIDE_TWIGS);
+}
+
+static int gather_bearers(int sides, struct wd_random *random, struct bearer bearers[SIDE_TWIGS + 1])
+{
     bearers[0] = (struct bearer){{0, 0, 0}, {0, 1, -0.04f}};
     for (int i = 0; i < sides; i++) {
         float at = 0.12f + 0.68f * ((float)i + 0.5f) / (float)sides, side = i & 1 ? -1.0f : 1.0f;
@@ -88,6 +94,15 @@ static int gather_bearers(const struct wd_species *species, struct wd_random *ra
         bearers[i + 1] = (struct bearer){from, wd_v3_mad(from, d, length)};
     }
     return sides + 1;
+}
+
+/* Spruces' shoots of a year are as slender as their length asks; a young tree's are short. */
+static float twig_width_m(const struct spray *spray, const struct wd_species *species, bool main)
+{
+    float width_m = main ? 0.005f : 0.0035f;
+    if (species->leaf.needles == WD_NEEDLES_AROUND)
+        width_m = fminf(width_m, (main ? 0.02f : 0.014f) * spray->size_m);
+    return width_m;
 }
 
 /* One needle or bundle at share `t` of a bearer; needles of a bundle part at a narrow angle. */
@@ -125,10 +140,10 @@ static void add_needle(struct spray *spray, const struct wd_species *species,
 static void add_needles(struct spray *spray, const struct wd_species *species, float area)
 {
     struct bearer bearers[SIDE_TWIGS + 1];
-    int count = gather_bearers(species, &spray->random, bearers), n = 0;
     float real_m = 0.01f * species->leaf.width_cm, length_m = 0.01f * species->leaf.length_cm;
     float whole_m2 = area * spray->size_m * spray->size_m;
-    float wanted = fminf(2 * whole_m2 / (length_m * real_m), WD_SPRAY_TRIANGLES - 50), seen = wanted;
+    float real = 2 * whole_m2 / (length_m * real_m), wanted = fminf(real, WD_SPRAY_TRIANGLES - 50), seen = wanted;
+    int count = gather_bearers(side_twigs(species, real, spray->size_m), &spray->random, bearers), n = 0;
     /* where there are not triangles enough, needles grow wider */
     spray->needle_width_m = fminf(2 * whole_m2 / (length_m * wanted), 2.5f * real_m);
     if (spray->shade) {
@@ -151,7 +166,7 @@ static void add_needles(struct spray *spray, const struct wd_species *species, f
             float t = wd_mixf(from, 1, ((float)place + 0.5f) / (float)of);
             add_needle(spray, species, &bearers[i], t, tufts ? n / spur : n, bundle);
         }
-        add_wood(spray, bearers[i].from, bearers[i].to, i == 0 ? 0.005f : 0.0035f);
+        add_wood(spray, bearers[i].from, bearers[i].to, twig_width_m(spray, species, i == 0));
     }
 }
 

@@ -46,15 +46,17 @@ static void warn_of_nothing(const struct wd_placement *placement, const struct w
 {
     const struct wd_scene_map *map = &placement->layer->map;
     size_t count = (size_t)raster->width * raster->height;
-    bool known = false;
+    float low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < count; i++) {
         if (placement->map[i] > 0.0f)
             return;
-        known = known || !isnan(raster->values[i]);
+        low = fminf(low, raster->values[i]); /* passes over NaN */
+        high = fmaxf(high, raster->values[i]);
     }
-    if (known)
-        wd_warn(log, "%s: %s has no pixel on the terrain %s: no tree can stand", placement->name, map->file,
-                map->class_count > 0 ? "that is of its \"classes\"" : "beyond the first of its \"value_range\"");
+    if (low <= high)
+        wd_warn(log, "%s: %s has no pixel on the terrain %s, but values of %g to %g: no tree can stand", placement->name,
+                map->file, map->class_count > 0 ? "that is of its \"classes\"" : "beyond the first of its \"value_range\"",
+                (double)low, (double)high);
 }
 
 static void take_raster(struct wd_placement *placement, const struct wd_raster *raster)

@@ -58,8 +58,8 @@ static bool read_map(struct rivers *rivers, const struct wd_scene *scene, const 
     }
     if (wet == 0)
         return wd_error(log, "%s: shows no water on the terrain: none of its samples, %g m apart, has "
-                        "one of the classes or half of the value range", map->file,
-                        terrain->cell_m);
+                        "one of the classes or half of the value range, but values of %g to %g", map->file,
+                        terrain->cell_m, (double)rivers->shoreline.lowest, (double)rivers->shoreline.highest);
     if (wet == rivers->count)
         return wd_error(log, "%s: shows water everywhere; some of the terrain must stay dry",
                         map->file);

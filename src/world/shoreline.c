@@ -20,9 +20,12 @@ bool wd_shoreline_init(struct wd_shoreline *shoreline, const struct wd_scene *sc
         return false;
     *shoreline = (struct wd_shoreline){.width = raster.width, .height = raster.height,
                                        .cell_x_m = raster.cell_x_m, .cell_y_m = raster.cell_y_m,
-                                       .share = raster.values};
-    for (size_t i = 0; i < (size_t)raster.width * raster.height; i++)
+                                       .share = raster.values, .lowest = INFINITY, .highest = -INFINITY};
+    for (size_t i = 0; i < (size_t)raster.width * raster.height; i++) {
+        shoreline->lowest = fminf(shoreline->lowest, raster.values[i]); /* passes over NaN */
+        shoreline->highest = fmaxf(shoreline->highest, raster.values[i]);
         shoreline->share[i] = wd_map_probability(map, raster.values[i]);
+    }
     return true;
 }
 

@@ -9,6 +9,7 @@ struct wd_shoreline {
     uint32_t width, height;
     double cell_x_m, cell_y_m;
     float *share;
+    float lowest, highest; /* values of the map */
 };
 
 bool wd_shoreline_init(struct wd_shoreline *shoreline, const struct wd_scene *scene,

@@ -217,6 +217,24 @@ static void test_wind(void **state)
     assert_true(wd_wind_begin_s(3999.99) == 0 && wd_wind_begin_s(86400.5) == 84000 && wd_wind_begin_s(-1) == -4000);
 }
 
+/* Storms bend trees more than their speed alone, and lay no grass below the ground. */
+static void test_storms(void **state)
+{
+    (void)state;
+    assert_float_equal(wd_wind_bend(0.02f, 5), 0.01, 1e-6);
+    assert_float_equal(wd_wind_bend(0.02f, 24), 0.02 * pow(2.4, 1.5), 1e-6);
+    float before = 0;
+    for (float speed_mps = 0; speed_mps <= 60; speed_mps += 0.5f) {
+        const struct wd_wind wind = {speed_mps, 1, 1, 0};
+        const struct wd_wind_tree blade = {3, 5, 0.5f, 0.3f, 77};
+        float bend = wd_wind_bend(0.3f, speed_mps);
+        assert_true(bend >= before && bend < 0.6f);
+        for (uint32_t i = 0; i < 50; i++)
+            assert_true(wd_wind_offset(wind, blade, 0.5f, i * 0.21f).z_m > -0.5f);
+        before = bend;
+    }
+}
+
 /* Waves go on where a new period begins. */
 static void test_waves(void **state)
 {
@@ -357,6 +375,7 @@ int main(void)
         cmocka_unit_test(test_nightfall), cmocka_unit_test(test_horizon),
         cmocka_unit_test(test_sun_field), cmocka_unit_test(test_sun_field_of_level_ground),
         cmocka_unit_test(test_wind),
+        cmocka_unit_test(test_storms),
         cmocka_unit_test(test_waves), cmocka_unit_test(test_walls),
         cmocka_unit_test(test_cascades_of_moved_eyes),
         cmocka_unit_test(test_cascades_that_end_in_steps),

@@ -299,6 +299,25 @@ static void twigs_keep_the_area(void **state)
     wd_arena_finish(&arena);
 }
 
+/* Short twigs of young spruces were half wood, brown beside the needles that they are drawn as from afar. */
+static void needles_hide_the_wood_of_their_twig(void **state)
+{
+    (void)state;
+    struct wd_arena arena = {0};
+    struct wd_species spruce = test_species(&arena, "spruce");
+    static const float sizes_m[] = {0.09f, 0.12f, 0.2f, 0.35f};
+    for (size_t i = 0; i < sizeof sizes_m / sizeof *sizes_m; i++) {
+        struct wd_tree_mesh spray = {0};
+        wd_leaf_spray_mesh(&spray, &spruce, sizes_m[i]);
+        double needles = spray_leaf_area(&spray);
+        for (uint32_t k = 0; k < spray.vertex_count; k++)
+            spray.vertices[k].kind ^= WD_VERTEX_LEAF;
+        assert_true(spray_leaf_area(&spray) < 0.25 * needles);
+        wd_tree_mesh_finish(&spray);
+    }
+    wd_arena_finish(&arena);
+}
+
 /* Near, a leaf of its real size is itself with all its lobes; a palm's frond is whole at any distance. */
 static void a_leaf_of_its_real_size_needs_no_twig(void **state)
 {
@@ -480,6 +499,7 @@ int main(void)
         cmocka_unit_test(sprigs_have_the_area_of_a_leaf),
         cmocka_unit_test(leaves_of_large_trees_stay_small),
         cmocka_unit_test(twigs_keep_the_area),
+        cmocka_unit_test(needles_hide_the_wood_of_their_twig),
         cmocka_unit_test(a_leaf_of_its_real_size_needs_no_twig),
         cmocka_unit_test(a_frond_has_a_near_form_of_each_of_its_forms),
         cmocka_unit_test(packed_leaves_stand_where_they_grew),
