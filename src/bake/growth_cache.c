@@ -57,7 +57,7 @@ uint64_t wd_species_key(const struct wd_species *species)
     values.clip_file = NULL;
     values.clip = NULL;
     values.planted_m[0] = values.planted_m[1] = 0; /* individuals are told their heights */
-    values.in_the_open = 0;
+    values.when_young = values.in_the_open = 0;
     uint64_t key = wd_cache_key(wd_cache_code_key(), &values, sizeof values);
     key = clip_key(key, species->clip ? &species->clip->volume : NULL);
     for (size_t i = 0; i < species->order_count; i++)

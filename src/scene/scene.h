@@ -155,6 +155,8 @@ struct wd_scene {
     size_t clip_count;
     struct wd_number_pair *openness; /* how openly species stand: 0 to 1 */
     size_t openness_count;
+    struct wd_string_pair *when_young; /* names of species -> of those that stand for their young trees */
+    size_t when_young_count;
     struct wd_string_pair *in_the_open; /* names of species -> of those that stand for their trees in the open */
     size_t in_the_open_count;
     int64_t variants;        /* grown individuals a species */

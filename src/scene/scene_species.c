@@ -19,7 +19,7 @@ struct loader {
     struct wd_species_folders folders; /* where species without a file are looked for */
     struct wd_latin_names latin;       /* of those, once they are asked for */
     bool has_latin;
-    size_t made_first; /* from here on: what "in_the_open" has made of the file of another */
+    size_t made_first; /* from here on: what stands for another and is of its file */
     const char **own_latin; /* of files, as far as it was asked for; NULL: has none */
     size_t own_count, own_capacity;
 };
@@ -264,18 +264,34 @@ static bool take_inventories(struct loader *loader, const struct wd_scene *scene
     return ok;
 }
 
-/* What stands for a species in the open is of the same file where the scene does not say another. */
-static bool take_in_the_open(struct loader *loader, struct wd_scene *scene)
+/* Species that stand for others: which ones, and where the scene says so. */
+struct stand_ins {
+    const char *key;
+    struct wd_string_pair *pairs;
+    size_t count;
+};
+
+static struct stand_ins young_ones(const struct wd_scene *scene)
 {
-    struct wd_keys_place map = {loader->root->reader, loader->root, "in_the_open", 0};
+    return (struct stand_ins){"when_young", scene->when_young, scene->when_young_count};
+}
+
+static struct stand_ins open_ones(const struct wd_scene *scene)
+{
+    return (struct stand_ins){"in_the_open", scene->in_the_open, scene->in_the_open_count};
+}
+
+/* They are of the same file where the scene does not say another. */
+static bool take_stand_ins(struct loader *loader, struct stand_ins of)
+{
+    struct wd_keys_place map = {loader->root->reader, loader->root, of.key, 0};
     bool ok = true;
-    loader->made_first = loader->count;
-    for (size_t i = 0; i < scene->in_the_open_count; i++) {
-        struct wd_string_pair *pair = &scene->in_the_open[i];
+    for (size_t i = 0; i < of.count; i++) {
+        const struct wd_string_pair *pair = &of.pairs[i];
         const char *own = has(loader, pair->name) ? pair->name : find_own_latin(loader, pair->name);
         if (!own)
             ok = wd_keys_error(&map, pair->name, "no layer or inventory has the species \"%.60s\"", pair->name);
-        else if (pair->value && !has(loader, pair->value))
+        else if (pair->value && !has(loader, pair->value)) /* no value: an error that has been reported */
             add(loader, pair->value, file_of(loader, own));
     }
     return ok;
@@ -365,12 +381,18 @@ static bool cut_hedges(const struct loader *loader, struct wd_scene *scene)
     return ok;
 }
 
+static bool has_own_openness(const struct wd_scene *scene, int species)
+{
+    for (size_t i = 0; i < scene->openness_count; i++)
+        if (find_species(scene, scene->openness[i].name) == species)
+            return true;
+    return false;
+}
+
 static bool set_openness(const struct loader *loader, struct wd_scene *scene)
 {
     struct wd_keys_place map = {loader->root->reader, loader->root, "openness", 0};
     bool ok = true;
-    for (size_t i = loader->made_first; i < loader->count; i++)
-        scene->species[i].openness = WD_OPEN_OPENNESS;
     for (size_t i = 0; i < scene->openness_count; i++) {
         const struct wd_number_pair *given = &scene->openness[i];
         int index = find_species(scene, given->name);
@@ -383,24 +405,63 @@ static bool set_openness(const struct loader *loader, struct wd_scene *scene)
     return ok;
 }
 
+static bool is_cut(const struct wd_species *species)
+{
+    return species->clip_box_m[2] > 0 || species->clip_file;
+}
+
+/* Two that may stand for one another. */
+static bool find_pair(const struct wd_scene *scene, const struct stand_ins *of, size_t index,
+                      const struct wd_keys_place *map, int pair[2])
+{
+    const char *name = of->pairs[index].name, *value = of->pairs[index].value;
+    pair[0] = find_species(scene, name);
+    pair[1] = find_species(scene, value);
+    if (pair[0] == pair[1])
+        return wd_keys_error(map, name, "stands for itself");
+    return !(is_cut(&scene->species[pair[0]]) || is_cut(&scene->species[pair[1]])) ||
+           wd_keys_error(map, name, "is cut to a shape, or \"%.60s\" is, wherever it stands; allowed are trees that grow "
+                         "freely", value);
+}
+
+/* Young trees have grown as openly as those for which they stand. */
+static bool link_when_young(const struct loader *loader, struct wd_scene *scene)
+{
+    const struct stand_ins of = young_ones(scene);
+    struct wd_keys_place map = {loader->root->reader, loader->root, of.key, 0};
+    bool ok = true;
+    for (size_t i = 0; i < of.count; i++) {
+        int pair[2];
+        if (!of.pairs[i].value || !find_pair(scene, &of, i, &map, pair)) {
+            ok = false;
+            continue;
+        }
+        scene->species[pair[0]].when_young = 1 + (uint32_t)pair[1];
+        if ((size_t)pair[1] >= loader->made_first && !has_own_openness(scene, pair[1]))
+            scene->species[pair[1]].openness = scene->species[pair[0]].openness;
+    }
+    return ok;
+}
+
 static bool link_in_the_open(const struct loader *loader, struct wd_scene *scene)
 {
-    struct wd_keys_place map = {loader->root->reader, loader->root, "in_the_open", 0};
+    const struct stand_ins of = open_ones(scene);
+    struct wd_keys_place map = {loader->root->reader, loader->root, of.key, 0};
     bool ok = true;
-    for (size_t i = 0; i < scene->in_the_open_count; i++) {
-        const struct wd_string_pair *pair = &scene->in_the_open[i];
-        if (!pair->value) /* an error that has been reported */
+    for (size_t i = 0; i < of.count; i++) {
+        int pair[2];
+        if (!of.pairs[i].value || !find_pair(scene, &of, i, &map, pair)) {
+            ok = false;
             continue;
-        int from = find_species(scene, pair->name), to = find_species(scene, pair->value);
-        struct wd_species *closed = &scene->species[from], *open = &scene->species[to];
-        if (closed->clip_box_m[2] > 0 || closed->clip_file || open->clip_box_m[2] > 0 || open->clip_file)
-            ok = wd_keys_error(&map, pair->name, "is cut to a shape, or \"%.60s\" is, wherever it stands; allowed are "
-                               "trees that grow freely", pair->value);
-        else if (!(open->openness > closed->openness))
-            ok = wd_keys_error(&map, pair->name, "\"%.60s\" has an openness of %g, \"%.60s\" of %g; what stands in the "
-                               "open must have more", pair->value, (double)open->openness, pair->name,
+        }
+        struct wd_species *closed = &scene->species[pair[0]], *open = &scene->species[pair[1]];
+        if ((size_t)pair[1] >= loader->made_first && !has_own_openness(scene, pair[1]))
+            open->openness = WD_OPEN_OPENNESS;
+        if (!(open->openness > closed->openness))
+            ok = wd_keys_error(&map, of.pairs[i].name, "\"%.60s\" has an openness of %g, \"%.60s\" of %g; what stands in "
+                               "the open must have more", of.pairs[i].value, (double)open->openness, of.pairs[i].name,
                                (double)closed->openness);
-        closed->in_the_open = 1 + (uint32_t)to;
+        closed->in_the_open = 1 + (uint32_t)pair[1];
     }
     return ok;
 }
@@ -454,6 +515,19 @@ static void note_in_the_open(struct wd_scene *scene, const struct wd_string_pair
     open_m[1] = fmaxf(open_m[1], closed_m[1]);
 }
 
+/* Its trees are all that are lower than variants of the other, whose lowest an inventory may not tell. */
+static void note_when_young(struct wd_scene *scene, const struct wd_string_pair *pair)
+{
+    static const float LOWEST = 0.06f, SURELY_LOW = 0.2f; /* of the typical height */
+    const struct wd_species *grown = &scene->species[find_species(scene, pair->name)];
+    struct wd_species *young = &scene->species[find_species(scene, pair->value)];
+    bool any = !(grown->planted_m[0] > 0) || grown->planted_m[1] >= grown->height_range_m[1];
+    float low = any ? 0 : grown->planted_m[0], typical_m = young->typical_height_m;
+    low = fminf(fmaxf(low, LOWEST * typical_m), SURELY_LOW * typical_m);
+    young->planted_m[0] = young->planted_m[0] > 0 ? fminf(young->planted_m[0], low) : low;
+    young->planted_m[1] = fmaxf(young->planted_m[1], nextafterf(WD_HALF_GROWN * grown->typical_height_m, 0));
+}
+
 static void note_planted(const struct loader *loader, struct wd_scene *scene)
 {
     for (size_t i = 0; i < scene->layer_count; i++)
@@ -468,7 +542,9 @@ static void note_planted(const struct loader *loader, struct wd_scene *scene)
         for (size_t j = 0; j < scene->inventory_count; j++)
             if (scene->species[i].planted_m[1] > 0 && may_hold(&scene->inventories[j], scene, i))
                 scene->species[i].planted_m[1] = scene->species[i].height_range_m[1];
-    for (size_t i = 0; i < scene->in_the_open_count && scene->in_the_open[i].value; i++)
+    for (size_t i = 0; i < scene->when_young_count; i++)
+        note_when_young(scene, &scene->when_young[i]);
+    for (size_t i = 0; i < scene->in_the_open_count; i++)
         note_in_the_open(scene, &scene->in_the_open[i]);
 }
 
@@ -479,11 +555,13 @@ bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *p
     bool ok = take_entries(&loader, scene);
     ok = take_layers(&loader, scene) && ok;
     ok = take_inventories(&loader, scene) && ok;
-    ok = take_in_the_open(&loader, scene) && ok;
+    loader.made_first = loader.count;
+    ok = take_stand_ins(&loader, young_ones(scene)) && ok;
+    ok = take_stand_ins(&loader, open_ones(scene)) && ok;
     ok = load_all(&loader, scene) && ok;
     ok = ok && cut_hedges(&loader, scene);
     ok = ok && set_openness(&loader, scene);
-    ok = ok && link_in_the_open(&loader, scene);
+    ok = ok && link_when_young(&loader, scene) && link_in_the_open(&loader, scene);
     if (ok)
         note_planted(&loader, scene);
     free(loader.own_latin);

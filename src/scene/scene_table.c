@@ -241,6 +241,10 @@ static const struct wd_key scene_keys[] = {
      .doc = "How openly a species' trees have grown: {\"oak\": 1} is as wide and low crowned as in a "
             "meadow, 0 as among close neighbours; without it 0.2, as in a stand. A name of its own in "
             "\"species\" keeps the same species' other trees apart."},
+    {"when_young", WD_KEY_STRING_MAP, SCENE(when_young), .count_offset = SCENE(when_young_count),
+     .doc = "What trees are that are lower than 0.45 of their species' typical height: {\"oak\": \"young oak\"} grows them "
+            "as saplings; without it they are small grown trees. A name that \"species\" does not have is of the same file. "
+            "Stored trees only."},
     {"in_the_open", WD_KEY_STRING_MAP, SCENE(in_the_open), .count_offset = SCENE(in_the_open_count),
      .doc = "What trees are that stand in the open, by those about them: {\"oak\": \"open oak\"} has oaks with light from "
             "the sides wide and low crowned, the others as in a stand. A name that \"species\" does not have is of the same "

@@ -8,8 +8,7 @@
 #include "scene/species_parts.h"
 
 enum { MAX_SPECIES_BYTES = 1 << 20 };
-/* By typical height: of the lowest variants, and of the lowest trees of a sapling layer. */
-static const float HALF_GROWN = 0.45f, SAPLING = 0.25f;
+static const float SAPLING = 0.25f; /* the lowest trees of a sapling layer by their typical height */
 
 bool wd_species_load(struct wd_species *species, const char *path, struct wd_arena *arena,
                      const struct wd_log *log)
@@ -169,7 +168,7 @@ static bool are_saplings(const struct wd_species *species)
 {
     const float *planted_m = species->planted_m;
     return planted_m[0] > 0 && planted_m[0] < SAPLING * species->typical_height_m &&
-           planted_m[1] < HALF_GROWN * species->typical_height_m &&
+           planted_m[1] < WD_HALF_GROWN * species->typical_height_m &&
            wd_species_youth(species, (double)planted_m[0]) > 0;
 }
 
@@ -179,7 +178,7 @@ void wd_species_variant_range_m(const struct wd_species *species, float range_m[
         range_m[0] = range_m[1] = species->clip_box_m[2];
         return;
     }
-    float low = HALF_GROWN * species->typical_height_m, high = 1.1f * species->typical_height_m;
+    float low = WD_HALF_GROWN * species->typical_height_m, high = 1.1f * species->typical_height_m;
     if (are_saplings(species)) {
         low = species->planted_m[0];
         high = species->planted_m[1];

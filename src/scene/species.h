@@ -172,7 +172,8 @@ struct wd_species {
         float crown_share;    /* crown diameter over height where allometry.crown_b is 0 */
     } model;
     float openness;           /* in scenes: 0 grown among neighbours .. 1 in the open */
-    uint32_t in_the_open;     /* in scenes: 1 + index of what its trees become that neighbours leave light; 0: of none */
+    uint32_t when_young;      /* in scenes: 1 + index of what its trees become that are lower than half grown; 0: of none, */
+    uint32_t in_the_open;     /* and of those that neighbours leave light from the sides */
     float planted_m[2];       /* in scenes: lowest and greatest height of its trees; 0, 0: any */
     float clip_box_m[3];      /* width, depth, height of the box that a hedge is cut to; 0: none */
     const char *clip_file;    /* or the closed mesh that it is cut to: clip_box_m is then its size, */
@@ -183,6 +184,8 @@ struct wd_species {
 
 /* Of a species that a scene does not place more openly: the upper trees of a stand. */
 #define WD_STAND_OPENNESS 0.2f
+/* Height of the lowest variants over the typical one. */
+#define WD_HALF_GROWN 0.45f
 /* Of one that stands for another's trees in the open. */
 #define WD_OPEN_OPENNESS 0.8f
 

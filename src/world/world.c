@@ -9,9 +9,9 @@
 #include "world/cover.h"
 #include "world/far_sward.h"
 #include "world/inventory.h"
-#include "world/neighbours.h"
 #include "world/placement.h"
 #include "world/river.h"
+#include "world/stand_ins.h"
 
 static const uint64_t default_max_trees = UINT64_C(64) << 20;
 enum { INVENTORY_LAYER = 255 };
@@ -53,9 +53,10 @@ static void tell_unasked(const struct wd_scene *scene, const struct wd_scene_lay
 {
     for (size_t i = 0; i < layer->species_count; i++) {
         int species = wd_scene_find_species(scene, layer->species[i].name);
-        if (species >= 0 && scene->species[species].in_the_open > 0) {
-            wd_warn(log, "%s: %s: is planted on demand, where nobody knows a tree's neighbours: \"in_the_open\" has no "
-                    "effect on it; \"planting\": \"stored\" keeps the trees", scene->path, name);
+        const struct wd_species *of = species >= 0 ? &scene->species[species] : NULL;
+        if (of && (of->when_young || of->in_the_open)) {
+            wd_warn(log, "%s: %s: is planted on demand, where \"when_young\" and \"in_the_open\" have no effect; "
+                    "\"planting\": \"stored\" keeps the trees", scene->path, name);
             return;
         }
     }
@@ -136,7 +137,7 @@ static bool plant(struct wd_world *world, const struct wd_placement_params *para
     bool ok = wd_demand_wanted(params, &on_demand) &&
               plant_layers(params, !on_demand, list, &layers) &&
               (!on_demand || add_demand(&world->demand, params, list->count)) &&
-              wd_trees_in_the_open(list, layers.inventory_end, &world->tags, params);
+              wd_trees_stand_in(list, layers.inventory_end, &world->tags, params);
     uint64_t count = list->count;
     ok = ok && wd_progress_report(params->progress, "sorting trees", 0, count);
     if (ok) {

@@ -164,7 +164,9 @@ static void trees_in_the_open_are_others(void **state)
          "in_the_open.oak: \"free\" has an openness of 0.1, \"oak\" of 0.2; what stands in the open must have more"},
         {"\"in_the_open\": {\"oak\": \"free\"}, \"clips\": {\"oak\": {\"box_m\": [2, 1, 5]}}", "in_the_open.oak: is cut to"},
         {"\"in_the_open\": {\"oak\": 1}", "in_the_open.oak: found 1"},
-        {"\"in_the_open\": {\"oak\": \"oak\"}", "in_the_open.oak: \"oak\" has an openness of 0.2, \"oak\" of 0.2"},
+        {"\"in_the_open\": {\"oak\": \"oak\"}", "in_the_open.oak: stands for itself"},
+        {"\"when_young\": {\"oak\": \"oak\"}", "when_young.oak: stands for itself"},
+        {"\"when_young\": {\"larch\": \"sapling\"}", "when_young.larch: no layer or inventory has the species \"larch\""},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[400];
@@ -452,6 +454,23 @@ static void saplings_have_variants_of_their_own(void **state)
     assert_variants(f, "hazel", 0.45f * hazel->typical_height_m, 1.1f * hazel->typical_height_m);
 }
 
+/* Of an inventory's trees, or of a layer's of all heights. */
+static void young_ones_stand_for_low_trees(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "{\"when_young\": {\"oak\": \"young oak\", \"beech\": \"young beech\"}, \"openness\": {\"oak\": 0.6},"
+                        "\"layers\": [{\"species\": {\"beech\": 1}, \"height_m\": [4, 30]}], \"inventories\": [{\"file\": "
+                        "\"t.csv\", \"species\": {\"*\": \"oak\"}}]}"));
+    const struct wd_species *species = f->scene.species;
+    int oak = wd_scene_find_species(&f->scene, "oak"), young = wd_scene_find_species(&f->scene, "young oak");
+    assert_int_equal(species[oak].when_young, 1 + young);
+    assert_true(species[young].openness == species[oak].openness);
+    assert_variants(f, "oak", 12.6f, 30.8f);
+    assert_variants(f, "young oak", 0.06f * 28, 12.6f);
+    assert_variants(f, "beech", 14.4f, 35.2f);
+    assert_variants(f, "young beech", 4, 14.4f);
+}
+
 /* An inventory may hold any height, but only of what it names. */
 static void inventories_leave_saplings_alone(void **state)
 {
@@ -596,6 +615,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup_teardown(allometry_inverts, setup, teardown),
         cmocka_unit_test_setup_teardown(stems_of_stands_are_slender, setup, teardown),
         cmocka_unit_test_setup_teardown(saplings_have_variants_of_their_own, setup, teardown),
+        cmocka_unit_test_setup_teardown(young_ones_stand_for_low_trees, setup, teardown),
         cmocka_unit_test_setup_teardown(inventories_leave_saplings_alone, setup, teardown),
         cmocka_unit_test_setup_teardown(green_leaves_are_not_too_green, setup, teardown),
         cmocka_unit_test_setup_teardown(months_change_leaves, setup, teardown),

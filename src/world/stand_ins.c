@@ -1,6 +1,5 @@
-#include "world/neighbours.h"
+#include "world/stand_ins.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -166,13 +165,39 @@ static float side_light(const struct stand *stand, const struct wd_tree *tree, f
     return share;
 }
 
-/* --- other species for the open --------------------------------------------------------------- */
+/* --- what stands for trees -------------------------------------------------------------------- */
+
+/* The species and the variant of it that is as high. */
+static uint32_t kind_of(const struct wd_tree *tree, uint32_t species, const struct wd_placement_params *params)
+{
+    const struct wd_scene *scene = params->scene;
+    uint32_t range_cm[2], random = wd_hash3(params->seed, tree->id, WD_FOR_VARIANT);
+    uint32_t variants = scene->variants < 1 ? 1 : scene->variants > 256 ? 256 : (uint32_t)scene->variants;
+    wd_variant_range_cm(&scene->species[species], range_cm);
+    return species | wd_place_variant(random, variants, tree->size & 0xffffu, range_cm[0], range_cm[1]) << 16;
+}
+
+/* Crowns are as wide by either species, which follow one allometry; those of given files may not be. */
+static size_t grow_young(const struct wd_tree_list *list, const bool *fixed, const struct wd_placement_params *params)
+{
+    size_t changed = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        struct wd_tree *tree = &list->trees[i];
+        const struct wd_species *species = &params->scene->species[WD_TREE_SPECIES(*tree)];
+        float grown_m = WD_HALF_GROWN * species->typical_height_m;
+        if (fixed[i] || species->when_young == 0 || WD_TREE_HEIGHT_M(*tree) >= grown_m)
+            continue;
+        tree->kind = kind_of(tree, species->when_young - 1, params);
+        changed++;
+    }
+    return changed;
+}
 
 struct asking {
     const struct stand *stand;
     const struct wd_scene *scene;
-    const bool *fixed;  /* trees that stay as they are */
-    uint16_t *becomes;  /* species of each tree */
+    const bool *fixed; /* trees that stay as they are */
+    uint16_t *becomes; /* species of each tree */
 };
 
 /* From one to the next, as long as the light is nearer to that which the next has grown in. */
@@ -232,18 +257,14 @@ static double crown_cm_of(const struct crowns *crowns, uint32_t species, uint32_
 static void become(struct wd_tree *tree, uint32_t species, struct wd_tree_row row, const struct crowns *crowns,
                    const struct wd_placement_params *params)
 {
-    const struct wd_scene *scene = params->scene;
-    uint32_t height_cm = tree->size & 0xffffu, crown_cm = tree->size >> 16, range_cm[2];
-    uint32_t variants = scene->variants < 1 ? 1 : scene->variants > 256 ? 256 : (uint32_t)scene->variants;
+    uint32_t height_cm = tree->size & 0xffffu, crown_cm = tree->size >> 16;
     double dbh_cm = (double)row.dbh_cm;
     if (!row.crown_measured) {
         double wider = crown_cm_of(crowns, species, height_cm, dbh_cm) /
                        crown_cm_of(crowns, WD_TREE_SPECIES(*tree), height_cm, dbh_cm);
         crown_cm = (uint32_t)fmin(fmax(floor(crown_cm * wider + 0.5), 1), WD_TREE_CROWN_MOST_CM);
     }
-    wd_variant_range_cm(&scene->species[species], range_cm);
-    uint32_t random = wd_hash3(params->seed, tree->id, WD_FOR_VARIANT);
-    tree->kind = species | wd_place_variant(random, variants, height_cm, range_cm[0], range_cm[1]) << 16;
+    tree->kind = kind_of(tree, species, params);
     tree->size = height_cm | crown_cm << 16;
 }
 
@@ -264,31 +285,44 @@ static void apply(const struct wd_tree_list *list, const struct asking *asking, 
     wd_info(params->log, "in the open: %zu of %zu trees", changed, asked);
 }
 
-static bool any_in_the_open(const struct wd_scene *scene)
+static void find_wanted(const struct wd_scene *scene, bool *young, bool *open)
 {
-    for (size_t i = 0; i < scene->species_file_count; i++)
-        if (scene->species[i].in_the_open > 0)
-            return true;
-    return false;
+    *young = *open = false;
+    for (size_t i = 0; i < scene->species_file_count; i++) {
+        *young = *young || scene->species[i].when_young > 0;
+        *open = *open || scene->species[i].in_the_open > 0;
+    }
 }
 
-bool wd_trees_in_the_open(struct wd_tree_list *list, size_t inventory_end, const struct wd_tree_tags *tags,
-                          const struct wd_placement_params *params)
+static bool open_up(const struct wd_tree_list *list, const bool *fixed, const struct wd_tree_tags *tags,
+                    const struct wd_placement_params *params)
 {
-    if (list->count == 0 || !any_in_the_open(params->scene))
-        return true;
     struct stand stand;
     stand_init(&stand, list->trees, list->count);
-    bool *fixed = wd_alloc_array(list->count, sizeof *fixed);
-    for (size_t i = 0; i < inventory_end; i++)
-        fixed[i] = wd_tree_tags_get_row(tags, i + 1).line == 0;
     struct asking asking = {&stand, params->scene, fixed, wd_alloc_array(list->count, sizeof *asking.becomes)};
     size_t jobs = (list->count + TREES_A_JOB - 1) / TREES_A_JOB;
     bool ok = wd_jobs_run_told(params->threads, jobs, ask_some, &asking, params->progress, "asking neighbours");
     if (ok)
         apply(list, &asking, tags, params);
     free(asking.becomes);
-    free(fixed);
     stand_finish(&stand);
+    return ok;
+}
+
+bool wd_trees_stand_in(struct wd_tree_list *list, size_t inventory_end, const struct wd_tree_tags *tags,
+                       const struct wd_placement_params *params)
+{
+    bool young, open, ok = true;
+    find_wanted(params->scene, &young, &open);
+    if (list->count == 0 || (!young && !open))
+        return true;
+    bool *fixed = wd_alloc_array(list->count, sizeof *fixed);
+    for (size_t i = 0; i < inventory_end; i++)
+        fixed[i] = wd_tree_tags_get_row(tags, i + 1).line == 0;
+    if (young)
+        wd_info(params->log, "young: %zu trees", grow_young(list, fixed, params));
+    if (open)
+        ok = open_up(list, fixed, tags, params);
+    free(fixed);
     return ok;
 }

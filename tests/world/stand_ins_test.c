@@ -8,9 +8,9 @@
 #include <cmocka.h>
 
 #include "inventory_file.h"
-#include "world/neighbours.h"
+#include "world/stand_ins.h"
 
-static const char *const path = "neighbours_test.csv";
+static const char *const path = "stand_ins_test.csv";
 
 /* Oaks become birches, and these spruces, with so much light. */
 static void open_species(struct small_scene *small)
@@ -181,6 +181,31 @@ static void worlds_are_the_same_on_any_threads(void **state)
     wd_world_finish(&many);
 }
 
+/* Lower than 9 m, oaks are birches, which grow as saplings; heights and crowns are as they were. */
+static void low_trees_are_young_ones(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    open_species(&small);
+    small.species[0].in_the_open = small.species[2].in_the_open = 0;
+    small.species[0].when_young = 1 + 2;
+    small.species[2].form = WD_FORM_BROADLEAF;
+    small.species[2].planted_m[0] = 2;
+    small.species[2].planted_m[1] = 8;
+    small_scene_inventory(&small, path);
+    write_file(path, "x,y,species,height,crown_diameter\n50,50,oak,2.1,1.5\n60,50,oak,8.9,\n70,50,oak,9,\n80,50,birch,3,\n");
+    make_or_fail(&small, &world);
+    assert_said(captured.others, "young: 2 trees");
+    static const uint32_t species[4] = {2, 2, 0, 2};
+    for (size_t i = 0; i < 4; i++)
+        assert_int_equal(WD_TREE_SPECIES(tree_of(&world, 1 + i)), species[i]);
+    assert_int_equal(tree_of(&world, 1).size, 210 | 150 << 16);
+    assert_int_equal(WD_TREE_VARIANT(tree_of(&world, 1)), 0);
+    assert_int_equal(WD_TREE_VARIANT(tree_of(&world, 2)), 5);
+    wd_world_finish(&world);
+}
+
 static void trees_on_demand_are_told_of(void **state)
 {
     (void)state;
@@ -190,7 +215,7 @@ static void trees_on_demand_are_told_of(void **state)
     small_scene_layer(&small);
     small.scene.planting = WD_PLANTING_ON_DEMAND;
     make_or_fail(&small, &world);
-    assert_said(captured.others, "layer: is planted on demand, where nobody knows a tree's neighbours");
+    assert_said(captured.others, "layer: is planted on demand, where \"when_young\" and \"in_the_open\" have no effect");
     wd_world_finish(&world);
 }
 
@@ -202,6 +227,7 @@ int main(void)
         cmocka_unit_test(given_trees_are_neighbours_and_stay),
         cmocka_unit_test(hills_are_as_every_pair_says),
         cmocka_unit_test(worlds_are_the_same_on_any_threads),
+        cmocka_unit_test(low_trees_are_young_ones),
         cmocka_unit_test(trees_on_demand_are_told_of),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
