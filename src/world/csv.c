@@ -273,9 +273,19 @@ int wd_csv_find(const struct wd_csv *csv, const char *name)
     return -1;
 }
 
+/* As many as a message has room for. */
 char *wd_csv_names(const struct wd_csv *csv)
 {
-    return wd_join(csv->header, csv->column_count, ", ");
+    enum { ENOUGH = 100, MOST_LETTERS = 2000 };
+    size_t count = 0, letters = 0;
+    while (count < csv->column_count && count < ENOUGH && letters < MOST_LETTERS)
+        letters += strnlen(csv->header[count++], MOST_LETTERS);
+    char *names = wd_join(csv->header, count, ", ");
+    if (count == csv->column_count)
+        return names;
+    char *more = wd_format("%s, ... (%zu columns)", names, csv->column_count);
+    free(names);
+    return more;
 }
 
 static double power_of_ten(int exponent)
@@ -314,7 +324,7 @@ static bool parse_number(const char *text, bool decimal_comma, double *value)
     if (*text == 'e' || *text == 'E') {
         char *end;
         long written = strtol(text + 1, &end, 10);
-        if (end == text + 1 || written < -300 || written > 300)
+        if (end == text + 1 || isspace((unsigned char)text[1]) || written < -300 || written > 300)
             return false;
         exponent = (int)written;
         text = end;
