@@ -54,7 +54,17 @@ static bool decode_png(struct wd_model_image *image, const uint8_t *bytes, size_
 /* Harmless warnings, of bytes too many, are let pass, not that pixels are missing. */
 static bool is_whole(tjhandle decoder)
 {
-    return tjGetErrorCode(decoder) == TJERR_WARNING && !strstr(tjGetErrorStr2(decoder), "Premature end");
+    return tjGetErrorCode(decoder) == TJERR_WARNING && !strstr(tjGetErrorStr2(decoder), "remature end");
+}
+
+/* A copy with the marker of the end behind it, which files without it are let pass without. free() it. */
+static uint8_t *with_end(const uint8_t *bytes, size_t size)
+{
+    static const uint8_t end[] = {0xff, 0xd9};
+    uint8_t *copy = wd_alloc(size + sizeof end);
+    memcpy(copy, bytes, size);
+    memcpy(copy + size, end, sizeof end);
+    return copy;
 }
 
 static bool decode_jpeg(struct wd_model_image *image, const uint8_t *bytes, size_t size,
@@ -81,8 +91,10 @@ static bool decode_jpeg(struct wd_model_image *image, const uint8_t *bytes, size
     if (ok) {
         *image = (struct wd_model_image){(uint32_t)width, (uint32_t)height,
                                          wd_alloc((size_t)width * (size_t)height * 4)};
-        ok = tjDecompress2(decoder, bytes, (unsigned long)size, image->rgba, width, 0, height,
+        uint8_t *ended = with_end(bytes, size);
+        ok = tjDecompress2(decoder, ended, (unsigned long)size + 2, image->rgba, width, 0, height,
                            TJPF_RGBA, TJFLAG_LIMITSCANS) == 0 || is_whole(decoder);
+        free(ended);
         *why = ok ? *why : "the JPEG is malformed or cut short";
     }
     if (decoder)
