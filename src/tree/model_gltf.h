@@ -10,7 +10,8 @@
 const char *wd_gltf_whole_numbers(const char *json, size_t size);
 
 /* What is wrong with the JSON that assimp fails in, takes endless time and memory for, or gives no reason for: nesting,
- * nodes that hold one another again and again, sparse values that are more than there are. A few words; NULL: nothing. `*broken`: it is no JSON, which assimp may bear. free() it. */
+ * nodes that hold one another again and again, sparse values that are more than there are. A few words; NULL: nothing.
+ * `*broken`: it is no JSON, which assimp may bear. free() it. */
 char *wd_gltf_fault(const char *json, size_t size, bool *broken);
 
 #endif
