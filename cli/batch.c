@@ -103,8 +103,10 @@ static bool read_lines(struct batch *batch)
     bool ok = true;
     if (!file)
         return cli_fail(batch->session, "%s: no such file can be read", batch->path);
-    for (uint32_t number = 1; ok && getline(&text, &size, file) >= 0; number++)
-        ok = add_line(batch, text + (number == 1 ? mark_length(text) : 0), number);
+    ssize_t length;
+    for (uint32_t number = 1; ok && (length = getline(&text, &size, file)) >= 0; number++)
+        ok = !memchr(text, 0, (size_t)length) ? add_line(batch, text + (number == 1 ? mark_length(text) : 0), number)
+                                              : complain(batch, number, "has a zero byte; lines are text in UTF-8", "");
     if (ok && ferror(file))
         ok = cli_fail(batch->session, "%s: reading it failed", batch->path);
     free(text);

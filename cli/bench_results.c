@@ -92,6 +92,13 @@ static bool take(char **line, char *field, size_t size)
     return true;
 }
 
+static bool parse_number(const char *text, double *value)
+{
+    char *end = NULL;
+    *value = *text ? strtod(text, &end) : NAN;
+    return !*text || (end != text && !*end && isfinite(*value));
+}
+
 static bool parse_row(char *line, struct bench_row *row)
 {
     char number[64];
@@ -101,14 +108,10 @@ static bool parse_row(char *line, struct bench_row *row)
         !take(&line, row->forest, sizeof row->forest))
         return false;
     for (uint32_t i = 0; i < BENCH_COLUMNS; i++) {
-        if (!take(&line, number, sizeof number))
+        if (!take(&line, number, sizeof number) || !parse_number(number, &row->values[i]))
             return false;
-        row->values[i] = *number ? strtod(number, NULL) : NAN;
     }
-    char *end = strchr(line, '\n');
-    if (!end) /* cut off while it was written */
-        return false;
-    *end = 0;
+    line[strcspn(line, "\r\n")] = 0;
     snprintf(row->passes, sizeof row->passes, "%s", line);
     return true;
 }
@@ -178,14 +181,21 @@ static struct heads read_heads(const struct bench *bench, FILE *file)
     return found;
 }
 
-static void read_rows(struct bench *bench, FILE *file)
+/* A last line without an end was cut off while it was written. */
+static bool read_rows(struct bench *bench, FILE *file, const char *path)
 {
     char line[4096];
-    while (fgets(line, sizeof line, file)) {
+    for (uint32_t number = 3; fgets(line, sizeof line, file); number++) {
         struct bench_row row = {0};
-        if (parse_row(line, &row))
-            keep(bench, &row);
+        bool whole = strchr(line, '\n') != NULL;
+        if (!whole && feof(file))
+            return true;
+        if (!whole || !parse_row(line, &row))
+            return cli_fail(bench->session, "%s:%u: is no row of results: wanted are four names, then %d numbers, each may "
+                            "be empty, then passes; remove the line", path, number, (int)BENCH_COLUMNS);
+        keep(bench, &row);
     }
+    return true;
 }
 
 static bool take_rows(struct bench *bench, FILE *file, const char *path)
@@ -196,8 +206,7 @@ static bool take_rows(struct bench *bench, FILE *file, const char *path)
                         "%s: holds results of another suite, effort, size, --set or version of weald; name "
                         "another directory or remove it",
                         path);
-    read_rows(bench, file);
-    return true;
+    return read_rows(bench, file, path);
 }
 
 bool bench_results_load_earlier(struct bench *earlier, const struct bench *bench)
@@ -212,8 +221,7 @@ bool bench_results_load_earlier(struct bench *earlier, const struct bench *bench
     const struct heads heads = ok ? read_heads(bench, file) : (struct heads){0};
     if (ok && !heads.same_columns)
         ok = cli_fail(bench->session, "%s: is not of this version of weald: its columns are others", path);
-    if (ok)
-        read_rows(earlier, file);
+    ok = ok && read_rows(earlier, file, path);
     if (ok && !heads.same_measure)
         cli_say(bench->session, "%s: was measured otherwise: %s\n", path, heads.measure + strspn(heads.measure, "# "));
     if (file)

@@ -197,7 +197,8 @@ static size_t pack_indices(struct block *block, const uint32_t *indices, size_t 
 /* What the next `bytes` hold; NULL where they are not `count` items. */
 static void *unpack_vertices(struct block *block, size_t bytes, size_t count, size_t size)
 {
-    if (count > MAX_VERTICES || block->size - block->used < bytes)
+    const size_t densest = 1024; /* bytes that one stands for: two bits at least are kept of 256 */
+    if (count > MAX_VERTICES || block->size - block->used < bytes || count * size / densest > bytes)
         return NULL;
     void *items = wd_alloc_array(count + 1, size);
     if (meshopt_decodeVertexBuffer(items, count, size, block->bytes + block->used, bytes) != 0) {
@@ -211,7 +212,7 @@ static void *unpack_vertices(struct block *block, size_t bytes, size_t count, si
 /* Likewise indices, which are below `below`. */
 static uint32_t *unpack_indices(struct block *block, size_t bytes, size_t count, uint32_t below)
 {
-    if (count > 6 * (size_t)MAX_VERTICES || block->size - block->used < bytes)
+    if (count > bytes || block->size - block->used < bytes)
         return NULL;
     uint32_t *indices = wd_alloc_array(count + 1, sizeof *indices);
     bool ok = meshopt_decodeIndexSequence(indices, count, sizeof *indices,

@@ -69,6 +69,12 @@ bool wd_file_exists(const char *path)
     return access(path, F_OK) == 0;
 }
 
+bool wd_file_is_plain(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode);
+}
+
 bool wd_make_directories(const char *path, const struct wd_log *log)
 {
     char *copy = wd_strdup(path);

@@ -12,6 +12,8 @@ bool wd_file_read(const char *path, size_t max_size, const struct wd_log *log, c
                   size_t *size);
 
 bool wd_file_exists(const char *path);
+/* Whether it is a file proper: no folder, and no pipe or device, which would be read without end. */
+bool wd_file_is_plain(const char *path);
 
 /* Whether a name ends in `ending` (".png"), in upper or lower case, with something before it. */
 bool wd_has_ending(const char *path, const char *ending);

@@ -52,14 +52,23 @@ static void undo_escapes(char *text)
     *to = '\0';
 }
 
-char *wd_model_find(const char *path)
+static char *find_plain(const char *path)
 {
     char *found = find_in_any_case(path);
+    if (found && wd_file_is_plain(found))
+        return found;
+    free(found);
+    return NULL;
+}
+
+char *wd_model_find(const char *path)
+{
+    char *found = find_plain(path);
     if (found || !strchr(path, '%'))
         return found;
     char *plain = wd_strdup(path);
     undo_escapes(plain);
-    found = find_in_any_case(plain);
+    found = find_plain(plain);
     free(plain);
     return found;
 }

@@ -2,7 +2,7 @@
 #ifndef WD_TREE_MODEL_BESIDE_H
 #define WD_TREE_MODEL_BESIDE_H
 
-/* The file of that name; where there is none, the one whose name differs in upper and lower case alone,
+/* The plain file of that name; where there is none, the one whose name differs in upper and lower case alone,
  * or is meant by the escapes (%20) of a URI. NULL: none. free() it. */
 char *wd_model_find(const char *path);
 

@@ -79,17 +79,31 @@ static _Noreturn void read_apart(const char *path, int file)
 
 /* --- the process that asked -------------------------------------------------------------- */
 
-/* A GLB file begins with its magic, its version and how long it is. */
-static bool check_glb_length(int file, uint64_t size, const char *path, const struct wd_log *log)
+static uint32_t word_of(const uint8_t *bytes)
 {
-    uint8_t head[12];
-    if (pread(file, head, sizeof head, 0) != (ssize_t)sizeof head || memcmp(head, "glTF", 4) != 0)
+    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+}
+
+/* A GLB file begins with its magic, its version and how long it is. Chunks follow, of JSON and of bytes, each with its
+ * length before it: assimp takes memory by it before it looks at the file's. */
+static bool check_glb_lengths(int file, uint64_t size, const char *path, const struct wd_log *log)
+{
+    enum { HEAD = 12, CHUNK_HEAD = 8, CHUNKS = 2 };
+    uint8_t head[HEAD], chunk[CHUNK_HEAD];
+    if (pread(file, head, HEAD, 0) != HEAD || memcmp(head, "glTF", 4) != 0)
         return true;
-    uint32_t length = head[8] | (uint32_t)head[9] << 8 | (uint32_t)head[10] << 16 |
-                      (uint32_t)head[11] << 24;
-    return length == size ||
-           wd_error(log, "%s: is malformed: its header says %u bytes, the file has %llu", path,
-                    length, (unsigned long long)size);
+    if (word_of(head + 8) != size)
+        return wd_error(log, "%s: is malformed: its header says %u bytes, the file has %llu", path, word_of(head + 8),
+                        (unsigned long long)size);
+    uint64_t at = HEAD;
+    for (int i = 0; i < CHUNKS && pread(file, chunk, CHUNK_HEAD, (off_t)at) == CHUNK_HEAD; i++) {
+        uint64_t begin = at + CHUNK_HEAD;
+        at = begin + word_of(chunk);
+        if (at > size)
+            return wd_error(log, "%s: is malformed: its chunk %d says %u bytes, the file has %llu after its head", path,
+                            i + 1, word_of(chunk), (unsigned long long)(size - begin));
+    }
+    return true;
 }
 
 static bool check_file(const char *path, const struct wd_log *log)
@@ -106,7 +120,7 @@ static bool check_file(const char *path, const struct wd_log *log)
     int file = open(path, O_RDONLY | O_CLOEXEC);
     if (file < 0)
         return wd_error(log, "%s: cannot be opened: %s", path, strerror(errno));
-    bool ok = check_glb_length(file, (uint64_t)status.st_size, path, log);
+    bool ok = check_glb_lengths(file, (uint64_t)status.st_size, path, log);
     close(file);
     return ok;
 }

@@ -7,7 +7,13 @@
 
 #include "base/memory.h"
 
-enum { MAX_SIDE_PX = 16384 };
+enum {
+    MAX_SIDE_PX = 16384,
+    MAX_BESIDE_BYTES = 64 << 20, /* of text and profiles that a PNG has beside its pixels */
+    DEFLATED_MOST = 1040,       /* bytes that one of DEFLATE stands for */
+    JPEG_MOST_PX = 64 * 8,      /* pixels that a byte stands for: a bit for the mean of 8 x 8, which every one has */
+};
+static const char cut_short[] = "it is cut short: it has too few bytes for its size in pixels";
 
 void wd_model_image_finish(struct wd_model_image *image)
 {
@@ -25,9 +31,16 @@ static bool decode_png(struct wd_model_image *image, const uint8_t *bytes, size_
     if (!result)
         result = spng_set_image_limits(context, MAX_SIDE_PX, MAX_SIDE_PX);
     if (!result)
+        result = spng_set_chunk_limits(context, MAX_BESIDE_BYTES, MAX_BESIDE_BYTES);
+    if (!result)
         result = spng_get_ihdr(context, &header);
     if (!result)
         result = spng_decoded_image_size(context, SPNG_FMT_RGBA8, &decoded);
+    if (!result && (uint64_t)header.width * header.height * header.bit_depth / 8 / DEFLATED_MOST > size) {
+        spng_ctx_free(context);
+        *why = cut_short;
+        return false;
+    }
     if (!result) {
         *image = (struct wd_model_image){header.width, header.height, wd_alloc(decoded)};
         result = spng_decode_image(context, image->rgba, decoded, SPNG_FMT_RGBA8,
@@ -36,6 +49,22 @@ static bool decode_png(struct wd_model_image *image, const uint8_t *bytes, size_
     spng_ctx_free(context);
     *why = spng_strerror(result);
     return result == 0;
+}
+
+/* Harmless warnings, of bytes too many, are let pass, not that pixels are missing. */
+static bool is_whole(tjhandle decoder)
+{
+    return tjGetErrorCode(decoder) == TJERR_WARNING && !strstr(tjGetErrorStr2(decoder), "remature end");
+}
+
+/* A copy with the marker of the end behind it, which files without it are let pass without. free() it. */
+static uint8_t *with_end(const uint8_t *bytes, size_t size)
+{
+    static const uint8_t end[] = {0xff, 0xd9};
+    uint8_t *copy = wd_alloc(size + sizeof end);
+    memcpy(copy, bytes, size);
+    memcpy(copy + size, end, sizeof end);
+    return copy;
 }
 
 static bool decode_jpeg(struct wd_model_image *image, const uint8_t *bytes, size_t size,
@@ -55,12 +84,18 @@ static bool decode_jpeg(struct wd_model_image *image, const uint8_t *bytes, size
         *why = "it is a CMYK JPEG; RGB and grey are read";
         ok = false;
     }
+    if (ok && (size_t)width * (size_t)height / JPEG_MOST_PX > size) {
+        *why = cut_short;
+        ok = false;
+    }
     if (ok) {
         *image = (struct wd_model_image){(uint32_t)width, (uint32_t)height,
                                          wd_alloc((size_t)width * (size_t)height * 4)};
-        ok = tjDecompress2(decoder, bytes, (unsigned long)size, image->rgba, width, 0, height,
-                           TJPF_RGBA, 0) == 0 ||
-             tjGetErrorCode(decoder) == TJERR_WARNING;
+        uint8_t *ended = with_end(bytes, size);
+        ok = tjDecompress2(decoder, ended, (unsigned long)size + 2, image->rgba, width, 0, height,
+                           TJPF_RGBA, TJFLAG_LIMITSCANS) == 0 || is_whole(decoder);
+        free(ended);
+        *why = ok ? *why : "the JPEG is malformed or cut short";
     }
     if (decoder)
         tjDestroy(decoder);

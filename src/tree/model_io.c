@@ -115,6 +115,7 @@ static struct wd_model_traits traits_of(const char *path)
     if (text.bytes) {
         struct text json = json_of(&text, path);
         traits.whole_numbers = json.bytes ? wd_gltf_whole_numbers(json.bytes, json.size) : NULL;
+        traits.fault = json.bytes ? wd_gltf_fault(json.bytes, json.size, &traits.broken) : NULL;
         traits.skins = hide_skins(&text, path) > 0;
     }
     free(text.bytes);

@@ -9,6 +9,8 @@ struct aiFileIO;
 struct wd_model_traits {
     bool skins;
     const char *whole_numbers; /* attribute of glTF that is stored as such; NULL: none */
+    char *fault;               /* of glTF's JSON, as wd_gltf_fault has it; free() it */
+    bool broken;               /* that is told only where assimp fails */
 };
 
 /* Reads files as they are, but OBJ files with the zeroes that they leave out before points, OBJ and MTL

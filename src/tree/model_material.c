@@ -44,7 +44,7 @@ static bool load_image(const struct loader *loader, const char *texture, const c
     } else {
         char *path = wd_model_beside(loader->path, texture), *bytes = NULL;
         size_t size;
-        if (wd_file_exists(path) &&
+        if (wd_file_is_plain(path) &&
             wd_file_read(path, MAX_TEXTURE_BYTES, loader->log, &bytes, &size))
             ok = wd_model_image_decode(image, (const uint8_t *)bytes, size, &why);
         free(bytes);

@@ -68,7 +68,7 @@ static char *find_library(const char *path, bool *materials)
     free(line);
     if (file)
         fclose(file);
-    if (found && !wd_file_exists(found)) { /* assimp takes the one of the model's own name then */
+    if (found && !wd_file_is_plain(found)) { /* assimp takes the one of the model's own name then */
         char *own = wd_format("%.*smtl", (int)(strlen(path) - strlen("obj")), path);
         char *there = wd_model_find(own);
         free(own);
@@ -89,7 +89,7 @@ char *wd_model_obj_lacks(const char *path)
 {
     bool materials;
     char *library = find_library(path, &materials), *lacks = NULL;
-    if (library && !wd_file_exists(library))
+    if (library && !wd_file_is_plain(library))
         lacks = wd_format("its material library %s is not there", library);
     else if (!library && materials)
         lacks = wd_strdup("names materials (usemtl) but no library that has them (mtllib)");

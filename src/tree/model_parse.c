@@ -95,6 +95,8 @@ static void open_scene(struct parse *parse, const char *path)
     aiSetImportPropertyFloat(store, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 70);
     struct wd_model_traits traits;
     struct aiFileIO *io = wd_model_io(path, &traits);
+    if (traits.fault && !traits.broken)
+        give_up(parse, "is not a model that can be read: %s", traits.fault);
     if (traits.whole_numbers)
         give_up(parse, "has its %s as whole numbers (quantized), which are not read; export it with floats",
                 traits.whole_numbers);
@@ -102,6 +104,9 @@ static void open_scene(struct parse *parse, const char *path)
         keep_warning("Warn,: has skins, which are not read: its vertices stand as they are in the file; apply "
                      "the pose before the export for another", (void *)&parse->header);
     parse->scene = aiImportFileExWithProperties(path, steps, io, store);
+    if (!parse->scene && traits.fault)
+        give_up(parse, "is not a model that can be read: %s", traits.fault);
+    free(traits.fault);
     if (!parse->scene && wd_model_has_word(path, "EXT_meshopt_compression"))
         give_up(parse, "is compressed by EXT_meshopt_compression, which is not read; export it without");
     if (!parse->scene)

@@ -11,7 +11,7 @@
 #include "base/utf8.h"
 
 static const size_t most_bytes = (size_t)1 << 30;
-enum { MOST_COLUMNS = 4096 };
+enum { MOST_COLUMNS = 4096, MOST_NAME_BYTES = 1000 };
 
 /* Species and columns are compared with names of the scene, which is UTF-8. */
 static bool check_utf8(const char *path, const char *text, size_t size, const struct wd_log *log)
@@ -196,6 +196,10 @@ static bool read_header(struct wd_csv *csv)
     if (csv->column_count > MOST_COLUMNS)
         return wd_error(csv->log, "%s:%" PRIu64 ": %zu columns, at most %d are read", csv->path,
                         csv->line, csv->column_count, MOST_COLUMNS);
+    for (size_t i = 0; i < csv->column_count; i++)
+        if (strlen(csv->header[i]) > MOST_NAME_BYTES)
+            return wd_error(csv->log, "%s:%" PRIu64 ": the name of column %zu has %zu bytes, at most %d are read; is the "
+                            "first row the header?", csv->path, csv->line, i + 1, strlen(csv->header[i]), MOST_NAME_BYTES);
     csv->fields = wd_alloc_array(csv->column_count, sizeof *csv->fields);
     return csv->column_count > 0;
 }
@@ -273,9 +277,19 @@ int wd_csv_find(const struct wd_csv *csv, const char *name)
     return -1;
 }
 
+/* As many as a message has room for. */
 char *wd_csv_names(const struct wd_csv *csv)
 {
-    return wd_join(csv->header, csv->column_count, ", ");
+    enum { ENOUGH = 100, MOST_LETTERS = 1000 };
+    size_t count = 0, letters = 0;
+    while (count < csv->column_count && count < ENOUGH && letters < MOST_LETTERS)
+        letters += strnlen(csv->header[count++], MOST_LETTERS);
+    char *names = wd_join(csv->header, count, ", ");
+    if (count == csv->column_count)
+        return names;
+    char *more = wd_format("%s, ... (%zu columns)", names, csv->column_count);
+    free(names);
+    return more;
 }
 
 static double power_of_ten(int exponent)
@@ -314,7 +328,7 @@ static bool parse_number(const char *text, bool decimal_comma, double *value)
     if (*text == 'e' || *text == 'E') {
         char *end;
         long written = strtol(text + 1, &end, 10);
-        if (end == text + 1 || written < -300 || written > 300)
+        if (end == text + 1 || isspace((unsigned char)text[1]) || written < -300 || written > 300)
             return false;
         exponent = (int)written;
         text = end;

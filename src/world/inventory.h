@@ -82,6 +82,8 @@ struct wd_species_names {
         uint64_t count, line; /* rows that have it, and the first of them */
     } *names;
     size_t count, capacity;
+    size_t *slots; /* by hash: index into names + 1; 0: free */
+    size_t slot_count;
 };
 /* Its index in names->names, where it is added when it is new. `line`: of the row that has it. */
 size_t wd_species_names_find(struct wd_species_names *names, const char *name, uint64_t line);

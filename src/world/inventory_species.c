@@ -5,6 +5,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include <xxhash.h>
+
 #include "base/memory.h"
 #include "scene/latin_names.h"
 
@@ -58,17 +60,39 @@ static int look_up(const struct wd_species_names *names, const char *name, bool 
     return *any ? wd_scene_find_species(names->scene, wanted->species[mapped].value) : -1;
 }
 
+/* The slot of a name, or the free one for it. */
+static size_t *slot_of(const struct wd_species_names *names, const char *name)
+{
+    size_t at = (size_t)XXH64(name, strlen(name), 0) & (names->slot_count - 1);
+    while (names->slots[at] && strcmp(names->names[names->slots[at] - 1].name, name) != 0)
+        at = (at + 1) & (names->slot_count - 1);
+    return &names->slots[at];
+}
+
+/* A column taken by mistake may have another name in each of its rows. */
+static void make_slots(struct wd_species_names *names)
+{
+    free(names->slots);
+    names->slot_count = names->slot_count ? 2 * names->slot_count : 256;
+    names->slots = wd_alloc_array(names->slot_count, sizeof *names->slots);
+    for (size_t i = 0; i < names->count; i++)
+        *slot_of(names, names->names[i].name) = i + 1;
+}
+
 size_t wd_species_names_find(struct wd_species_names *names, const char *name, uint64_t line)
 {
-    for (size_t i = 0; i < names->count; i++)
-        if (strcmp(names->names[i].name, name) == 0) {
-            names->names[i].count++;
-            return i;
-        }
+    if (2 * names->count >= names->slot_count)
+        make_slots(names);
+    size_t *slot = slot_of(names, name);
+    if (*slot) {
+        names->names[*slot - 1].count++;
+        return *slot - 1;
+    }
     bool any;
     int species = look_up(names, name, &any);
     struct wd_species_name *added = wd_push(names->names, names->count, names->capacity);
     *added = (struct wd_species_name){wd_strdup(name), species, any, 1, line};
+    *slot = names->count;
     return names->count - 1;
 }
 
@@ -238,5 +262,6 @@ void wd_species_names_finish(struct wd_species_names *names)
     for (size_t i = 0; i < names->count; i++)
         free(names->names[i].name);
     free(names->names);
+    free(names->slots);
     *names = (struct wd_species_names){0};
 }

@@ -83,6 +83,23 @@ void wd_pixel_map_apply(const struct wd_pixel_map *map, int count, double *x, do
     }
 }
 
+/* A file may say any place and size of its pixels; counts of pixels over what this lets through fit into int. */
+static bool check_bounds(const struct wd_raster_source *source, const struct wd_frame_bounds *bounds,
+                         const struct wd_log *log)
+{
+    const double farthest = 1e10, least_pixel = 1e-10, most_pixels = 1e9;
+    double pixel = fmin(bounds->pixel[0], bounds->pixel[1]);
+    for (int axis = 0; axis < 2; axis++) {
+        double low = bounds->min[axis], high = bounds->max[axis];
+        if (!(low > -farthest && high < farthest && bounds->pixel[axis] > 0 && pixel > least_pixel &&
+              (high - low) / pixel < most_pixels))
+            return wd_error(log, "%s: its georeference says pixels of %g x %g from (%g, %g) to (%g, %g), which is no "
+                            "place on Earth", source->path, bounds->pixel[0], bounds->pixel[1], bounds->min[0],
+                            bounds->min[1], bounds->max[0], bounds->max[1]);
+    }
+    return true;
+}
+
 bool wd_source_bounds(const struct wd_raster_source *source, const struct wd_pixel_map *map,
                       struct wd_frame_bounds *bounds, const struct wd_log *log)
 {
@@ -95,7 +112,7 @@ bool wd_source_bounds(const struct wd_raster_source *source, const struct wd_pix
             bounds->max[axis] = fmax(corner[axis], corner[axis] + size[axis]);
             bounds->pixel[axis] = fabs(t[axis ? 5 : 1]);
         }
-        return true;
+        return check_bounds(source, bounds, log);
     }
     struct wd_gdal_scope scope;
     wd_gdal_enter(&scope, source->path, log);
@@ -110,7 +127,7 @@ bool wd_source_bounds(const struct wd_raster_source *source, const struct wd_pix
         *bounds = (struct wd_frame_bounds){{extent[0], extent[1]}, {extent[2], extent[3]},
                                            {fabs(affine[1]), fabs(affine[5])}};
     wd_gdal_leave(&scope);
-    return ok;
+    return ok && check_bounds(source, bounds, log);
 }
 
 static uint32_t node_at(uint32_t kept, uint32_t samples)

@@ -242,8 +242,7 @@ static bool choose_grid(struct dem *dem, struct wd_terrain *terrain)
         double length_m = bounds.max[axis] - bounds.min[axis];
         first_m[axis] = bounds.min[axis] + pixel_m / 2;
         int64_t range[2];
-        if (!isfinite(length_m) || !crop(dem, axis, first_m[axis], pixel_m,
-                                         (int64_t)floor(length_m / pixel_m + 1e-6), range))
+        if (!crop(dem, axis, first_m[axis], pixel_m, (int64_t)floor(length_m / pixel_m + 1e-6), range))
             return false;
         first_m[axis] += (double)range[0] * pixel_m;
         extent_m[axis] = (double)(range[1] - range[0]) * pixel_m;

@@ -31,6 +31,9 @@ cp "$scratch/output" "$scratch/all"
 check 'another for another number of threads' [ "$(grep -c 'Vulkan device:' "$scratch/all")" -eq 3 ]
 check 'lines of standard input' sh -c "echo info '$tiny' --json | '$weald' batch - | grep -q tree_count"
 
+printf 'info %s --json\0 --no-such-option\n' "$tiny" >"$scratch/zero"
+expect 2 'zero:1: has a zero byte' batch "$scratch/zero"
+
 # A forest serves the lines that differ in how they draw it: its scene comes out of a pipe, which can be read once.
 sed "s,\.\./\.\.,$root,g" "$tiny" >"$scratch/tiny.json"
 once=$scratch/once.json

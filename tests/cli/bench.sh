@@ -41,6 +41,8 @@ run_against "$scratch/earlier" 0 'was measured otherwise: weald bench quality .*
 cp "$scratch/output" "$scratch/told"
 check 'times and errors are beside each other' grep -qE 'octree .* 2\.00 .* \+0\.0100$' "$scratch/told"
 check 'and what both have is counted' grep -qE '^1 of 2 rows are in both' "$scratch/told"
+sed 's/^grove,/grove,no number,/' "$out/results.csv" >"$scratch/earlier/results.csv"
+run_against "$scratch/earlier" 1 'earlier/results.csv:3: is no row of results'
 run_against "$scratch/none" 1 'none/results.csv: cannot be read: .*; --against names the directory'
 
 # what is best by a metric of which more is better, or of which 0 is

@@ -101,6 +101,21 @@ static void south_up_files_are_turned(void **state)
     wd_terrain_finish(&terrain);
 }
 
+static void georeferences_beyond_earth_are_told(void **state)
+{
+    (void)state;
+    static const double affines[][6] = {{500000, 1e80, 0, 5000000, 0, -1e80},
+                                        {500000, 2, 0, 1e200, 0, -2},
+                                        {500000, 1e-200, 0, 5000000, 0, -1e-200},
+                                        {500000, 2, 0, 5000000, 0, -1e9}};
+    for (size_t i = 0; i < sizeof affines / sizeof *affines; i++) {
+        make_raster(&(struct made_raster){.name = "/vsimem/far.tif", .width = 5, .height = 4, .affine = affines[i],
+                                          .epsg = 32632, .values = five_by_four});
+        const struct wd_scene scene = scene_of("/vsimem/far.tif");
+        assert_refused(&scene, i == 2 ? "far.tif" : "no place on Earth");
+    }
+}
+
 static double plane_m(double x_m, double y_m)
 {
     return 300 + 0.3 * (x_m - 500000) + 0.1 * (y_m - 5000000);
@@ -746,6 +761,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(samples_are_pixel_centres_from_the_south_west, forget_log),
         cmocka_unit_test_setup(south_up_files_are_turned, forget_log),
+        cmocka_unit_test_setup(georeferences_beyond_earth_are_told, forget_log),
         cmocka_unit_test_setup(rotated_files_are_straightened, forget_log),
         cmocka_unit_test_setup(missing_heights_never_become_pits, forget_log),
         cmocka_unit_test_setup(missing_heights_can_be_cut_out, forget_log),
