@@ -29,7 +29,7 @@ static const struct entry {
     {"pine-ridge", "scenes/gallery/pine-ridge.json", "ridge", 1, 1},
     {"lake", "scenes/gallery/lake.json", "shore", 1, 2},
     {"hedge-rows", "scenes/gallery/hedge-rows.json", "rows", 1, 1},
-    {"winter-spruce", "scenes/gallery/winter-spruce.json", "glade", 1, 1},
+    {"winter-spruce", "scenes/gallery/winter-spruce.json", "glade", 1, 2},
     {"leaves", "scenes/gallery/leaves.json", "near", 4, 3},
     {"understory", "scenes/gallery/understory.json", "floor", 1, 4},
     {"bei", "scenes/bei.json", "stand", 1, 1},
