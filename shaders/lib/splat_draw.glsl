@@ -39,9 +39,9 @@ struct wd_outline {
 };
 
 /* From this radius on, in pixels, a splat has a leaf's outline, or a twig's. */
-const float LEAF_PX = 1.0, TWIG_PX = 0.5;
+const float LEAF_PX = 1.0, TWIG_PX = 0.1;
 /* Largest width over length. */
-const float LEAF_WIDTH = 0.5, TWIG_WIDTH = 0.1;
+const float LEAF_WIDTH = 0.5, TWIG_WIDTH = 0.03;
 
 /* A square as large as the disc: small ones look alike, and one loop of few steps costs half of what rows
  * of a disc cost where lanes run in step. */

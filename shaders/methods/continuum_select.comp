@@ -146,7 +146,7 @@ void fill_rows(inout wd_splat_tree splats, tree_pose pose, uint model, vec3 foot
 
 /* A disc's reach over a model's radius: it faces the eye, which sees it, and has a leaf's outline
  * (lib/splat_draw.glsl). */
-const float LARGEST_DISC = 1.54 * sqrt(2.0 * WD_DISC_SEEN), LONGEST_TWIG = 3.44 * sqrt(WD_DISC_SEEN);
+const float LARGEST_DISC = 1.54 * sqrt(2.0 * WD_DISC_SEEN), LONGEST_TWIG = 6.27 * sqrt(WD_DISC_SEEN);
 
 /* How many strata, from the top, show anything past what the frame before saw. */
 uint seen_strata(wd_tree tree, vec3 foot, vec3 toward, tree_pose pose, uint model, vec3 sway,
@@ -305,12 +305,16 @@ uint far_wood(uint model)
     return model_word(model, WD_WORD_WOOD_COUNT) - model_word(model, WD_WORD_WOOD_STEM);
 }
 
+/* So many times the triangles where no leaves hide branches. */
+const float BARE_WOOD = 8.0;
+
 /* Triangles of wood for a tree that tall: few of the first while it is small. In a cascade twigs, which
  * discs stand for then, are lost in the penumbra. */
 uint wood_triangles(uint model, float tall_px)
 {
     tall_px *= ORTHOGRAPHIC != 0u ? 0.5 : 1.0;
-    return min(uint(tall_px * tall_px * 0.006 + tall_px), far_wood(model));
+    float finer = model_float(model, WD_WORD_LEAF_AREA_M2) > 0.0 ? 1.0 : BARE_WOOD;
+    return min(uint(finer * (tall_px * tall_px * 0.006 + tall_px)), far_wood(model));
 }
 
 /* Of all triangles that a small tree may have, the first so many; the far stem is among them, for which large trees
@@ -332,7 +336,8 @@ float wood_missing(uint model, uint triangles)
     uint all = far_wood(model);
     float first = max(float(wd_first_wood(all)), 1.0);
     float times = pow(float(triangles) / first, model_float(model, WD_WORD_WOOD_FALLS));
-    return triangles >= all ? 0.0 : pow(max(model_float(model, WD_WORD_THIN_SHARE), 1e-3), times);
+    float left = triangles >= all ? 0.0 : pow(max(model_float(model, WD_WORD_THIN_SHARE), 1e-3), times);
+    return mix(left, 1.0, model_float(model, WD_WORD_BARE_THIN));
 }
 
 /* Slope of the ground that a tree stands for when it is `wide_m` wide. */

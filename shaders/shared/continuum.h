@@ -96,10 +96,11 @@ struct wd_splat_model {
     float leaf_past_bark;                 /* factor on leaves' gains where these are all the wood */
     float thin_share;                     /* of the bark that is seen: what the first wd_first_wood triangles do not show */
     float thin_wood;                      /* factor on the gains of discs of wood that stand for as much */
+    float bare_thin;                      /* of trees without leaves: the same beside all triangles; 0 of others */
 };
-WD_STATIC_ASSERT_SIZE(wd_splat_model, 708);
+WD_STATIC_ASSERT_SIZE(wd_splat_model, 712);
 /* Its words, to be fetched one by one. */
-#define WD_SPLAT_MODEL_WORDS 177u
+#define WD_SPLAT_MODEL_WORDS 178u
 #define WD_WORD_WOOD_GAINS 0u
 #define WD_WORD_LEAF_GAINS 36u
 #define WD_WORD_LIGHT_GAINS 72u
@@ -121,6 +122,7 @@ WD_STATIC_ASSERT_SIZE(wd_splat_model, 708);
 #define WD_WORD_LEAF_PAST_BARK 174u
 #define WD_WORD_THIN_SHARE 175u
 #define WD_WORD_THIN_WOOD 176u
+#define WD_WORD_BARE_THIN 177u
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u

@@ -314,14 +314,15 @@ static void fill_wood_triangles(struct wd_splats *splats, const struct wood *woo
     free(number);
 }
 
-/* What so many times the first triangles leave says how fast that falls. */
-enum { TELLS_FALL = 6 };
+/* What so many times the first triangles leave says how fast that falls; of trees without leaves more are drawn. */
+enum { TELLS_FALL = 6, TELLS_BARE_FALL = 60 };
 
 static void make_wood(struct wd_splats *splats, const struct wood *wood)
 {
     const uint32_t most = (1u << WD_WOOD_BITS) / 3 - 1; /* that can be named; what shows least goes */
     const struct sized *order = wood->order + wood->stem;
     uint32_t count = wood->count - wood->stem, first = wd_first_wood(count);
+    uint32_t times = splats->model.leaf_area_m2 > 0 ? TELLS_FALL : TELLS_BARE_FALL;
     splats->model.wood_count = wood->count < most ? wood->count : most;
     splats->model.wood_stem = wood->stem;
     splats->model.wood_far_stem = wood->far_stem;
@@ -332,11 +333,11 @@ static void make_wood(struct wd_splats *splats, const struct wood *wood)
     for (uint32_t i = 0; i < count; i++) {
         all += order[i].area;
         large += i < first ? order[i].area : 0;
-        more += i < TELLS_FALL * first ? order[i].area : 0;
+        more += i < times * first ? order[i].area : 0;
     }
     float thin = all > 0 ? 1 - large / all : 1, thinner = all > 0 ? 1 - more / all : 1;
     bool falls = thin > 0 && thin < 1 && thinner > 0 && thinner < thin;
-    splats->model.wood_falls = falls ? fminf(logf(logf(thinner) / logf(thin)) / logf(TELLS_FALL), 1.5f) : 1;
+    splats->model.wood_falls = falls ? fminf(logf(logf(thinner) / logf(thin)) / logf((float)times), 1.5f) : 1;
     splats->model.thin_share = thin;
 }
 
@@ -513,6 +514,7 @@ static void make_discs(struct wd_splats *splats, const struct wd_tree_points *po
     /* trees near enough for triangles are seen level or from half above */
     splats->model.leaf_past_bark = 0.5f * (fits.past_bark[0] + fits.past_bark[1]);
     splats->model.thin_wood = 0.5f * (fits.thin[0] + fits.thin[1]);
+    splats->model.bare_thin = 0.5f * (fits.bare_thin[0] + fits.bare_thin[1]);
     for (size_t i = 0; i < WD_WOOD_SPLATS && points->wood_area_m2 > 0; i++)
         splats->looks[WD_LEAF_STRATA * WD_STRATUM_SPLATS + i] =
             point_look(&discs[0].points[i], 0.5f * (fits.bark[0] + fits.bark[1]));

@@ -35,6 +35,7 @@ WORD_IS(wood_far_stem, WD_WORD_WOOD_FAR_STEM);
 WORD_IS(leaf_past_bark, WD_WORD_LEAF_PAST_BARK);
 WORD_IS(thin_share, WD_WORD_THIN_SHARE);
 WORD_IS(thin_wood, WD_WORD_THIN_WOOD);
+WORD_IS(bare_thin, WD_WORD_BARE_THIN);
 
 /* --- clusters ---------------------------------------------------------------------------- */
 

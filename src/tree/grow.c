@@ -20,13 +20,14 @@ enum {
     FULL_WOOD_TRIANGLES = 25000, /* at detail 1, with the least */
     LEAST_WOOD_TRIANGLES = 1000,
     REDUCED_WOOD_TRIANGLES = 1600,
+    BARE_WOOD_TRIANGLES = 8000, /* reduced, where no leaves hide branches */
     REDUCED_LEAVES = 4000, /* two triangles each */
     REDUCED_SHOOTS = 2600,
 };
 
 /* Both cover as much: fewer shoots are as much wider. */
-static const struct wd_twig_style full_twigs = {SIZE_MAX, 3, 0.006f};
-static const struct wd_twig_style reduced_twigs = {1800, 1, 0.026f};
+static const struct wd_twig_style full_twigs = {1, 3, 0.006f};
+static const struct wd_twig_style reduced_twigs = {0.36f, 1, 0.026f};
 
 static void build_full_wood(struct wd_tree_mesh *mesh, const struct wd_skeleton *skeleton,
                        const struct wd_foliage *foliage, const struct wd_tree_form *form)
@@ -50,8 +51,9 @@ static void build_reduced_wood(struct wd_tree_model *model, const struct wd_skel
     struct wd_tree_mesh *mesh = &model->reduced;
     if (form->species->form == WD_FORM_FALLING)
         return;
-    struct wd_wood_style style = {0.002f, 4, 5, 16};
-    wd_wood_style_fit(&style, skeleton, form, REDUCED_WOOD_TRIANGLES);
+    bool bare = foliage->twig_count > 0;
+    struct wd_wood_style style = {0.002f, bare ? 2 : 4, 5, 16};
+    wd_wood_style_fit(&style, skeleton, form, bare ? BARE_WOOD_TRIANGLES : REDUCED_WOOD_TRIANGLES);
     wd_wood_mesh(mesh, skeleton, form, &foliage->crown, &style);
     const struct wd_wood_style few = {INFINITY, style.node_step, style.most_sides, 0};
     if (mesh->stem_index_count)

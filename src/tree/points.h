@@ -71,7 +71,8 @@ struct wd_disc_fit {
     float lower[WD_GAIN_SIDES];       /* share of the leaves seen that show their lower side */
     float past_bark[WD_GAIN_SIDES];   /* factors on leaves' gains where triangles stand for all wood */
     float thin[WD_GAIN_SIDES];        /* and on wood's where they stand for the thick */
-    float bark[2];                    /* factors on the albedo of wood, level and from half above */
+    float bare_thin[2];               /* without leaves: factor on the gain of discs of wood beside all triangles, */
+    float bark[2];                    /* and factors on the albedo of wood: level and from half above */
 };
 
 /* Finds the gains with which discs of both classes together cover as many pixels as the mesh, and as

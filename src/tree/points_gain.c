@@ -4,6 +4,7 @@
  * wider than the branch it stands for covers what is beside it. Both gains of a count are found by
  * drawing the mesh and windows of discs from the same sides, with depth, until discs cover as many
  * pixels as the mesh and show as much wood between the leaves. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -163,28 +164,52 @@ static void light_gains(float light[2], const struct plan *plan, const struct wi
     light[1] = openness_gain(of_mesh[1] * discs.covered, of_discs[1] * mesh->covered);
 }
 
-/* Triangles of bark do not stick out of leaves as discs do: factor on the gain of leaves' discs with which
- * these and the triangles alone cover what the mesh does. */
-static float past_bark(const struct plan *plan, const float gains[2])
+/* Triangles of bark do not stick out as discs do: factor on the gain of the discs of a class with which these and the
+ * triangles alone cover what the mesh does. */
+static float past_bark(const struct plan *plan, const float gains[2], int class, int k)
 {
     double bark = 0;
-    float only_leaves[2] = {0, gains[1]};
-    struct growth growth = {.power = {1, 0.6f}};
+    float only[2] = {0};
+    struct growth growth = {.power = {0.8f, 0.6f}};
     struct windows *windows = wd_alloc(sizeof *windows);
     struct plan bare = *plan;
-    struct wd_disc_class no_wood = {plan->classes[0]->discs, 0, plan->classes[0]->share};
-    bare.classes[0] = &no_wood;
-    windows_init(windows, &bare, AT_TRIANGLES);
+    struct wd_disc_class none = {plan->classes[1 - class]->discs, 0, plan->classes[1 - class]->share};
+    bare.classes[1 - class] = &none;
+    only[class] = gains[class];
+    windows_init(windows, &bare, k);
     for (int view = windows->first_view; view < plan->view_count; view += windows->step)
         bark += (double)wd_silhouette_count(&plan->barks[view]);
-    for (int round = 0; round < FIRST_ROUNDS && gains[1] > 0; round++) {
-        struct wd_shown discs = show_discs(&bare, windows, only_leaves, plan->barks);
-        only_leaves[1] = nearer(&growth, 1, only_leaves[1], windows->mesh.covered,
-                                discs.covered + bark);
+    for (int round = 0; round < FIRST_ROUNDS && gains[class] > 0; round++) {
+        struct wd_shown discs = show_discs(&bare, windows, only, plan->barks);
+        only[class] = nearer(&growth, class, only[class], windows->mesh.covered, discs.covered + bark);
     }
     windows_finish(windows, &bare);
     free(windows);
-    return only_leaves[1] / gains[1];
+    return only[class] / gains[class];
+}
+
+static double bark_px(const struct plan *plan)
+{
+    double bark = 0;
+    for (int view = 0; view < plan->view_count; view++)
+        bark += (double)wd_silhouette_count(&plan->barks[view]);
+    return bark;
+}
+
+/* Reduced trees leave out branches and have fewer twigs, which leaves hide where there are any. Nothing where triangles show
+ * all that there is, where the search has no end. */
+static float bare_thin(const struct plan *plan, const float gains[2])
+{
+    static const float SURELY = 0.04f; /* of what is seen */
+    struct plan thin = *plan;
+    double all = 0;
+    thin.classes[0] = plan->classes[2];
+    for (int view = 0; view < plan->view_count; view++) {
+        thin.facets[view][0] = plan->facets[view][2];
+        all += plan->meshes[view].covered;
+    }
+    float left = all > 0 ? (float)(1 - bark_px(plan) / all) : 0;
+    return wd_clampf(past_bark(&thin, gains, 0, WD_POINT_GAINS - 1), 0, 1) * wd_clampf(left / SURELY, 0, 1);
 }
 
 /* Thin wood lies among leaves, whose discs hide more of it than of all wood: factor on the gain with which its discs
@@ -282,8 +307,10 @@ static void fit_side(const struct plan *plan, struct wd_disc_fit *fits, int side
             fits->thin[side] = thin_gain(plan, gains);
         if (k == AT_BARK && side < 2)
             fits->bark[side] = bark_gain(plan, gains);
+        if (k == WD_POINT_GAINS - 1 && side < 2)
+            fits->bare_thin[side] = leaves > 0 ? 0 : bare_thin(plan, gains);
         if (k == AT_TRIANGLES)
-            fits->past_bark[side] = leaves > 0 ? past_bark(plan, gains) : 1;
+            fits->past_bark[side] = leaves > 0 ? past_bark(plan, gains, 1, AT_TRIANGLES) : 1;
         windows_finish(windows, plan);
     }
     smooth(fits->wood.gains[side]);

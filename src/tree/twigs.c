@@ -63,7 +63,7 @@ void wd_twigs_mesh(struct wd_tree_mesh *mesh, const struct wd_foliage *foliage,
                    const struct wd_tree_form *form, const struct wd_twig_style *style)
 {
     struct wd_bark_tint bark = wd_bark_tint_of(form->species);
-    size_t count = style->count < foliage->twig_count ? style->count : foliage->twig_count;
+    size_t count = (size_t)(style->share * (float)foliage->twig_count);
     float length_m = form->clip ? CUT_TWIG_M : TWIG_M * wd_minf(0.3f + 0.7f * form->scale, 1);
     struct wd_twig_style thin = *style; /* shoots of young trees are as slender as they are short */
     thin.width_m *= wd_mixf(1, YOUNG_WIDTH, form->youth);

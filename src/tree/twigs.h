@@ -4,9 +4,9 @@
 
 #include "tree/foliage.h"
 
-/* The first `count` of foliage's places for twigs, each as one shoot, or as three that fork. */
+/* The first of foliage's places for twigs, a share of them, each as one shoot, or as three that fork. */
 struct wd_twig_style {
-    size_t count;
+    float share;
     int shoots;
     float width_m; /* at the foot */
 };

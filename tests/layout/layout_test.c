@@ -36,7 +36,7 @@ static const struct member members[] = {
 #define S(name) M(wd_splat_model, name)
     S(wood), S(leaf), S(light), S(wood_light), S(min_m), S(extent_m), S(leaf_area_m2), S(wood_area_m2), S(strata_top_m),
     S(lower_over_upper), S(lower), S(wood_falls), S(grain), S(finer), S(wood_first), S(wood_count), S(wood_corners),
-    S(wood_stem), S(wood_far_stem), S(leaf_past_bark), S(thin_share), S(thin_wood),
+    S(wood_stem), S(wood_far_stem), S(leaf_past_bark), S(thin_share), S(thin_wood), S(bare_thin),
 #define V(name) M(wd_splat_view, name)
     V(clip_from_rel), V(planes), V(plane_count), V(orthographic), V(calm), V(pixels), V(near_m), V(typical_m), V(width),
     V(height), V(texels), V(density), V(detail), V(min_splats), V(near_leaves_m), V(near_grains), V(wood_px),
