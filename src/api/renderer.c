@@ -15,6 +15,11 @@
 
 enum { MAX_SAMPLES = 65536 };
 
+_Static_assert((int)WD_VIEW_LIT == WD_MODE_LIT && (int)WD_VIEW_LOD == WD_MODE_LOD &&
+                   (int)WD_VIEW_ALBEDO == WD_MODE_ALBEDO && (int)WD_VIEW_NORMAL == WD_MODE_NORMAL &&
+                   (int)WD_VIEW_TREE_ID == WD_MODE_TREE_ID && (int)WD_VIEW_SHADOW == WD_MODE_SHADOW,
+               "shaders are handed the view as it is");
+
 enum wd_result wd_renderer_failure(const struct wd_renderer *renderer)
 {
     bool no_memory = renderer->no_memory || renderer->gpu.no_memory;
