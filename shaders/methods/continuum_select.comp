@@ -8,7 +8,7 @@
 #include "shared/sun_ways.h"
 
 layout(local_size_x_id = 0) in;
-layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* as view.orthographic */
+layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* 1: a cascade; depth is z, not z / w */
 layout(constant_id = 2) const uint AGAIN = 0u; /* 1: the second round, of what was put off */
 layout(constant_id = 3) const uint RUNS = 1u;
 

@@ -202,7 +202,6 @@ struct wd_splat_view {
     WD_MAT4(clip_from_rel);
     WD_VEC4(planes[WD_SPLAT_PLANES]); /* see struct wd_frustum */
     uint32_t plane_count;
-    uint32_t orthographic;   /* 1: a cascade; depth is z, not z / w */
     uint32_t calm;           /* 1: trees stand as the mean wind bends them */
     float pixels;            /* of a metre at w = 1 */
     float near_m;

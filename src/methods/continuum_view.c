@@ -208,7 +208,6 @@ void wd_continuum_view_fill(struct wd_splat_view *values,
     const struct wd_near_rule near = wd_continuum_near_rule(draw, params->forest);
     *values = (struct wd_splat_view){
         .plane_count = view->frustum.count,
-        .orthographic = shadow,
         .calm = shadow && view->box.calm,
         .pixels = view->pixels_per_radian,
         .near_m = 0.1f,
