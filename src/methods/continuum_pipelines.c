@@ -72,11 +72,6 @@ static uint32_t lanes_of(const struct wd_gpu *gpu)
     return gpu->features & WD_GPU_FEATURE_MANY_LANES ? 8 : 1;
 }
 
-#define DRAW_BINDINGS                                                                              \
-    {                                                                                              \
-        9, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS, STORED_TEXELS, BUFFER}        \
-    }
-
 enum large { LARGE_AS_ALL, LARGE_LISTED, LARGE_ALONE }; /* lib/wood_draw.glsl */
 
 struct draw_kind {
