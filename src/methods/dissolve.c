@@ -29,11 +29,6 @@ static const uint32_t tree_mesh_frag[] =
 #include "tree_mesh.frag.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 /* Leaves are drawn as prefixes of their lists in steps of 1 / LEAF_STEPS; the shader cuts them to the
  * exact share. */
 enum { LEAF_STEPS = 8, GROUP_TREES = 64, LEAF_BINDINGS = 8, CARD_BINDINGS = 10,
@@ -76,8 +71,8 @@ static bool init_leaves(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const uint32_t constants[] = {0, detail};
     struct wd_graphics_params params = {
-        .vertex = SPIRV(dissolve_leaf_vert),
-        .fragment = SPIRV(tree_mesh_frag),
+        .vertex = WD_SPIRV(dissolve_leaf_vert),
+        .fragment = WD_SPIRV(tree_mesh_frag),
         .bindings = {LEAF_BINDINGS, {buffer, buffer, buffer, buffer, buffer, image, image, buffer}},
         .push_size = sizeof(struct wd_tree_push),
         .constants = {2, constants},
@@ -93,8 +88,8 @@ static bool dissolve_init(void *state, struct wd_gpu *gpu)
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     struct wd_graphics_params cards = {
-        .vertex = SPIRV(dissolve_card_vert),
-        .fragment = SPIRV(dissolve_card_frag),
+        .vertex = WD_SPIRV(dissolve_card_vert),
+        .fragment = WD_SPIRV(dissolve_card_frag),
         .bindings = {CARD_BINDINGS,
                      {uniform, buffer, buffer, buffer, image, image, image, image, image, image}},
         .push_size = sizeof(struct wd_one_view_push),

@@ -20,11 +20,6 @@ static const uint32_t impostor_frag[] =
 #include "impostor.frag.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 /* Octants with this many times the trees of the smallest cluster have none any more: their cells
  * would be larger than groups of trees. */
 enum { CLUSTER_SPAN = 64, MOST_CLUSTERS = 512, NO_CLUSTER = UINT32_MAX };
@@ -61,8 +56,8 @@ static bool impostor_init(void *state, struct wd_gpu *gpu)
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const struct wd_graphics_params params = {
-        .vertex = SPIRV(impostor_vert),
-        .fragment = SPIRV(impostor_frag),
+        .vertex = WD_SPIRV(impostor_vert),
+        .fragment = WD_SPIRV(impostor_frag),
         .bindings = {3, {uniform, buffer, buffer}},
         .push_size = sizeof(struct wd_impostor_push),
         .color_count = 3,

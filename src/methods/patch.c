@@ -26,11 +26,6 @@ static const uint32_t tree_card_frag[] =
 #include "tree_card.frag.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 enum { BINDINGS = 13 };
 
 /* A patch on the device. */
@@ -65,7 +60,7 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    params->vertex = (struct wd_spirv)SPIRV(patch_card_vert);
+    params->vertex = (struct wd_spirv)WD_SPIRV(patch_card_vert);
     params->bindings = (struct wd_bindings){
         BINDINGS,
         {uniform, buffer, buffer, buffer, image, image, buffer, image, image, buffer, buffer,
@@ -79,13 +74,13 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
 static bool patch_init(void *state, struct wd_gpu *gpu)
 {
     struct patch_state *patch = state;
-    struct wd_graphics_params blend = {.fragment = SPIRV(patch_blend_frag),
+    struct wd_graphics_params blend = {.fragment = WD_SPIRV(patch_blend_frag),
                                        .color_count = 1,
                                        .color_formats = {WD_OVERLAY_FORMAT},
                                        .blend = WD_BLEND_PREMULTIPLIED,
                                        .depth_read_only = true};
     struct wd_graphics_params layers = {
-        .fragment = SPIRV(tree_card_frag),
+        .fragment = WD_SPIRV(tree_card_frag),
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT}};
     patch->shadows = wd_method_borrow(&wd_method_octree, gpu);

@@ -12,11 +12,6 @@ static const uint32_t zfield_tree_frag[] =
 #include "zfield_tree.frag.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 /* Shaders hold a view in ten bits. */
 enum { BINDINGS = 9, MAX_VIEWS = 1023, GROUP_TREES = 64 };
 
@@ -26,9 +21,9 @@ bool wd_view_trees_init(struct wd_view_trees *trees, struct wd_gpu *gpu, enum wd
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const uint32_t constants[] = {shape};
-    const struct wd_spirv fragments[] = {SPIRV(view_tree_frag), SPIRV(zfield_tree_frag)};
+    const struct wd_spirv fragments[] = {WD_SPIRV(view_tree_frag), WD_SPIRV(zfield_tree_frag)};
     const struct wd_graphics_params params = {
-        .vertex = SPIRV(view_tree_vert),
+        .vertex = WD_SPIRV(view_tree_vert),
         .fragment = fragments[shape],
         .bindings = {BINDINGS,
                      {uniform, buffer, buffer, buffer, buffer, buffer, image, image, image}},

@@ -29,8 +29,6 @@ static const uint32_t light_view_comp[] =
 #include "light_view.comp.inc"
     ;
 
-#define SPIRV(words) {words, sizeof words, #words}
-
 /* --- pipelines ----------------------------------------------------------------------------- */
 
 static const VkDescriptorType IMAGE = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
@@ -58,7 +56,7 @@ static bool has_single(uint32_t list)
 static struct wd_compute_params shading_params(void)
 {
     return (struct wd_compute_params){
-        .shader = SPIRV(light_comp),
+        .shader = WD_SPIRV(light_comp),
         .bindings = {18,
                      {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, TEXELS, TEXELS, TEXELS,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, TEXELS}},
@@ -81,7 +79,7 @@ static bool init_list(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t
                                   single, rows, compares(gpu)};
     struct wd_compute_params params = shading_params();
     if (list == WET_LIST) {
-        params.shader = (struct wd_spirv)SPIRV(light_water_comp);
+        params.shader = (struct wd_spirv)WD_SPIRV(light_water_comp);
         params.bindings.types[0] = BUFFER;
     }
     params.constants = (struct wd_spec_constants){7, constants};
@@ -91,7 +89,7 @@ static bool init_list(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t
 static bool init_view(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     struct wd_compute_params params = shading_params();
-    params.shader = (struct wd_spirv)SPIRV(light_view_comp);
+    params.shader = (struct wd_spirv)WD_SPIRV(light_view_comp);
     params.bindings.count = 11;
     params.bindings.types[0] = BUFFER;
     params.bindings.types[7] = BUFFER;
@@ -160,11 +158,11 @@ bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
 static bool init_sorting(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     const struct wd_compute_params tiles = {
-        .shader = SPIRV(light_tiles_comp),
+        .shader = WD_SPIRV(light_tiles_comp),
         .bindings = {4, {UNIFORM, IMAGE, IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
-    const struct wd_compute_params args = {.shader = SPIRV(light_args_comp),
+    const struct wd_compute_params args = {.shader = WD_SPIRV(light_args_comp),
                                            .bindings = {1, {BUFFER}}};
     return wd_pipeline_init_compute(&pass->tiles, gpu, &tiles) &&
            wd_pipeline_init_compute(&pass->args, gpu, &args);
@@ -174,7 +172,7 @@ static bool init_shafts(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     const uint32_t constants[] = {compares(gpu)};
     const struct wd_compute_params params = {
-        .shader = SPIRV(light_shafts_comp),
+        .shader = WD_SPIRV(light_shafts_comp),
         .bindings = {4, {UNIFORM, IMAGE, IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
         .constants = {1, constants},
@@ -185,7 +183,7 @@ static bool init_shafts(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 static bool init_velocity(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     const struct wd_compute_params params = {
-        .shader = SPIRV(light_velocity_comp),
+        .shader = WD_SPIRV(light_velocity_comp),
         .bindings = {8, {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
