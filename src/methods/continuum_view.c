@@ -30,8 +30,8 @@ void wd_continuum_history_keep(struct wd_continuum_history *history, const struc
     memcpy(history->clip_from_rel, view->clip_from_rel, sizeof history->clip_from_rel);
 }
 
-/* What was hidden from one place may be seen from any other: of what it hid a camera that has moved
- * knows nothing for certain, and one that has turned knows of what it saw all of. */
+/* What the frame before hid may be seen from any other place: a camera that has moved knows nothing of it for certain.
+ * One that has only turned knows it of whatever lay wholly in that frame. */
 static void set_history(struct wd_splat_view *values, const struct wd_continuum_view_params *params)
 {
     const struct wd_continuum_history *history = params->history;
