@@ -238,20 +238,20 @@ static void dissolve_select(void *state, const struct wd_tree_draw *draw)
 
 /* --- drawing ----------------------------------------------------------------------------- */
 
-static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_draw *draw,
-                       struct wd_binding instances, size_t first, size_t count)
+/* Of a prefix of so many steps, whole triangles. A leaf at its end must not be cut, as the leaf's rank decides whether it
+ * stands: there are so many indices more. */
+enum { ONE_LEAF_MORE = 93 };
+
+static uint32_t prefix_indices(const struct wd_leaf_range *leaves, uint32_t step)
+{
+    uint32_t indices = (leaves->index_count / LEAF_STEPS * step + ONE_LEAF_MORE + 2) / 3 * 3;
+    return step == LEAF_STEPS || indices > leaves->index_count ? leaves->index_count : indices;
+}
+
+static void bind_leaves(const struct dissolve *dissolve, const struct wd_tree_draw *draw,
+                        const struct wd_leaf_range *leaves, struct wd_binding instances, bool whole)
 {
     const struct wd_forest_device *forest = draw->forest;
-    uint32_t model = dissolve->leafy[first].key / (LEAF_STEPS + 1);
-    uint32_t step = dissolve->leafy[first].key % (LEAF_STEPS + 1);
-    const struct wd_leaf_range *leaves = &dissolve->order.ranges[model];
-    /* a leaf in the middle of the last step must not be cut: its rank decides */
-    uint32_t indices = (leaves->index_count / LEAF_STEPS * step + 95) / 3 * 3;
-    if (step == LEAF_STEPS || indices > leaves->index_count)
-        indices = leaves->index_count;
-    if (!indices)
-        return;
-    bool whole = step == LEAF_STEPS;
     const struct wd_pipeline *pipeline = &dissolve->leaves[whole];
     VkDeviceSize first_vertex = leaves->first_vertex, vertex_count = leaves->vertex_count;
     const struct wd_binding vertices = {
@@ -281,6 +281,18 @@ static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_dra
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
     wd_cmd_bind_indices(draw->cmd, &dissolve->order.indices);
+}
+
+static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_draw *draw,
+                       struct wd_binding instances, size_t first, size_t count)
+{
+    uint32_t model = dissolve->leafy[first].key / (LEAF_STEPS + 1);
+    uint32_t step = dissolve->leafy[first].key % (LEAF_STEPS + 1);
+    const struct wd_leaf_range *leaves = &dissolve->order.ranges[model];
+    uint32_t indices = prefix_indices(leaves, step);
+    if (!indices)
+        return;
+    bind_leaves(dissolve, draw, leaves, instances, step == LEAF_STEPS);
     wd_cmd_draw_indexed(draw->cmd,
                         &(VkDrawIndexedIndirectCommand){indices, (uint32_t)count,
                                                         leaves->first_index, 0, (uint32_t)first});

@@ -254,11 +254,6 @@ static uint32_t before(double eye, double begin, double cell, uint32_t count)
 
 static struct wd_patch_order order_of(const struct patch_state *patch, const struct wd_view *view)
 {
-    double x = 0.0, y = 0.0; /* how much the view looks along either axis */
-    for (int k = 0; k < 2; k++) {
-        double along = fabs(view->clip_from_rel[k][3]);
-        *(k ? &y : &x) = along;
-    }
     const struct wd_cells *patches = &patch->patches;
     return (struct wd_patch_order){
         .columns = patches->columns,
@@ -266,7 +261,7 @@ static struct wd_patch_order order_of(const struct patch_state *patch, const str
         .before_column =
             before(view->eye_m[0], patches->min_m[0], patches->cell_m, patches->columns),
         .before_row = before(view->eye_m[1], patches->min_m[1], patches->cell_m, patches->rows),
-        .by_columns = x > y,
+        .by_columns = fabsf(view->clip_from_rel[0][3]) > fabsf(view->clip_from_rel[1][3]), /* looks more east or west */
     };
 }
 
@@ -310,12 +305,15 @@ static void add_meshes(struct patch_state *patch, const struct wd_tree_draw *dra
     patch->meshes.card_count = 0;
 }
 
+/* The widest blend, which scenes may ask for (quality.blend), ends before so many times its begin. */
+static const float MOST_BLEND = 1.9f;
+
 static float farthest_mesh(const struct patch_state *patch, const struct wd_forest_device *forest)
 {
     float farthest_m = 0.0f;
     for (size_t i = 0; i <= forest->scene->layer_count; i++)
         farthest_m = fmaxf(farthest_m, patch->host_near[i][1]);
-    return farthest_m * 1.9f; /* blends end below that */
+    return farthest_m * MOST_BLEND;
 }
 
 static void patch_select(void *state, const struct wd_tree_draw *draw)
