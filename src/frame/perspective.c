@@ -72,16 +72,15 @@ static void find_bounds(struct bounds *bounds, const struct wd_cascade_box *box,
 {
     const struct wd_view *view = params->view;
     double right[3], forward[3], up[3], ray[3];
-    double half_height = tan(view->camera.fov_rad * 0.5);
-    double half_width = half_height * view->width / view->height;
+    const struct wd_half_view half = wd_half_view_of(view);
     wd_camera_axes(&view->camera, right, forward, up);
     for (int axis = 0; axis < 3; axis++) {
         bounds->low[axis] = INFINITY;
         bounds->high[axis] = -INFINITY;
     }
     for (int i = 0; i < PLACES; i++) {
-        double x = half_width * (2.0 * (i % SIDE) / (SIDE - 1) - 1);
-        double y = half_height * (2.0 * (i / SIDE % SIDE) / (SIDE - 1) - 1);
+        double x = half.width * (2.0 * (i % SIDE) / (SIDE - 1) - 1);
+        double y = half.height * (2.0 * (i / SIDE % SIDE) / (SIDE - 1) - 1);
         for (int k = 0; k < 3; k++)
             ray[k] = forward[k] + x * right[k] + y * up[k];
         add_place(bounds, box, i, ray,
