@@ -24,6 +24,9 @@ static const double LOOK_MARGIN_M = 0.2;
 static const float LEAVES_M = 25.0f;
 /* Penumbras and the offsets of shadow look-ups reach this far. */
 static const float CASTER_MARGIN_M = 3.0f;
+/* A lower sun than with this sine casts no longer shadows; nor do casters stand farther off than this. Maps hold so
+ * much more, behind and before. */
+static const double LEAST_RISE = 0.05, FARTHEST_CASTER_M = 20000.0, DEPTH_SPARE_M = 32.0;
 
 static void sun_axes(struct wd_cascade_box *box, const float direction[3])
 {
@@ -122,11 +125,11 @@ static void cascade_box(struct wd_cascade_box *box, const struct wd_cascades_par
     snap(box, params, center);
     radius = fmax(radius, box->radius);
     /* Casters stand between the slice and the sun, no higher than the highest of all. */
-    double rise = box->toward[2] > 0.05 ? box->toward[2] : 0.05;
+    double rise = fmax(box->toward[2], LEAST_RISE);
     double reach = (params->max_z_m - (center[2] - radius)) / rise;
-    double extent = fmin(fmax(reach, 2.0 * radius), 2.0 * radius + 20000.0);
-    box->depth = extent + 64.0;
-    box->center[2] -= radius + 32.0;
+    double extent = fmin(fmax(reach, 2.0 * radius), 2.0 * radius + FARTHEST_CASTER_M);
+    box->depth = extent + 2.0 * DEPTH_SPARE_M;
+    box->center[2] -= radius + DEPTH_SPARE_M;
 }
 
 static void cascade_view(struct wd_view *cascade, const struct wd_view *view, const double eye_m[3])
@@ -268,7 +271,7 @@ static void keep_to_slice(struct wd_view *cascade, const struct wd_cascades_para
     wd_camera_axes(&params->view->camera, right, forward, up);
     const float beyond[4] = {(float)forward[0], (float)forward[1], (float)forward[2], (float)-near};
     const float before[4] = {(float)-forward[0], (float)-forward[1], (float)-forward[2], (float)far};
-    float shadow_m = (float)(2.0 * params->max_height_m / fmax(params->sun_direction[2], 0.05));
+    float shadow_m = (float)(2.0 * params->max_height_m / fmax(params->sun_direction[2], LEAST_RISE));
     add_caster_plane(cascade, beyond, params, shadow_m);
     add_caster_plane(cascade, before, params, shadow_m);
     for (uint32_t i = 0; i < WD_FRUSTUM_SIDES; i++)

@@ -8,8 +8,8 @@
 
 /* Seen more along the sun's rays than this (sine), maps are warped no further. */
 static const double LEAST_SINE = 0.05;
-/* Penumbras and the offsets of shadow look-ups reach this far. */
-static const double MARGIN_M = 3.0;
+/* As those of frame/cascades.c. */
+static const double MARGIN_M = 3.0, LEAST_RISE = 0.05, FARTHEST_CASTER_M = 20000.0;
 
 static void cross(double c[3], const double a[3], const double b[3])
 {
@@ -159,9 +159,9 @@ void wd_perspective_map_init(struct wd_view *map, struct wd_frame_uniforms *unif
     struct bounds bounds;
     find_bounds(&bounds, &map->box, params, near_m, far_m);
     /* casters stand between the slice and the sun, no higher than the highest of all */
-    double rise = fmax(map->box.toward[2], 0.05);
+    double rise = fmax(map->box.toward[2], LEAST_RISE);
     double over_m = (params->max_z_m - params->min_z_m) / rise;
-    bounds.high[2] += fmin(over_m, 20000.0);
+    bounds.high[2] += fmin(over_m, FARTHEST_CASTER_M);
     double span = bounds.high[1] - bounds.low[1];
     double before_m = (near_m + sqrt(near_m * (near_m + span * sine))) / sine;
     set_matrix(map, &bounds, before_m, (float)params->size, uniforms);

@@ -197,6 +197,9 @@ static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw 
         memcpy(values->slice[side], view->box.slice[side], sizeof view->box.slice[side]);
 }
 
+/* Of a world's tallest tree: by this height far clusters are told how many trees they need. */
+static const float TYPICAL_HEIGHT = 0.7f;
+
 void wd_continuum_view_fill(struct wd_splat_view *values,
                             const struct wd_continuum_view_params *params)
 {
@@ -210,8 +213,8 @@ void wd_continuum_view_fill(struct wd_splat_view *values,
         .plane_count = view->frustum.count,
         .calm = shadow && view->box.calm,
         .pixels = view->pixels_per_radian,
-        .near_m = 0.1f,
-        .typical_m = 0.7f * draw->forest->max_tree_height_m,
+        .near_m = WD_NEAR_M,
+        .typical_m = TYPICAL_HEIGHT * draw->forest->max_tree_height_m,
         .width = view->width,
         .height = view->height,
         .texels = 1,
