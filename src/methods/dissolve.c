@@ -344,17 +344,9 @@ static void draw_billboards(const struct dissolve *dissolve, const struct wd_tre
         .pixels_per_radian = draw->view->pixels_per_radian,
         .one_view = forest->scene->methods.dissolve.faithful,
     };
-    const uint32_t most = forest->quads_a_draw;
     wd_cmd_bind(draw->cmd, &dissolve->cards, bindings);
     wd_cmd_push(draw->cmd, &dissolve->cards, &push, sizeof push);
-    wd_cmd_bind_indices(draw->cmd, &forest->card_indices);
-    for (uint32_t at = 0; at < count; at += most) {
-        uint32_t quads = count - at < most ? (uint32_t)count - at : most;
-        wd_cmd_draw_indexed(draw->cmd, &(VkDrawIndexedIndirectCommand){quads * 6, 1, 0,
-                                                                       (int32_t)(at * 4), 0});
-        draw->stats->draw_calls++;
-    }
-    draw->stats->triangles += count * 2;
+    wd_tree_draw_quads(draw, (uint32_t)count);
     draw->stats->trees[WD_LEVEL_CARD] += count;
 }
 

@@ -385,14 +385,7 @@ static void draw_quads(const struct drawing *d, struct wd_binding table, uint32_
     struct wd_cmd *cmd = d->draw->cmd;
     wd_cmd_bind(cmd, d->pipeline, bindings);
     wd_cmd_push(cmd, d->pipeline, &d->push, sizeof d->push);
-    wd_cmd_bind_indices(cmd, &forest->card_indices);
-    for (uint32_t at = 0; at < quads; at += forest->quads_a_draw) {
-        uint32_t count = quads - at < forest->quads_a_draw ? quads - at : forest->quads_a_draw;
-        wd_cmd_draw_indexed(cmd, &(VkDrawIndexedIndirectCommand){count * 6, 1, 0,
-                                                                 (int32_t)(at * 4), 0});
-        d->draw->stats->draw_calls++;
-        d->draw->stats->triangles += (uint64_t)count * 2;
-    }
+    wd_tree_draw_quads(d->draw, quads);
 }
 
 static void draw_patch(struct drawing *d, uint32_t index)

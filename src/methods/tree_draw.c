@@ -159,6 +159,16 @@ static void draw_indexed(const struct wd_tree_draw *draw, uint32_t indices, uint
     draw->stats->triangles += (uint64_t)indices / 3 * instances;
 }
 
+void wd_tree_draw_quads(const struct wd_tree_draw *draw, uint32_t quads)
+{
+    const uint32_t most = draw->forest->quads_a_draw;
+    wd_cmd_bind_indices(draw->cmd, &draw->forest->card_indices);
+    for (uint32_t at = 0; at < quads; at += most) {
+        uint32_t count = quads - at < most ? quads - at : most;
+        draw_indexed(draw, count * 6, 1, 0, (int32_t)(at * 4), 0);
+    }
+}
+
 static struct wd_binding bind_vertices(const struct wd_forest_device *forest,
                                        const struct wd_mesh_range *range)
 {

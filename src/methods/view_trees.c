@@ -112,7 +112,6 @@ static void draw_pictures(const struct wd_view_trees *trees, const struct wd_tre
                           const struct wd_view_push *push)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const uint32_t most = forest->quads_a_draw;
     struct wd_binding instances;
     size_t bytes = trees->tree_count * sizeof *trees->trees;
     void *memory = trees->tree_count ? wd_cmd_upload(draw->cmd, bytes, &instances) : NULL;
@@ -131,15 +130,7 @@ static void draw_pictures(const struct wd_view_trees *trees, const struct wd_tre
         WD_BIND_IMAGE(&trees->sets.planes[WD_PLANE_DEPTH], trees->sampler)};
     wd_cmd_bind(draw->cmd, &trees->pipeline, bindings);
     wd_cmd_push(draw->cmd, &trees->pipeline, push, sizeof *push);
-    wd_cmd_bind_indices(draw->cmd, &forest->card_indices);
-    for (size_t at = 0; at < trees->tree_count; at += most) {
-        uint32_t quads = (uint32_t)(trees->tree_count - at);
-        quads = quads < most ? quads : most;
-        wd_cmd_draw_indexed(draw->cmd, &(VkDrawIndexedIndirectCommand){quads * 6, 1, 0,
-                                                                       (int32_t)(at * 4), 0});
-        draw->stats->draw_calls++;
-        draw->stats->triangles += (uint64_t)quads * 2;
-    }
+    wd_tree_draw_quads(draw, (uint32_t)trees->tree_count);
     draw->stats->trees[WD_LEVEL_CARD] += trees->tree_count;
 }
 
