@@ -7,11 +7,14 @@
 
 enum { WIDTH = 640, HEIGHT = 360, BYTES = WIDTH * HEIGHT * 4 };
 
-#define CHECK(call) check((call) != 0, #call)
-static void check(bool failed, const char *what)
+/* Vulkan and weald return 0 for success. */
+#define CHECK(call) check((call) == 0, #call " failed")
+static void check(bool ok, const char *what)
 {
-    if (failed)
-        exit((fprintf(stderr, "embed: failed: %s\n", what), 1));
+    if (ok)
+        return;
+    fprintf(stderr, "embed: %s\n", what);
+    exit(1);
 }
 
 static struct wd_vulkan_handles open_device(void)
@@ -24,7 +27,7 @@ static struct wd_vulkan_handles open_device(void)
     CHECK(vkCreateInstance(&instance, NULL, &vk.instance));
     uint32_t one = 1; /* the first device, and its first queue family, do for an example */
     vkEnumeratePhysicalDevices(vk.instance, &one, &vk.physical_device);
-    CHECK(vk.physical_device == VK_NULL_HANDLE);
+    check(vk.physical_device != VK_NULL_HANDLE, "there is no Vulkan device");
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                            .queueFamilyIndex = vk.queue_family,
@@ -44,8 +47,7 @@ static struct wd_vulkan_handles open_device(void)
     return vk;
 }
 
-static VkDeviceMemory allocate(const struct wd_vulkan_handles *vk, VkMemoryRequirements need,
-                               VkMemoryPropertyFlags wanted)
+static VkDeviceMemory allocate(const struct wd_vulkan_handles *vk, VkMemoryRequirements need, VkMemoryPropertyFlags wanted)
 {
     VkDeviceMemory block = VK_NULL_HANDLE;
     VkPhysicalDeviceMemoryProperties memory;
@@ -55,7 +57,7 @@ static VkDeviceMemory allocate(const struct wd_vulkan_handles *vk, VkMemoryRequi
         if (need.memoryTypeBits >> i & 1 && !(wanted & ~memory.memoryTypes[i].propertyFlags))
             CHECK(vkAllocateMemory(vk->device, &info, NULL, &block));
     }
-    CHECK(block == VK_NULL_HANDLE);
+    check(block != VK_NULL_HANDLE, "the device has no such memory");
     return block;
 }
 
@@ -79,7 +81,7 @@ static VkImage make_image(const struct wd_vulkan_handles *vk)
     return image;
 }
 
-/* Saves `image`, which is in layout TRANSFER_SRC. */
+/* Saves `image`, which is in layout TRANSFER_SRC and which later work on the queue sees (wd_renderer_draw). */
 static void save(const struct wd_vulkan_handles *vk, VkImage image, const char *path)
 {
     VkBuffer buffer;
@@ -92,11 +94,9 @@ static void save(const struct wd_vulkan_handles *vk, VkImage image, const char *
                                             .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT};
     CHECK(vkCreateBuffer(vk->device, &buffer_info, NULL, &buffer));
     vkGetBufferMemoryRequirements(vk->device, buffer, &need);
-    VkDeviceMemory memory = allocate(
-        vk, need, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+    VkDeviceMemory memory = allocate(vk, need, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
     CHECK(vkBindBufferMemory(vk->device, buffer, memory, 0));
-    const VkCommandPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, NULL, 0,
-                                               vk->queue_family};
+    const VkCommandPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, NULL, 0, vk->queue_family};
     CHECK(vkCreateCommandPool(vk->device, &pool_info, NULL, &pool));
     const VkCommandBufferAllocateInfo commands_info = {
         VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, NULL, pool, 0, 1};
@@ -104,8 +104,8 @@ static void save(const struct wd_vulkan_handles *vk, VkImage image, const char *
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     const VkBufferImageCopy copy = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                     .imageExtent = {WIDTH, HEIGHT, 1}};
-    const VkMemoryBarrier to_host = {VK_STRUCTURE_TYPE_MEMORY_BARRIER, NULL,
-                                     VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT};
+    const VkMemoryBarrier to_host = {VK_STRUCTURE_TYPE_MEMORY_BARRIER, NULL, VK_ACCESS_TRANSFER_WRITE_BIT,
+                                     VK_ACCESS_HOST_READ_BIT};
     CHECK(vkBeginCommandBuffer(commands, &begin));
     vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &copy);
     vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
@@ -118,7 +118,7 @@ static void save(const struct wd_vulkan_handles *vk, VkImage image, const char *
     CHECK(vkQueueWaitIdle(vk->queue));
     CHECK(vkMapMemory(vk->device, memory, 0, BYTES, 0, &pixels));
     FILE *file = fopen(path, "wb");
-    CHECK(file == NULL);
+    check(file != NULL, "the picture cannot be written");
     fprintf(file, "P6 %d %d 255\n", WIDTH, HEIGHT);
     for (int i = 0; i < BYTES; i += 4)
         fwrite((unsigned char *)pixels + i, 1, 3, file);
@@ -127,7 +127,7 @@ static void save(const struct wd_vulkan_handles *vk, VkImage image, const char *
 
 int main(int argc, char **argv)
 {
-    CHECK(argc != 3);
+    check(argc == 3, "usage: embed SCENE OUT.ppm");
     struct wd_vulkan_handles vk = open_device();
     VkImage image = make_image(&vk);
     struct wd_forest *forest;
@@ -137,9 +137,8 @@ int main(int argc, char **argv)
     CHECK(wd_renderer_set_forest(renderer, forest));
 
     struct wd_render_params params = {.width = WIDTH, .height = HEIGHT};
-    const struct wd_vulkan_target target = {
-        image, VK_FORMAT_R8G8B8A8_UNORM, WIDTH, HEIGHT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, NULL,
-        NULL};
+    const struct wd_vulkan_target target = {.image = image, .format = VK_FORMAT_R8G8B8A8_UNORM, .width = WIDTH,
+                                            .height = HEIGHT, .layout_after = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
     CHECK(wd_forest_get_camera(forest, NULL, &params.camera));
     CHECK(wd_renderer_draw(renderer, &params, &target));
     CHECK(wd_renderer_wait(renderer));

@@ -4,7 +4,7 @@
 
 #include <weald/renderer.h>
 
-/* What fails has said so on standard error, where a log without a sink goes. */
+/* What fails has said so on standard error: a log without a sink, or none (NULL), goes there. */
 static enum wd_result draw(const char *scene, const char *path)
 {
     struct wd_forest *forest = NULL;

@@ -20,7 +20,7 @@ struct wd_comparison {
     double coverage_bias_pct;  /* pixels that show a tree over the reference's, less 100 */
 };
 
-/* Names of the members in their order, ended by NULL, and the value of one by its index. */
+/* Names of the members in their order, ended by NULL, and the value of one by its index (0 beyond). Thread-safe. */
 const char *const *wd_comparison_names(void);
 double wd_comparison_value(const struct wd_comparison *comparison, uint32_t index);
 
@@ -33,12 +33,15 @@ enum wd_result wd_picture_compare(struct wd_comparison *comparison,
                                   const struct wd_log *log);
 
 /* Fills both pictures' display layers from their colour, at the exposure that metering asks for
- * `reference`: as they must be to be looked at side by side. */
+ * `reference`: as they must be to be looked at side by side. Errors: as wd_picture_compare. Thread-safe for different
+ * pictures. */
 enum wd_result wd_picture_expose_alike(struct wd_picture *reference, struct wd_picture *picture,
                                        const struct wd_log *log);
 
 /* Reads colour, depth, species and tree ids, as far as there are, from an .exr that
- * wd_picture_write made. Errors: WD_ERROR_INPUT, WD_ERROR_MEMORY. Free with wd_picture_finish. */
+ * wd_picture_write made.
+ *   picture  overwritten; free with wd_picture_finish
+ * Errors: WD_ERROR_INPUT, WD_ERROR_MEMORY. Thread-safe. */
 enum wd_result wd_picture_read_exr(struct wd_picture *picture, const char *path,
                                    const struct wd_log *log);
 

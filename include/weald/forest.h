@@ -65,17 +65,19 @@ void wd_forest_get_info(const struct wd_forest *forest, struct wd_forest_info *i
 uint64_t wd_forest_key(const struct wd_forest *forest);
 
 struct wd_species_info {
-    const char *name, *latin;
-    uint64_t tree_count;
+    const char *name, *latin; /* as the scene calls it; as botanists do, "unknown" of some models */
+    uint64_t tree_count;      /* of layers on demand the number to be expected */
 };
-/* index < species_count; false beyond. Thread-safe. */
+/* Fills `*info`, whose strings live as long as the forest; false from species_count on. Thread-safe. */
 bool wd_forest_get_species(const struct wd_forest *forest, uint32_t index,
                            struct wd_species_info *info);
 
+/* What became of the rows of a table of trees. */
 struct wd_inventory_info {
-    const char *file;
-    uint64_t rows, planted, dead, duplicates, outside, invalid; /* invalid: without a position */
+    const char *file; /* as the scene names it */
+    uint64_t rows, planted, dead, duplicates, outside, invalid; /* outside: the ground; invalid: without a position */
 };
+/* Fills `*info`, whose string lives as long as the forest; false from inventory_count on. Thread-safe. */
 bool wd_forest_get_inventory(const struct wd_forest *forest, uint32_t index,
                              struct wd_inventory_info *info);
 
@@ -129,7 +131,7 @@ void wd_camera_place(const struct wd_camera *camera, uint32_t width, uint32_t he
                      double depth_m, double place_m[3]);
 
 /* Names of the scene's cameras and paths, in file order; NULL beyond the last. Every scene has at
- * least one camera. The strings live as long as the forest. */
+ * least one camera. The strings live as long as the forest. Thread-safe. */
 const char *wd_forest_camera_name(const struct wd_forest *forest, uint32_t index);
 const char *wd_forest_path_name(const struct wd_forest *forest, uint32_t index);
 
@@ -173,16 +175,18 @@ enum wd_result wd_forest_check_output(const struct wd_forest *forest, const char
 
 /* What the scene asks for where the caller does not say otherwise. */
 struct wd_render_defaults {
-    uint32_t width, height, samples;
-    const char *method;
+    uint32_t width, height, samples; /* pixels; pictures averaged */
+    const char *method;              /* lives as long as the forest */
 };
+/* Thread-safe. */
 void wd_forest_get_render_defaults(const struct wd_forest *forest,
                                    struct wd_render_defaults *defaults);
 
 /* Checks a file: a scene or species (.json), an inventory (.csv) or a raster. A scene's ground is made, its
  * inventories are planted and the maps of its layers read as it would; layers are not planted (they may turn out
- * to have too many trees, or none), models not read, and its sky need only be there and readable. Faults are logged
- * with file and line or key. */
+ * to have too many trees, or none), models not read, and its sky need only be there and readable.
+ *   data_dir  as in struct wd_forest_params; NULL: none given
+ * Errors: WD_ERROR_INPUT, each fault logged with file and line or key. Thread-safe. */
 enum wd_result wd_file_check(const char *path, const char *data_dir, const struct wd_log *log);
 
 /* JSON Schema of scene ("scene") files, or of species that are grown ("species") or an artist's

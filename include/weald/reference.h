@@ -21,10 +21,12 @@ struct wd_reference_params {
 /* Grows the trees of `forest` in full and readies them for rays. `forest` must outlive the result.
  * Needs about 0.2 GB for 75,000 trees and 0.6 GB for a million while a picture is made, and some 0.1 GB for each
  * million triangles of twigs that are close to the camera (4 at most).
+ *   reference  receives the new object, NULL on failure; destroy with wd_reference_destroy
+ *   params     read during the call only, but for `log` and `progress`
  * Errors: WD_ERROR_INPUT (a species cannot be grown), WD_ERROR_MEMORY. */
 enum wd_result wd_reference_create(struct wd_reference **reference, const struct wd_forest *forest,
                                    const struct wd_reference_params *params);
-void wd_reference_destroy(struct wd_reference **reference); /* accepts a pointer to NULL */
+void wd_reference_destroy(struct wd_reference **reference); /* accepts NULL and a pointer to NULL */
 
 /* Where paths leave a pixel: from all over it, as the renderer's samples do, or from its middle alone,
  * where what its layers name lies. */
@@ -65,7 +67,7 @@ uint64_t wd_reference_key(const struct wd_forest *forest);
 /* Of the newest picture. */
 struct wd_reference_stats {
     uint64_t rays;
-    double build_s, trace_s;
+    double build_s, trace_s;  /* wall clock: of placing trees, of paths */
     uint64_t resumed_samples; /* taken over from the checkpoint, of all tiles */
     uint64_t self_hits;       /* rays that met the triangle they had just left: 0 in a right picture */
 };

@@ -20,15 +20,18 @@ struct wd_renderer_params {
     enum wd_validation validation;
     const char *cache_dir; /* of baked trees; NULL: $XDG_CACHE_HOME/weald; "": no cache */
     unsigned threads; /* 0: one a processor; changes no picture */
-    struct wd_progress progress; /* of wd_renderer_set_forest */
+    struct wd_progress progress; /* of wd_renderer_set_forest, and of pictures: stage "samples" */
     struct wd_log log;
 };
 
 /* Opens a device and builds the pipelines.
+ *   renderer  receives the new object, NULL on failure; destroy with wd_renderer_destroy
+ *   params    read during the call only, but for `log` and `progress`
  * Errors: WD_ERROR_DEVICE (no Vulkan, no such device, a feature is missing), WD_ERROR_MEMORY, WD_ERROR_INPUT.
  * A renderer may be used by one thread at a time. */
 enum wd_result wd_renderer_create(struct wd_renderer **renderer,
                                   const struct wd_renderer_params *params);
+/* Waits for what the device still draws and frees all. Accepts NULL and a pointer to NULL. */
 void wd_renderer_destroy(struct wd_renderer **renderer);
 
 /* Grows (or takes from the cache) the trees of `forest` and puts it all on the device, in place of
@@ -36,7 +39,7 @@ void wd_renderer_destroy(struct wd_renderer **renderer);
  * Errors: WD_ERROR_DEVICE, WD_ERROR_MEMORY (the device's), WD_ERROR_INTERRUPTED. */
 enum wd_result wd_renderer_set_forest(struct wd_renderer *renderer, const struct wd_forest *forest);
 
-/* Names of the methods, ended by NULL; the pointer stays valid for ever. */
+/* Names of the methods, ended by NULL; the pointer stays valid for ever. Thread-safe, as the next two. */
 const char *const *wd_method_names(void);
 
 struct wd_method_info {
@@ -157,7 +160,7 @@ enum wd_result wd_renderer_render(struct wd_renderer *renderer,
                                   struct wd_picture *picture);
 void wd_picture_finish(struct wd_picture *picture); /* accepts NULL and {0} */
 
-/* Times of the newest picture's passes, per sample. */
+/* Times of a pass of the newest picture, per sample. */
 struct wd_pass_time {
     const char *name; /* "shadow", "trees", "terrain", "light", ... */
     double gpu_ms;    /* 0 without WD_TIME_PASSES */
@@ -181,6 +184,7 @@ struct wd_frame_stats {
     uint64_t trees_mesh, trees_reduced, trees_billboard; /* drawn into the picture by level */
     uint64_t device_bytes, device_bytes_peak; /* the peak is the forest's, its coming included */
 };
+/* Of the newest picture, but for the memory held. */
 void wd_renderer_get_stats(const struct wd_renderer *renderer, struct wd_frame_stats *stats);
 
 /* Holds frame time by the error bound: before each frame but the first the caller tells how long the
@@ -205,15 +209,15 @@ const char *wd_renderer_device_name(const struct wd_renderer *renderer);
 /* A number that changes with the device, its driver, weald's own code and the forest that is set
  * (wd_forest_key): equal numbers and wd_render_params give equal pictures. */
 uint64_t wd_renderer_key(const struct wd_renderer *renderer);
-/* Names of all Vulkan devices present, one a line; free() it. */
+/* Names of all Vulkan devices present, one a line, "" where there are none; free() it. */
 char *wd_device_list(void);
 
 /* --- writing pictures ------------------------------------------------------------------- */
 
-/* Writes `picture` whole or not at all; endings are in upper or lower case. ".png" takes the display layer, ".exr" every layer there
- * is (R G B, Z in metres, N.X N.Y N.Z, albedo.R .G .B, species, tree_id, velocity.X .Y; ranks as
+/* Writes `picture` whole or not at all; endings are in upper or lower case. ".png" takes the display layer, ".exr"
+ * every layer there is (R G B, Z in metres, N.X N.Y N.Z, albedo.R .G .B, species, tree_id, velocity.X .Y; ranks as
  * Cryptomatte 1.2: weald_tree00.R .G .B .A to weald_tree02, trees named "tree_ID" in the manifest).
- * Errors: WD_ERROR_INPUT for another ending or a missing layer, WD_ERROR_OUTPUT, WD_ERROR_MEMORY. */
+ * Errors: WD_ERROR_INPUT for another ending or a missing layer, WD_ERROR_OUTPUT, WD_ERROR_MEMORY. Thread-safe. */
 enum wd_result wd_picture_write(const struct wd_picture *picture, const char *path,
                                 const struct wd_log *log);
 
@@ -234,7 +238,10 @@ struct wd_film_params {
                                  pictures do not tell of it */
     uint64_t first_frame;     /* number of the first of numbered pictures */
 };
-/* Errors: WD_ERROR_INPUT (name, size or rate), WD_ERROR_OUTPUT (of a film in one file a folder that is not there, no ffmpeg). */
+/* Begins a film.
+ *   film  receives the new object, NULL on failure; end it with wd_film_commit or wd_film_discard
+ * Errors: WD_ERROR_INPUT (name, size or rate), WD_ERROR_OUTPUT (of a film in one file a folder that is not there, no
+ * ffmpeg). */
 enum wd_result wd_film_open(struct wd_film **film, const struct wd_film_params *params,
                             const struct wd_log *log);
 /* Adds the next frame.
@@ -256,7 +263,7 @@ enum wd_result wd_film_add_kept(struct wd_film *film, uint64_t *frames);
  * frame added nothing is written. Errors: WD_ERROR_INPUT (no film); WD_ERROR_OUTPUT, also where a frame could not be
  * written. */
 enum wd_result wd_film_commit(struct wd_film **film);
-/* Drops the film (numbered pictures already written stay). Accepts a pointer to NULL. */
+/* Drops the film (numbered pictures already written stay). Accepts NULL and a pointer to NULL. */
 void wd_film_discard(struct wd_film **film);
 
 #ifdef __cplusplus

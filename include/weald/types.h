@@ -28,8 +28,12 @@ enum wd_result {
  * that promise more memory than they have may end it at any time. */
 
 /* Pointers that a call takes are to objects that are there, but where a comment says that NULL is accepted or may be
- * given. Where a call returns an enum wd_result, most that are NULL are refused with WD_ERROR_INPUT; those to where the
- * call writes must not be. */
+ * given. A `const struct wd_log *` and a `const struct wd_progress *` may be NULL everywhere, which is as {0}. Where a
+ * call returns an enum wd_result, most that are NULL are refused with WD_ERROR_INPUT; those to where the call writes
+ * must not be. */
+
+/* Threads. Calls said to be thread-safe may run beside each other on the same objects, as any may on objects that have
+ * nothing to do with each other; all others on an object come one at a time. */
 
 /* Short English name of a result ("input", "output", ...); never NULL. Thread-safe. */
 const char *wd_result_name(enum wd_result result);
@@ -41,7 +45,8 @@ enum wd_log_level {
     WD_LOG_DEBUG,
 };
 
-/* Where messages go. `sink` may be NULL: then errors and warnings go to standard error.
+/* Where messages go. `sink` may be NULL: then errors and warnings go to standard error. What is made with one keeps a copy
+ * of it and logs there in all later calls, so that `user` must live as long; the same holds for struct wd_progress.
  * `message` is one line of UTF-8 without a newline and lives only during the call.
  * The sink may be called from any thread that works for the call at hand, one at a time. */
 struct wd_log {

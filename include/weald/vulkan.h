@@ -45,12 +45,13 @@ enum wd_result wd_renderer_create_vulkan(struct wd_renderer **renderer,
                                          const struct wd_renderer_params *params);
 
 /* A renderer on a device of its own that can also present: for programs with a window.
- * `instance_extensions`: what the window system needs. VK_KHR_swapchain is enabled. */
+ * `instance_extensions`: what the window system needs. VK_KHR_swapchain is enabled where the device has it.
+ * Errors: as wd_renderer_create; WD_ERROR_DEVICE also where an extension is missing. */
 enum wd_result wd_renderer_create_presenting(struct wd_renderer **renderer,
                                              const char *const *instance_extensions,
                                              uint32_t instance_extension_count,
                                              const struct wd_renderer_params *params);
-/* The handles of either kind; `enabled` is NULL. */
+/* Of a renderer made in any way; `enabled` is NULL. They live as long as the renderer, but for those of the caller. */
 void wd_renderer_get_vulkan(const struct wd_renderer *renderer, struct wd_vulkan_handles *handles);
 
 /* Where a frame goes. */
@@ -80,7 +81,7 @@ struct wd_vulkan_target {
 enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_render_params *params,
                                 const struct wd_vulkan_target *target);
 
-/* Waits until every submitted frame is finished. */
+/* Waits until every submitted frame is finished. Errors: WD_ERROR_DEVICE, WD_ERROR_MEMORY. */
 enum wd_result wd_renderer_wait(struct wd_renderer *renderer);
 
 #ifdef __cplusplus

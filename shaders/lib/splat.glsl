@@ -63,7 +63,7 @@ uint splat_index(wd_splat_tree tree, uvec2 turn)
 {
     bool wood = turn.x == WD_LEAF_STRATA;
     uint at = (tree.offset + turn.y) & ((wood ? WD_WOOD_SPLATS : WD_STRATUM_SPLATS) - 1u);
-    at += wood ? (tree.offset >> 31) * WD_WOOD_SPLATS : 0u;
+    at += wood ? WD_TREE_WOOD_HALF(tree) * WD_WOOD_SPLATS : 0u;
     return tree.first_splat + at * WD_SPLAT_STRATA + turn.x;
 }
 

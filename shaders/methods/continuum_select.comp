@@ -8,7 +8,7 @@
 #include "shared/sun_ways.h"
 
 layout(local_size_x_id = 0) in;
-layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* as view.orthographic */
+layout(constant_id = 1) const uint ORTHOGRAPHIC = 0u; /* 1: a cascade; depth is z, not z / w */
 layout(constant_id = 2) const uint AGAIN = 0u; /* 1: the second round, of what was put off */
 layout(constant_id = 3) const uint RUNS = 1u;
 
@@ -215,7 +215,7 @@ uint item_count(uint count)
 wd_splat_item item_at(uint slot, uint begin, uint count, uint i)
 {
     uint before = i * WD_ITEM_SPLATS;
-    return wd_splat_item(slot, min(count - before, WD_ITEM_SPLATS) | (begin + before) << 10);
+    return wd_splat_item(slot, WD_ITEM_PARTS(begin + before, min(count - before, WD_ITEM_SPLATS)));
 }
 
 void add_splats(uint slot, uint count)
@@ -223,7 +223,7 @@ void add_splats(uint slot, uint count)
     if (count <= WD_SMALL_SPLATS) {
         uint at = atomicAdd(counts.small_items, 1u);
         if (at < view.item_capacity)
-            items[view.item_capacity - 1u - at] = wd_splat_item(slot, count);
+            items[view.item_capacity - 1u - at] = wd_splat_item(slot, WD_ITEM_PARTS(0u, count));
         return;
     }
     uint wanted = item_count(count), first = atomicAdd(counts.items, wanted);
@@ -376,6 +376,80 @@ float aslant(vec3 middle, float distance_m)
     return ORTHOGRAPHIC != 0u ? 1.0 : min(distance_m / max(axis_m, 1e-3), MOST_ASLANT);
 }
 
+/* How much of a tree's discs shows: as far as its mesh is not drawn in their place. */
+float splats_shown(wd_tree tree, wd_model model, uint model_index, vec3 foot)
+{
+    float near_m = wd_near_reach_m(tree, model_float(model_index, WD_WORD_GRAIN), view.near_leaves_m,
+                                   view.near_grains);
+    if (near_m <= 0.0)
+        return 1.0;
+    return wd_near_splats(wd_near_distance_m(tree, model.crown_base_m / model.height_m, foot), near_m);
+}
+
+/* What a tree is drawn of. */
+struct wd_parts {
+    float each;     /* discs of a stratum */
+    uint triangles; /* of wood, the largest first */
+    float missing;  /* share of the wood that these do not show */
+    bool wood;      /* it is tall enough to have triangles */
+    bool twigs;     /* all of its discs are twigs: see TWIGS_PX */
+};
+
+/* A tree's own share of a size on screen at which trees change: not all do at once. */
+float own_size(uint random)
+{
+    return 0.8 + 0.4 * wd_hash_unit(random);
+}
+
+/* `wanted`: discs of all strata. */
+wd_parts parts_of(uint model, float tall_px, float wanted, uint random)
+{
+    wd_parts parts;
+    parts.each = min(wanted / float(WD_SPLAT_STRATA), float(WD_STRATUM_SPLATS));
+    parts.wood = tall_px > view.wood_px * own_size(random);
+    parts.triangles = parts.wood ? wood_triangles(model, tall_px) : 0u;
+    parts.twigs = parts.triangles > 0u && tall_px > TWIGS_PX * own_size(random) &&
+                  model_float(model, WD_WORD_LEAF_AREA_M2) <= 0.0;
+    parts.missing = wood_missing(model, parts.triangles);
+    return parts;
+}
+
+/* Radii, in pixels at w = 1, of discs of leaves (x) and of wood (y) that face the eye. `size`: pixels of a metre there,
+ * more for discs that grow. */
+vec2 radii_px(uint model, wd_parts parts, float toward_z, float size)
+{
+    vec2 radii = size * disc_radii(model, parts.each, toward_z);
+    if (parts.twigs)
+        radii.y = size * twig_radius(model, parts.each, toward_z);
+    float thin_share = max(model_float(model, WD_WORD_THIN_SHARE), 1e-3);
+    float thin = parts.triangles > 0u ? min(parts.missing / thin_share, 1.0) : 0.0;
+    thin = mix(1.0, model_float(model, WD_WORD_THIN_WOOD), thin);
+    radii.y *= sqrt(max(parts.missing, 0.0) * thin);
+    radii.x *= sqrt(mix(model_float(model, WD_WORD_LEAF_PAST_BARK), 1.0, parts.missing));
+    float many = smoothstep(0.125, 1.0, parts.each * (1.0 / float(WD_STRATUM_SPLATS)));
+    float fuller = ORTHOGRAPHIC != 0u ? SUN_THROUGH_CROWNS * many : FROM_BELOW * smoothstep(0.0, 0.5, -toward_z);
+    radii.x = parts.twigs ? radii.y : radii.x * sqrt(1.0 + fuller);
+    return radii;
+}
+
+/* What resolve and the splat pass look up: where its splats begin, its tints, and how it stands. */
+void fill_look(inout wd_splat_tree splats, wd_tree tree, uint model_index, wd_parts parts, tree_pose pose,
+               float own_across, float toward_z)
+{
+    uint random = wd_tree_random(tree);
+    float count = parts.each * float(WD_SPLAT_STRATA);
+    uint window = (wd_hash_mix(random) * WD_WINDOW_STEP + frame.sample_index * uint(ceil(parts.each)))
+                  & (WD_STRATUM_SPLATS - 1u);
+    splats.first_splat = model_index * WD_SPLATS;
+    splats.first_wood = model_word(model_index, WD_WORD_WOOD_FIRST);
+    splats.offset = WD_TREE_OFFSET_OF(window, uint(upper_share(model_index, toward_z) * 255.0 + 0.5),
+                                      parts.twigs ? 1u : 0u, parts.wood ? 1u : 0u);
+    splats.turn = packHalf2x16(pose.turn);
+    splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
+    splats.tint = leaf_tint(tree, model_index, count, toward_z);
+    splats.lower = lower_tint(model_index, count, toward_z);
+}
+
 /* `share` of the trees around stand for all: a tree is drawn as wide as the ground that it stands for
  * asks, as high as it is, and its splats grow with it. `place`: bit of the masks of put_off. */
 void select_tree(uint index, float share, uint place)
@@ -398,13 +472,7 @@ void select_tree(uint index, float share, uint place)
     vec3 middle = foot + vec3(0.0, 0.0, 0.5 * WD_TREE_HEIGHT_M(tree));
     float distance_m = ORTHOGRAPHIC != 0u ? 1.0 : max(length(middle), 0.1);
     vec3 toward = ORTHOGRAPHIC != 0u ? frame.sun_direction : -normalize(middle);
-
-    float shown = 1.0;
-    float near_m = wd_near_reach_m(tree, model_float(model_index, WD_WORD_GRAIN), view.near_leaves_m,
-                                   view.near_grains);
-    if (near_m > 0.0)
-        shown = wd_near_splats(wd_near_distance_m(tree, model.crown_base_m / model.height_m, foot),
-                               near_m);
+    float shown = splats_shown(tree, model, model_index, foot);
     if (shown <= 0.0)
         return;
 
@@ -413,74 +481,47 @@ void select_tree(uint index, float share, uint place)
     vec3 sway = tree_sway_in(wind, tree, model.flexibility, WD_TREE_HEIGHT_M(tree), frame.time_s);
     float pixels_per_m = view.pixels / distance_m;
     float tall_px = WD_TREE_HEIGHT_M(tree) * pixels_per_m * view.detail;
-    bool wood = tall_px > view.wood_px * (0.8 + 0.4 * wd_hash_unit(random));
     float larger = aslant(middle, distance_m);
     float wanted = max(view.density * finer_near(model_index, tall_px)
                            * covered_px(tree, toward, pixels_per_m) * larger,
                        float(view.min_splats));
+    wd_parts parts = parts_of(model_index, tall_px, wanted, random);
+    float grown = min(pow(share, -0.25), 1.2) / share; /* discs that grow cover more of each other */
+    vec2 radii = radii_px(model_index, parts, toward.z, sqrt(grown * larger) * view.pixels);
+    float close = wd_disc_close(parts.each * float(WD_SPLAT_STRATA));
     wd_splat_tree splats;
-    float each = min(wanted / float(WD_SPLAT_STRATA), float(WD_STRATUM_SPLATS));
-    /* discs that grow cover more of each other */
-    float grown = min(pow(share, -0.25), 1.2) / share;
-    float size = sqrt(grown * larger) * view.pixels;
-    vec2 radii = disc_radii(model_index, each, toward.z);
-    splats.radius = size * radii.x;
-    splats.wood_radius = size * radii.y;
-    uint triangles = wood ? wood_triangles(model_index, tall_px) : 0u;
-    bool twigs = triangles > 0u && tall_px > TWIGS_PX * (0.8 + 0.4 * wd_hash_unit(random)) &&
-                 model_float(model_index, WD_WORD_LEAF_AREA_M2) <= 0.0;
-    if (twigs)
-        splats.wood_radius = size * twig_radius(model_index, each, toward.z);
-    float missing = wood_missing(model_index, triangles);
-    float thin = triangles > 0u ? min(missing / max(model_float(model_index, WD_WORD_THIN_SHARE), 1e-3), 1.0) : 0.0;
-    thin = mix(1.0, model_float(model_index, WD_WORD_THIN_WOOD), thin);
-    splats.wood_radius *= sqrt(max(missing, 0.0) * thin);
-    splats.radius *= sqrt(mix(model_float(model_index, WD_WORD_LEAF_PAST_BARK), 1.0, missing));
-    float many = smoothstep(0.125, 1.0, each * (1.0 / float(WD_STRATUM_SPLATS)));
-    float fuller = ORTHOGRAPHIC != 0u ? SUN_THROUGH_CROWNS * many : FROM_BELOW * smoothstep(0.0, 0.5, -toward.z);
-    splats.radius = twigs ? splats.wood_radius : splats.radius * sqrt(1.0 + fuller);
-    uint strata = missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
+    splats.tree = index;
+    splats.radius = radii.x;
+    splats.wood_radius = radii.y;
     splats.facing = model_facing(pose, toward);
     splats.sun = wd_sun_mix(tree_toward(pose, frame.sun_direction));
     splats.eye = wd_sun_mix(tree_toward(pose, toward));
-    float close = wd_disc_close(each * float(WD_SPLAT_STRATA));
     splats.nearer_m = (1.0 - close) * WD_DISC_NEARER * model_float(model_index, WD_WORD_EXTENT_M)
                     * pose.across
                     * smoothstep(-0.4, -0.1, toward.z); /* nothing is known of the view from below */
+
+    uint strata = parts.missing > 0.0 ? WD_SPLAT_STRATA : WD_LEAF_STRATA;
     float own_across = pose.across;
     pose.across *= stretch;
     if (ORTHOGRAPHIC == 0u && view.has_history != 0u) {
-        uint seen = seen_strata(tree, foot, toward, pose, model_index, sway,
-                                (twigs ? LONGEST_TWIG : LARGEST_DISC) * max(splats.radius, splats.wood_radius)
-                                    * max(own_across, pose.up),
-                                splats.nearer_m, strata);
+        float reach = (parts.twigs ? LONGEST_TWIG : LARGEST_DISC) * max(radii.x, radii.y) * max(own_across, pose.up);
+        uint seen = seen_strata(tree, foot, toward, pose, model_index, sway, reach, splats.nearer_m, strata);
         if (seen == 0u && view.moved != 0u)
             put_off_trees(place >> 5u, 1u << (place & 31u));
         if (seen == 0u)
             return;
         strata = view.moved != 0u ? strata : seen;
     }
-
-    splats.tree = index;
-    splats.first_splat = model_index * WD_SPLATS;
-    splats.first_wood = model_word(model_index, WD_WORD_WOOD_FIRST);
-    splats.offset = (wd_hash_mix(random) * WD_WINDOW_STEP + frame.sample_index * uint(ceil(each)))
-                    & (WD_STRATUM_SPLATS - 1u);
-    splats.offset |= uint(upper_share(model_index, toward.z) * 255.0 + 0.5) << 16 | (wood ? 0x80000000u : 0u)
-                     | (twigs ? 0x1000000u : 0u);
-    splats.turn = packHalf2x16(pose.turn);
-    splats.shape = packHalf2x16(vec2(pose.mirror.x, pose.up / own_across));
-    splats.tint = leaf_tint(tree, model_index, each * float(WD_SPLAT_STRATA), toward.z);
-    splats.lower = lower_tint(model_index, each * float(WD_SPLAT_STRATA), toward.z);
-    vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
-                             : vec2(0.0);
     uint wood_last = strata > WD_LEAF_STRATA ? 1u : 0u;
     uvec2 leaves = uvec2(0u, strata - wood_last);
     if (tall_px > STRATA_PX && share >= 1.0)
         leaves = strata_in_view(tree, foot, sway, pose.up, model_index, leaves.y);
     strata = leaves.y - leaves.x + wood_last;
-    splats.strata = strata | uint(close * 15.0 + 0.5) << 4 | leaves.x << 8 | wood_last << 11
-                  | model.look_layer << 12;
+
+    fill_look(splats, tree, model_index, parts, pose, own_across, toward.z);
+    splats.strata = WD_TREE_STRATA_OF(strata, uint(close * 15.0 + 0.5), leaves.x, wood_last, model.look_layer);
+    vec2 slope = share < 1.0 ? slope_under(foot, WD_TREE_CROWN_M(tree) * stretch) * (1.0 - share)
+                             : vec2(0.0);
     fill_rows(splats, pose, model_index, foot, slope);
     splats.sway = clip_of(view.clip_from_rel * vec4(sway, 0.0));
 
@@ -488,9 +529,9 @@ void select_tree(uint index, float share, uint place)
     if (slot >= view.tree_capacity)
         return;
     store_tree(slot, splats);
-    add_splats(slot, uint(ceil(shown * each * float(strata))));
-    if (wood)
-        add_share_of_wood(slot, model_index, triangles, wd_near_wood(shown), random);
+    add_splats(slot, uint(ceil(shown * parts.each * float(strata))));
+    if (parts.wood)
+        add_share_of_wood(slot, model_index, parts.triangles, wd_near_wood(shown), random);
 }
 
 /* How many times over a cluster's crowns may cover what is seen of it: what lies deeper is hidden all
@@ -544,7 +585,7 @@ void select_trees(uint index, wd_cluster cluster, uvec2 range, uint mask)
     if (i >= end)
         return;
     do {
-        uint at = bitfieldReverse(i) >> 26;
+        uint at = bitfieldReverse(i) >> (32u - WD_CLUSTER_BITS);
         if (at < records && (mask >> (i & 31u) & 1u) != 0u) {
             float share = i < drawn.count ? drawn.share : 0.0;
             if (tall_too && WD_TREE_HEIGHT_M(tree_at(cluster.first + at)) >= view.cascade_whole_m)

@@ -1,11 +1,4 @@
 #version 460
-/* Splats with 64-bit atomics: one operation a pixel. */
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
-#extension GL_EXT_shader_atomic_int64 : require
-#include "shared/types.h"
-
-layout(scalar, set = 0, binding = 5) buffer Pixels { uint64_t pixels[]; };
-
-#define SPLAT(pixel, depth_bits, id) \
-    atomicMax(pixels[pixel], uint64_t(depth_bits) << 32 | uint64_t(id))
+/* Splats with 64-bit atomics. */
+#include "lib/mark_once.glsl"
 #include "lib/splat_draw.glsl"

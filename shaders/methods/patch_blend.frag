@@ -7,7 +7,6 @@
 
 layout(scalar, set = 0, binding = 0) uniform Frame { wd_frame_uniforms frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Trees { wd_packed_tree trees[]; };
-layout(scalar, set = 0, binding = 2) readonly buffer Models { wd_model models[]; };
 layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
 layout(set = 0, binding = 5) uniform sampler2DArray card_normal;
 layout(set = 0, binding = 7) uniform sampler2DArray card_leaf;

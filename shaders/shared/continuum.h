@@ -126,6 +126,7 @@ WD_STATIC_ASSERT_SIZE(wd_splat_model, 712);
 
 /* Trees that are culled together: at most WD_CLUSTER_TREES, next to each other in octree order. */
 #define WD_CLUSTER_TREES 64u
+#define WD_CLUSTER_BITS 6u
 /* Where trees cover fewer pixels than this, fewer of them stand for all, wider than they are: more lit tops. */
 #define WD_LEAST_TREE_PX 4.0
 /* Height of a tree that covers so many: its square's fifth. */
@@ -204,7 +205,6 @@ struct wd_splat_view {
     WD_MAT4(clip_from_rel);
     WD_VEC4(planes[WD_SPLAT_PLANES]); /* see struct wd_frustum */
     uint32_t plane_count;
-    uint32_t orthographic;   /* 1: a cascade; depth is z, not z / w */
     uint32_t calm;           /* 1: trees stand as the mean wind bends them */
     float pixels;            /* of a metre at w = 1 */
     float near_m;
@@ -287,6 +287,12 @@ WD_STATIC_ASSERT_SIZE(wd_splat_tree, 128);
 #define WD_TREE_TWIGS(tree) (((tree).offset >> 24 & 1u) != 0u)
 #define WD_TREE_WOOD_LAST(tree) ((tree).strata >> 11 & 1u)
 #define WD_TREE_BARK(tree) ((tree).strata >> 12)
+#define WD_TREE_WOOD_HALF(tree) ((tree).offset >> 31)
+/* And the other way: `offset` and `strata` of such parts, whole numbers that fit. */
+#define WD_TREE_OFFSET_OF(window, upper, twigs, wood_half)                                         \
+    ((window) | (upper) << 16 | (twigs) << 24 | (wood_half) << 31)
+#define WD_TREE_STRATA_OF(count, close, first, wood_last, bark)                                    \
+    ((count) | (close) << 4 | (first) << 8 | (wood_last) << 11 | (bark) << 12)
 
 /* Large triangles of wood are drawn by a group for each part of so many pixels of their bounds; as many parts as
  * find room, all other triangles by a thread. */
@@ -309,5 +315,6 @@ struct wd_splat_item {
 WD_STATIC_ASSERT_SIZE(wd_splat_item, 8);
 #define WD_ITEM_FIRST(item) ((item).parts >> 10)
 #define WD_ITEM_COUNT(item) ((item).parts & 0x3ffu)
+#define WD_ITEM_PARTS(first, count) ((count) | (first) << 10)
 
 #endif

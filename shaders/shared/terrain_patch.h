@@ -35,7 +35,6 @@ struct wd_terrain_view {
     float above_m;              /* of the camera over the highest ground; 0 below */
     float curtain_m;            /* where curtains end, above the world's zero */
     uint32_t width, height;     /* samples */
-    uint32_t has_holes;
     WD_VEC2(extent_m);
     WD_VEC2(slopes_scale);      /* slopes image: coordinates = metres * scale + offset */
     WD_VEC2(slopes_offset);

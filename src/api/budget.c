@@ -12,6 +12,8 @@ static const double AIM = 0.92, HELD = 0.07;
 enum { SETTLING = 2 };
 static const double FIRST_SHARE = 0.7, LEAST_SHARE = 0.3; /* of wd_budget.share */
 static const double GAIN = 0.9, MOST_STEP = 2.5;
+/* From so great a change of the discs' logarithm on something is learned of their share, half of what it tells. */
+static const double CLEAR_CHANGE = 0.2, LEARNED = 0.5;
 
 struct wd_budget wd_budget_of(double target_ms)
 {
@@ -30,10 +32,10 @@ static void learn_share(struct wd_budget *budget, double frame_ms)
     if (budget->weighed_ms <= 0.0)
         return;
     double discs = 2.0 * log(budget->weighed_error_px / budget->error_px);
-    if (fabs(discs) < 0.2)
+    if (fabs(discs) < CLEAR_CHANGE)
         return;
     double told = clamped(log(frame_ms / budget->weighed_ms) / discs, LEAST_SHARE, 1.0);
-    budget->share += 0.5 * (told - budget->share);
+    budget->share += LEARNED * (told - budget->share);
 }
 
 double wd_budget_next(struct wd_budget *budget, double frame_ms)

@@ -10,6 +10,8 @@
 #include "base/memory.h"
 #include "world/surroundings.h"
 
+static const double DEGREE = WD_PI / 180.0;
+
 const char *wd_forest_camera_name(const struct wd_forest *forest, uint32_t index)
 {
     return index < forest->scene.camera_count ? forest->scene.cameras[index].name : NULL;
@@ -191,9 +193,9 @@ static void resolve(const struct wd_forest *forest, const struct wd_scene_camera
                     struct wd_camera *camera)
 {
     *camera = (struct wd_camera){
-        .yaw_rad = from->yaw_deg * (WD_PI / 180.0),
-        .pitch_rad = from->pitch_deg * (WD_PI / 180.0),
-        .fov_rad = from->fov_deg * (WD_PI / 180.0),
+        .yaw_rad = from->yaw_deg * DEGREE,
+        .pitch_rad = from->pitch_deg * DEGREE,
+        .fov_rad = from->fov_deg * DEGREE,
     };
     if (from->automatic) {
         overlook(forest, camera);

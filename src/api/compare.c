@@ -190,18 +190,16 @@ static bool take_color(float **color, const struct wd_exr_image *image, const st
     return *color != NULL;
 }
 
-/* Takes the plane's memory over, if there is one of the right type. */
+/* Takes the plane's memory over; NULL where there is none of that name and type. */
 static void *take_plane(struct wd_exr_image *image, const char *name, bool whole_numbers)
 {
-    for (size_t i = 0; i < image->plane_count; i++) {
-        struct wd_exr_plane *plane = &image->planes[i];
-        if (plane != wd_exr_find(image, name) || (plane->type == WD_EXR_UINT) != whole_numbers)
-            continue;
-        void *data = plane->data;
-        plane->data = NULL;
-        return data;
-    }
-    return NULL;
+    const struct wd_exr_plane *found = wd_exr_find(image, name);
+    if (!found || (found->type == WD_EXR_UINT) != whole_numbers)
+        return NULL;
+    struct wd_exr_plane *plane = &image->planes[found - image->planes];
+    void *data = plane->data;
+    plane->data = NULL;
+    return data;
 }
 
 enum wd_result wd_picture_read_exr(struct wd_picture *picture, const char *path,

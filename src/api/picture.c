@@ -127,22 +127,33 @@ static bool read_velocity(struct wd_picture *picture, struct wd_renderer *render
                           size);
 }
 
+/* The tree found last: pixels side by side mostly show the same. */
+struct last_tree {
+    uint32_t surface; /* that it was found by; 0: none yet */
+    struct wd_tree tree;
+};
+
+/* The tree that a pixel of the surface target shows, which is its record + 1; NULL: none. */
+static const struct wd_tree *tree_seen(struct last_tree *last, const struct wd_renderer *renderer,
+                                       uint32_t surface)
+{
+    if (surface && surface != last->surface)
+        last->surface = wd_forest_tree_at(&renderer->device, surface - 1, &last->tree) ? surface : 0;
+    return surface && surface == last->surface ? &last->tree : NULL;
+}
+
 static bool read_trees(struct wd_picture *picture, struct wd_renderer *renderer, size_t pixels)
 {
+    struct last_tree last = {0};
     uint32_t *surface = read_target(renderer, &renderer->frame.targets.surface, 4);
     if (!surface)
         return false;
-    struct wd_tree tree;
-    uint32_t before = 0;
     for (size_t i = 0; i < pixels; i++) {
-        if (surface[i] == 0 || (surface[i] != before &&
-                                !wd_forest_tree_at(&renderer->device, surface[i] - 1, &tree)))
-            continue;
-        before = surface[i];
-        if (picture->species)
-            picture->species[i] = (tree.kind & 0xffffu) + 1;
-        if (picture->tree_id)
-            picture->tree_id[i] = tree.id;
+        const struct wd_tree *tree = tree_seen(&last, renderer, surface[i]);
+        if (tree && picture->species)
+            picture->species[i] = WD_TREE_SPECIES(*tree) + 1;
+        if (tree && picture->tree_id)
+            picture->tree_id[i] = tree->id;
     }
     free(surface);
     return true;
@@ -153,17 +164,14 @@ bool wd_picture_count_trees(struct wd_renderer *renderer)
     struct wd_coverage *coverage = &renderer->coverage;
     if (!wd_frames_wait(&renderer->frame.ring))
         return false;
+    struct last_tree last = {0};
     uint32_t *surface = read_target(renderer, &renderer->frame.targets.surface, 4);
-    struct wd_tree tree = {0};
-    uint32_t before = 0;
     if (!surface)
         return false;
     for (size_t i = 0; i < coverage->pixels; i++) {
-        if (surface[i] && (surface[i] == before ||
-                           wd_forest_tree_at(&renderer->device, surface[i] - 1, &tree))) {
-            before = surface[i];
-            wd_coverage_add(coverage, i, tree.id);
-        }
+        const struct wd_tree *tree = tree_seen(&last, renderer, surface[i]);
+        if (tree)
+            wd_coverage_add(coverage, i, tree->id);
     }
     free(surface);
     return true;

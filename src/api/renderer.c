@@ -15,6 +15,11 @@
 
 enum { MAX_SAMPLES = 65536 };
 
+_Static_assert((int)WD_VIEW_LIT == WD_MODE_LIT && (int)WD_VIEW_LOD == WD_MODE_LOD &&
+                   (int)WD_VIEW_ALBEDO == WD_MODE_ALBEDO && (int)WD_VIEW_NORMAL == WD_MODE_NORMAL &&
+                   (int)WD_VIEW_TREE_ID == WD_MODE_TREE_ID && (int)WD_VIEW_SHADOW == WD_MODE_SHADOW,
+               "shaders are handed the view as it is");
+
 enum wd_result wd_renderer_failure(const struct wd_renderer *renderer)
 {
     bool no_memory = renderer->no_memory || renderer->gpu.no_memory;
@@ -211,6 +216,14 @@ static enum wd_result no_such_method(const char *name, const struct wd_log *log)
     return WD_ERROR_INPUT;
 }
 
+static enum wd_gbuffer_use gbuffer_use(uint32_t layers)
+{
+    const uint32_t lit = WD_LAYER_DISPLAY | WD_LAYER_COLOR;
+    if (layers & WD_LAYER_CRYPTOMATTE)
+        return WD_GBUFFER_READ_EACH;
+    return layers & ~lit ? WD_GBUFFER_READ : WD_GBUFFER_OWN;
+}
+
 enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
                                    const struct wd_render_params *params, uint32_t max_samples,
                                    enum wd_frame_light light, struct wd_picture *picture)
@@ -244,10 +257,7 @@ enum wd_result wd_renderer_prepare(struct wd_renderer *renderer,
         .samples = samples < max_samples ? samples : max_samples,
         .view_mode = (uint32_t)params->view,
         .max_error_px = (float)params->max_error_px,
-        .gbuffer = params->layers & WD_LAYER_CRYPTOMATTE ? WD_GBUFFER_READ_EACH
-                   : params->layers & ~(uint32_t)(WD_LAYER_DISPLAY | WD_LAYER_COLOR)
-                       ? WD_GBUFFER_READ
-                       : WD_GBUFFER_OWN,
+        .gbuffer = gbuffer_use(params->layers),
         .light = light,
         .gathering = params->accumulation == WD_ACCUMULATE ? WD_GATHER_ON : WD_GATHER_OFF,
         .velocity = params->layers & WD_LAYER_VELOCITY ? WD_VELOCITY_ON : WD_VELOCITY_OFF,

@@ -3,10 +3,11 @@
 
 #include "api/arguments.h"
 #include "api/forest.h"
+#include "base/dmath.h"
 #include "base/log.h"
 #include "world/sun.h"
 
-static const double DEGREE = 0.017453292519943295, HOUR = 15 * 0.017453292519943295;
+static const double DEGREE = WD_PI / 180, HOUR = 15 * (WD_PI / 180); /* of which the earth turns in one */
 static const double USUAL_LATITUDE_DEG = 45;
 
 struct wd_sun wd_forest_sun(const struct wd_forest *forest)

@@ -35,9 +35,8 @@ enum {
 static bool init_raster(struct wd_baker *baker, uint32_t form)
 {
     const uint32_t constants[] = {form & 1, form >> 1 & 1, form >> 2 & 1, form >> 3};
-    const struct wd_spirv twice = {bake_raster_comp, sizeof bake_raster_comp, "bake_raster.comp"};
-    const struct wd_spirv once = {bake_raster_once_comp, sizeof bake_raster_once_comp,
-                                  "bake_raster_once.comp"};
+    const struct wd_spirv twice = WD_SPIRV(bake_raster_comp);
+    const struct wd_spirv once = WD_SPIRV(bake_raster_once_comp);
     const struct wd_compute_params params = {
         .shader = baker->passes == 1 ? once : twice,
         .bindings = {7, {TEXELS, TEXELS, STORAGE, STORAGE, STORAGE, IMAGE, STORAGE}},
@@ -50,7 +49,7 @@ static bool init_raster(struct wd_baker *baker, uint32_t form)
 static bool init_flat(struct wd_baker *baker)
 {
     const struct wd_compute_params params = {
-        .shader = {bake_flat_comp, sizeof bake_flat_comp, "bake_flat.comp"},
+        .shader = WD_SPIRV(bake_flat_comp),
         .bindings = {4, {TEXELS, TEXELS, STORAGE, IMAGE}},
         .push_size = sizeof(struct wd_bake_push),
     };
@@ -60,7 +59,7 @@ static bool init_flat(struct wd_baker *baker)
 static bool init_resolve(struct wd_baker *baker, uint32_t depths)
 {
     const struct wd_compute_params params = {
-        .shader = {bake_resolve_comp, sizeof bake_resolve_comp, "bake_resolve.comp"},
+        .shader = WD_SPIRV(bake_resolve_comp),
         .bindings = {7, {TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, IMAGE, STORAGE}},
         .push_size = sizeof(struct wd_bake_push),
         .constants = {1, &depths},

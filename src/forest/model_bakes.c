@@ -273,7 +273,6 @@ static bool get_set(struct wd_view_sets *sets, struct wd_gpu *gpu, struct wd_for
     const struct wd_view_set_name name = {&forest->cache, forest->model_keys[index], params, model};
     struct wd_view_set set = {0};
     bool ok = wd_view_set_load(&set, &sets->atlas, &name);
-    sets->from_cache += ok;
     if (!ok) {
         struct model_mesh mesh = {0};
         struct wd_tree_model grown = {0};

@@ -31,7 +31,7 @@ struct wd_view_sets {
     struct wd_buffer models; /* struct wd_view_model[forest->model_count]; a tree of variant v has
                                 the pictures of variant v % variants */
     uint32_t variants;       /* of each species, that have pictures */
-    uint32_t layers, from_cache;
+    uint32_t layers;
     uint64_t baked_us, bytes;
 };
 struct wd_view_sets_params {

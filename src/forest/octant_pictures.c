@@ -113,8 +113,8 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
     const VkDescriptorType table = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const struct wd_graphics_params params = {
-        .vertex = {bake_octant_vert, sizeof bake_octant_vert, "bake_octant.vert"},
-        .fragment = {bake_octant_frag, sizeof bake_octant_frag, "bake_octant.frag"},
+        .vertex = WD_SPIRV(bake_octant_vert),
+        .fragment = WD_SPIRV(bake_octant_frag),
         .bindings = {7, {table, table, table, table, image, image, image}},
         .push_size = sizeof(struct wd_octant_push),
         .color_count = 2,

@@ -16,8 +16,6 @@ static const uint32_t populate_comp[] =
 #include "populate.comp.inc"
     ;
 
-#define SPIRV(words) {words, sizeof words, #words}
-
 /* --- tables ------------------------------------------------------------------------------- */
 
 static bool make_buffer(struct wd_buffer *buffer, struct wd_gpu *gpu, const char *name,
@@ -96,7 +94,7 @@ bool wd_pages_init(struct wd_pages *pages, struct wd_gpu *gpu, const struct wd_w
 {
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const struct wd_compute_params populate = {
-        .shader = SPIRV(populate_comp),
+        .shader = WD_SPIRV(populate_comp),
         .bindings = {9, {buffer, buffer, buffer, buffer, buffer, buffer, buffer, buffer, buffer}},
         .push_size = sizeof(struct wd_page_push),
     };

@@ -24,6 +24,9 @@ static const double LOOK_MARGIN_M = 0.2;
 static const float LEAVES_M = 25.0f;
 /* Penumbras and the offsets of shadow look-ups reach this far. */
 static const float CASTER_MARGIN_M = 3.0f;
+/* A lower sun than with this sine casts no longer shadows; nor do casters stand farther off than this. Maps hold so
+ * much more, behind and before. */
+static const double LEAST_RISE = 0.05, FARTHEST_CASTER_M = 20000.0, DEPTH_SPARE_M = 32.0;
 
 static void sun_axes(struct wd_cascade_box *box, const float direction[3])
 {
@@ -42,9 +45,8 @@ static void sun_axes(struct wd_cascade_box *box, const float direction[3])
 /* The sphere round the slice [near, far] of the view: centre on the axis at `*center` metres. */
 static double slice_sphere(const struct wd_view *view, double near, double far, double *center)
 {
-    double half_height = tan(view->camera.fov_rad * 0.5);
-    double half_width = half_height * view->width / view->height;
-    double corner = half_height * half_height + half_width * half_width; /* per metre, squared */
+    const struct wd_half_view half = wd_half_view_of(view);
+    double corner = half.height * half.height + half.width * half.width; /* per metre, squared */
     double middle = 0.5 * (near + far) * (1.0 + corner);
     if (middle > far)
         middle = far;
@@ -57,14 +59,13 @@ static double slice_sphere(const struct wd_view *view, double near, double far, 
 static double slice_square(const struct wd_cascade_box *box, const struct wd_view *view, double near,
                            double far, double middle[2])
 {
-    double half_height = tan(view->camera.fov_rad * 0.5);
-    double half_width = half_height * view->width / view->height;
+    const struct wd_half_view half = wd_half_view_of(view);
     double right[3], forward[3], up[3], half_m = 0.0;
     wd_camera_axes(&view->camera, right, forward, up);
     const double *axes[2] = {box->right, box->up};
     for (int axis = 0; axis < 2; axis++) {
-        double wide = fabs(half_width * wd_dot(right, axes[axis])) +
-                      fabs(half_height * wd_dot(up, axes[axis]));
+        double wide = fabs(half.width * wd_dot(right, axes[axis])) +
+                      fabs(half.height * wd_dot(up, axes[axis]));
         double along = wd_dot(forward, axes[axis]);
         double low = fmin(near * (along - wide), far * (along - wide));
         double high = fmax(near * (along + wide), far * (along + wide));
@@ -108,8 +109,8 @@ static void cascade_box(struct wd_cascade_box *box, const struct wd_cascades_par
     /* Rounded up, so that a turning camera changes nothing. */
     double radius = ceil(slice_sphere(view, near, far, &distance) * 16.0) / 16.0;
     *box = (struct wd_cascade_box){.radius = radius, .calm = is_calm(params, cascade, radius)};
-    double sp = sin(view->camera.pitch_rad), cp = cos(view->camera.pitch_rad);
-    const double forward[3] = {sin(view->camera.yaw_rad) * cp, cos(view->camera.yaw_rad) * cp, sp};
+    double right[3], forward[3], up[3];
+    wd_camera_axes(&view->camera, right, forward, up);
     for (int k = 0; k < 3; k++)
         center[k] = view->eye_m[k] + forward[k] * distance;
     sun_axes(box, params->sun_direction);
@@ -124,11 +125,11 @@ static void cascade_box(struct wd_cascade_box *box, const struct wd_cascades_par
     snap(box, params, center);
     radius = fmax(radius, box->radius);
     /* Casters stand between the slice and the sun, no higher than the highest of all. */
-    double rise = box->toward[2] > 0.05 ? box->toward[2] : 0.05;
+    double rise = fmax(box->toward[2], LEAST_RISE);
     double reach = (params->max_z_m - (center[2] - radius)) / rise;
-    double extent = fmin(fmax(reach, 2.0 * radius), 2.0 * radius + 20000.0);
-    box->depth = extent + 64.0;
-    box->center[2] -= radius + 32.0;
+    double extent = fmin(fmax(reach, 2.0 * radius), 2.0 * radius + FARTHEST_CASTER_M);
+    box->depth = extent + 2.0 * DEPTH_SPARE_M;
+    box->center[2] -= radius + DEPTH_SPARE_M;
 }
 
 static void cascade_view(struct wd_view *cascade, const struct wd_view *view, const double eye_m[3])
@@ -216,13 +217,13 @@ static void add_caster_plane(struct wd_view *cascade, const float plane[4],
 static void slice_corner(const struct wd_cascade_box *box, const struct wd_view *view,
                          const double ends[2], uint32_t k, double at[2])
 {
-    double half_height = tan(view->camera.fov_rad * 0.5), way_m = ends[k >> 2];
-    double half_width = half_height * view->width / view->height;
+    const struct wd_half_view half = wd_half_view_of(view);
+    double way_m = ends[k >> 2];
     double right[3], forward[3], up[3];
     wd_camera_axes(&view->camera, right, forward, up);
     const double *axes[2] = {box->right, box->up};
     for (int axis = 0; axis < 2; axis++) {
-        double beside = k & 1 ? half_width : -half_width, above = k & 2 ? half_height : -half_height;
+        double beside = k & 1 ? half.width : -half.width, above = k & 2 ? half.height : -half.height;
         double along = wd_dot(forward, axes[axis]) + beside * wd_dot(right, axes[axis]) +
                        above * wd_dot(up, axes[axis]);
         at[axis] = (wd_dot(view->eye_m, axes[axis]) + way_m * along - box->center[axis]) / box->radius;
@@ -266,51 +267,54 @@ static void keep_to_slice(struct wd_view *cascade, const struct wd_cascades_para
                           double near, double far)
 {
     const struct wd_frustum *seen = &params->view->frustum;
-    double sp = sin(params->view->camera.pitch_rad), cp = cos(params->view->camera.pitch_rad);
-    double yaw = params->view->camera.yaw_rad;
-    const float forward[3] = {(float)(sin(yaw) * cp), (float)(cos(yaw) * cp), (float)sp};
-    const float beyond[4] = {forward[0], forward[1], forward[2], (float)-near};
-    const float before[4] = {-forward[0], -forward[1], -forward[2], (float)far};
-    float shadow_m = (float)(2.0 * params->max_height_m / fmax(params->sun_direction[2], 0.05));
+    double right[3], forward[3], up[3];
+    wd_camera_axes(&params->view->camera, right, forward, up);
+    const float beyond[4] = {(float)forward[0], (float)forward[1], (float)forward[2], (float)-near};
+    const float before[4] = {(float)-forward[0], (float)-forward[1], (float)-forward[2], (float)far};
+    float shadow_m = (float)(2.0 * params->max_height_m / fmax(params->sun_direction[2], LEAST_RISE));
     add_caster_plane(cascade, beyond, params, shadow_m);
     add_caster_plane(cascade, before, params, shadow_m);
     for (uint32_t i = 0; i < WD_FRUSTUM_SIDES; i++)
         add_caster_plane(cascade, seen->planes[i], params, shadow_m);
 }
 
+/* What shaders look the cascade's map up by. */
+static void tell_shaders(struct wd_frame_uniforms *uniforms, int i, const struct wd_view *cascade,
+                         const struct wd_cascades_params *params, double far, double fade_m)
+{
+    float(*from_rel)[4] = uniforms->shadow_from_rel[i], *numbers = uniforms->cascades[i];
+    memcpy(from_rel, cascade->clip_from_rel, sizeof cascade->clip_from_rel);
+    for (int column = 0; column < 4; column++) { /* from -1..1 to 0..1 */
+        for (int row = 0; row < 2; row++)
+            from_rel[column][row] *= 0.5f;
+    }
+    from_rel[3][0] += 0.5f;
+    from_rel[3][1] += 0.5f;
+    numbers[WD_CASCADE_FAR_M] = (float)far;
+    numbers[WD_CASCADE_TEXEL_M] = (float)(2.0 * cascade->box.radius / params->size);
+    numbers[WD_CASCADE_DEPTH_M] = (float)cascade->box.depth;
+    numbers[WD_CASCADE_FADE_M] = (float)fade_m;
+}
+
 void wd_cascades_init(struct wd_view cascades[WD_CASCADES], struct wd_frame_uniforms *uniforms,
                       const struct wd_cascades_params *params)
 {
     const double *eye_m = params->eye_m ? params->eye_m : params->view->eye_m;
-    double half_height = tan(params->view->camera.fov_rad * 0.5);
-    double half_width = half_height * params->view->width / params->view->height;
-    double corner = 1.0 / sqrt(1.0 + half_height * half_height + half_width * half_width);
+    const struct wd_half_view half = wd_half_view_of(params->view);
+    double corner = 1.0 / sqrt(1.0 + half.height * half.height + half.width * half.width);
     const struct seen seen = seen_range(params);
     double near = fmax(params->near_m, corner * seen.nearest);
     for (int i = 0; i < WD_CASCADES; i++) {
-        double far = cascade_end(params, &seen, i);
-        cascades[i] = (struct wd_view){
-            .width = params->size, .height = params->size, .cascade = (uint32_t)i};
-        const struct wd_cascade_box *box = &cascades[i].box;
-        cascade_box(&cascades[i].box, params, i, near, far);
-        cascade_view(&cascades[i], params->view, eye_m);
-        if (!box->calm)
-            keep_to_slice(&cascades[i], params, near, far);
-        if (!box->calm)
-            find_slice(&cascades[i].box, params->view, near, far);
-        memcpy(uniforms->shadow_from_rel[i], cascades[i].clip_from_rel,
-               sizeof uniforms->shadow_from_rel[i]);
-        for (int column = 0; column < 4; column++) {
-            for (int row = 0; row < 2; row++)
-                uniforms->shadow_from_rel[i][column][row] *= 0.5f;
+        double far = cascade_end(params, &seen, i), fade_m = fmin(FADE * far, FADE_THIN * (far - near));
+        struct wd_view *cascade = &cascades[i];
+        *cascade = (struct wd_view){.width = params->size, .height = params->size, .cascade = (uint32_t)i};
+        cascade_box(&cascade->box, params, i, near, far);
+        cascade_view(cascade, params->view, eye_m);
+        if (!cascade->box.calm) {
+            keep_to_slice(cascade, params, near, far);
+            find_slice(&cascade->box, params->view, near, far);
         }
-        uniforms->shadow_from_rel[i][3][0] += 0.5f;
-        uniforms->shadow_from_rel[i][3][1] += 0.5f;
-        uniforms->cascades[i][WD_CASCADE_FAR_M] = (float)far;
-        uniforms->cascades[i][WD_CASCADE_TEXEL_M] = (float)(2.0 * box->radius / params->size);
-        uniforms->cascades[i][WD_CASCADE_DEPTH_M] = (float)box->depth;
-        double fade_m = fmin(FADE * far, FADE_THIN * (far - near));
-        uniforms->cascades[i][WD_CASCADE_FADE_M] = (float)fade_m;
+        tell_shaders(uniforms, i, cascade, params, far, fade_m);
         near = fmax(far - fade_m, near);
     }
 }

@@ -27,14 +27,14 @@ bool wd_crown_sky_init(struct wd_crown_sky *sky, struct wd_gpu *gpu)
 {
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     struct wd_compute_params params = {
-        .shader = {crown_sky_comp, sizeof crown_sky_comp, "crown_sky_comp"},
+        .shader = WD_SPIRV(crown_sky_comp),
         .bindings = {5, {buffer, buffer, buffer, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, buffer, buffer}},
         .push_size = sizeof(struct wd_crown_sky_push),
     };
     *sky = (struct wd_crown_sky){0};
     if (!wd_pipeline_init_compute(&sky->crowns, gpu, &params))
         return false;
-    params.shader = (struct wd_spirv){floor_sky_comp, sizeof floor_sky_comp, "floor_sky_comp"};
+    params.shader = (struct wd_spirv)WD_SPIRV(floor_sky_comp);
     params.bindings.count = 6;
     return wd_pipeline_init_compute(&sky->floor, gpu, &params);
 }

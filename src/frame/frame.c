@@ -47,7 +47,7 @@ static bool prepare_velocity(struct wd_frame *frame)
     return wd_buffer_init(&frame->velocity_px, frame->gpu, &params);
 }
 
-/* Forgets what has been gathered of something else; else the frame before is the one gathered last. */
+/* Begins anew where something else is to be gathered; else what was gathered last becomes the frame before. */
 static void prepare_gathering(struct wd_frame *frame)
 {
     struct wd_frame_params *params = &frame->params;
@@ -231,7 +231,8 @@ static bool is_kept(const struct wd_kept_cascade *kept, const struct wd_frame_pa
 {
     const struct wd_cascade_box *old = &kept->box;
     return kept->method == params->method && kept->samples == detail_samples(params) && box->calm &&
-           old->calm && box->radius == old->radius && box->depth == old->depth && !memcmp(box->center, old->center, sizeof box->center) &&
+           old->calm && box->radius == old->radius && box->depth == old->depth &&
+           !memcmp(box->center, old->center, sizeof box->center) &&
            !memcmp(box->toward, old->toward, sizeof box->toward);
 }
 
@@ -265,8 +266,9 @@ static void record_shadows(const struct recording *r)
         if (is_kept(kept, params, &r->cascades[i].box))
             continue;
         bool whole = record_trees(r, &r->cascades[i], WD_PASS_SHADOW, &rendering);
-        *kept = (struct wd_kept_cascade){whole ? params->method : NULL, detail_samples(params),
-                                         r->cascades[i].box};
+        *kept = (struct wd_kept_cascade){.method = whole ? params->method : NULL,
+                                         .samples = detail_samples(params),
+                                         .box = r->cascades[i].box};
     }
     wd_cmd_scope_end(r->cmd);
 }
@@ -379,11 +381,15 @@ static struct wd_light_params light_of(const struct recording *r)
 {
     struct wd_frame *frame = r->frame;
     return (struct wd_light_params){
-        &frame->targets, frame->params.forest,
-        &r->view,        &r->values,
-        r->uniforms,     blends(r) ? WD_OVERLAY_OVER : WD_OVERLAY_NONE,
-        leaves_of(frame->params.method),
-        !frame->params.method->eye_pictures};
+        .targets = &frame->targets,
+        .forest = frame->params.forest,
+        .view = &r->view,
+        .frame = &r->values,
+        .uniforms = r->uniforms,
+        .overlay = blends(r) ? WD_OVERLAY_OVER : WD_OVERLAY_NONE,
+        .leaves = leaves_of(frame->params.method),
+        .level_cards = !frame->params.method->eye_pictures,
+    };
 }
 
 static void record_light(const struct recording *r)

@@ -15,11 +15,10 @@ static void find_rays(struct search *search)
 {
     const struct wd_view *view = search->view;
     double right[3], forward[3], up[3];
-    double half_height = tan(view->camera.fov_rad * 0.5);
-    double half_width = half_height * view->width / view->height;
+    const struct wd_half_view half = wd_half_view_of(view);
     wd_camera_axes(&view->camera, right, forward, up);
     for (int k = 0; k < 3; k++) {
-        double beside = half_width * fabs(right[k]) + half_height * fabs(up[k]);
+        double beside = half.width * fabs(right[k]) + half.height * fabs(up[k]);
         search->ray_min[k] = forward[k] - beside;
         search->ray_max[k] = forward[k] + beside;
     }
@@ -151,12 +150,11 @@ static double ray_to_ground(const struct wd_terrain *terrain, const double eye_m
 float wd_farthest_seen(const struct wd_terrain *terrain, const struct wd_view *view)
 {
     double right[3], forward[3], up[3], ray[3], farthest_m = 0.0;
-    double half_height = tan(view->camera.fov_rad * 0.5);
-    double half_width = half_height * view->width / view->height;
+    const struct wd_half_view half = wd_half_view_of(view);
     wd_camera_axes(&view->camera, right, forward, up);
     for (int i = 0; i < RAYS_A_SIDE * RAYS_A_SIDE; i++) {
-        double x = half_width * (2.0 * (i % RAYS_A_SIDE) / (RAYS_A_SIDE - 1) - 1.0);
-        double y = half_height * (1.0 - 2.0 * (i / RAYS_A_SIDE) / (RAYS_A_SIDE - 1));
+        double x = half.width * (2.0 * (i % RAYS_A_SIDE) / (RAYS_A_SIDE - 1) - 1.0);
+        double y = half.height * (1.0 - 2.0 * (i / RAYS_A_SIDE) / (RAYS_A_SIDE - 1));
         for (int k = 0; k < 3; k++)
             ray[k] = forward[k] + x * right[k] + y * up[k];
         if (ray[2] > -LEAST_FALL)

@@ -8,8 +8,8 @@
 
 /* Seen more along the sun's rays than this (sine), maps are warped no further. */
 static const double LEAST_SINE = 0.05;
-/* Penumbras and the offsets of shadow look-ups reach this far. */
-static const double MARGIN_M = 3.0;
+/* As those of frame/cascades.c. */
+static const double MARGIN_M = 3.0, LEAST_RISE = 0.05, FARTHEST_CASTER_M = 20000.0;
 
 static void cross(double c[3], const double a[3], const double b[3])
 {
@@ -72,16 +72,15 @@ static void find_bounds(struct bounds *bounds, const struct wd_cascade_box *box,
 {
     const struct wd_view *view = params->view;
     double right[3], forward[3], up[3], ray[3];
-    double half_height = tan(view->camera.fov_rad * 0.5);
-    double half_width = half_height * view->width / view->height;
+    const struct wd_half_view half = wd_half_view_of(view);
     wd_camera_axes(&view->camera, right, forward, up);
     for (int axis = 0; axis < 3; axis++) {
         bounds->low[axis] = INFINITY;
         bounds->high[axis] = -INFINITY;
     }
     for (int i = 0; i < PLACES; i++) {
-        double x = half_width * (2.0 * (i % SIDE) / (SIDE - 1) - 1);
-        double y = half_height * (2.0 * (i / SIDE % SIDE) / (SIDE - 1) - 1);
+        double x = half.width * (2.0 * (i % SIDE) / (SIDE - 1) - 1);
+        double y = half.height * (2.0 * (i / SIDE % SIDE) / (SIDE - 1) - 1);
         for (int k = 0; k < 3; k++)
             ray[k] = forward[k] + x * right[k] + y * up[k];
         add_place(bounds, box, i, ray,
@@ -160,9 +159,9 @@ void wd_perspective_map_init(struct wd_view *map, struct wd_frame_uniforms *unif
     struct bounds bounds;
     find_bounds(&bounds, &map->box, params, near_m, far_m);
     /* casters stand between the slice and the sun, no higher than the highest of all */
-    double rise = fmax(map->box.toward[2], 0.05);
+    double rise = fmax(map->box.toward[2], LEAST_RISE);
     double over_m = (params->max_z_m - params->min_z_m) / rise;
-    bounds.high[2] += fmin(over_m, 20000.0);
+    bounds.high[2] += fmin(over_m, FARTHEST_CASTER_M);
     double span = bounds.high[1] - bounds.low[1];
     double before_m = (near_m + sqrt(near_m * (near_m + span * sine))) / sine;
     set_matrix(map, &bounds, before_m, (float)params->size, uniforms);

@@ -121,6 +121,7 @@ static void rebuild(struct wd_sun_field *field, struct wd_cmd *cmd,
     field->soft_m = wd_sun_field_soft_m(field->cell_m, rise);
     memcpy(field->direction, direction, sizeof field->direction);
     float *heights = thinned(terrain, step, width, height);
+    /* of its own: the sweep reads what it has written, which upload memory is slow to give back */
     float *out = wd_alloc_array((size_t)width * height, sizeof *out);
     wd_sun_field_sweep(out, heights, width, height, field->cell_m, direction[0] / across,
                        direction[1] / across, rise);

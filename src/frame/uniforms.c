@@ -7,8 +7,6 @@
 #include "shared/wind.h"
 #include "world/surroundings.h"
 
-static const float NEAR_M = 0.1f;
-
 /* What sample i of a picture stands for: a place in the pixel, on the lens and in the time that the
  * shutter is open, each -0.5..0.5. */
 struct exposure {
@@ -93,7 +91,7 @@ static void fill_camera(struct wd_frame_uniforms *uniforms, struct wd_view *view
 {
     const struct wd_scene *scene = params->forest->scene;
     struct wd_view_params camera = {
-        params->camera, params->width, params->height, NEAR_M, params->samples, {0}};
+        params->camera, params->width, params->height, WD_NEAR_M, params->samples, {0}};
     struct exposure exposure = exposure_of(params->sample_index, params->sample_count);
     wd_view_init(steady, &camera);
     memcpy(uniforms->steady_clip_from_rel, steady->clip_from_rel, sizeof steady->clip_from_rel);
@@ -106,7 +104,7 @@ static void fill_camera(struct wd_frame_uniforms *uniforms, struct wd_view *view
     memcpy(uniforms->clip_from_rel, view->clip_from_rel, sizeof view->clip_from_rel);
     wd_matrix_invert(uniforms->rel_from_clip, view->clip_from_rel);
     wd_surroundings_set_camera(uniforms, view->eye_m);
-    uniforms->near_m = NEAR_M;
+    uniforms->near_m = WD_NEAR_M;
     uniforms->width = params->width;
     uniforms->height = params->height;
     double span_s = params->time_s - params->previous_time_s;
@@ -122,7 +120,7 @@ static void fill_previous(struct wd_frame_uniforms *uniforms,
 {
     struct wd_view previous;
     const struct wd_view_params camera = {
-        params->previous_camera, params->width, params->height, NEAR_M, params->samples, {0}};
+        params->previous_camera, params->width, params->height, WD_NEAR_M, params->samples, {0}};
     wd_view_init(&previous, &camera);
     float shift[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     for (int k = 0; k < 3; k++)
@@ -161,7 +159,7 @@ void wd_uniforms_init(struct wd_frame_uniforms *uniforms, struct wd_view *view,
         .view = &steady, /* all samples look into the first one's maps */
         .eye_m = view->eye_m,
         .distance_m = (float)scene->quality.shadow_distance_m,
-        .near_m = NEAR_M,
+        .near_m = WD_NEAR_M,
         .nearest_m = wd_nearest_seen(forest, &steady),
         .farthest_m = wd_farthest_seen(&forest->world->terrain, &steady),
         .size = params->shadow_size,

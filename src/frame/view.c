@@ -76,6 +76,12 @@ static void add_side_planes(struct wd_frustum *frustum, const double forward[3],
     add_side_plane(frustum, forward, back, half_extent * (1.0 + spare + shift));
 }
 
+struct wd_half_view wd_half_view_of(const struct wd_view *view)
+{
+    double height = tan(view->camera.fov_rad * 0.5);
+    return (struct wd_half_view){height * view->width / view->height, height};
+}
+
 void wd_view_init(struct wd_view *view, const struct wd_view_params *params)
 {
     double right[3], forward[3], up[3];
@@ -85,21 +91,20 @@ void wd_view_init(struct wd_view *view, const struct wd_view_params *params)
                              .height = params->height,
                              .samples = params->samples ? params->samples : 1};
     memcpy(view->eye_m, params->camera.position_m, sizeof view->eye_m);
-    double half_height = tan(params->camera.fov_rad * 0.5);
-    double half_width = half_height * params->width / params->height;
-    view->pixels_per_radian = (float)(params->height * 0.5 / half_height);
+    const struct wd_half_view half = wd_half_view_of(view);
+    view->pixels_per_radian = (float)(params->height * 0.5 / half.height);
     view->lod_scale = fmaxf(view->pixels_per_radian / REFERENCE_PIXELS_PER_RADIAN, 1.0f);
-    /* clip = (x / half_width, -y / half_height, near, distance): y down, depth = near / distance */
-    set_row(view->clip_from_rel, 0, right, 1.0 / half_width, 0.0);
-    set_row(view->clip_from_rel, 1, up, -1.0 / half_height, 0.0);
+    /* clip = (x / half.width, -y / half.height, near, distance): y down, depth = near / distance */
+    set_row(view->clip_from_rel, 0, right, 1.0 / half.width, 0.0);
+    set_row(view->clip_from_rel, 1, up, -1.0 / half.height, 0.0);
     set_row(view->clip_from_rel, 2, forward, 0.0, params->near_m);
     set_row(view->clip_from_rel, 3, forward, 1.0, 0.0);
     for (int k = 0; k < 3; k++) {
         view->clip_from_rel[k][0] += (float)(forward[k] * 2.0 * params->offset_px[0] / params->width);
         view->clip_from_rel[k][1] += (float)(forward[k] * 2.0 * params->offset_px[1] / params->height);
     }
-    add_side_planes(&view->frustum, forward, right, half_width, params->offset_px[0], params->width);
-    add_side_planes(&view->frustum, forward, up, half_height, -params->offset_px[1], params->height);
+    add_side_planes(&view->frustum, forward, right, half.width, params->offset_px[0], params->width);
+    add_side_planes(&view->frustum, forward, up, half.height, -params->offset_px[1], params->height);
     float *near = view->frustum.planes[view->frustum.count++];
     for (int k = 0; k < 3; k++)
         near[k] = (float)forward[k];

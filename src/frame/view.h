@@ -57,6 +57,15 @@ struct wd_view_params {
     uint32_t samples;   /* 0 counts as 1 */
     float offset_px[2]; /* of this sample: within its pixel, -0.5..0.5, and by its place on the lens */
 };
+/* Nearest that cameras see, metres along the view axis; depth is this over the distance. */
+#define WD_NEAR_M 0.1f
+
+/* Half of the width and of the height of what a camera's view sees a metre ahead, metres. */
+struct wd_half_view {
+    double width, height;
+};
+struct wd_half_view wd_half_view_of(const struct wd_view *view);
+
 /* A camera's view. */
 void wd_view_init(struct wd_view *view, const struct wd_view_params *params);
 

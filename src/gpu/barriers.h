@@ -10,10 +10,10 @@ struct wd_barrier {
     VkBufferMemoryBarrier2 buffer;
 };
 
-/* Advances the tracked state to `use`. True when `*barrier` has to be recorded first. */
+/* Advances the tracked state to `use`. True when `*barrier`, which it fills, has to be recorded first. */
 bool wd_barrier_for_buffer(struct wd_buffer *buffer, enum wd_gpu_use use,
                            struct wd_barrier *barrier);
-/* `discard`: the old contents are not needed. */
+/* Whether the old contents are still needed: the change of layout may lose them. */
 enum wd_contents { WD_CONTENTS_KEEP, WD_CONTENTS_DISCARD };
 bool wd_barrier_for_image(struct wd_image *image, enum wd_gpu_use use, enum wd_contents contents,
                           struct wd_barrier *barrier);

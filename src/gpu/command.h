@@ -5,12 +5,12 @@
 #include "gpu/memory.h"
 #include "gpu/pipeline.h"
 
-enum { WD_FRAMES_IN_FLIGHT = 2, WD_MAX_SCOPES = 64 };
+enum { WD_FRAMES_IN_FLIGHT = 2, WD_MAX_SCOPES = 64, WD_MAX_SCOPE_DEPTH = 8 };
 
 /* Time of one named scope of a finished frame. */
 struct wd_scope_time {
     char name[32];
-    double gpu_us; /* device time (timestamps), or wall clock of the scope alone when `serial` */
+    double gpu_us; /* device time (timestamps), or wall clock of a scope that was submitted alone */
     double cpu_us; /* time spent recording it */
     double processor_us; /* that all threads ran in it, where the scope runs alone; else 0 */
     uint32_t depth; /* nesting, 0 outermost; a parent's time includes its children's */
@@ -18,8 +18,8 @@ struct wd_scope_time {
 
 enum wd_timing {
     WD_TIMING_OFF,
-    /* Timestamps where the device has true ones; else each outermost scope (on every depth a scope
-     * without children) is submitted alone and timed by fence + wall clock. Slower, but true. */
+    /* Timestamps where the device has true ones; else what lies between one scope's begin or end and the next
+     * is submitted alone and timed by fence + wall clock. Slower, but true. */
     WD_TIMING_ON,
 };
 
@@ -62,7 +62,7 @@ struct wd_cmd {
     struct wd_frame_slot *slot;
     VkCommandBuffer vk; /* changes when a scope is submitted alone: do not keep it */
     bool failed;        /* a descriptor or upload could not be had; wd_frame_submit returns false */
-    uint32_t scope_stack[8], scope_depth;
+    uint32_t scope_stack[WD_MAX_SCOPE_DEPTH], scope_depth;
     double scope_start[WD_MAX_SCOPES], scope_processor[WD_MAX_SCOPES];
     enum wd_timing timing; /* of this frame */
     bool rendering;        /* between wd_cmd_begin_rendering and wd_cmd_end_rendering */
@@ -82,8 +82,8 @@ bool wd_frame_submit(struct wd_cmd *cmd, VkSemaphore wait, VkSemaphore signal);
 /* Waits for every submitted frame; afterwards frames->last_scopes is that of the newest one. */
 bool wd_frames_wait(struct wd_frames *frames);
 
-/* Begins and ends a named part of the frame (debug label + timer); at most 8 deep. No render pass
- * may be open, and what is bound does not survive a scope's begin or end. */
+/* Begins and ends a named part of the frame (debug label + timer); at most WD_MAX_SCOPE_DEPTH deep. No rendering may
+ * be open, and what is bound does not survive a scope's begin or end. */
 void wd_cmd_scope_begin(struct wd_cmd *cmd, const char *name);
 void wd_cmd_scope_end(struct wd_cmd *cmd);
 

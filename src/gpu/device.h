@@ -97,7 +97,7 @@ void wd_gpu_wanted_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2 *
                             VkPhysicalDeviceVulkan12Features *features12,
                             VkPhysicalDeviceVulkan13Features *features13);
 
-/* On failure `*gpu` is `{0}`, and the log says what was looked for and what was found. */
+/* On failure `*gpu` is `{0}` but for no_memory, and the log says what was looked for and what was found. */
 bool wd_gpu_init(struct wd_gpu *gpu, const struct wd_gpu_params *params, const struct wd_log *log);
 void wd_gpu_finish(struct wd_gpu *gpu); /* waits for idle; accepts {0} */
 

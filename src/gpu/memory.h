@@ -18,7 +18,6 @@ enum wd_gpu_use {
     WD_USE_INDIRECT,         /* indirect commands, also read by compute */
     WD_USE_COLOR_TARGET,
     WD_USE_DEPTH_TARGET,
-    WD_USE_GRAPHICS_WRITE,   /* storage buffer or image: fragments write or update atomically */
     WD_USE_HOST_READ,        /* read-back memory, read by the CPU after the frame has finished */
     WD_USE_COUNT,
 };

@@ -12,6 +12,8 @@ struct wd_spirv {
     size_t size; /* bytes */
     const char *name;
 };
+/* Initializes a struct wd_spirv from such an array. */
+#define WD_SPIRV(words) {words, sizeof words, #words}
 
 /* One descriptor set (set 0); binding i has type types[i]. All stages see all bindings. */
 enum { WD_MAX_BINDINGS = 18 };

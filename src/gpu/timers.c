@@ -65,7 +65,7 @@ static bool has_labels(const struct wd_cmd *cmd)
 
 void wd_cmd_scope_begin(struct wd_cmd *cmd, const char *name)
 {
-    assert(!cmd->rendering && cmd->scope_depth < 8);
+    assert(!cmd->rendering && cmd->scope_depth < WD_MAX_SCOPE_DEPTH);
     uint32_t index = cmd->timing == WD_TIMING_ON ? open_scope(cmd, name) : untimed;
     cmd->scope_stack[cmd->scope_depth++] = index;
     if (has_labels(cmd)) {

@@ -10,11 +10,6 @@ static const uint32_t whole_target_vert[] =
 #include "whole_target.vert.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 enum { MAP_BINDINGS = 12, TILE = 8, SAMPLED_TREES = 4096 };
 
 bool wd_canopy_map_init(struct wd_canopy_map *map, struct wd_gpu *gpu)
@@ -23,15 +18,15 @@ bool wd_canopy_map_init(struct wd_canopy_map *map, struct wd_gpu *gpu)
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const struct wd_compute_params compute = {
-        .shader = SPIRV(canopy_map_comp),
+        .shader = WD_SPIRV(canopy_map_comp),
         .bindings = {MAP_BINDINGS,
                      {uniform, image, image, buffer, buffer, buffer, buffer, buffer, image, image,
                       image, buffer}},
         .push_size = sizeof(struct wd_canopy_push),
     };
     const struct wd_graphics_params draw = {
-        .vertex = SPIRV(whole_target_vert),
-        .fragment = SPIRV(canopy_map_frag),
+        .vertex = WD_SPIRV(whole_target_vert),
+        .fragment = WD_SPIRV(canopy_map_frag),
         .bindings = {2, {uniform, buffer}},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},

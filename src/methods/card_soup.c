@@ -32,8 +32,6 @@ static const uint32_t card_resolve_frag[] =
 #include "card_resolve.frag.inc"
     ;
 
-#define SPIRV(words) {words, sizeof words, #words}
-
 enum {
     GROUP = 64,
     MAX_CARDS = WD_CARD_BATCH * WD_CARD_VERTICES / 4,
@@ -63,8 +61,8 @@ static bool init_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu, struc
 static bool init_draw(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tree_pass pass)
 {
     struct wd_graphics_params params = {
-        .vertex = SPIRV(card_soup_vert),
-        .fragment = SPIRV(card_soup_frag),
+        .vertex = WD_SPIRV(card_soup_vert),
+        .fragment = WD_SPIRV(card_soup_frag),
         .vertices = {sizeof(struct wd_card_vertex), 2,
                      {{VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(struct wd_card_vertex, clip)},
                       {VK_FORMAT_R32G32B32_UINT, offsetof(struct wd_card_vertex, layer_lod)}}},
@@ -75,7 +73,7 @@ static bool init_draw(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
     if (pass == WD_PASS_SHADOW) {
-        params.fragment = (struct wd_spirv)SPIRV(card_soup_shadow_frag);
+        params.fragment = (struct wd_spirv)WD_SPIRV(card_soup_shadow_frag);
         params.color_count = 0;
         params.depth_bias_slope = WD_SHADOW_SLOPE;
     }
@@ -85,8 +83,8 @@ static bool init_draw(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
 static bool init_resolve(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     const struct wd_graphics_params params = {
-        .vertex = SPIRV(whole_target_vert),
-        .fragment = SPIRV(card_resolve_frag),
+        .vertex = WD_SPIRV(whole_target_vert),
+        .fragment = WD_SPIRV(card_resolve_frag),
         .bindings = {7, {UNIFORM, IMAGE, IMAGE, BUFFER, BUFFER, IMAGE, IMAGE}},
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT},
@@ -104,8 +102,8 @@ bool wd_card_soup_init(struct wd_card_soup *soup, struct wd_gpu *gpu)
         "card draw", sizeof(struct wd_draw_indexed),
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, WD_MEMORY_DEVICE};
     *soup = (struct wd_card_soup){0};
-    const struct wd_spirv scan = SPIRV(card_scan_comp), count = SPIRV(card_count_comp),
-                          expand = SPIRV(card_expand_comp);
+    const struct wd_spirv scan = WD_SPIRV(card_scan_comp), count = WD_SPIRV(card_count_comp),
+                          expand = WD_SPIRV(card_expand_comp);
     bool ok = init_compute(&soup->scan, gpu, scan, BUFFER, 2, 0) &&
               init_resolve(&soup->resolve, gpu) &&
               wd_buffer_init(&soup->command, gpu, &command);

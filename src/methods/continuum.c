@@ -14,8 +14,8 @@
 
 #include "base/memory.h"
 
-/* Visible trees and items of one view: hard caps, whatever the world holds. A tree for so many pixels, as far
- * as the device can bind and ids of items reach, which have 22 bits. */
+/* Visible trees and items of one view: hard caps, whatever the world holds. Lists have room for a tree for each
+ * PIXELS_A_TREE, but no more than the device can bind and than ids of items, which have 22 bits, can tell. */
 enum { LEAST_TREES = 1 << 20, PIXELS_A_TREE = 4, ITEMS_A_TREE = 2, LEAST_ITEMS = 1 << 20,
        MOST_TREES = (1 << 22) / ITEMS_A_TREE - 1 };
 
@@ -160,7 +160,7 @@ static void continuum_drop_forest(void *state, struct wd_gpu *gpu)
 
 /* --- one view ---------------------------------------------------------------------------- */
 
-/* For either pass. */
+/* For either pass: id and depth of each pixel, or fewer words. */
 static bool fit_pixels(struct continuum *c, struct wd_cmd *cmd, const struct wd_view *view)
 {
     VkDeviceSize size = (VkDeviceSize)view->width * view->height * 2 * sizeof(uint32_t);
@@ -268,7 +268,10 @@ static struct wd_binding upload_pages(const struct wd_page_list *pages, struct w
 
 enum round { FIRST_ROUND, SECOND_ROUND };
 
-static void record_args(struct continuum *c, struct wd_cmd *cmd, enum round begins)
+/* What the counts so far are made to be: the next stage's groups, or the beginning of a second round. */
+enum args { COUNT_GROUPS, BEGIN_SECOND };
+
+static void record_args(struct continuum *c, struct wd_cmd *cmd, enum args args)
 {
     wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_WRITE);
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_COMPUTE_WRITE);
@@ -277,7 +280,7 @@ static void record_args(struct continuum *c, struct wd_cmd *cmd, enum round begi
     const struct wd_binding bindings[] = {c->view, WD_BIND_BUFFER(&c->counts),
                                           WD_BIND_BUFFER(&c->groups), WD_BIND_BUFFER(&c->lost),
                                           WD_BIND_BUFFER(&c->large)};
-    wd_cmd_bind(cmd, &c->pipelines.args[begins], bindings);
+    wd_cmd_bind(cmd, &c->pipelines.args[args], bindings);
     wd_cmd_dispatch(cmd, 1, 1, 1);
     wd_cmd_use_buffer(cmd, &c->groups, WD_USE_INDIRECT);
 }
@@ -302,7 +305,7 @@ static void record_cull(struct continuum *c, const struct wd_tree_draw *draw)
     size_t clusters = c->forest.cluster_count + c->pages[draw->pass].count * WD_PAGE_CLUSTERS;
     wd_cmd_bind(cmd, &c->pipelines.cull, bindings);
     wd_cmd_dispatch_1d(cmd, (clusters + 63) / 64);
-    record_args(c, cmd, FIRST_ROUND);
+    record_args(c, cmd, COUNT_GROUPS);
 }
 
 static void record_sort(struct continuum *c, struct wd_cmd *cmd)
@@ -345,11 +348,11 @@ static void record_select(struct continuum *c, const struct wd_tree_draw *draw, 
                                           WD_BIND_BUFFER(&draw->forest->fades)};
     wd_cmd_bind(cmd, pipeline, bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, offsetof(struct wd_splat_groups, select));
-    record_args(c, cmd, FIRST_ROUND);
+    record_args(c, cmd, COUNT_GROUPS);
     record_sort(c, cmd);
 }
 
-/* Words of the visibility buffer that a pixel takes: id and depth, or depth alone. */
+/* Of the visibility buffer, for a pixel: words of id and depth, or of depth alone. */
 static VkDeviceSize pixel_bytes(enum wd_tree_pass pass)
 {
     return pass == WD_PASS_CAMERA ? 2 * sizeof(uint32_t) : sizeof(uint32_t);
@@ -357,55 +360,58 @@ static VkDeviceSize pixel_bytes(enum wd_tree_pass pass)
 
 static void clear_pixels(struct continuum *c, const struct wd_tree_draw *draw)
 {
-    VkDeviceSize size =
-        (VkDeviceSize)draw->view->width * draw->view->height * pixel_bytes(draw->pass);
+    VkDeviceSize size = (VkDeviceSize)c->values.width * c->values.height * pixel_bytes(draw->pass);
     wd_cmd_use_buffer(draw->cmd, &c->pixels, WD_USE_TRANSFER_WRITE);
     if (!draw->cmd->failed)
         vkCmdFillBuffer(draw->cmd->vk, c->pixels.buffer, 0, size, 0);
 }
 
+/* One kind of what is rasterised, where this device draws it so: then the large triangles that it has listed. */
+static void record_shape(struct continuum *c, const struct wd_tree_draw *draw, uint32_t shape, uint32_t ids)
+{
+    static const VkDeviceSize groups[WD_SHAPES] = {
+        [WD_SHAPE_SPLATS] = offsetof(struct wd_splat_groups, splat),
+        [WD_SHAPE_SMALL] = offsetof(struct wd_splat_groups, small),
+        [WD_SHAPE_BOTH] = offsetof(struct wd_splat_groups, all_splats),
+        [WD_SHAPE_WOOD] = offsetof(struct wd_splat_groups, wood)};
+    struct wd_cmd *cmd = draw->cmd;
+    bool wood = shape == WD_SHAPE_WOOD;
+    const struct wd_pipeline *pipeline = &c->pipelines.draw[shape][draw->pass][ids];
+    const struct wd_pipeline *large = &c->pipelines.large[draw->pass];
+    const struct wd_binding bindings[] = {c->view,
+                                          WD_BIND_BUFFER(&c->counts),
+                                          WD_BIND_BUFFER(&c->trees),
+                                          WD_BIND_BUFFER(wood ? &c->wood_items : &c->items),
+                                          WD_BIND_BUFFER(wood ? &c->forest.wood : &c->forest.splats),
+                                          WD_BIND_BUFFER(&c->pixels), /* to be drawn to, */
+                                          WD_BIND_BUFFER(&c->forest.lit),
+                                          WD_BIND_BUFFER(&c->pixels), /* and its texels: lib/drawn.glsl */
+                                          WD_BIND_BUFFER(&c->large)};
+    if (!pipeline->pipeline)
+        return;
+    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
+    if (wood)
+        wd_cmd_use_buffer(cmd, &c->large, WD_USE_COMPUTE_WRITE);
+    wd_cmd_bind(cmd, pipeline, bindings);
+    wd_cmd_dispatch_indirect(cmd, &c->groups, groups[shape]);
+    if (!wood || !large->pipeline)
+        return;
+    wd_cmd_use_buffer(cmd, &c->large, WD_USE_INDIRECT);
+    wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
+    wd_cmd_bind(cmd, large, bindings);
+    wd_cmd_dispatch_indirect(cmd, &c->large, 0);
+}
+
+/* All shapes; where ids take a pass of their own (continuum_splat_twice.comp), all of them again. */
 static void record_draws(struct continuum *c, const struct wd_tree_draw *draw)
 {
-    struct wd_cmd *cmd = draw->cmd;
-    const struct wd_buffer *items[] = {&c->items, &c->items, &c->items, &c->wood_items};
-    const struct wd_buffer *shapes[] = {&c->forest.splats, &c->forest.splats, &c->forest.splats,
-                                        &c->forest.wood};
-    const VkDeviceSize groups[] = {offsetof(struct wd_splat_groups, splat),
-                                   offsetof(struct wd_splat_groups, small),
-                                   offsetof(struct wd_splat_groups, all_splats),
-                                   offsetof(struct wd_splat_groups, wood)};
-    wd_cmd_use_buffer(cmd, &c->counts, WD_USE_COMPUTE_READ);
-    wd_cmd_use_buffer(cmd, &c->trees, WD_USE_COMPUTE_READ);
-    wd_cmd_use_buffer(cmd, &c->items, WD_USE_COMPUTE_READ);
-    wd_cmd_use_buffer(cmd, &c->wood_items, WD_USE_COMPUTE_READ);
-    for (uint32_t i = 0; i < 2 * WD_SHAPES; i++) {
-        uint32_t ids = i / WD_SHAPES, kind = i % WD_SHAPES;
-        const struct wd_pipeline *pipeline = &c->pipelines.draw[kind][draw->pass][ids];
-        const struct wd_binding bindings[] = {c->view,
-                                              WD_BIND_BUFFER(&c->counts),
-                                              WD_BIND_BUFFER(&c->trees),
-                                              WD_BIND_BUFFER(items[kind]),
-                                              WD_BIND_BUFFER(shapes[kind]),
-                                              WD_BIND_BUFFER(&c->pixels),
-                                              WD_BIND_BUFFER(&c->forest.lit),
-                                              WD_BIND_BUFFER(&c->pixels),
-                                              WD_BIND_BUFFER(&c->large)};
-        const struct wd_pipeline *large = &c->pipelines.large[draw->pass];
-        bool lists = kind == WD_SHAPE_WOOD && large->pipeline;
-        if (!pipeline->pipeline)
-            continue;
-        wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
-        if (kind == WD_SHAPE_WOOD)
-            wd_cmd_use_buffer(cmd, &c->large, WD_USE_COMPUTE_WRITE);
-        wd_cmd_bind(cmd, pipeline, bindings);
-        wd_cmd_dispatch_indirect(cmd, &c->groups, groups[kind]);
-        if (!lists)
-            continue;
-        wd_cmd_use_buffer(cmd, &c->large, WD_USE_INDIRECT);
-        wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
-        wd_cmd_bind(cmd, large, bindings);
-        wd_cmd_dispatch_indirect(cmd, &c->large, 0);
-    }
+    wd_cmd_use_buffer(draw->cmd, &c->counts, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(draw->cmd, &c->trees, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(draw->cmd, &c->items, WD_USE_COMPUTE_READ);
+    wd_cmd_use_buffer(draw->cmd, &c->wood_items, WD_USE_COMPUTE_READ);
+    for (uint32_t ids = 0; ids < 2; ids++)
+        for (uint32_t shape = 0; shape < WD_SHAPES; shape++)
+            record_shape(c, draw, shape, ids);
 }
 
 static void record_pyramid(struct continuum *c, const struct wd_tree_draw *draw,
@@ -434,7 +440,7 @@ static void record_second_round(struct continuum *c, const struct wd_tree_draw *
     upload_view(c, draw->cmd);
     if (draw->cmd->failed)
         return;
-    record_args(c, draw->cmd, SECOND_ROUND);
+    record_args(c, draw->cmd, BEGIN_SECOND);
     record_select(c, draw, SECOND_ROUND);
     record_draws(c, draw);
 }
@@ -516,6 +522,26 @@ static void fill_cascade(struct continuum *c, const struct wd_tree_draw *draw)
         wd_cmd_copy_to_image(cmd, as_map ? &c->pixels : &c->depths, 0, map, draw->view->cascade);
 }
 
+enum { RESOLVE_BINDINGS = 10 };
+
+/* What shaders/lib/resolve.glsl reads, by fragments or by compute. */
+static void bind_resolve(struct wd_binding bindings[RESOLVE_BINDINGS], const struct continuum *c,
+                         const struct wd_tree_draw *draw)
+{
+    const struct wd_binding reads[RESOLVE_BINDINGS] = {
+        draw->uniforms,
+        WD_BIND_BUFFER(&c->pixels),
+        WD_BIND_BUFFER(&c->trees),
+        WD_BIND_BUFFER(&c->items),
+        WD_BIND_BUFFER(&c->forest.splats),
+        WD_BIND_BUFFER(&c->forest.looks),
+        WD_BIND_BUFFER(&c->wood_items),
+        WD_BIND_BUFFER(&c->forest.wood),
+        WD_BIND_IMAGE(&draw->forest->looks, draw->forest->look_sampler),
+        WD_BIND_BUFFER(&c->forest.lit)};
+    memcpy(bindings, reads, sizeof reads);
+}
+
 static void fill_camera(struct continuum *c, const struct wd_tree_draw *draw)
 {
     struct wd_cmd *cmd = draw->cmd;
@@ -525,21 +551,12 @@ static void fill_camera(struct continuum *c, const struct wd_tree_draw *draw)
     wd_cmd_discard_image(cmd, &targets->albedo, WD_USE_COMPUTE_WRITE);
     wd_cmd_discard_image(cmd, &targets->normal, WD_USE_COMPUTE_WRITE);
     wd_cmd_discard_image(cmd, &targets->surface, WD_USE_COMPUTE_WRITE);
-    const struct wd_binding bindings[] = {draw->uniforms,
-                                          WD_BIND_BUFFER(&c->pixels),
-                                          WD_BIND_BUFFER(&c->trees),
-                                          WD_BIND_BUFFER(&c->items),
-                                          WD_BIND_BUFFER(&c->forest.splats),
-                                          WD_BIND_BUFFER(&c->forest.looks),
-                                          WD_BIND_BUFFER(&c->wood_items),
-                                          WD_BIND_BUFFER(&c->forest.wood),
-                                          WD_BIND_IMAGE(&draw->forest->looks,
-                                                        draw->forest->look_sampler),
-                                          WD_BIND_BUFFER(&c->forest.lit),
-                                          WD_BIND_STORAGE_IMAGE(&targets->albedo),
-                                          WD_BIND_STORAGE_IMAGE(&targets->normal),
-                                          WD_BIND_STORAGE_IMAGE(&targets->surface),
-                                          WD_BIND_BUFFER(&c->depths)};
+    struct wd_binding bindings[RESOLVE_BINDINGS + 4];
+    bind_resolve(bindings, c, draw);
+    bindings[RESOLVE_BINDINGS] = WD_BIND_STORAGE_IMAGE(&targets->albedo);
+    bindings[RESOLVE_BINDINGS + 1] = WD_BIND_STORAGE_IMAGE(&targets->normal);
+    bindings[RESOLVE_BINDINGS + 2] = WD_BIND_STORAGE_IMAGE(&targets->surface);
+    bindings[RESOLVE_BINDINGS + 3] = WD_BIND_BUFFER(&c->depths);
     wd_cmd_bind(cmd, &c->pipelines.resolve_all, bindings);
     wd_cmd_dispatch(cmd, (targets->width + 7) / 8, (targets->height + 7) / 8, 1);
     wd_cmd_copy_to_image(cmd, &c->depths, 0, &targets->depth, 0);
@@ -573,6 +590,8 @@ static enum wd_filled continuum_fill(void *state, const struct wd_tree_draw *dra
 {
     struct continuum *c = state;
     bool fills = draw->pass == WD_PASS_SHADOW || c->pipelines.resolve_all.pipeline;
+    bool stores = draw->pass == WD_PASS_SHADOW && c->pipelines.cascade_store.pipeline; /* in continuum_merge */
+    bool meshes = c->near.mesh_count > 0;
     c->filled = WD_FILLED_NOT;
     if (draw->cmd->failed)
         return c->filled;
@@ -581,31 +600,18 @@ static enum wd_filled continuum_fill(void *state, const struct wd_tree_draw *dra
         wd_cmd_use_buffer(draw->cmd, reads[i], fills ? WD_USE_COMPUTE_READ : WD_USE_GRAPHICS_READ);
     if (!fills)
         return c->filled;
-    if (draw->pass == WD_PASS_SHADOW && c->pipelines.cascade_store.pipeline) { /* see continuum_merge */
-        c->filled = c->near.mesh_count ? WD_FILLED_NOT : WD_FILLED_LAST;
-        return c->filled;
-    }
-    c->filled = c->near.mesh_count ? WD_FILLED : WD_FILLED_LAST;
-    if (draw->pass == WD_PASS_SHADOW)
+    if (!stores && draw->pass == WD_PASS_SHADOW)
         fill_cascade(c, draw);
-    else
+    else if (!stores)
         fill_camera(c, draw);
+    c->filled = !meshes ? WD_FILLED_LAST : stores ? WD_FILLED_NOT : WD_FILLED;
     return c->filled;
 }
 
 static void draw_camera(struct continuum *c, const struct wd_tree_draw *draw)
 {
-    const struct wd_binding bindings[] = {draw->uniforms,
-                                          WD_BIND_BUFFER(&c->pixels),
-                                          WD_BIND_BUFFER(&c->trees),
-                                          WD_BIND_BUFFER(&c->items),
-                                          WD_BIND_BUFFER(&c->forest.splats),
-                                          WD_BIND_BUFFER(&c->forest.looks),
-                                          WD_BIND_BUFFER(&c->wood_items),
-                                          WD_BIND_BUFFER(&c->forest.wood),
-                                          WD_BIND_IMAGE(&draw->forest->looks,
-                                                        draw->forest->look_sampler),
-                                          WD_BIND_BUFFER(&c->forest.lit)};
+    struct wd_binding bindings[RESOLVE_BINDINGS];
+    bind_resolve(bindings, c, draw);
     const struct wd_binding depth_bindings[] = {c->view, WD_BIND_BUFFER(&c->pixels),
                                                 WD_BIND_BUFFER(&c->trees),
                                                 WD_BIND_BUFFER(&c->items)};

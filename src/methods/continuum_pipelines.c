@@ -49,11 +49,6 @@ static const uint32_t cascade_store_comp[] =
 #include "continuum_cascade_store.comp.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 #define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
 #define UNIFORM VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
 #define TEXELS VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
@@ -72,11 +67,6 @@ static uint32_t lanes_of(const struct wd_gpu *gpu)
     return gpu->features & WD_GPU_FEATURE_MANY_LANES ? 8 : 1;
 }
 
-#define DRAW_BINDINGS                                                                              \
-    {                                                                                              \
-        9, {UNIFORM, BUFFER, TEXELS, TEXELS, TEXELS, BUFFER, TEXELS, STORED_TEXELS, BUFFER}        \
-    }
-
 enum large { LARGE_AS_ALL, LARGE_LISTED, LARGE_ALONE }; /* lib/wood_draw.glsl */
 
 struct draw_kind {
@@ -87,10 +77,10 @@ struct draw_kind {
 static bool init_draw(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct draw_kind *kind)
 {
     const struct wd_spirv shaders[WD_SHAPES][2] = {
-        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
-        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
-        {SPIRV(splat_twice_comp), SPIRV(splat_comp)},
-        {SPIRV(wood_twice_comp), SPIRV(wood_comp)}};
+        {WD_SPIRV(splat_twice_comp), WD_SPIRV(splat_comp)},
+        {WD_SPIRV(splat_twice_comp), WD_SPIRV(splat_comp)},
+        {WD_SPIRV(splat_twice_comp), WD_SPIRV(splat_comp)},
+        {WD_SPIRV(wood_twice_comp), WD_SPIRV(wood_comp)}};
     bool once = gpu->features & WD_GPU_FEATURE_INT64_ATOMICS && kind->pass == WD_PASS_CAMERA;
     const uint32_t constants[] = {threads_of(gpu), kind->pass == WD_PASS_SHADOW, kind->ids,
                                   kind->shape, gpu->runs, lanes_of(gpu),
@@ -129,8 +119,8 @@ static bool init_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 static bool init_resolve_draws(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     struct wd_graphics_params params = {
-        .vertex = SPIRV(resolve_vert),
-        .fragment = SPIRV(resolve_frag),
+        .vertex = WD_SPIRV(resolve_vert),
+        .fragment = WD_SPIRV(resolve_frag),
         .bindings = {10, {UNIFORM, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS,
                           VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, TEXELS}},
         .color_count = 3,
@@ -139,8 +129,8 @@ static bool init_resolve_draws(struct wd_continuum_pipelines *p, struct wd_gpu *
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
     struct wd_graphics_params depth = params;
-    depth.vertex = (struct wd_spirv)SPIRV(depth_vert);
-    depth.fragment = (struct wd_spirv)SPIRV(depth_frag);
+    depth.vertex = (struct wd_spirv)WD_SPIRV(depth_vert);
+    depth.fragment = (struct wd_spirv)WD_SPIRV(depth_frag);
     depth.bindings.count = 4;
     depth.color_writes = WD_COLORS_KEPT;
     params.depth_compare = VK_COMPARE_OP_LESS; /* the triangle lies behind all that has depth */
@@ -157,15 +147,15 @@ static bool init_resolve_draws(struct wd_continuum_pipelines *p, struct wd_gpu *
 static bool init_resolve(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     const struct wd_compute_params resolve = {
-        .shader = SPIRV(resolve_comp),
+        .shader = WD_SPIRV(resolve_comp),
         .bindings = {14, {UNIFORM, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS, TEXELS,
                           VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, TEXELS, STORED, STORED, STORED,
                           BUFFER}}};
     const struct wd_compute_params cascade_store = {
-        .shader = SPIRV(cascade_store_comp),
+        .shader = WD_SPIRV(cascade_store_comp),
         .bindings = {4, {UNIFORM, TEXELS, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, STORED}},
         .push_size = sizeof(struct wd_cascade_push)};
-    const struct wd_compute_params cascade = {.shader = SPIRV(cascade_comp),
+    const struct wd_compute_params cascade = {.shader = WD_SPIRV(cascade_comp),
                                               .bindings = {3, {UNIFORM, TEXELS, BUFFER}}};
     if (gpu->features & WD_GPU_FEATURE_STORED_TARGETS)
         return wd_pipeline_init_compute(&p->resolve_all, gpu, &resolve) &&
@@ -178,7 +168,7 @@ static bool init_level(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_
 {
     const uint32_t constants[] = {level, trees_alone};
     const struct wd_compute_params params = {
-        .shader = SPIRV(pyramid_comp),
+        .shader = WD_SPIRV(pyramid_comp),
         .bindings = {4, {UNIFORM, BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER}},
         .constants = {2, constants},
     };
@@ -203,7 +193,7 @@ static bool init_choose(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
         const uint32_t constants[] = {threads_of(gpu), i == WD_PASS_SHADOW, i == 2,
                                       gpu->runs};
         const struct wd_compute_params choose = {
-            .shader = SPIRV(select_comp),
+            .shader = WD_SPIRV(select_comp),
             .bindings = {15, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, TEXELS, BUFFER, TEXELS,
                               STORED_TEXELS, BUFFER, BUFFER, TEXELS,
                               VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BUFFER, BUFFER}},
@@ -218,7 +208,7 @@ static bool init_args(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     for (uint32_t again = 0; again < 2; again++) {
         const uint32_t constants[] = {threads_of(gpu), again, lanes_of(gpu), lanes_of(gpu)};
-        const struct wd_compute_params args = {.shader = SPIRV(args_comp),
+        const struct wd_compute_params args = {.shader = WD_SPIRV(args_comp),
                                                .bindings = {5, {UNIFORM, BUFFER, BUFFER, BUFFER,
                                                                 BUFFER}},
                                                .constants = {4, constants}};
@@ -231,7 +221,7 @@ static bool init_args(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 static bool init_sort(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     const uint32_t threads = threads_of(gpu);
-    const struct wd_compute_params sort = {.shader = SPIRV(sort_comp),
+    const struct wd_compute_params sort = {.shader = WD_SPIRV(sort_comp),
                                            .bindings = {3, {UNIFORM, BUFFER, BUFFER}},
                                            .constants = {1, &threads}};
     return wd_pipeline_init_compute(&p->sort, gpu, &sort);
@@ -240,7 +230,7 @@ static bool init_sort(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 bool wd_continuum_pipelines_init(struct wd_continuum_pipelines *p, struct wd_gpu *gpu)
 {
     const struct wd_compute_params cull = {
-        .shader = SPIRV(cull_comp),
+        .shader = WD_SPIRV(cull_comp),
         .bindings = {8, {UNIFORM, UNIFORM, BUFFER, BUFFER, BUFFER, TEXELS, BUFFER, BUFFER}}};
     return wd_pipeline_init_compute(&p->cull, gpu, &cull) && init_args(p, gpu) &&
            init_choose(p, gpu) && init_sort(p, gpu) && init_draws(p, gpu) && init_resolve(p, gpu) &&

@@ -15,7 +15,7 @@ enum {
 };
 
 struct wd_continuum_pipelines {
-    struct wd_pipeline cull, args[2]; /* [1]: to begin the second round */
+    struct wd_pipeline cull, args[2]; /* [1]: that begins the second round */
     struct wd_pipeline choose[2], choose_again; /* [WD_PASS_*] */
     struct wd_pipeline sort;
     struct wd_pipeline draw[WD_SHAPES][2][2]; /* [][WD_PASS_*][1: ids of the second pass] */

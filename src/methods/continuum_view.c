@@ -30,8 +30,8 @@ void wd_continuum_history_keep(struct wd_continuum_history *history, const struc
     memcpy(history->clip_from_rel, view->clip_from_rel, sizeof history->clip_from_rel);
 }
 
-/* What was hidden from one place may be seen from any other: of what it hid a camera that has moved
- * knows nothing for certain, and one that has turned knows of what it saw all of. */
+/* What the frame before hid may be seen from any other place: a camera that has moved knows nothing of it for certain.
+ * One that has only turned knows it of whatever lay wholly in that frame. */
 static void set_history(struct wd_splat_view *values, const struct wd_continuum_view_params *params)
 {
     const struct wd_continuum_history *history = params->history;
@@ -197,6 +197,9 @@ static void set_cascade(struct wd_splat_view *values, const struct wd_tree_draw 
         memcpy(values->slice[side], view->box.slice[side], sizeof view->box.slice[side]);
 }
 
+/* Of a world's tallest tree: by this height far clusters are told how many trees they need. */
+static const float TYPICAL_HEIGHT = 0.7f;
+
 void wd_continuum_view_fill(struct wd_splat_view *values,
                             const struct wd_continuum_view_params *params)
 {
@@ -208,11 +211,10 @@ void wd_continuum_view_fill(struct wd_splat_view *values,
     const struct wd_near_rule near = wd_continuum_near_rule(draw, params->forest);
     *values = (struct wd_splat_view){
         .plane_count = view->frustum.count,
-        .orthographic = shadow,
         .calm = shadow && view->box.calm,
         .pixels = view->pixels_per_radian,
-        .near_m = 0.1f,
-        .typical_m = 0.7f * draw->forest->max_tree_height_m,
+        .near_m = WD_NEAR_M,
+        .typical_m = TYPICAL_HEIGHT * draw->forest->max_tree_height_m,
         .width = view->width,
         .height = view->height,
         .texels = 1,

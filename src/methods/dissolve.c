@@ -29,11 +29,6 @@ static const uint32_t tree_mesh_frag[] =
 #include "tree_mesh.frag.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 /* Leaves are drawn as prefixes of their lists in steps of 1 / LEAF_STEPS; the shader cuts them to the
  * exact share. */
 enum { LEAF_STEPS = 8, GROUP_TREES = 64, LEAF_BINDINGS = 8, CARD_BINDINGS = 10,
@@ -76,8 +71,8 @@ static bool init_leaves(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const uint32_t constants[] = {0, detail};
     struct wd_graphics_params params = {
-        .vertex = SPIRV(dissolve_leaf_vert),
-        .fragment = SPIRV(tree_mesh_frag),
+        .vertex = WD_SPIRV(dissolve_leaf_vert),
+        .fragment = WD_SPIRV(tree_mesh_frag),
         .bindings = {LEAF_BINDINGS, {buffer, buffer, buffer, buffer, buffer, image, image, buffer}},
         .push_size = sizeof(struct wd_tree_push),
         .constants = {2, constants},
@@ -93,8 +88,8 @@ static bool dissolve_init(void *state, struct wd_gpu *gpu)
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     struct wd_graphics_params cards = {
-        .vertex = SPIRV(dissolve_card_vert),
-        .fragment = SPIRV(dissolve_card_frag),
+        .vertex = WD_SPIRV(dissolve_card_vert),
+        .fragment = WD_SPIRV(dissolve_card_frag),
         .bindings = {CARD_BINDINGS,
                      {uniform, buffer, buffer, buffer, image, image, image, image, image, image}},
         .push_size = sizeof(struct wd_one_view_push),
@@ -243,20 +238,20 @@ static void dissolve_select(void *state, const struct wd_tree_draw *draw)
 
 /* --- drawing ----------------------------------------------------------------------------- */
 
-static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_draw *draw,
-                       struct wd_binding instances, size_t first, size_t count)
+/* Of a prefix of so many steps, whole triangles. A leaf at its end must not be cut, as the leaf's rank decides whether it
+ * stands: there are so many indices more. */
+enum { ONE_LEAF_MORE = 93 };
+
+static uint32_t prefix_indices(const struct wd_leaf_range *leaves, uint32_t step)
+{
+    uint32_t indices = (leaves->index_count / LEAF_STEPS * step + ONE_LEAF_MORE + 2) / 3 * 3;
+    return step == LEAF_STEPS || indices > leaves->index_count ? leaves->index_count : indices;
+}
+
+static void bind_leaves(const struct dissolve *dissolve, const struct wd_tree_draw *draw,
+                        const struct wd_leaf_range *leaves, struct wd_binding instances, bool whole)
 {
     const struct wd_forest_device *forest = draw->forest;
-    uint32_t model = dissolve->leafy[first].key / (LEAF_STEPS + 1);
-    uint32_t step = dissolve->leafy[first].key % (LEAF_STEPS + 1);
-    const struct wd_leaf_range *leaves = &dissolve->order.ranges[model];
-    /* a leaf in the middle of the last step must not be cut: its rank decides */
-    uint32_t indices = (leaves->index_count / LEAF_STEPS * step + 95) / 3 * 3;
-    if (step == LEAF_STEPS || indices > leaves->index_count)
-        indices = leaves->index_count;
-    if (!indices)
-        return;
-    bool whole = step == LEAF_STEPS;
     const struct wd_pipeline *pipeline = &dissolve->leaves[whole];
     VkDeviceSize first_vertex = leaves->first_vertex, vertex_count = leaves->vertex_count;
     const struct wd_binding vertices = {
@@ -286,6 +281,18 @@ static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_dra
     wd_cmd_bind(draw->cmd, pipeline, bindings);
     wd_cmd_push(draw->cmd, pipeline, &push, sizeof push);
     wd_cmd_bind_indices(draw->cmd, &dissolve->order.indices);
+}
+
+static void draw_batch(const struct dissolve *dissolve, const struct wd_tree_draw *draw,
+                       struct wd_binding instances, size_t first, size_t count)
+{
+    uint32_t model = dissolve->leafy[first].key / (LEAF_STEPS + 1);
+    uint32_t step = dissolve->leafy[first].key % (LEAF_STEPS + 1);
+    const struct wd_leaf_range *leaves = &dissolve->order.ranges[model];
+    uint32_t indices = prefix_indices(leaves, step);
+    if (!indices)
+        return;
+    bind_leaves(dissolve, draw, leaves, instances, step == LEAF_STEPS);
     wd_cmd_draw_indexed(draw->cmd,
                         &(VkDrawIndexedIndirectCommand){indices, (uint32_t)count,
                                                         leaves->first_index, 0, (uint32_t)first});
@@ -337,17 +344,9 @@ static void draw_billboards(const struct dissolve *dissolve, const struct wd_tre
         .pixels_per_radian = draw->view->pixels_per_radian,
         .one_view = forest->scene->methods.dissolve.faithful,
     };
-    const uint32_t most = forest->quads_a_draw;
     wd_cmd_bind(draw->cmd, &dissolve->cards, bindings);
     wd_cmd_push(draw->cmd, &dissolve->cards, &push, sizeof push);
-    wd_cmd_bind_indices(draw->cmd, &forest->card_indices);
-    for (uint32_t at = 0; at < count; at += most) {
-        uint32_t quads = count - at < most ? (uint32_t)count - at : most;
-        wd_cmd_draw_indexed(draw->cmd, &(VkDrawIndexedIndirectCommand){quads * 6, 1, 0,
-                                                                       (int32_t)(at * 4), 0});
-        draw->stats->draw_calls++;
-    }
-    draw->stats->triangles += count * 2;
+    wd_tree_draw_quads(draw, (uint32_t)count);
     draw->stats->trees[WD_LEVEL_CARD] += count;
 }
 

@@ -20,11 +20,6 @@ static const uint32_t impostor_frag[] =
 #include "impostor.frag.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 /* Octants with this many times the trees of the smallest cluster have none any more: their cells
  * would be larger than groups of trees. */
 enum { CLUSTER_SPAN = 64, MOST_CLUSTERS = 512, NO_CLUSTER = UINT32_MAX };
@@ -61,8 +56,8 @@ static bool impostor_init(void *state, struct wd_gpu *gpu)
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const struct wd_graphics_params params = {
-        .vertex = SPIRV(impostor_vert),
-        .fragment = SPIRV(impostor_frag),
+        .vertex = WD_SPIRV(impostor_vert),
+        .fragment = WD_SPIRV(impostor_frag),
         .bindings = {3, {uniform, buffer, buffer}},
         .push_size = sizeof(struct wd_impostor_push),
         .color_count = 3,
@@ -112,34 +107,47 @@ static uint32_t choose_clusters(struct impostors *impostors, const struct wd_oct
     return count;
 }
 
-/* The tree of an octant whose foot is nearest to a place: that a cell of a cluster is of. */
+/* A place, and the octant's tree that is nearest to it by now. */
+struct nearest {
+    const struct wd_cells *cells;
+    const struct wd_world *world;
+    const struct wd_octant *octant;
+    double x_m, y_m;
+    uint32_t tree;
+    double squared_m2; /* how far off that is; infinite: none has been found */
+};
+
+static void take_nearest(struct nearest *n, int column, int row)
+{
+    if (column < 0 || row < 0 || column >= (int)n->cells->columns || row >= (int)n->cells->rows)
+        return;
+    size_t cell = (size_t)row * n->cells->columns + (size_t)column;
+    for (uint32_t k = n->cells->first[cell]; k < n->cells->first[cell + 1]; k++) {
+        uint32_t index = n->cells->trees[k];
+        if (index < n->octant->begin || index >= n->octant->end)
+            continue;
+        double x = n->world->trees[index].x_mm * 0.001 - n->x_m, y = n->world->trees[index].y_mm * 0.001 - n->y_m;
+        if (x * x + y * y < n->squared_m2) {
+            n->squared_m2 = x * x + y * y;
+            n->tree = index;
+        }
+    }
+}
+
+/* The tree of an octant that a cell of a cluster is of: one whose foot is about as near to a place as any, from the
+ * smallest square of cells about it that holds one; the octant's first where none is within reach. */
 static uint32_t nearest_tree(const struct wd_cells *cells, const struct wd_world *world,
                              const struct wd_octant *octant, double x_m, double y_m)
 {
+    enum { FARTHEST = 64 }; /* cells */
+    struct nearest nearest = {cells, world, octant, x_m, y_m, octant->begin, INFINITY};
     int column = (int)floor((x_m - cells->min_m[0]) / cells->cell_m);
     int row = (int)floor((y_m - cells->min_m[1]) / cells->cell_m);
-    uint32_t nearest = octant->begin;
-    double least = INFINITY;
-    for (int reach = 0; reach < 64 && least == INFINITY; reach++) {
-        for (int j = row - reach; j <= row + reach; j++) {
-            for (int i = column - reach; i <= column + reach; i++) {
-                if (i < 0 || j < 0 || i >= (int)cells->columns || j >= (int)cells->rows)
-                    continue;
-                size_t cell = (size_t)j * cells->columns + (size_t)i;
-                for (uint32_t k = cells->first[cell]; k < cells->first[cell + 1]; k++) {
-                    if (cells->trees[k] < octant->begin || cells->trees[k] >= octant->end)
-                        continue;
-                    const struct wd_tree *tree = &world->trees[cells->trees[k]];
-                    double x = tree->x_mm * 0.001 - x_m, y = tree->y_mm * 0.001 - y_m;
-                    if (x * x + y * y < least) {
-                        least = x * x + y * y;
-                        nearest = cells->trees[k];
-                    }
-                }
-            }
-        }
-    }
-    return nearest;
+    for (int reach = 0; reach < FARTHEST && nearest.squared_m2 == INFINITY; reach++)
+        for (int j = row - reach; j <= row + reach; j++)
+            for (int i = column - reach; i <= column + reach; i++)
+                take_nearest(&nearest, i, j);
+    return nearest.tree;
 }
 
 /* The tree of a tight octant's own or its descendants'; UINT32_MAX: none reaches into it. */

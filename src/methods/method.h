@@ -5,7 +5,12 @@
 #include "frame/passes/light.h"
 #include "methods/tree_draw.h"
 
-enum wd_filled { WD_FILLED_NOT, WD_FILLED, WD_FILLED_LAST };
+/* What `fill` has done of a view. */
+enum wd_filled {
+    WD_FILLED_NOT,  /* nothing: its targets are to be cleared, then drawn to */
+    WD_FILLED,      /* all of the targets; `draw` adds to them */
+    WD_FILLED_LAST, /* all there is: nothing is left to draw */
+};
 
 /* One way of drawing trees. Functions but `draw` may be NULL. For every view (the cascades of the
  * sun, where the frame is lit, then the camera) a frame calls `select`, then `draw`. */
@@ -32,8 +37,8 @@ struct wd_method {
     void (*drop_forest)(void *state, struct wd_gpu *gpu);
     /* Outside of any rendering: chooses what `draw->view` shows, records compute and transfers. */
     void (*select)(void *state, const struct wd_tree_draw *draw);
-    /* Outside of any rendering, after `select`: whether it has filled all of the view's targets (of a method that
-     * draws before the ground does), and whether nothing is left to be drawn then. Else they are cleared. */
+    /* Outside of any rendering, after `select`: may fill the view's targets without one (of a method that draws before
+     * the ground does). */
     enum wd_filled (*fill)(void *state, const struct wd_tree_draw *draw);
     /* Inside the open rendering of the view's targets: the G-buffer over the terrain that is there
      * already, or one cascade's depth. */

@@ -26,11 +26,6 @@ static const uint32_t tree_card_frag[] =
 #include "tree_card.frag.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 enum { BINDINGS = 13 };
 
 /* A patch on the device. */
@@ -65,7 +60,7 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    params->vertex = (struct wd_spirv)SPIRV(patch_card_vert);
+    params->vertex = (struct wd_spirv)WD_SPIRV(patch_card_vert);
     params->bindings = (struct wd_bindings){
         BINDINGS,
         {uniform, buffer, buffer, buffer, image, image, buffer, image, image, buffer, buffer,
@@ -79,13 +74,13 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
 static bool patch_init(void *state, struct wd_gpu *gpu)
 {
     struct patch_state *patch = state;
-    struct wd_graphics_params blend = {.fragment = SPIRV(patch_blend_frag),
+    struct wd_graphics_params blend = {.fragment = WD_SPIRV(patch_blend_frag),
                                        .color_count = 1,
                                        .color_formats = {WD_OVERLAY_FORMAT},
                                        .blend = WD_BLEND_PREMULTIPLIED,
                                        .depth_read_only = true};
     struct wd_graphics_params layers = {
-        .fragment = SPIRV(tree_card_frag),
+        .fragment = WD_SPIRV(tree_card_frag),
         .color_count = 3,
         .color_formats = {WD_ALBEDO_FORMAT, WD_NORMAL_FORMAT, WD_SURFACE_FORMAT}};
     patch->shadows = wd_method_borrow(&wd_method_octree, gpu);
@@ -259,11 +254,6 @@ static uint32_t before(double eye, double begin, double cell, uint32_t count)
 
 static struct wd_patch_order order_of(const struct patch_state *patch, const struct wd_view *view)
 {
-    double x = 0.0, y = 0.0; /* how much the view looks along either axis */
-    for (int k = 0; k < 2; k++) {
-        double along = fabs(view->clip_from_rel[k][3]);
-        *(k ? &y : &x) = along;
-    }
     const struct wd_cells *patches = &patch->patches;
     return (struct wd_patch_order){
         .columns = patches->columns,
@@ -271,7 +261,7 @@ static struct wd_patch_order order_of(const struct patch_state *patch, const str
         .before_column =
             before(view->eye_m[0], patches->min_m[0], patches->cell_m, patches->columns),
         .before_row = before(view->eye_m[1], patches->min_m[1], patches->cell_m, patches->rows),
-        .by_columns = x > y,
+        .by_columns = fabsf(view->clip_from_rel[0][3]) > fabsf(view->clip_from_rel[1][3]), /* looks more east or west */
     };
 }
 
@@ -315,12 +305,15 @@ static void add_meshes(struct patch_state *patch, const struct wd_tree_draw *dra
     patch->meshes.card_count = 0;
 }
 
+/* The widest blend, which scenes may ask for (quality.blend), ends before so many times its begin. */
+static const float MOST_BLEND = 1.9f;
+
 static float farthest_mesh(const struct patch_state *patch, const struct wd_forest_device *forest)
 {
     float farthest_m = 0.0f;
     for (size_t i = 0; i <= forest->scene->layer_count; i++)
         farthest_m = fmaxf(farthest_m, patch->host_near[i][1]);
-    return farthest_m * 1.9f; /* blends end below that */
+    return farthest_m * MOST_BLEND;
 }
 
 static void patch_select(void *state, const struct wd_tree_draw *draw)
@@ -392,14 +385,7 @@ static void draw_quads(const struct drawing *d, struct wd_binding table, uint32_
     struct wd_cmd *cmd = d->draw->cmd;
     wd_cmd_bind(cmd, d->pipeline, bindings);
     wd_cmd_push(cmd, d->pipeline, &d->push, sizeof d->push);
-    wd_cmd_bind_indices(cmd, &forest->card_indices);
-    for (uint32_t at = 0; at < quads; at += forest->quads_a_draw) {
-        uint32_t count = quads - at < forest->quads_a_draw ? quads - at : forest->quads_a_draw;
-        wd_cmd_draw_indexed(cmd, &(VkDrawIndexedIndirectCommand){count * 6, 1, 0,
-                                                                 (int32_t)(at * 4), 0});
-        d->draw->stats->draw_calls++;
-        d->draw->stats->triangles += (uint64_t)count * 2;
-    }
+    wd_tree_draw_quads(d->draw, quads);
 }
 
 static void draw_patch(struct drawing *d, uint32_t index)

@@ -22,8 +22,8 @@ bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu, en
 {
     const uint32_t constants[] = {pass == WD_PASS_SHADOW, 1};
     struct wd_graphics_params params = {
-        .vertex = {tree_spray_vert, sizeof tree_spray_vert, "tree_spray.vert"},
-        .fragment = {tree_spray_frag, sizeof tree_spray_frag, "tree_mesh.frag"},
+        .vertex = WD_SPIRV(tree_spray_vert),
+        .fragment = WD_SPIRV(tree_spray_frag),
         .bindings = {8,
                      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
@@ -39,8 +39,7 @@ bool wd_spray_pipeline_init(struct wd_pipeline *pipeline, struct wd_gpu *gpu, en
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
     if (pass == WD_PASS_SHADOW) {
-        params.fragment = (struct wd_spirv){tree_spray_shadow_frag, sizeof tree_spray_shadow_frag,
-                                            "tree_mesh_shadow.frag"};
+        params.fragment = (struct wd_spirv)WD_SPIRV(tree_spray_shadow_frag);
         params.color_count = 0;
         params.depth_bias_slope = WD_SHADOW_SLOPE;
     }

@@ -30,11 +30,6 @@ static const uint32_t tree_card_shadow_frag[] =
 #include "tree_card_shadow.frag.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 /* --- pipelines --------------------------------------------------------------------------- */
 
 static void set_targets(struct wd_graphics_params *params, enum wd_tree_pass pass)
@@ -68,7 +63,7 @@ static bool init_mesh(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .constants = {3, constants},
     };
-    const struct wd_spirv fragments[] = {SPIRV(tree_mesh_frag), SPIRV(tree_mesh_shadow_frag)};
+    const struct wd_spirv fragments[] = {WD_SPIRV(tree_mesh_frag), WD_SPIRV(tree_mesh_shadow_frag)};
     params.fragment = fragments[pass];
     set_targets(&params, pass);
     params.push_size = sizeof(struct wd_mesh_push);
@@ -80,7 +75,7 @@ static bool init_card(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
 {
     const uint32_t constants[] = {pass == WD_PASS_SHADOW, listed};
     struct wd_graphics_params params = {
-        .vertex = SPIRV(tree_card_vert),
+        .vertex = WD_SPIRV(tree_card_vert),
         .bindings = {8,
                      {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
@@ -90,7 +85,7 @@ static bool init_card(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}},
         .constants = {2, constants},
     };
-    const struct wd_spirv fragments[] = {SPIRV(tree_card_frag), SPIRV(tree_card_shadow_frag)};
+    const struct wd_spirv fragments[] = {WD_SPIRV(tree_card_frag), WD_SPIRV(tree_card_shadow_frag)};
     params.fragment = fragments[pass];
     set_targets(&params, pass);
     return wd_pipeline_init_graphics(pipeline, gpu, &params);
@@ -98,7 +93,7 @@ static bool init_card(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_
 
 static bool init_leaves(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu, uint32_t falls)
 {
-    const struct wd_spirv leaf = SPIRV(tree_leaf_vert);
+    const struct wd_spirv leaf = WD_SPIRV(tree_leaf_vert);
     for (int pass = WD_PASS_CAMERA; pass <= WD_PASS_SHADOW; pass++) {
         if (!init_mesh(&pipelines->leaf[pass][falls], gpu, pass, leaf, 0, falls) ||
             !init_mesh(&pipelines->leaf_listed[pass][falls], gpu, pass, leaf, 1, falls))
@@ -109,7 +104,7 @@ static bool init_leaves(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu,
 
 bool wd_tree_pipelines_init(struct wd_tree_pipelines *pipelines, struct wd_gpu *gpu)
 {
-    const struct wd_spirv wood = SPIRV(tree_mesh_vert);
+    const struct wd_spirv wood = WD_SPIRV(tree_mesh_vert);
     *pipelines = (struct wd_tree_pipelines){0};
     bool ok = init_mesh(&pipelines->mesh_detail, gpu, WD_PASS_CAMERA, wood, 1, 0) &&
               init_leaves(pipelines, gpu, 0);
@@ -162,6 +157,16 @@ static void draw_indexed(const struct wd_tree_draw *draw, uint32_t indices, uint
                                                                    vertex_offset, first_instance});
     draw->stats->draw_calls++;
     draw->stats->triangles += (uint64_t)indices / 3 * instances;
+}
+
+void wd_tree_draw_quads(const struct wd_tree_draw *draw, uint32_t quads)
+{
+    const uint32_t most = draw->forest->quads_a_draw;
+    wd_cmd_bind_indices(draw->cmd, &draw->forest->card_indices);
+    for (uint32_t at = 0; at < quads; at += most) {
+        uint32_t count = quads - at < most ? quads - at : most;
+        draw_indexed(draw, count * 6, 1, 0, (int32_t)(at * 4), 0);
+    }
 }
 
 static struct wd_binding bind_vertices(const struct wd_forest_device *forest,

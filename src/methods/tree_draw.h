@@ -54,6 +54,10 @@ enum wd_draw_grouping {
 void wd_tree_draw_card_ranges(const struct wd_tree_draw *draw, const struct wd_range *ranges,
                               size_t count, const struct wd_buffer *list);
 
+/* Quads of four vertices each, by the bound pipeline, as many in one draw as there are indices for: vertex 4 * i + k is
+ * corner k of quad i. */
+void wd_tree_draw_quads(const struct wd_tree_draw *draw, uint32_t quads);
+
 /* The meshes of a selection without their leaves. Sorts it. */
 void wd_tree_draw_wood(const struct wd_tree_draw *draw, struct wd_selection *selection);
 

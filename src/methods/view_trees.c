@@ -12,11 +12,6 @@ static const uint32_t zfield_tree_frag[] =
 #include "zfield_tree.frag.inc"
     ;
 
-#define SPIRV(words)                                                                               \
-    {                                                                                              \
-        words, sizeof words, #words                                                                \
-    }
-
 /* Shaders hold a view in ten bits. */
 enum { BINDINGS = 9, MAX_VIEWS = 1023, GROUP_TREES = 64 };
 
@@ -26,9 +21,9 @@ bool wd_view_trees_init(struct wd_view_trees *trees, struct wd_gpu *gpu, enum wd
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const uint32_t constants[] = {shape};
-    const struct wd_spirv fragments[] = {SPIRV(view_tree_frag), SPIRV(zfield_tree_frag)};
+    const struct wd_spirv fragments[] = {WD_SPIRV(view_tree_frag), WD_SPIRV(zfield_tree_frag)};
     const struct wd_graphics_params params = {
-        .vertex = SPIRV(view_tree_vert),
+        .vertex = WD_SPIRV(view_tree_vert),
         .fragment = fragments[shape],
         .bindings = {BINDINGS,
                      {uniform, buffer, buffer, buffer, buffer, buffer, image, image, image}},
@@ -117,7 +112,6 @@ static void draw_pictures(const struct wd_view_trees *trees, const struct wd_tre
                           const struct wd_view_push *push)
 {
     const struct wd_forest_device *forest = draw->forest;
-    const uint32_t most = forest->quads_a_draw;
     struct wd_binding instances;
     size_t bytes = trees->tree_count * sizeof *trees->trees;
     void *memory = trees->tree_count ? wd_cmd_upload(draw->cmd, bytes, &instances) : NULL;
@@ -136,15 +130,7 @@ static void draw_pictures(const struct wd_view_trees *trees, const struct wd_tre
         WD_BIND_IMAGE(&trees->sets.planes[WD_PLANE_DEPTH], trees->sampler)};
     wd_cmd_bind(draw->cmd, &trees->pipeline, bindings);
     wd_cmd_push(draw->cmd, &trees->pipeline, push, sizeof *push);
-    wd_cmd_bind_indices(draw->cmd, &forest->card_indices);
-    for (size_t at = 0; at < trees->tree_count; at += most) {
-        uint32_t quads = (uint32_t)(trees->tree_count - at);
-        quads = quads < most ? quads : most;
-        wd_cmd_draw_indexed(draw->cmd, &(VkDrawIndexedIndirectCommand){quads * 6, 1, 0,
-                                                                       (int32_t)(at * 4), 0});
-        draw->stats->draw_calls++;
-        draw->stats->triangles += (uint64_t)quads * 2;
-    }
+    wd_tree_draw_quads(draw, (uint32_t)trees->tree_count);
     draw->stats->trees[WD_LEVEL_CARD] += trees->tree_count;
 }
 

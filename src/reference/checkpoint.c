@@ -1,27 +1,26 @@
 /* Layout, little-endian: 8 bytes "WDTRACE1"; key (8); width, height (4 each); samples of each tile
- * (4 each); sums (4-byte floats, 3 a pixel); xxh64 of all before (8). */
+ * (4 each); sums (4-byte floats, 3 a pixel); xxh64 of all before (8). Written and read piece by piece: a
+ * large picture's sums need not be held twice. */
 #include "reference/checkpoint.h"
 
-#include <stdlib.h>
+#include <errno.h>
 #include <string.h>
 #include <xxhash.h>
 
 #include "base/file.h"
 #include "base/log.h"
-#include "base/memory.h"
 
 static const char MAGIC[8] = {'W', 'D', 'T', 'R', 'A', 'C', 'E', '1'};
-enum { HEAD = 24, HASH = 8 };
+enum { HEAD = 24 };
 
-static size_t tiles_of(const struct wd_trace_sums *sums)
+static size_t samples_bytes(const struct wd_trace_sums *sums)
 {
-    return (size_t)sums->tile_columns * sums->tile_rows;
+    return (size_t)sums->tile_columns * sums->tile_rows * sizeof *sums->tile_samples;
 }
 
-static size_t size_of(const struct wd_trace_sums *sums)
+static size_t radiance_bytes(const struct wd_trace_sums *sums)
 {
-    size_t floats = (size_t)sums->width * sums->height * 3;
-    return HEAD + tiles_of(sums) * 4 + floats * 4 + HASH;
+    return (size_t)sums->width * sums->height * 3 * sizeof *sums->radiance;
 }
 
 static void put_head(uint8_t head[HEAD], uint64_t key, const struct wd_trace_sums *sums)
@@ -32,56 +31,88 @@ static void put_head(uint8_t head[HEAD], uint64_t key, const struct wd_trace_sum
     memcpy(head + 20, &sums->height, 4);
 }
 
+/* A file, and the hash of what has passed. */
+struct stream {
+    FILE *file;
+    XXH64_state_t *hash;
+};
+
+static bool stream_init(struct stream *stream, FILE *file, const char *path, const struct wd_log *log)
+{
+    *stream = (struct stream){file, XXH64_createState()};
+    return (stream->hash && XXH64_reset(stream->hash, 0) == XXH_OK) ||
+           wd_error(log, "%s: out of memory", path);
+}
+
+static void put(struct stream *stream, const void *data, size_t size)
+{
+    fwrite(data, 1, size, stream->file); /* commit checks */
+    XXH64_update(stream->hash, data, size);
+}
+
+static bool get(struct stream *stream, void *data, size_t size)
+{
+    return fread(data, 1, size, stream->file) == size && XXH64_update(stream->hash, data, size) == XXH_OK;
+}
+
 bool wd_checkpoint_write(const char *path, uint64_t key, const struct wd_trace_sums *sums,
                          const struct wd_log *log)
 {
-    size_t size = size_of(sums), tiles = tiles_of(sums) * 4;
-    uint8_t *data = wd_alloc(size);
-    put_head(data, key, sums);
-    memcpy(data + HEAD, sums->tile_samples, tiles);
-    memcpy(data + HEAD + tiles, sums->radiance, size - HASH - HEAD - tiles);
-    uint64_t hash = XXH64(data, size - HASH, 0);
-    memcpy(data + size - HASH, &hash, HASH);
+    uint8_t head[HEAD];
     struct wd_output_file file;
-    bool ok = wd_output_open(&file, path, log);
+    struct stream stream;
+    put_head(head, key, sums);
+    if (!wd_output_open(&file, path, log))
+        return false;
+    bool ok = stream_init(&stream, file.stream, path, log);
     if (ok) {
-        fwrite(data, 1, size, file.stream); /* commit checks */
+        put(&stream, head, HEAD);
+        put(&stream, sums->tile_samples, samples_bytes(sums));
+        put(&stream, sums->radiance, radiance_bytes(sums));
+        const uint64_t hash = XXH64_digest(stream.hash);
+        put(&stream, &hash, sizeof hash);
         ok = wd_output_commit(&file, log);
     }
-    free(data);
+    wd_output_discard(&file);
+    XXH64_freeState(stream.hash);
     return ok;
 }
 
-static bool take(const uint8_t *data, size_t size, uint64_t key, struct wd_trace_sums *sums,
-                 const char *path, const struct wd_log *log)
+/* What stands after the head. */
+static bool get_sums(struct stream *stream, struct wd_trace_sums *sums)
 {
-    uint8_t head[HEAD];
     uint64_t hash;
-    put_head(head, key, sums);
-    if (size < HEAD + HASH || memcmp(data, MAGIC, sizeof MAGIC) != 0)
+    if (!get(stream, sums->tile_samples, samples_bytes(sums)) ||
+        !get(stream, sums->radiance, radiance_bytes(sums)))
+        return false;
+    const uint64_t found = XXH64_digest(stream->hash);
+    return get(stream, &hash, sizeof hash) && hash == found && fgetc(stream->file) == EOF;
+}
+
+static bool take(struct stream *stream, uint64_t key, struct wd_trace_sums *sums, const char *path,
+                 const struct wd_log *log)
+{
+    uint8_t head[HEAD], wanted[HEAD];
+    put_head(wanted, key, sums);
+    if (!get(stream, head, HEAD) || memcmp(head, MAGIC, sizeof MAGIC) != 0)
         return wd_error(log, "%s: is not an unfinished picture; remove it to begin anew", path);
-    if (size != size_of(sums) || memcmp(data, head, HEAD) != 0)
+    if (memcmp(head, wanted, HEAD) != 0)
         return wd_error(log,
                         "%s: holds an unfinished picture of another scene, camera, light or size; "
                         "remove it to begin anew",
                         path);
-    memcpy(&hash, data + size - HASH, HASH);
-    if (XXH64(data, size - HASH, 0) != hash)
-        return wd_error(log, "%s: is damaged; remove it to begin anew", path);
-    size_t tiles = tiles_of(sums) * 4;
-    memcpy(sums->tile_samples, data + HEAD, tiles);
-    memcpy(sums->radiance, data + HEAD + tiles, size - HASH - HEAD - tiles);
-    return true;
+    return get_sums(stream, sums) || wd_error(log, "%s: is damaged; remove it to begin anew", path);
 }
 
 bool wd_checkpoint_read(const char *path, uint64_t key, struct wd_trace_sums *sums,
                         const struct wd_log *log)
 {
-    char *data;
-    size_t size;
-    if (!wd_file_read(path, (size_t)1 << 33, log, &data, &size))
-        return false;
-    bool ok = take((const uint8_t *)data, size, key, sums, path, log);
-    free(data);
+    struct stream stream;
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return wd_error(log, "%s: cannot be opened: %s", path, strerror(errno));
+    bool ok = stream_init(&stream, file, path, log) && take(&stream, key, sums, path, log);
+    XXH64_freeState(stream.hash);
+    fclose(file);
     return ok;
 }

@@ -108,6 +108,7 @@ bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_mod
 {
     RTCDevice device = models->device;
     double origin_m[3];
+    *scene = (struct wd_trace_scene){0};
     if (!wd_demand_is_none(&world->demand, "the path tracer", log))
         return false;
     *scene = (struct wd_trace_scene){

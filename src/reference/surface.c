@@ -215,7 +215,8 @@ static void ground_surface(struct wd_surface *surface, const struct wd_trace_sce
     struct wd_ground_look look =
         wd_ground_cover(scene->frame, surface->place, slope[0], slope[1],
                         wd_cover_at(scene->world, x_m, y_m), wd_woods_at(scene->world, x_m, y_m),
-                        wd_sward_layers_at(scene->world, x_m, y_m), wd_river_level(&scene->world->terrain, x_m, y_m), footprint_m);
+                        wd_sward_layers_at(scene->world, x_m, y_m),
+                        wd_river_level(&scene->world->terrain, x_m, y_m), footprint_m);
     surface->albedo = look.albedo;
     surface->outward = look.normal;
     surface->flat = hit->normal;

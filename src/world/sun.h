@@ -9,8 +9,9 @@
 
 /* Fills sun_direction, sun_cos_radius, sun_irradiance and the sky members of `*uniforms`; `at`: where the
  * sun stands, NULL: where the scene has it. Where twilight has become fainter than it, the full moon takes
- * the sun's place: opposite the sun and 35 degrees up. Where there is a map (else NULL) it is the sky, and its sun is the sun unless the scene
- * keeps its own. Camera and fog are to be known: fog over the camera dims sun and sky, but no map. */
+ * the sun's place: opposite the sun and 35 degrees up. Where there is a map (else NULL) it is the sky, and its sun is
+ * the sun unless the scene keeps its own. Camera and fog are to be known: fog over the camera dims sun and sky, but no
+ * map. */
 void wd_sun_fill(struct wd_frame_uniforms *uniforms, const struct wd_scene *scene, const struct wd_sun *at,
                  const struct wd_sky_map *map);
 /* Where the scene has it. */

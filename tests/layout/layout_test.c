@@ -38,7 +38,7 @@ static const struct member members[] = {
     S(lower_over_upper), S(lower), S(wood_falls), S(grain), S(finer), S(wood_first), S(wood_count), S(wood_corners),
     S(wood_stem), S(wood_far_stem), S(leaf_past_bark), S(thin_share), S(thin_wood), S(bare_thin),
 #define V(name) M(wd_splat_view, name)
-    V(clip_from_rel), V(planes), V(plane_count), V(orthographic), V(calm), V(pixels), V(near_m), V(typical_m), V(width),
+    V(clip_from_rel), V(planes), V(plane_count), V(calm), V(pixels), V(near_m), V(typical_m), V(width),
     V(height), V(texels), V(density), V(detail), V(min_splats), V(near_leaves_m), V(near_grains), V(wood_px),
     V(cluster_count), V(variants), V(page_count), V(slopes_scale), V(slopes_offset), V(slopes_texel_m), V(tree_capacity),
     V(item_capacity), V(has_history), V(moved), V(still), V(put_off_words), V(history_from_rel), V(slice),

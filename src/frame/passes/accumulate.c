@@ -9,7 +9,7 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint
     const VkDescriptorType image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const struct wd_compute_params params = {
-        .shader = {accumulate_comp, sizeof accumulate_comp, "accumulate_comp"},
+        .shader = WD_SPIRV(accumulate_comp),
         .bindings = {7,
                      {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, image,
                       image, buffer, buffer, buffer}},

@@ -9,12 +9,10 @@ static const uint32_t bloom_up_comp[] =
 #include "bloom_up.comp.inc"
     ;
 
-#define SPIRV(words) {words, sizeof words, #words}
-
 static bool init_down(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t first)
 {
     const struct wd_compute_params params = {
-        .shader = SPIRV(bloom_down_comp),
+        .shader = WD_SPIRV(bloom_down_comp),
         .bindings = {2, {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},
         .push_size = sizeof(struct wd_bloom_push),
         .constants = {1, &first},
@@ -25,7 +23,7 @@ static bool init_down(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t
 bool wd_bloom_pass_init(struct wd_bloom_pass *pass, struct wd_gpu *gpu)
 {
     const struct wd_compute_params up = {
-        .shader = SPIRV(bloom_up_comp),
+        .shader = WD_SPIRV(bloom_up_comp),
         .bindings = {1, {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
         .push_size = sizeof(struct wd_bloom_push),
     };

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdatomic.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "base/jobs.h"
 #include "world/surroundings.h"
@@ -29,8 +30,6 @@ static const uint32_t light_view_comp[] =
 #include "light_view.comp.inc"
     ;
 
-#define SPIRV(words) {words, sizeof words, #words}
-
 /* --- pipelines ----------------------------------------------------------------------------- */
 
 static const VkDescriptorType IMAGE = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
@@ -38,7 +37,7 @@ static const VkDescriptorType BUFFER = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 static const VkDescriptorType TEXELS = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 static const VkDescriptorType UNIFORM = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 
-enum { WET_LIST = WD_TILE_LISTS - 1 };
+enum { WET_LIST = WD_TILE_LISTS - 1, SHADING_BINDINGS = 18 };
 
 /* To software devices a list's shader is 0.06 s of work at each start, and a second where they have not kept it from another.
  * Small pictures have one for all that is dry; of larger ones it would make the light pass up to a sixth slower. */
@@ -58,8 +57,8 @@ static bool has_single(uint32_t list)
 static struct wd_compute_params shading_params(void)
 {
     return (struct wd_compute_params){
-        .shader = SPIRV(light_comp),
-        .bindings = {18,
+        .shader = WD_SPIRV(light_comp),
+        .bindings = {SHADING_BINDINGS,
                      {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, IMAGE, TEXELS, TEXELS, TEXELS,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, BUFFER, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, TEXELS}},
         .push_size = sizeof(struct wd_light_push),
@@ -81,7 +80,7 @@ static bool init_list(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t
                                   single, rows, compares(gpu)};
     struct wd_compute_params params = shading_params();
     if (list == WET_LIST) {
-        params.shader = (struct wd_spirv)SPIRV(light_water_comp);
+        params.shader = (struct wd_spirv)WD_SPIRV(light_water_comp);
         params.bindings.types[0] = BUFFER;
     }
     params.constants = (struct wd_spec_constants){7, constants};
@@ -91,7 +90,7 @@ static bool init_list(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t
 static bool init_view(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     struct wd_compute_params params = shading_params();
-    params.shader = (struct wd_spirv)SPIRV(light_view_comp);
+    params.shader = (struct wd_spirv)WD_SPIRV(light_view_comp);
     params.bindings.count = 11;
     params.bindings.types[0] = BUFFER;
     params.bindings.types[7] = BUFFER;
@@ -160,11 +159,11 @@ bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
 static bool init_sorting(struct wd_light_pass *pass, struct wd_gpu *gpu)
 {
     const struct wd_compute_params tiles = {
-        .shader = SPIRV(light_tiles_comp),
+        .shader = WD_SPIRV(light_tiles_comp),
         .bindings = {4, {UNIFORM, IMAGE, IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
-    const struct wd_compute_params args = {.shader = SPIRV(light_args_comp),
+    const struct wd_compute_params args = {.shader = WD_SPIRV(light_args_comp),
                                            .bindings = {1, {BUFFER}}};
     return wd_pipeline_init_compute(&pass->tiles, gpu, &tiles) &&
            wd_pipeline_init_compute(&pass->args, gpu, &args);
@@ -174,7 +173,7 @@ static bool init_shafts(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     const uint32_t constants[] = {compares(gpu)};
     const struct wd_compute_params params = {
-        .shader = SPIRV(light_shafts_comp),
+        .shader = WD_SPIRV(light_shafts_comp),
         .bindings = {4, {UNIFORM, IMAGE, IMAGE, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
         .constants = {1, constants},
@@ -185,7 +184,7 @@ static bool init_shafts(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 static bool init_velocity(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     const struct wd_compute_params params = {
-        .shader = SPIRV(light_velocity_comp),
+        .shader = WD_SPIRV(light_velocity_comp),
         .bindings = {8, {UNIFORM, IMAGE, IMAGE, IMAGE, IMAGE, BUFFER, BUFFER, BUFFER}},
         .push_size = sizeof(struct wd_light_push),
     };
@@ -390,6 +389,34 @@ static void shade_lists(struct wd_light_pass *pass, struct wd_cmd *cmd,
     shade_list(pass, cmd, &pass->water, WET_LIST, bindings, push);
 }
 
+/* In the order of lib/light_pixels.glsl. */
+static void bind_shading(struct wd_binding bindings[SHADING_BINDINGS], const struct wd_light_pass *pass,
+                         const struct wd_light_params *params, bool has_overlay)
+{
+    struct wd_targets *targets = params->targets;
+    const struct wd_binding reads[SHADING_BINDINGS] = {
+        params->uniforms,
+        WD_BIND_IMAGE(&targets->albedo, pass->nearest),
+        WD_BIND_IMAGE(&targets->normal, pass->nearest),
+        WD_BIND_IMAGE(&targets->surface, pass->nearest),
+        WD_BIND_IMAGE(&targets->depth, pass->nearest),
+        WD_BIND_IMAGE(&targets->shadow, pass->shadow),
+        WD_BIND_IMAGE(wd_targets_shadow(targets), pass->nearest),
+        WD_BIND_BUFFER(&pass->sun_field.heights),
+        WD_BIND_BUFFER(&params->forest->trees),
+        models_or_trees(&params->forest->lit_models, params->forest),
+        WD_BIND_STORAGE_IMAGE(&targets->radiance),
+        WD_BIND_BUFFER(&pass->lists),
+        WD_BIND_IMAGE(has_overlay ? &targets->overlay : &targets->albedo, pass->nearest),
+        WD_BIND_IMAGE(&params->forest->canopy_light, params->forest->ground.sampler),
+        WD_BIND_IMAGE(&params->forest->sky, params->forest->look_sampler),
+        WD_BIND_BUFFER(&params->forest->ground.waters),
+        WD_BIND_BUFFER(&pass->shaft_shares),
+        WD_BIND_BUFFER(&pass->crown_sky.table),
+    };
+    memcpy(bindings, reads, sizeof reads);
+}
+
 void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
                           const struct wd_light_params *params)
 {
@@ -410,26 +437,8 @@ void wd_light_pass_record(struct wd_light_pass *pass, struct wd_cmd *cmd,
     wd_cmd_use_image(cmd, &targets->radiance, WD_USE_COMPUTE_WRITE);
     if (cmd->failed)
         return;
-    const struct wd_binding bindings[] = {
-        params->uniforms,
-        WD_BIND_IMAGE(&targets->albedo, pass->nearest),
-        WD_BIND_IMAGE(&targets->normal, pass->nearest),
-        WD_BIND_IMAGE(&targets->surface, pass->nearest),
-        WD_BIND_IMAGE(&targets->depth, pass->nearest),
-        WD_BIND_IMAGE(&targets->shadow, pass->shadow),
-        WD_BIND_IMAGE(wd_targets_shadow(targets), pass->nearest),
-        WD_BIND_BUFFER(&pass->sun_field.heights),
-        WD_BIND_BUFFER(&params->forest->trees),
-        models_or_trees(&params->forest->lit_models, params->forest),
-        WD_BIND_STORAGE_IMAGE(&targets->radiance),
-        WD_BIND_BUFFER(&pass->lists),
-        WD_BIND_IMAGE(push.has_overlay ? &targets->overlay : &targets->albedo, pass->nearest),
-        WD_BIND_IMAGE(&params->forest->canopy_light, params->forest->ground.sampler),
-        WD_BIND_IMAGE(&params->forest->sky, params->forest->look_sampler),
-        WD_BIND_BUFFER(&params->forest->ground.waters),
-        WD_BIND_BUFFER(&pass->shaft_shares),
-        WD_BIND_BUFFER(&pass->crown_sky.table),
-    };
+    struct wd_binding bindings[SHADING_BINDINGS];
+    bind_shading(bindings, pass, params, push.has_overlay);
     if (params->frame->view_mode == WD_MODE_LIT) {
         sort_tiles(pass, cmd, params, &push);
         if (push.shafts > 0)

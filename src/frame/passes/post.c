@@ -14,8 +14,6 @@ static const uint32_t tonemap_comp[] =
 #include "tonemap.comp.inc"
     ;
 
-#define SPIRV(words) {words, sizeof words, #words}
-
 enum { METERED_PER_GROUP = 16 * 256 }; /* as in meter.comp */
 
 static bool init_meter(struct wd_post_pass *pass, struct wd_gpu *gpu)
@@ -23,11 +21,11 @@ static bool init_meter(struct wd_post_pass *pass, struct wd_gpu *gpu)
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     const struct wd_compute_params meter = {
-        .shader = SPIRV(meter_comp),
+        .shader = WD_SPIRV(meter_comp),
         .bindings = {3, {uniform, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, buffer}},
     };
     const struct wd_compute_params exposure = {
-        .shader = SPIRV(meter_exposure_comp),
+        .shader = WD_SPIRV(meter_exposure_comp),
         .bindings = {2, {uniform, buffer}},
     };
     const struct wd_buffer_params histogram = {
@@ -43,7 +41,7 @@ static bool init_meter(struct wd_post_pass *pass, struct wd_gpu *gpu)
 static bool init_tonemap(struct wd_pipeline *pipeline, struct wd_gpu *gpu, enum wd_tone tone)
 {
     const struct wd_compute_params params = {
-        .shader = SPIRV(tonemap_comp),
+        .shader = WD_SPIRV(tonemap_comp),
         .bindings = {5,
                      {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,

@@ -16,8 +16,6 @@ static const uint32_t terrain_shade_comp[] =
 #include "terrain_shade.comp.inc"
     ;
 
-#define SPIRV(words) {words, sizeof words, #words}
-
 enum { PATCH_INDICES = WD_PATCH_CELLS * WD_PATCH_CELLS * 6 };
 
 /* Two triangles a cell, counter-clockwise from above, split from south-west to north-east. The
@@ -53,7 +51,7 @@ static bool marks(const struct wd_gpu *gpu)
 static bool init_shade(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     const struct wd_compute_params params = {
-        .shader = SPIRV(terrain_shade_comp),
+        .shader = WD_SPIRV(terrain_shade_comp),
         .bindings = {9,
                      {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                       VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
@@ -69,8 +67,8 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint
 {
     const uint32_t constants[] = {has_holes, is_near};
     struct wd_graphics_params params = {
-        .vertex = SPIRV(terrain_vert),
-        .fragment = SPIRV(terrain_frag),
+        .vertex = WD_SPIRV(terrain_vert),
+        .fragment = WD_SPIRV(terrain_frag),
         .bindings = {8,
                      {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
@@ -84,7 +82,7 @@ static bool init_pipeline(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
     if (marks(gpu)) {
-        params.fragment = (struct wd_spirv)SPIRV(terrain_mark_frag);
+        params.fragment = (struct wd_spirv)WD_SPIRV(terrain_mark_frag);
         params.color_count = 1;
         params.color_formats[0] = WD_SURFACE_FORMAT;
     }

@@ -154,7 +154,6 @@ void wd_terrain_view_init(struct wd_terrain_view *out, const struct wd_patch_ran
         .curtain_m = wd_terrain_foot_m(terrain),
         .width = terrain->width,
         .height = terrain->height,
-        .has_holes = terrain->hole != NULL,
         .extent_m = {(float)wd_terrain_extent_x_m(terrain), (float)wd_terrain_extent_y_m(terrain)},
         .slopes_scale = {(float)(1 / (texel_m * slopes->width)),
                          (float)(1 / (texel_m * slopes->height))},
