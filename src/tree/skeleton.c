@@ -75,8 +75,8 @@ static bool hangs(const struct wd_branch_order *spec)
     return spec->tip_upturn < -1.8f;
 }
 
-/* Heavy limbs grow toward the light, radians a metre. */
-#define OUTWARD 0.06f
+/* How heavy limbs turn to the light, radians a metre. */
+#define OUTWARD 0.08f
 
 /* Grows a branch node by node: wander, bending, and a turn back where it would leave the crown. Heavy limbs end there:
  * turned back they would cross others. */
@@ -217,15 +217,18 @@ static float limb_angle_deg(const struct wd_tree_form *form, const struct wd_bra
     float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], height);
     angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(68, 46, height)), form->youth);
     angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(74, 36, height)), form->free);
-    angle = wd_mixf(angle, wd_mixf(70, 40, height), form->dissolved);
+    angle = wd_mixf(angle, wd_mixf(73, 44, height), form->dissolved);
     return form->clip ? wd_mixf(100, 20, height) : angle;
 }
 
 /* Limbs of a free broadleaf wander less: they bear all that grows on the way to their end, and that weight lets
  * none rise. */
 #define FREE_WANDER 0.6f
+
+/* Where the stem has dissolved they are few and crooked, each piece once the shoot with most light, and so much longer
+ * than the straight way to the crown's envelope. */
+#define HEAVY_WANDER 1.3f
 #define HEAVY_LONGER 0.3f
-#define HEAVY_WANDER 1.3f /* few and heavy ones are crooked: each piece was once the shoot with most light */
 
 /* A limb from a limb: two of like thickness part there. */
 static float fork_angle_deg(const struct wd_branch_order *spec, float height)
@@ -249,7 +252,7 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     struct wd_vec3 axis;
     const struct wd_branch *parent = &skeleton->branches[joint->parent];
     stem.start = wd_branch_point(skeleton, parent, joint->share, &axis, &stem.parent_node);
-    if (order == 0 && form->dissolved > 0) /* a heavy one begins at the node, above which its parent is thinner by what it takes away */
+    if (order == 0 && form->dissolved > 0) /* above the node its parent is thinner by what it takes away */
         stem.start = wd_v3_mix(stem.start, skeleton->nodes[stem.parent_node].position_m, form->dissolved);
     stem.along_m = skeleton->nodes[stem.parent_node].along_m;
     float angle = order > 0               ? wd_mixf(spec->angle_deg[0], spec->angle_deg[1], joint->height)
@@ -262,7 +265,7 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     if (!hangs(spec))
         stem.length_m = wd_tree_envelope_reach_m(form, stem.start, ahead, joint->length_m);
     stem.length_m *= wd_random_range(&random, 0.9f, 1.05f);
-    if (order == 0) /* crooked ways are longer */
+    if (order == 0)
         stem.length_m *= 1 + HEAVY_LONGER * form->dissolved;
     if (stem.length_m < 0.3f * joint->length_m)
         stem.length_m = 0.3f * joint->length_m;
@@ -374,11 +377,12 @@ static bool grow_along(struct wd_skeleton *skeleton, const struct wd_tree_form *
     return true;
 }
 
-#define LEAST_FORKED 0.45f /* length of a limb that forks, in radii of the crown */
-#define FORK_START 0.28f
-#define FORK_SPACING 0.16f /* of a limb as long as the crown is wide from its middle */
+/* In radii of the crown: of forks that fork again, and between forks. */
+#define LEAST_FORKED 0.45f
+#define FORK_SPACING 0.16f
+#define FORK_START 0.28f /* share of the limb */
 
-/* A limb's forks, left and right in turn, each nearly as long as what is left of it. */
+/* A limb's forks, left and right in turn, each nearly as long as what is left of it. Low ones have room all about. */
 static bool fork_limb(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int parent_index)
 {
     struct wd_branch parent = skeleton->branches[parent_index];
