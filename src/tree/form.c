@@ -17,17 +17,24 @@ static float crown_m(const struct wd_species *species, double dbh_cm)
 static void shape_crown(struct wd_tree_form *form)
 {
     static const float cone[4] = {1, 0.8f, 0.45f, 0.03f}, egg[4] = {0.8f, 1, 0.66f, 0.06f};
-    static const float dome[4] = {0.9f, 1, 0.86f, 0.2f};
+    static const float dome[4] = {0.9f, 1, 0.86f, 0.2f}, broad[4] = {0.95f, 1, 0.92f, 0.4f};
     const float *young = form->species->form == WD_FORM_CONIFER ? cone : egg;
     for (int i = 0; i < 4; i++) {
         float own = form->species->crown_shape[i];
         float grown = wd_mixf(own, wd_maxf(own, dome[i]), form->free);
+        grown = wd_mixf(grown, wd_maxf(grown, broad[i]), form->dissolved);
         form->crown_shape[i] = wd_mixf(grown, young[i], form->youth);
     }
 }
 
 /* Share of its clear stem that a free broadleaf lacks. */
 static const float FREE_LOWER = 0.3f;
+
+/* Of the height, below the heavy limbs of a free one; the ends of these hang lower. */
+static float bole_m(const struct wd_tree_form *form)
+{
+    return form->height_m * wd_mixf(0.13f, 0.22f, wd_hash_unit(wd_hash2(form->key, 0xb01e)));
+}
 
 struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
                                     const struct wd_grow_params *params)
@@ -65,6 +72,8 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
         .spread = 0.5f * (crown / typical_crown + length),
         .lobe_m = wd_clampf(0.3f * crown, 0.5f, 3.0f),
     };
+    form.dissolved = wd_smoothf(0.3f, 0.9f, free);
+    form.bole_m = wd_mixf(form.crown_base_m, wd_maxf(form.crown_base_m, bole_m(&form)), form.dissolved);
     shape_crown(&form);
     return form;
 }
@@ -76,7 +85,7 @@ void wd_tree_form_clip(struct wd_tree_form *form, const struct wd_clip_grid *cli
         reach = wd_max3f(reach, -clip->min_m[axis], clip->max_m[axis]);
     form->clip = clip;
     form->crown_radius_m = reach;
-    form->crown_base_m = wd_maxf(clip->min_m[2], 0.05f * form->height_m);
+    form->crown_base_m = form->bole_m = wd_maxf(clip->min_m[2], 0.05f * form->height_m);
 }
 
 bool wd_tree_is_cut(const struct wd_tree_form *form, struct wd_vec3 p)

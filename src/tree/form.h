@@ -17,6 +17,8 @@ struct wd_tree_form {
     float crown_shape[4]; /* as the species' own */
     float openness;       /* 0 forest-grown .. 1 open-grown */
     float free;           /* wd_species_free, but for clipped and young trees */
+    float dissolved;      /* how far a free tree's stem gives way to few heavy limbs: 0 to a third free, 1 when free */
+    float bole_m;         /* height of the lowest limb */
     float detail;
     float dbh_m;
     float crown_base_m;

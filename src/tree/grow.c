@@ -229,6 +229,7 @@ static void fit_height(struct wd_skeleton *skeleton, struct wd_foliage *foliage,
     wd_skeleton_scale(skeleton, factor);
     wd_foliage_scale(foliage, factor);
     form->crown_base_m = wd_minf(factor * form->crown_base_m, 0.98f * form->height_m);
+    form->bole_m *= factor;
 }
 
 static void scale_mesh(struct wd_tree_mesh *mesh, float factor)

@@ -11,6 +11,9 @@
  * otherwise. */
 #define YOUNG_RATIO 0.45f
 
+/* Where a stem or a limb forks into two of like thickness. */
+#define HEAVY_RATIO 0.92f
+
 static float tip_radius_m(const struct wd_tree_form *form)
 {
     return wd_mixf(TIP_RADIUS_M, SHOOT_RADIUS_M, form->youth);
@@ -135,6 +138,8 @@ static void set_branch(struct wd_skeleton *skeleton, const struct wd_tree_form *
     float base = skeleton->stem_count > 1 ? foot->radius_m : 0.5f * form->dbh_m;
     float joint = skeleton->nodes[branch->parent_node].radius_m;
     float ratio = form->species->orders[branch->order].radius_ratio, tip_m = tip_radius_m(form);
+    if (branch->order == 0)
+        ratio = wd_mixf(ratio, wd_maxf(ratio, HEAVY_RATIO), form->dissolved);
     float most = wd_mixf(ratio, wd_minf(ratio, YOUNG_RATIO), form->youth) * joint;
     float wanted = base * sqrtf(nodes[0].load / foot->load), shrink = 1;
     if (wanted > most)

@@ -75,7 +75,11 @@ static bool hangs(const struct wd_branch_order *spec)
     return spec->tip_upturn < -1.8f;
 }
 
-/* Grows a branch node by node: wander, bending, and a turn back where it would leave the crown. */
+/* How heavy limbs turn to the light, radians a metre. */
+#define OUTWARD 0.08f
+
+/* Grows a branch node by node: wander, bending, and a turn back where it would leave the crown. Heavy limbs end there:
+ * turned back they would cross others. */
 static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *form,
                       const struct wd_stem *stem)
 {
@@ -85,6 +89,9 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
     float step = stem->length_m / (float)stem->steps;
     float ground = wd_minf(0.35f, 0.06f * form->height_m);
     bool hanging = hangs(&form->species->orders[stem->order]);
+    float beyond = wd_mixf(1.04f, 1.16f, form->dissolved);
+    float outward = stem->order == 0 ? OUTWARD * form->dissolved : 0;
+    bool ends = stem->order == 0 && wd_hash_unit(wd_hash2(stem->key, 0xe4d)) < form->dissolved;
     /* crowns down to the ground have many twigs just above it: they level out before they would turn in a hairpin */
     float ahead_m = (form->youth > 0 ? 2 : 1) * step;
     if (form->youth > 0 && d.z < 0 && p.z + ahead_m * d.z < ground)
@@ -96,6 +103,8 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
         float bend = wd_mixf(stem->upturn, stem->tip_upturn, wd_smoothf(0.3f, 0.9f, t));
         d = wd_v3_unit(wd_v3_mad(d, drift, wd_minf(stem->wander * step, 0.35f)));
         d = bend_up(d, wd_clampf(bend * step / form->spread, -0.8f, 0.8f));
+        if (outward > 0)
+            d = wd_v3_unit(wd_v3_mad(d, wd_tree_crown_direction(form, p), outward * step));
         struct wd_vec3 next = wd_v3_mad(p, d, step);
         if (d.z < 0 && (next.z < ground || p.z + ahead_m * d.z < ground)) {
             if (hanging && i > 1)
@@ -107,7 +116,9 @@ static void grow_stem(struct wd_skeleton *skeleton, const struct wd_tree_form *f
             if (i > 1)
                 break;
             next = wd_v3_mad(p, d, 0.2f * step);
-        } else if (!hanging && wd_tree_envelope_share(form, next) > 1.04f) {
+        } else if (!hanging && wd_tree_envelope_share(form, next) > beyond) {
+            if (ends && i > 1)
+                break;
             struct wd_vec3 out = wd_v3_unit_or(WD_V3(p.x, p.y, 0), WD_V3(0, 0, 1));
             d = wd_v3_unit(wd_v3_mad(d, out, -0.6f * wd_maxf(wd_v3_dot(d, out), 0)));
             next = wd_v3_mad(p, d, 0.6f * step);
@@ -151,14 +162,18 @@ struct joint {
     uint32_t key;
 };
 
+/* So many more has a heavy limb, which is long and crooked. */
+#define HEAVY_STEPS 6.0f
+
 /* Hanging twigs need as many steps as their bend, others as few as their length allows. */
-static int steps_of(const struct wd_branch_order *spec, int order, float length_m)
+static int steps_of(const struct wd_branch_order *spec, int order, float length_m, float dissolved)
 {
     static const int most[3] = {9, 5, 2};
     int steps = 2 + (int)(length_m * (order == 0 ? 1.6f : 2.5f));
     int bends = 1 + (int)(2.5f * length_m * fabsf(spec->tip_upturn));
-    if (steps > most[order])
-        steps = most[order];
+    int limit = most[order] + (order == 0 ? (int)(HEAVY_STEPS * dissolved) : 0);
+    if (steps > limit)
+        steps = limit;
     return bends <= steps ? steps : bends < 7 ? bends : 7;
 }
 
@@ -202,12 +217,24 @@ static float limb_angle_deg(const struct wd_tree_form *form, const struct wd_bra
     float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], height);
     angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(68, 46, height)), form->youth);
     angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(74, 36, height)), form->free);
+    angle = wd_mixf(angle, wd_mixf(73, 44, height), form->dissolved);
     return form->clip ? wd_mixf(100, 20, height) : angle;
 }
 
 /* Limbs of a free broadleaf wander less: they bear all that grows on the way to their end, and that weight lets
  * none rise. */
 #define FREE_WANDER 0.6f
+
+/* Where the stem has dissolved they are few and crooked, each piece once the shoot with most light, and so much longer
+ * than the straight way to the crown's envelope. */
+#define HEAVY_WANDER 1.3f
+#define HEAVY_LONGER 0.3f
+
+/* A limb from a limb: two of like thickness part there. */
+static float fork_angle_deg(const struct wd_branch_order *spec, float height)
+{
+    return wd_mixf(0.5f * (spec->angle_deg[0] + spec->angle_deg[1]), 36, 0.5f + 0.5f * height);
+}
 
 static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order,
                        const struct joint *joint)
@@ -220,13 +247,17 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     if (order == 0) {
         stem.upturn *= 1 - form->free;
         stem.wander *= wd_mixf(1, FREE_WANDER, form->free);
+        stem.wander *= wd_mixf(1, HEAVY_WANDER / FREE_WANDER, form->dissolved);
     }
     struct wd_vec3 axis;
     const struct wd_branch *parent = &skeleton->branches[joint->parent];
     stem.start = wd_branch_point(skeleton, parent, joint->share, &axis, &stem.parent_node);
+    if (order == 0 && form->dissolved > 0) /* above the node its parent is thinner by what it takes away */
+        stem.start = wd_v3_mix(stem.start, skeleton->nodes[stem.parent_node].position_m, form->dissolved);
     stem.along_m = skeleton->nodes[stem.parent_node].along_m;
-    float angle = order == 0 ? limb_angle_deg(form, spec, joint->height)
-                             : wd_mixf(spec->angle_deg[0], spec->angle_deg[1], joint->height);
+    float angle = order > 0               ? wd_mixf(spec->angle_deg[0], spec->angle_deg[1], joint->height)
+                  : parent->order == order ? fork_angle_deg(spec, joint->height)
+                                           : limb_angle_deg(form, spec, joint->height);
     angle *= (float)(WD_PI / 180) * wd_random_range(&random, 0.88f, 1.12f);
     stem.direction = best_direction(skeleton, form, joint, &random, stem.start, axis, angle);
     struct wd_vec3 ahead = bend_up(stem.direction, 0.3f * stem.upturn * joint->length_m);
@@ -234,11 +265,13 @@ static void grow_joint(struct wd_skeleton *skeleton, const struct wd_tree_form *
     if (!hangs(spec))
         stem.length_m = wd_tree_envelope_reach_m(form, stem.start, ahead, joint->length_m);
     stem.length_m *= wd_random_range(&random, 0.9f, 1.05f);
+    if (order == 0)
+        stem.length_m *= 1 + HEAVY_LONGER * form->dissolved;
     if (stem.length_m < 0.3f * joint->length_m)
         stem.length_m = 0.3f * joint->length_m;
     if (form->species->form == WD_FORM_SNAG) /* broken off anywhere */
         stem.length_m *= stub_share(&random);
-    stem.steps = steps_of(spec, order, stem.length_m);
+    stem.steps = steps_of(spec, order, stem.length_m, form->dissolved);
     grow_stem(skeleton, form, &stem);
     if (order < 2)
         mark_crowd(skeleton, &skeleton->branches[skeleton->branch_count - 1]);
@@ -265,6 +298,12 @@ static bool still_there(const struct wd_tree_form *form, uint32_t key)
     return wd_hash_unit(wd_hash2(key, 0xdeca)) < form->species->decay.limbs;
 }
 
+/* How many a stem dissolves into. */
+static float heavy_limbs(const struct wd_tree_form *form)
+{
+    return 5.5f + 2.5f * wd_hash_unit(wd_hash2(form->key, 0x11b6));
+}
+
 /* Limbs up the trunk, golden angle apart or in whorls, as long as the crown is wide there. */
 static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
 {
@@ -273,19 +312,22 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
     float crown = form->height_m - form->crown_base_m, spacing = spacing_m(form, 0);
     float end = crown * wd_tree_trunk_end(form), top = form->crown_base_m + end;
     int whorl = (int)species->whorl, index = 0;
-    for (float z = 0.1f * spacing; z < 0.98f * end; index++) {
+    float first = form->bole_m - form->crown_base_m;
+    spacing = wd_mixf(spacing, (end - first) * (float)whorl / heavy_limbs(form), form->dissolved);
+    for (float z = first + 0.1f * spacing; z < 0.98f * end; index++) {
         float around = (float)index * 2.3999632f + wd_random_unit(&random), t = z / end;
+        float height = wd_mixf(t, (z - first) / (end - first), form->dissolved);
         for (int i = 0; i < whorl; i++) {
             if (skeleton->branch_count >= WD_MAX_BRANCHES || index >= WD_MAX_BRANCHES)
                 return false;
             float lift = whorl > 1 ? 0.12f * spacing * wd_random_signed(&random) : 0;
             float share = (form->crown_base_m + z + lift) / top;
-            struct joint joint = {.share = wd_clampf(share, 0.02f, 0.99f), .height = z / end,
+            struct joint joint = {.share = wd_clampf(share, 0.02f, 0.99f), .height = height,
                                   .jitter_rad = whorl > 1 ? 0.25f : 0.8f};
             joint.around_rad = around + (float)i * (float)(2 * WD_PI) / (float)whorl;
             joint.length_m = 1.6f * form->crown_radius_m * species->orders[0].length_ratio;
             if (end < crown)
-                joint.length_m = wd_maxf(joint.length_m, joint.height * (crown - z));
+                joint.length_m = wd_maxf(joint.length_m, t * (crown - z));
             joint.length_m *= wd_random_range(&random, 0.85f, 1.0f);
             joint.key = wd_hash3(form->key, 0x11b, (uint32_t)(index * 16 + i));
             if (still_there(form, joint.key))
@@ -294,6 +336,7 @@ static bool grow_limbs(struct wd_skeleton *skeleton, const struct wd_tree_form *
         float dense = 1 - 0.4f * t;
         if (end < crown)
             dense = wd_mixf(0.7f + 0.7f * t, dense, form->youth);
+        dense = wd_mixf(dense, 1, form->dissolved);
         z += spacing * wd_random_range(&random, 0.8f, 1.2f) * dense;
     }
     return true;
@@ -334,6 +377,49 @@ static bool grow_along(struct wd_skeleton *skeleton, const struct wd_tree_form *
     return true;
 }
 
+/* In radii of the crown: of forks that fork again, and between forks. */
+#define LEAST_FORKED 0.45f
+#define FORK_SPACING 0.16f
+#define FORK_START 0.28f /* share of the limb */
+
+/* A limb's forks, left and right in turn, each nearly as long as what is left of it. Low ones have room all about. */
+static bool fork_limb(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int parent_index)
+{
+    struct wd_branch parent = skeleton->branches[parent_index];
+    struct wd_random random = wd_random_of(parent.key, 0xf02c);
+    float spacing = FORK_SPACING * form->crown_radius_m;
+    float lower = 1 - wd_smoothf(form->bole_m, 0.5f * form->height_m, skeleton->nodes[parent.first_node].position_m.z);
+    spacing *= 1 - 0.3f * lower;
+    int index = wd_random_unit(&random) < 0.5f;
+    for (float at = FORK_START * parent.length_m; at < 0.95f * parent.length_m; index++) {
+        float share = at / parent.length_m;
+        struct joint joint = {.parent = parent_index, .share = share, .height = share, .jitter_rad = 1.1f};
+        joint.around_rad = (float)WD_PI * (float)(index & 1);
+        joint.length_m = parent.length_m * (1.05f - 0.85f * share) * wd_random_range(&random, 0.65f, 1);
+        joint.length_m *= 1 + 0.4f * lower;
+        joint.key = wd_hash3(parent.key, 0xf0, (uint32_t)index);
+        if (skeleton->branch_count >= WD_MAX_BRANCHES)
+            return false;
+        if (wd_hash_unit(joint.key) < form->dissolved)
+            grow_joint(skeleton, form, 0, &joint);
+        at += spacing * wd_random_range(&random, 0.6f, 1.4f);
+    }
+    return true;
+}
+
+/* Limbs of a stem that has dissolved fork, and their forks do. */
+static bool grow_forks(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
+{
+    for (int i = 1; form->dissolved > 0 && i < (int)skeleton->branch_count; i++) {
+        const struct wd_branch *limb = &skeleton->branches[i];
+        const struct wd_branch *parent = &skeleton->branches[limb->parent];
+        bool long_fork = parent->parent == 0 && limb->length_m > LEAST_FORKED * form->crown_radius_m;
+        if ((limb->parent == 0 || long_fork) && !fork_limb(skeleton, form, i))
+            return false;
+    }
+    return true;
+}
+
 /* Order by order, so that branches of one order compete for the same gaps. Twigs also stand on the
  * ends of everything thicker. */
 static bool grow_order(struct wd_skeleton *skeleton, const struct wd_tree_form *form, int order)
@@ -357,7 +443,7 @@ static bool grow_branches(struct wd_skeleton *skeleton, const struct wd_tree_for
     if (species->order_count == 0)
         return true;
     if (!stool)
-        ok = grow_limbs(skeleton, form);
+        ok = grow_limbs(skeleton, form) && grow_forks(skeleton, form);
     for (size_t i = 0; ok && stool && i < skeleton->stem_count; i++)
         ok = grow_along(skeleton, form, 0, (int)i);
     for (int order = 1; ok && order < (int)species->order_count; order++)

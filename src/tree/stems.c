@@ -6,17 +6,33 @@ enum { TRUNK_STEPS = 30, STEM_STEPS = 14, PALM_STEPS = 36 };
 /* A free tree's stem goes so much higher before it dissolves: it has limbs from far down on. */
 #define FREE_STEM_END 0.15f
 
+/* Some boles end in one fork of limbs, on others limbs stand along a stem that is soon no thicker than they are. */
+static float dissolved_end(const struct wd_tree_form *form)
+{
+    float leader = form->species->apical_dominance, chance = wd_hash_unit(wd_hash2(form->key, 0xd155));
+    float above = wd_mixf(0.08f, 0.22f, chance) + 0.3f * leader, height = form->height_m;
+    float end_m = form->bole_m + above * (height - form->bole_m);
+    return (end_m - form->crown_base_m) / (height - form->crown_base_m);
+}
+
 float wd_tree_trunk_end(const struct wd_tree_form *form)
 {
     float leader = form->species->apical_dominance;
     if (form->clip) /* what is cut fills up to the cut */
         return 1;
     float grown = 0.22f + 0.8f * leader + FREE_STEM_END * form->free;
+    grown = wd_mixf(grown, dissolved_end(form), form->dissolved);
     return leader > 0.85f ? 1 : wd_mixf(grown, 1, form->youth);
 }
 
 /* Of one step of a trunk, in shares of its length: more would turn it down to the ground. */
 #define MOST_BEND 0.4f
+
+/* A leader that its limbs have overtaken bends as they do, from the upper bole on. */
+static float crook(const struct wd_species *species, float step, float boles)
+{
+    return wd_minf(0.5f * species->orders[0].wander * step * wd_smoothf(0.4f, 1.2f, boles), 0.5f * MOST_BEND);
+}
 
 /* The trunk keeps upright as far as it goes. */
 static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *form)
@@ -36,6 +52,8 @@ static void grow_trunk(struct wd_skeleton *skeleton, const struct wd_tree_form *
         float inside = wd_smoothf(form->crown_base_m, form->height_m, p.z);
         drift = wd_v3_mad(wd_v3_scale(drift, 0.45f), wd_random_vec3(&random), 1);
         float bend = wd_minf(species->trunk_wander * (1 + 4 * loose * inside) * step, MOST_BEND);
+        if (form->dissolved > 0)
+            bend += form->dissolved * crook(species, step, p.z / form->bole_m);
         d = wd_v3_mad(d, drift, bend);
         d = wd_v3_add(d, WD_V3(-0.03f * p.x * step, -0.03f * p.y * step, 0.10f * step));
         d = wd_v3_unit(d);

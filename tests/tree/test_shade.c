@@ -58,7 +58,7 @@ static void ellipsoids_hide_as_much_sky_as_crowns(void **state)
     }
 }
 
-/* Of the sky half a turn about, from halfway up. */
+/* Of the sky half a turn about, from more than halfway up: lower light comes in between ground and crown. */
 static double sky_at(const struct wd_crown_shade *shade, float away_m)
 {
     enum { SIDES = 8 };
@@ -66,7 +66,7 @@ static double sky_at(const struct wd_crown_shade *shade, float away_m)
     for (int side = 0; side < SIDES; side++) {
         double turn = WD_PI * (side + 0.5) / SIDES;
         sum += wd_crown_shade_transmittance(shade, WD_V3(away_m, 0, 0.5f),
-                                   WD_V3(0.8f * (float)wd_dcos(turn), 0.8f * (float)wd_dsin(turn), 0.6f));
+                                   WD_V3(0.6f * (float)wd_dcos(turn), 0.6f * (float)wd_dsin(turn), 0.8f));
     }
     return sum / SIDES;
 }
