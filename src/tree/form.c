@@ -30,6 +30,9 @@ static void shape_crown(struct wd_tree_form *form)
 /* Share of its clear stem that a free broadleaf lacks. */
 static const float FREE_LOWER = 0.3f;
 
+/* From this apical dominance on, beeches', a free tree keeps its leader. */
+static const float LEADS = 0.42f;
+
 /* Of the height, below the heavy limbs of a free one; the ends of these hang lower. */
 static float bole_m(const struct wd_tree_form *form)
 {
@@ -72,7 +75,7 @@ struct wd_tree_form wd_tree_form_of(const struct wd_species *species,
         .spread = 0.5f * (crown / typical_crown + length),
         .lobe_m = wd_clampf(0.3f * crown, 0.5f, 3.0f),
     };
-    form.dissolved = wd_smoothf(0.3f, 0.9f, free);
+    form.dissolved = wd_smoothf(0.3f, 0.9f, free) * wd_clampf((LEADS - species->apical_dominance) / 0.08f, 0, 1);
     form.bole_m = wd_mixf(form.crown_base_m, wd_maxf(form.crown_base_m, bole_m(&form)), form.dissolved);
     shape_crown(&form);
     return form;

@@ -217,7 +217,7 @@ static float limb_angle_deg(const struct wd_tree_form *form, const struct wd_bra
     float angle = wd_mixf(spec->angle_deg[0], spec->angle_deg[1], height);
     angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(68, 46, height)), form->youth);
     angle = wd_mixf(angle, wd_maxf(angle, wd_mixf(74, 36, height)), form->free);
-    angle = wd_mixf(angle, wd_mixf(73, 44, height), form->dissolved);
+    angle = wd_mixf(angle, wd_mixf(64, 44, height), form->dissolved);
     return form->clip ? wd_mixf(100, 20, height) : angle;
 }
 
