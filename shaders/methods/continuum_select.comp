@@ -313,7 +313,7 @@ const float BARE_WOOD = 8.0;
 uint wood_triangles(uint model, float tall_px)
 {
     tall_px *= ORTHOGRAPHIC != 0u ? 0.5 : 1.0;
-    float finer = model_float(model, WD_WORD_LEAF_AREA_M2) > 0.0 ? 1.0 : BARE_WOOD;
+    float finer = ORTHOGRAPHIC != 0u || model_float(model, WD_WORD_LEAF_AREA_M2) > 0.0 ? 1.0 : BARE_WOOD;
     return min(uint(finer * (tall_px * tall_px * 0.006 + tall_px)), far_wood(model));
 }
 

@@ -12,8 +12,9 @@ enum { SECTORS = 12, TREES_A_JOB = 1024, CELL_MM = 8000, LEAST_CM = 150 };
 /* Where the crown's middle is, as a share of the height; tops so steep over it (tangents) leave all of a sector's light,
  * and none; half a sector's width (tangent); half a top's, as a share of its crown. */
 static const float MIDDLE = 0.4f, FREE = 0.6f, SHUT = 1.6f, SECTOR_HALF = 0.268f, TOP_WIDE = 1.0f / 6;
-/* What is farther off is asked no more. */
+/* What is farther off is asked no more, nor are more than so many: plots may have all their trees at one place. */
 static const float REACH_M = 48;
+enum { MOST_ASKED = 512 };
 
 /* East and north of the middle of each sector. */
 static const float ways_east[SECTORS] = {1, 0.8660254f, 0.5f, 0, -0.5f, -0.8660254f, -1, -0.8660254f, -0.5f, 0, 0.5f, 0.8660254f};
@@ -26,7 +27,7 @@ struct stand {
     int32_t from_mm[2];
     int64_t cell_mm;
     size_t columns, rows;
-    size_t *first; /* of each cell in `members`; one more at the end */
+    size_t *first;     /* of each cell in `members`; one more at the end */
     uint32_t *members; /* indices of trees */
 };
 
@@ -101,6 +102,7 @@ static void stand_finish(struct stand *stand)
 
 struct sides {
     const struct wd_tree *tree;
+    uint32_t asked;
     float steepest[SECTORS]; /* tangents of tops over the tree's middle */
 };
 
@@ -138,7 +140,7 @@ static void add_cell(struct sides *sides, const struct stand *stand, long column
     if (column < 0 || row < 0 || column >= (long)stand->columns || row >= (long)stand->rows)
         return;
     size_t cell = (size_t)row * stand->columns + (size_t)column;
-    for (size_t i = stand->first[cell]; i < stand->first[cell + 1]; i++)
+    for (size_t i = stand->first[cell]; i < stand->first[cell + 1] && sides->asked < MOST_ASKED; i++, sides->asked++)
         if (&stand->trees[stand->members[i]] != sides->tree)
             add_neighbour(sides, &stand->trees[stand->members[i]]);
 }

@@ -181,6 +181,25 @@ static void worlds_are_the_same_on_any_threads(void **state)
     wd_world_finish(&many);
 }
 
+/* As of plots whose trees have no places of their own: every pair would take minutes. */
+static void a_heap_of_trees_takes_no_endless_time(void **state)
+{
+    (void)state;
+    struct small_scene small;
+    struct wd_world world;
+    open_species(&small);
+    small_scene_inventory(&small, path);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fprintf(file, "x,y,species,height\n");
+    for (int i = 0; i < 120000; i++)
+        fprintf(file, "100,100,oak,%.5f\n", 10 + 4e-5 * i);
+    assert_int_equal(fclose(file), 0);
+    make_or_fail(&small, &world);
+    assert_int_equal(world.tree_count, 120000);
+    wd_world_finish(&world);
+}
+
 /* Lower than 9 m, oaks are birches, which grow as saplings; heights and crowns are as they were. */
 static void low_trees_are_young_ones(void **state)
 {
@@ -227,6 +246,7 @@ int main(void)
         cmocka_unit_test(given_trees_are_neighbours_and_stay),
         cmocka_unit_test(hills_are_as_every_pair_says),
         cmocka_unit_test(worlds_are_the_same_on_any_threads),
+        cmocka_unit_test(a_heap_of_trees_takes_no_endless_time),
         cmocka_unit_test(low_trees_are_young_ones),
         cmocka_unit_test(trees_on_demand_are_told_of),
     };
