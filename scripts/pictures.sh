@@ -26,12 +26,6 @@ render() { # render SCENE FILE SIZE OPTION...
     "$build/cli/weald" render "scenes/$render_scene.json" -o "$render_file" --size "$render_size" --samples 16 "$@"
 }
 
-png() { # png NAME SCENE SIZE OPTION...
-    png_name=$1
-    shift
-    ! is_wanted "$png_name" || render "$1" "$shown/$png_name.png" "$2" --camera "$3"
-}
-
 jpeg() { # jpeg NAME SCENE SIZE CAMERA
     is_wanted "$1" || return 0
     render "$2" "$scratch/$1.png" "$3" --camera "$4"
@@ -133,7 +127,7 @@ sheet() { # sheet NAME SPECIES...
     "$build/cli/weald" grow --sheet "$@" --size 150x150 -o "$shown/$sheet_name.png"
 }
 
-png valley valley 1280x720 glade
+jpeg valley valley 1280x720 glade
 jpeg guerrero guerrero 640x400 overview
 jpeg rpi rpi 640x400 overview
 jpeg bruneton bruneton 640x400 slope

@@ -411,57 +411,44 @@ static bool is_cut(const struct wd_species *species)
 }
 
 /* Two that may stand for one another. */
-static bool find_pair(const struct wd_scene *scene, const struct stand_ins *of, size_t index,
-                      const struct wd_keys_place *map, int pair[2])
+static bool find_pair(const struct wd_scene *scene, const struct wd_string_pair *names, const struct wd_keys_place *map,
+                      struct wd_species *pair[2], bool *own_openness)
 {
-    const char *name = of->pairs[index].name, *value = of->pairs[index].value;
-    pair[0] = find_species(scene, name);
-    pair[1] = find_species(scene, value);
-    if (pair[0] == pair[1])
-        return wd_keys_error(map, name, "stands for itself");
-    return !(is_cut(&scene->species[pair[0]]) || is_cut(&scene->species[pair[1]])) ||
-           wd_keys_error(map, name, "is cut to a shape, or \"%.60s\" is, wherever it stands; allowed are trees that grow "
-                         "freely", value);
+    int from = find_species(scene, names->name), to = find_species(scene, names->value);
+    pair[0] = &scene->species[from];
+    pair[1] = &scene->species[to];
+    *own_openness = has_own_openness(scene, to);
+    if (from == to)
+        return wd_keys_error(map, names->name, "stands for itself");
+    return !(is_cut(pair[0]) || is_cut(pair[1])) ||
+           wd_keys_error(map, names->name, "is cut to a shape, or \"%.60s\" is, wherever it stands; allowed are trees that "
+                         "grow freely", names->value);
 }
 
-/* Young trees have grown as openly as those for which they stand. */
-static bool link_when_young(const struct loader *loader, struct wd_scene *scene)
+static bool check_opener(const struct wd_keys_place *map, const struct wd_string_pair *names, struct wd_species *const pair[2])
 {
-    const struct stand_ins of = young_ones(scene);
+    return pair[1]->openness > pair[0]->openness ||
+           wd_keys_error(map, names->name, "\"%.60s\" has an openness of %g, \"%.60s\" of %g; what stands in the open must "
+                         "have more", names->value, (double)pair[1]->openness, names->name, (double)pair[0]->openness);
+}
+
+/* Young trees have grown as openly as those for which they stand, those in the open more so. */
+static bool link_stand_ins(const struct loader *loader, struct wd_scene *scene, struct stand_ins of, bool young)
+{
     struct wd_keys_place map = {loader->root->reader, loader->root, of.key, 0};
     bool ok = true;
     for (size_t i = 0; i < of.count; i++) {
-        int pair[2];
-        if (!of.pairs[i].value || !find_pair(scene, &of, i, &map, pair)) {
+        struct wd_species *pair[2];
+        bool own;
+        if (!of.pairs[i].value || !find_pair(scene, &of.pairs[i], &map, pair, &own)) {
             ok = false;
             continue;
         }
-        scene->species[pair[0]].when_young = 1 + (uint32_t)pair[1];
-        if ((size_t)pair[1] >= loader->made_first && !has_own_openness(scene, pair[1]))
-            scene->species[pair[1]].openness = scene->species[pair[0]].openness;
-    }
-    return ok;
-}
-
-static bool link_in_the_open(const struct loader *loader, struct wd_scene *scene)
-{
-    const struct stand_ins of = open_ones(scene);
-    struct wd_keys_place map = {loader->root->reader, loader->root, of.key, 0};
-    bool ok = true;
-    for (size_t i = 0; i < of.count; i++) {
-        int pair[2];
-        if (!of.pairs[i].value || !find_pair(scene, &of, i, &map, pair)) {
-            ok = false;
-            continue;
-        }
-        struct wd_species *closed = &scene->species[pair[0]], *open = &scene->species[pair[1]];
-        if ((size_t)pair[1] >= loader->made_first && !has_own_openness(scene, pair[1]))
-            open->openness = WD_OPEN_OPENNESS;
-        if (!(open->openness > closed->openness))
-            ok = wd_keys_error(&map, of.pairs[i].name, "\"%.60s\" has an openness of %g, \"%.60s\" of %g; what stands in "
-                               "the open must have more", of.pairs[i].value, (double)open->openness, of.pairs[i].name,
-                               (double)closed->openness);
-        closed->in_the_open = 1 + (uint32_t)pair[1];
+        uint32_t link = 1 + (uint32_t)(pair[1] - scene->species);
+        if (link > loader->made_first && !own)
+            pair[1]->openness = young ? pair[0]->openness : WD_OPEN_OPENNESS;
+        *(young ? &pair[0]->when_young : &pair[0]->in_the_open) = link;
+        ok = (young || check_opener(&map, &of.pairs[i], pair)) && ok;
     }
     return ok;
 }
@@ -561,7 +548,8 @@ bool wd_scene_load_species(struct wd_scene *scene, const struct wd_keys_place *p
     ok = load_all(&loader, scene) && ok;
     ok = ok && cut_hedges(&loader, scene);
     ok = ok && set_openness(&loader, scene);
-    ok = ok && link_when_young(&loader, scene) && link_in_the_open(&loader, scene);
+    ok = ok && link_stand_ins(&loader, scene, young_ones(scene), true) &&
+         link_stand_ins(&loader, scene, open_ones(scene), false);
     if (ok)
         note_planted(&loader, scene);
     free(loader.own_latin);

@@ -164,11 +164,18 @@ static void light_gains(float light[2], const struct plan *plan, const struct wi
     light[1] = openness_gain(of_mesh[1] * discs.covered, of_discs[1] * mesh->covered);
 }
 
+static double bark_px(const struct plan *plan, int first, int step)
+{
+    double bark = 0;
+    for (int view = first; view < plan->view_count; view += step)
+        bark += (double)wd_silhouette_count(&plan->barks[view]);
+    return bark;
+}
+
 /* Triangles of bark do not stick out as discs do: factor on the gain of the discs of a class with which these and the
  * triangles alone cover what the mesh does. */
 static float past_bark(const struct plan *plan, const float gains[2], int class, int k)
 {
-    double bark = 0;
     float only[2] = {0};
     struct growth growth = {.power = {0.8f, 0.6f}};
     struct windows *windows = wd_alloc(sizeof *windows);
@@ -177,8 +184,7 @@ static float past_bark(const struct plan *plan, const float gains[2], int class,
     bare.classes[1 - class] = &none;
     only[class] = gains[class];
     windows_init(windows, &bare, k);
-    for (int view = windows->first_view; view < plan->view_count; view += windows->step)
-        bark += (double)wd_silhouette_count(&plan->barks[view]);
+    double bark = bark_px(plan, windows->first_view, windows->step);
     for (int round = 0; round < FIRST_ROUNDS && gains[class] > 0; round++) {
         struct wd_shown discs = show_discs(&bare, windows, only, plan->barks);
         only[class] = nearer(&growth, class, only[class], windows->mesh.covered, discs.covered + bark);
@@ -186,14 +192,6 @@ static float past_bark(const struct plan *plan, const float gains[2], int class,
     windows_finish(windows, &bare);
     free(windows);
     return only[class] / gains[class];
-}
-
-static double bark_px(const struct plan *plan)
-{
-    double bark = 0;
-    for (int view = 0; view < plan->view_count; view++)
-        bark += (double)wd_silhouette_count(&plan->barks[view]);
-    return bark;
 }
 
 /* Reduced trees leave out branches and have fewer twigs, which leaves hide where there are any. Nothing where triangles show
@@ -208,7 +206,7 @@ static float bare_thin(const struct plan *plan, const float gains[2])
         thin.facets[view][0] = plan->facets[view][2];
         all += plan->meshes[view].covered;
     }
-    float left = all > 0 ? (float)(1 - bark_px(plan) / all) : 0;
+    float left = all > 0 ? (float)(1 - bark_px(plan, 0, 1) / all) : 0;
     return wd_clampf(past_bark(&thin, gains, 0, WD_POINT_GAINS - 1), 0, 1) * wd_clampf(left / SURELY, 0, 1);
 }
 

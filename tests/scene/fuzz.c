@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include "../base/damage.h"
 #include "base/file.h"
 #include "log.h"
 #include "scene/scene.h"
@@ -25,35 +26,10 @@ static const char scene_text[] =
     " 1], \"absolute\": true}]}], \"method\": \"octree\", \"in_the_open\": {\"oak\": "
     "\"far\"}, \"quality\": {\"width\": 64}}\n";
 
-static uint32_t next(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return *seed >> 8;
-}
-
-static void damage(char *text, size_t *size, uint32_t *seed)
-{
-    static const char pieces[][10] = {"{", "}", "[", "]", ",", ":", "\"", "\\", "-", "1e400", "NaN",
-                                      "null", "/*", "*/", "//", "\n", "\xff", "9999999", "${data}",
-                                      "\xc3"};
-    uint32_t count = 1 + next(seed) % 6;
-    for (uint32_t i = 0; i < count && *size > 40; i++) {
-        size_t at = next(seed) % (*size - 32), span = next(seed) % 32;
-        switch (next(seed) % 5) {
-        case 0: text[at] = (char)next(seed); break;
-        case 1: *size = at; break;
-        case 2:
-            memmove(text + at, text + at + span, *size - at - span);
-            *size -= span;
-            break;
-        case 3: memmove(text + at, text + next(seed) % (*size - 32), span); break;
-        default: {
-            const char *piece = pieces[next(seed) % (sizeof pieces / sizeof *pieces)];
-            memcpy(text + at, piece, strlen(piece));
-        }
-        }
-    }
-}
+static const char *const pieces[] = {
+    "{", "}", "[", "]", ",", ":", "\"", "\\", "-", "1e400", "NaN", "null", "/*", "*/", "//", "\n", "\xff", "9999999",
+    "${data}", "\xc3"};
+enum { PIECES = sizeof pieces / sizeof *pieces };
 
 static void batter(const struct wd_keys *table, const char *path, const char *source, size_t size,
                    unsigned rounds)
@@ -65,10 +41,12 @@ static void batter(const struct wd_keys *table, const char *path, const char *so
         size_t length = size;
         char *text = malloc(size + 1);
         memcpy(text, source, size);
-        if (i < size)
+        if (i < size) {
             length = i; /* every truncation once */
-        else
-            damage(text, &length, &seed);
+        } else {
+            damage(text, &length, &seed, pieces, PIECES);
+            damage_end(&length, &seed, 3);
+        }
         char *exact = malloc(length ? length : 1); /* so that a read beyond the end is seen */
         memcpy(exact, text, length);
         struct collected all = {0};

@@ -1,4 +1,5 @@
 /* Thousands of damaged pictures and models: each is read or refused with a reason, soon and with little memory. */
+#include "../base/damage.h"
 #include "imported.h"
 
 #include <sys/stat.h>
@@ -6,33 +7,9 @@
 
 #include "tree/model_image.h"
 
-static uint32_t next(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return *seed >> 8;
-}
-
-static void damage(uint8_t *bytes, size_t *size, uint32_t *seed)
-{
-    static const char *const pieces[] = {"1e400", "-1", "4294967295", "null", "{", "]", "\xff\xff\xff\xff", "\x7f\xff\xff\xff"};
-    uint32_t count = 1 + next(seed) % 5;
-    for (uint32_t i = 0; i < count && *size > 40; i++) {
-        size_t at = next(seed) % (*size - 32), span = next(seed) % 32;
-        switch (next(seed) % 5) {
-        case 0: bytes[at] = (uint8_t)next(seed); break;
-        case 1: bytes[at] ^= (uint8_t)(1u << next(seed) % 8); break;
-        case 2:
-            memmove(bytes + at, bytes + at + span, *size - at - span);
-            *size -= span;
-            break;
-        case 3: memmove(bytes + at, bytes + next(seed) % (*size - 32), span); break;
-        default: {
-            const char *piece = pieces[next(seed) % (sizeof pieces / sizeof *pieces)];
-            memcpy(bytes + at, piece, strlen(piece));
-        }
-        }
-    }
-}
+static const char *const pieces[] = {
+    "1e400", "-1", "4294967295", "null", "{", "]", "\xff\xff\xff\xff", "\x7f\xff\xff\xff"};
+enum { PIECES = sizeof pieces / sizeof *pieces };
 
 /* --- pictures ---------------------------------------------------------------------------- */
 
@@ -43,7 +20,7 @@ static uint8_t *some_texels(void)
     uint8_t *rgba = malloc(SIDE * SIDE * 4);
     uint32_t seed = 3;
     for (size_t i = 0; i < SIDE * SIDE * 4; i++)
-        rgba[i] = (uint8_t)next(&seed);
+        rgba[i] = (uint8_t)damage_next(&seed);
     return rgba;
 }
 
@@ -98,7 +75,7 @@ static void batter(const uint8_t *whole, size_t size)
     for (unsigned i = 0; i < ROUNDS; i++) {
         size_t length = size;
         memcpy(bytes, whole, size);
-        damage(bytes, &length, &seed);
+        damage(bytes, &length, &seed, pieces, PIECES);
         count += refused(bytes, length) != NULL;
     }
     assert_true(count > ROUNDS / 10);
@@ -190,7 +167,7 @@ static void damaged_models_never_crash(void **state)
         uint8_t bytes[sizeof whole];
         size_t size = sizeof whole - 1;
         memcpy(bytes, whole, sizeof whole);
-        damage(bytes, &size, &seed);
+        damage(bytes, &size, &seed, pieces, PIECES);
         write_file("damaged.gltf", bytes, size);
         result = import("damaged.gltf");
         assert_true(result->ok || *result->record.text);

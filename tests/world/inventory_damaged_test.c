@@ -8,39 +8,15 @@
 
 #include <cmocka.h>
 
+#include "../base/damage.h"
 #include "base/memory.h"
 #include "inventory_file.h"
 
 static const char *const path = "inventory_damaged_test.csv";
 
-static uint32_t next(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return *seed >> 8;
-}
-
-static void damage(char *text, size_t *size, uint32_t *seed)
-{
-    static const char pieces[][8] = {"\"", ";", ",", "\n", "\r\n", "\r", "1e308", "NaN", "-1e9", "\xff", "\xef\xbb\xbf",
-                                     "\t", "sep=;", "0.0.0", "1e 5"};
-    uint32_t count = 1 + next(seed) % 5;
-    for (uint32_t i = 0; i < count && *size > 40; i++) {
-        size_t at = next(seed) % (*size - 32), span = next(seed) % 32;
-        switch (next(seed) % 5) {
-        case 0: text[at] = (char)next(seed); break;
-        case 1: *size = next(seed) % 4 ? *size : at; break;
-        case 2:
-            memmove(text + at, text + at + span, *size - at - span);
-            *size -= span;
-            break;
-        case 3: memmove(text + at, text + next(seed) % (*size - 32), span); break;
-        default: {
-            const char *piece = pieces[next(seed) % (sizeof pieces / sizeof *pieces)];
-            memcpy(text + at, piece, strlen(piece));
-        }
-        }
-    }
-}
+static const char *const pieces[] = {
+    "\"", ";", ",", "\n", "\r\n", "\r", "1e308", "NaN", "-1e9", "\xff", "\xef\xbb\xbf", "\t", "sep=;", "0.0.0", "1e 5"};
+enum { PIECES = sizeof pieces / sizeof *pieces };
 
 static bool plant(const char *text, size_t size)
 {
@@ -71,7 +47,8 @@ static void damaged_inventories_never_crash(void **state)
         char text[sizeof whole];
         size_t size = sizeof whole - 1;
         memcpy(text, whole, sizeof whole);
-        damage(text, &size, &seed);
+        damage(text, &size, &seed, pieces, PIECES);
+        damage_end(&size, &seed, 6);
         bool ok = plant(text, size);
         const char *end = strchr(captured.errors, '\n');
         assert_true(ok ? !end : end && !end[1]); /* one line */
