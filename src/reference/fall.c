@@ -86,7 +86,7 @@ RTCScene wd_trace_fall_scene(const struct wd_trace_scene *scene, const struct wd
 {
     RTCDevice device = scene->models->device;
     const struct wd_tree_mesh *mesh = &wd_trace_model_of(scene->models, tree)->grown.full;
-    RTCScene leaves = rtcNewScene(device);
+    RTCScene leaves = wd_trace_new_scene(device);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     float(*places)[3] = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                 RTC_FORMAT_FLOAT3, sizeof *places,

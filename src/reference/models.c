@@ -73,11 +73,22 @@ static void pass_holes(const struct RTCFilterFunctionNArguments *args)
 
 /* --- building ---------------------------------------------------------------------------- */
 
+RTCScene wd_trace_new_scene(RTCDevice device)
+{
+    RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    return scene;
+}
+
+bool wd_trace_has_twigs(const struct wd_trace_model *model)
+{
+    return model->grown.spray.index_count > 0 && model->model.fall_mps <= 0;
+}
+
 void wd_trace_model_build(struct wd_trace_model *model, RTCDevice device)
 {
     const struct wd_tree_mesh *mesh = &model->grown.full;
-    model->scene = rtcNewScene(device);
-    rtcSetSceneBuildQuality(model->scene, RTC_BUILD_QUALITY_MEDIUM);
+    model->scene = wd_trace_new_scene(device);
     if (mesh->index_count) {
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,

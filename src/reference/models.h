@@ -42,6 +42,12 @@ bool wd_trace_models_init(struct wd_trace_models *models, RTCDevice device, cons
                           const struct wd_trace_looks *looks, unsigned threads, const struct wd_log *log);
 void wd_trace_models_finish(struct wd_trace_models *models); /* accepts {0} */
 
+/* A scene for rays that pass what a filter of their own tells them. */
+RTCScene wd_trace_new_scene(RTCDevice device);
+
+/* Whether its leaves stand for twigs, which are seen next to the eye (near.h). */
+bool wd_trace_has_twigs(const struct wd_trace_model *model);
+
 /* Builds the scene of a model whose mesh and look are set. */
 void wd_trace_model_build(struct wd_trace_model *model, RTCDevice device);
 

@@ -14,18 +14,17 @@ enum { MOST_TRIANGLES = 4000000 };
 
 /* --- which leaves ---------------------------------------------------------------------------- */
 
-bool wd_trace_near_add(struct wd_trace_near *near, const struct wd_trace_model *model,
+void wd_trace_near_add(struct wd_trace_near *near, const struct wd_trace_model *model,
                        const struct wd_tree *tree, uint32_t index, const float transform[12])
 {
     float reach_m = WD_TREE_CROWN_M(*tree) + WD_SPRAY_NONE_M * model->grown.spray_reach;
     const float *foot_m = transform + 9;
-    if (model->grown.spray.index_count == 0 || model->model.fall_mps > 0 ||
+    if (!wd_trace_has_twigs(model) ||
         foot_m[0] * foot_m[0] + foot_m[1] * foot_m[1] > reach_m * reach_m)
-        return false;
+        return;
     struct wd_trace_near_tree *added = wd_push(near->trees, near->count, near->capacity);
     added->tree = index;
     memcpy(added->transform, transform, sizeof added->transform);
-    return true;
 }
 
 static struct wd_vec3 placed(const float m[12], struct wd_vec3 p)
@@ -153,35 +152,18 @@ static void add_twig(struct wd_tree_mesh *mesh, const struct wd_tree_model *grow
                                   first + twig->indices[i + 2]);
 }
 
-static void add_triangles(struct wd_tree_mesh *mesh, const uint32_t *indices, uint32_t count)
+/* The tree's leaves that are twigs: a bit each, and the mesh of the twigs. */
+static void make_twigs(struct wd_trace_near_tree *at, const struct wd_tree_model *grown, float reach)
 {
-    wd_tree_mesh_reserve(mesh, 0, count);
-    memcpy(mesh->indices + mesh->index_count, indices, count * sizeof *indices);
-    mesh->index_count += count;
-}
-
-/* Leaves stand after wood in the full mesh, one after another; flowers after them. */
-static void make_mesh(struct wd_tree_mesh *mesh, const struct wd_trace_near_tree *at,
-                      const struct wd_tree_model *grown, float reach)
-{
-    const struct wd_tree_mesh *full = &grown->full;
-    const struct wd_leaf_set *set = &grown->sets[0][WD_SET_LEAVES];
-    wd_tree_mesh_reserve(mesh, full->vertex_count, 0);
-    memcpy(mesh->vertices, full->vertices, full->vertex_count * sizeof *full->vertices);
-    mesh->vertex_count = full->vertex_count;
-    mesh->wood_index_count = full->wood_index_count;
-    add_triangles(mesh, full->indices, full->wood_index_count);
-    uint32_t next = full->wood_index_count;
-    const struct wd_trace_near_leaf *near = at->leaves, *end = near + at->count;
-    for (uint32_t leaf = 0; leaf < set->leaf_count; leaf++, next += set->index_count) {
-        bool candidate = near < end && near->index == leaf;
-        if (candidate && is_twig(near, reach))
-            add_twig(mesh, grown, near);
-        else
-            add_triangles(mesh, full->indices + next, set->index_count);
-        near += candidate;
+    struct wd_tree_mesh *mesh = &at->twigs->grown.full;
+    at->hidden = wd_alloc_array(grown->sets[0][WD_SET_LEAVES].leaf_count / 32 + 1, sizeof *at->hidden);
+    for (size_t i = 0; i < at->count; i++) {
+        const struct wd_trace_near_leaf *leaf = &at->leaves[i];
+        if (!is_twig(leaf, reach))
+            continue;
+        add_twig(mesh, grown, leaf);
+        at->hidden[leaf->index / 32] |= 1u << leaf->index % 32;
     }
-    add_triangles(mesh, full->indices + next, full->index_count - next);
 }
 
 void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_near_scene *scene)
@@ -196,10 +178,10 @@ void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_near_
         const struct wd_trace_model *model = wd_trace_model_of(scene->models, &scene->trees[at->tree]);
         float reach = scale * model->grown.spray_reach;
         if (count_of(at, &model->grown, reach) > 0) {
-            at->model = wd_alloc(sizeof *at->model);
-            *at->model = (struct wd_trace_model){.model = model->model, .look = model->look};
-            make_mesh(&at->model->grown.full, at, &model->grown, reach);
-            wd_trace_model_build(at->model, scene->models->device);
+            at->twigs = wd_alloc(sizeof *at->twigs);
+            *at->twigs = (struct wd_trace_model){.model = model->model, .look = model->look};
+            make_twigs(at, &model->grown, reach);
+            wd_trace_model_build(at->twigs, scene->models->device);
         }
         free(at->leaves);
         at->leaves = NULL;
@@ -209,18 +191,19 @@ void wd_trace_near_build(struct wd_trace_near *near, const struct wd_trace_near_
 void wd_trace_near_finish(struct wd_trace_near *near)
 {
     for (size_t i = 0; i < near->count; i++) {
-        struct wd_trace_model *model = near->trees[i].model;
-        if (model && model->scene)
-            rtcReleaseScene(model->scene);
-        if (model)
-            wd_tree_mesh_finish(&model->grown.full);
-        free(model);
+        struct wd_trace_model *twigs = near->trees[i].twigs;
+        if (twigs) {
+            rtcReleaseScene(twigs->scene);
+            wd_tree_mesh_finish(&twigs->grown.full);
+        }
+        free(twigs);
+        free(near->trees[i].hidden);
     }
     free(near->trees);
     *near = (struct wd_trace_near){0};
 }
 
-const struct wd_trace_model *wd_trace_near_model(const struct wd_trace_near *near, uint32_t tree)
+static const struct wd_trace_near_tree *find(const struct wd_trace_near *near, uint32_t tree)
 {
     size_t low = 0, high = near->count;
     while (low < high) {
@@ -230,5 +213,23 @@ const struct wd_trace_model *wd_trace_near_model(const struct wd_trace_near *nea
         else
             high = middle;
     }
-    return low < near->count && near->trees[low].tree == tree ? near->trees[low].model : NULL;
+    return low < near->count && near->trees[low].tree == tree ? &near->trees[low] : NULL;
+}
+
+const struct wd_trace_model *wd_trace_near_twigs(const struct wd_trace_near *near, uint32_t tree)
+{
+    return find(near, tree)->twigs;
+}
+
+/* Leaves stand after wood in the full mesh, one after another; flowers after them. */
+bool wd_trace_near_hides(const struct wd_trace_near *near, const struct wd_trace_model *model, uint32_t tree,
+                         uint32_t triangle)
+{
+    const struct wd_trace_near_tree *at = find(near, tree);
+    const struct wd_leaf_set *set = &model->grown.sets[0][WD_SET_LEAVES];
+    uint32_t wood = model->grown.full.wood_index_count / 3, leaf = 0;
+    if (!at || !at->hidden || triangle < wood)
+        return false;
+    leaf = (triangle - wood) / (set->index_count / 3);
+    return leaf < set->leaf_count && (at->hidden[leaf / 32] >> leaf % 32 & 1);
 }

@@ -76,28 +76,23 @@ static void place_tree(struct wd_trace_scene *scene, size_t index)
     const struct wd_trace_model *model = wd_trace_model_of(scene->models, tree);
     float m[12];
     tree_transform(scene, tree, &model->model, m);
-    if (!is_shown(scene, index, m + 9) ||
-        wd_trace_near_add(&scene->near, model, tree, (uint32_t)index, m))
+    if (!is_shown(scene, index, m + 9))
         return;
+    wd_trace_near_add(&scene->near, model, tree, (uint32_t)index, m);
     RTCScene own = wd_trace_falls(model, m + 9) ? wd_trace_fall_scene(scene, tree) : NULL;
     add_instance(scene, index, own ? own : model->scene, m);
     if (own)
         rtcReleaseScene(own); /* the instance keeps it */
 }
 
-const struct wd_trace_model *wd_trace_scene_model(const struct wd_trace_scene *scene, uint32_t tree)
-{
-    const struct wd_trace_model *own = wd_trace_near_model(&scene->near, tree);
-    return own ? own : wd_trace_model_of(scene->models, &scene->world->trees[tree]);
-}
-
-static void place_near_trees(struct wd_trace_scene *scene, const struct wd_trace_view *view)
+static void place_twigs(struct wd_trace_scene *scene, const struct wd_trace_view *view)
 {
     const struct wd_trace_near_scene about = {scene->models, scene->world->trees, view, scene->frame};
     wd_trace_near_build(&scene->near, &about);
     for (size_t i = 0; i < scene->near.count; i++) {
         const struct wd_trace_near_tree *at = &scene->near.trees[i];
-        add_instance(scene, at->tree, wd_trace_scene_model(scene, at->tree)->scene, at->transform);
+        if (at->twigs)
+            add_instance(scene, scene->world->tree_count + 1 + i, at->twigs->scene, at->transform);
     }
 }
 
@@ -116,12 +111,11 @@ bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_mod
     for (int k = 0; k < 3; k++)
         origin_m[k] = frame->camera_mm[k] * 0.001 + (double)frame->camera_frac_m[k];
     wd_trace_ground_init(&scene->ground, device, &world->terrain, origin_m);
-    scene->top = rtcNewScene(device);
-    rtcSetSceneBuildQuality(scene->top, RTC_BUILD_QUALITY_MEDIUM);
+    scene->top = wd_trace_new_scene(device);
     rtcAttachGeometryByID(scene->top, scene->ground.geometry, (unsigned)world->tree_count);
     for (size_t i = 0; i < world->tree_count; i++)
         place_tree(scene, i);
-    place_near_trees(scene, view);
+    place_twigs(scene, view);
     rtcCommitScene(scene->top);
     enum RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_NONE)
@@ -157,22 +151,57 @@ static struct RTCRay embree_ray(const struct wd_trace_ray *ray)
     };
 }
 
+/* What Embree's filters are told of a ray. */
+struct context {
+    struct RTCIntersectContext of_embree; /* first */
+    const struct wd_trace_scene *scene;
+};
+
+/* Rays come one at a time; twigs' ids are no tree's. */
+static void pass_hidden(const struct RTCFilterFunctionNArguments *args)
+{
+    const struct wd_trace_scene *scene = ((const struct context *)args->context)->scene;
+    const struct RTCHit *hit = (const struct RTCHit *)args->hit;
+    uint32_t tree = hit->instID[0];
+    if (args->N == 1 && args->valid[0] == -1 && tree < scene->world->tree_count &&
+        wd_trace_near_hides(&scene->near, wd_trace_model_of(scene->models, &scene->world->trees[tree]), tree,
+                            hit->primID))
+        args->valid[0] = 0;
+}
+
+static void context_init(struct context *context, const struct wd_trace_scene *scene)
+{
+    rtcInitIntersectContext(&context->of_embree);
+    context->of_embree.filter = scene->near.count ? pass_hidden : NULL;
+    context->scene = scene;
+}
+
+const struct wd_trace_model *wd_trace_hit_model(const struct wd_trace_scene *scene, const struct wd_trace_hit *hit)
+{
+    return hit->twig ? wd_trace_near_twigs(&scene->near, hit->tree)
+                     : wd_trace_model_of(scene->models, &scene->world->trees[hit->tree]);
+}
+
 struct wd_trace_hit wd_trace_nearest(const struct wd_trace_scene *scene,
                                      const struct wd_trace_ray *ray)
 {
     struct RTCRayHit rayhit = {.ray = embree_ray(ray),
                                .hit = {.geomID = RTC_INVALID_GEOMETRY_ID,
                                        .instID = {RTC_INVALID_GEOMETRY_ID}}};
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene->top, &context, &rayhit);
+    struct context context;
+    context_init(&context, scene);
+    rtcIntersect1(scene->top, &context.of_embree, &rayhit);
     const struct RTCHit *found = &rayhit.hit;
     struct wd_trace_hit hit = {.at_m = INFINITY};
     if (found->geomID == RTC_INVALID_GEOMETRY_ID)
         return hit;
+    uint32_t count = (uint32_t)scene->world->tree_count;
     bool ground = found->instID[0] == RTC_INVALID_GEOMETRY_ID;
     hit.at_m = rayhit.ray.tfar;
-    hit.tree = ground ? (uint32_t)scene->world->tree_count : found->instID[0];
+    hit.tree = ground ? count : found->instID[0];
+    hit.twig = hit.tree > count;
+    if (hit.twig)
+        hit.tree = scene->near.trees[hit.tree - count - 1].tree;
     hit.triangle = found->primID;
     hit.u = found->u;
     hit.v = found->v;
@@ -181,21 +210,23 @@ struct wd_trace_hit wd_trace_nearest(const struct wd_trace_scene *scene,
     return hit;
 }
 
-static bool blocked(RTCScene scene, const struct wd_trace_ray *ray)
+static bool blocked(RTCScene by, struct RTCIntersectContext *context, const struct wd_trace_ray *ray)
 {
     struct RTCRay shadow = embree_ray(ray);
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene, &context, &shadow);
+    rtcOccluded1(by, context, &shadow);
     return shadow.tfar < 0;
 }
 
 bool wd_trace_blocked(const struct wd_trace_scene *scene, const struct wd_trace_ray *ray)
 {
-    return blocked(scene->top, ray);
+    struct context context;
+    context_init(&context, scene);
+    return blocked(scene->top, &context.of_embree, ray);
 }
 
 bool wd_trace_blocked_by_ground(const struct wd_trace_scene *scene, const struct wd_trace_ray *ray)
 {
-    return blocked(scene->ground.scene, ray);
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    return blocked(scene->ground.scene, &context, ray);
 }

@@ -15,14 +15,16 @@ struct wd_trace_scene {
     const struct wd_frame_uniforms *frame; /* camera, light, wind and ground colours */
     struct wd_trace_ground ground;
     struct wd_trace_near near; /* trees in arm's reach */
-    RTCScene top; /* ids: the tree's index; the ground's is world->tree_count */
+    /* Ids: the tree's index; the ground's is world->tree_count; after it the twigs' of near.trees. */
+    RTCScene top;
 };
 
 /* A place where a ray ends. */
 struct wd_trace_hit {
     float at_m;          /* infinite: the sky */
     uint32_t tree;       /* index; world->tree_count for the ground */
-    uint32_t triangle;   /* of the tree's model, or of the ground */
+    bool twig;           /* of the tree's twigs, not its model */
+    uint32_t triangle;   /* of the model or the twigs, or of the ground */
     float u, v;          /* on the tree's triangle */
     struct wd_vec3 normal; /* of the ground's triangle */
 };
@@ -37,8 +39,8 @@ bool wd_trace_scene_init(struct wd_trace_scene *scene, const struct wd_trace_mod
                          const struct wd_log *log);
 void wd_trace_scene_finish(struct wd_trace_scene *scene); /* accepts {0} */
 
-/* The model that rays meet of a tree: its variant's, or its own where it is near. Thread-safe. */
-const struct wd_trace_model *wd_trace_scene_model(const struct wd_trace_scene *scene, uint32_t tree);
+/* What a hit's triangle is one of: a tree's model, or its twigs. Thread-safe. */
+const struct wd_trace_model *wd_trace_hit_model(const struct wd_trace_scene *scene, const struct wd_trace_hit *hit);
 
 struct wd_trace_ray {
     struct wd_vec3 from, direction; /* unit */

@@ -131,7 +131,7 @@ static void tree_surface(struct wd_surface *surface, const struct wd_trace_scene
                          const struct wd_trace_hit *hit, struct wd_vec3 eye, float pixel_rad)
 {
     const struct wd_tree *tree = &scene->world->trees[hit->tree];
-    const struct wd_trace_model *model = wd_trace_scene_model(scene, hit->tree);
+    const struct wd_trace_model *model = wd_trace_hit_model(scene, hit);
     struct corners corners = corners_of(model, hit);
     struct wd_tree_pose pose = wd_tree_pose_of(*tree, model->model);
     bool leaf = (corners.vertex[0]->kind & WD_VERTEX_LEAF) != 0;
