@@ -401,6 +401,35 @@ static bool load_model(struct wd_tree_model *model, struct wd_bake_cache *cache,
     return ok;
 }
 
+static void fit_model(struct wd_tree_model *model)
+{
+    wd_tree_thinning_fit(model);
+    wd_tree_mesh_measure_seen(model->seen_m2, &model->full);
+    model->shade = wd_crown_shade_of(&model->full);
+    wd_tree_sunlit_fit(model);
+}
+
+/* Of imported models the file is read anew; what is fitted to its mesh is kept. */
+static void fit_import(struct wd_tree_model *model, struct wd_bake_cache *cache)
+{
+    const uint64_t key = mesh_key(&model->full);
+    uint8_t block[4 * FIGURES];
+    float *figures[FIGURES];
+    size_t found = 0;
+    uint8_t *kept = wd_cache_load(cache, "fits", key, sizeof block, &found);
+    figures_of(figures, model);
+    if (found == sizeof block)
+        for (size_t i = 0; i < FIGURES; i++)
+            *figures[i] = float_of(wd_cache_get_word(kept, i));
+    else {
+        fit_model(model);
+        for (size_t i = 0; i < FIGURES; i++)
+            wd_cache_put_word(block, i, bits_of(*figures[i]));
+        wd_cache_store(cache, "fits", key, block, sizeof block);
+    }
+    free(kept);
+}
+
 bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_cache *cache,
                    const struct wd_scene *scene, uint32_t index, const struct wd_log *log)
 {
@@ -412,15 +441,14 @@ bool wd_growth_get(struct wd_tree_model *model, uint64_t *key, struct wd_bake_ca
         return true;
     if (!wd_variant_grow(model, scene, index, log))
         return false;
-    wd_tree_thinning_fit(model);
-    wd_tree_mesh_measure_seen(model->seen_m2, &model->full);
-    model->shade = wd_crown_shade_of(&model->full);
-    wd_tree_sunlit_fit(model);
-    wd_tree_model_drop_leaves(model);
-    if (species)
-        store_model(cache, *key, model);
-    else
+    if (!species) {
         *key = import_key(grown.imported);
+        fit_import(model, cache);
+        return true;
+    }
+    fit_model(model);
+    wd_tree_model_drop_leaves(model);
+    store_model(cache, *key, model);
     return true;
 }
 

@@ -1,3 +1,4 @@
+#include <dirent.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -192,17 +193,72 @@ static void keys_hold_no_addresses(void **state)
     wd_scene_finish(&again);
 }
 
+/* The only file of a kind; drops it. */
+static uint64_t drop_only(const struct fixture *f, const char *kind)
+{
+    unsigned long long key = 0;
+    size_t count = 0, length = strlen(kind);
+    DIR *folder = opendir(f->directory);
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder));)
+        if (strncmp(entry->d_name, kind, length) == 0)
+            count += (size_t)sscanf(entry->d_name + length, "-%llx.bin", &key);
+    closedir(folder);
+    assert_int_equal(count, 1);
+    drop(f, kind, key);
+    return key;
+}
+
+static void import_tree(struct fixture *f, struct wd_tree_import *import)
+{
+    assert_true(wd_variant_grow(&import->model, &f->scene, 0, NULL));
+    free(import->model.leaves); /* of imports they are triangles like others */
+    import->model.leaves = NULL;
+    import->model.leaf_count = import->model.flower_count = 0;
+    f->scene.species[0].imported = import;
+}
+
+static struct wd_tree_model imported_fit(struct fixture *f)
+{
+    uint64_t key;
+    struct wd_tree_model model;
+    assert_true(wd_growth_get(&model, &key, &f->cache, &f->scene, 0, NULL));
+    assert_true(model.borrowed); /* from the import, which frees it */
+    return model;
+}
+
+static void what_is_fitted_to_an_import_is_kept(void **state)
+{
+    struct fixture *f = *state;
+    struct wd_tree_import import = {0};
+    size_t size;
+    import_tree(f, &import);
+    const struct wd_tree_model first = imported_fit(f), kept = imported_fit(f);
+    assert_true(first.recollision > 0 && first.shade.radius_m > 0);
+    assert_memory_equal(&first, &kept, sizeof first);
+    uint64_t key = drop_only(f, "fits");
+    imported_fit(f);
+    uint8_t *block = wd_cache_load(&f->cache, "fits", key, 1 << 20, &size);
+    assert_non_null(block);
+    wd_cache_store(&f->cache, "fits", key, block, size - 4); /* not all of it */
+    const struct wd_tree_model again = imported_fit(f);
+    assert_memory_equal(&first, &again, sizeof first);
+    block[2] ^= 1; /* of its first figure */
+    wd_cache_store(&f->cache, "fits", key, block, size);
+    assert_true(imported_fit(f).height_m != first.height_m);
+    assert_true(drop_only(f, "fits") == key);
+    free(block);
+    f->scene.species[0].imported = NULL;
+    wd_tree_model_finish(&import.model);
+}
+
 static void imported_trees_are_named_by_mesh_and_pictures(void **state)
 {
     struct fixture *f = *state;
     uint8_t texels[16] = {0};
     struct wd_model_picture picture = {.image = {2, 2, texels}};
     struct wd_tree_import import = {.materials = {.pictures = &picture, .picture_count = 1}};
-    assert_true(wd_variant_grow(&import.model, &f->scene, 0, NULL));
-    free(import.model.leaves); /* of imports they are triangles like others */
-    import.model.leaves = NULL;
-    import.model.leaf_count = import.model.flower_count = 0;
-    f->scene.species[0].imported = &import;
+    import_tree(f, &import);
     uint64_t keys[4];
     for (int i = 0; i < 4; i++) {
         struct wd_tree_model model;
@@ -216,6 +272,7 @@ static void imported_trees_are_named_by_mesh_and_pictures(void **state)
     assert_true(keys[0] == keys[1]);
     assert_true(keys[0] != keys[2]);
     assert_true(keys[0] != keys[3]);
+    drop_only(f, "fits");
 }
 
 static void assert_same_splats(const struct wd_splats *a, const struct wd_splats *b)
@@ -281,6 +338,7 @@ int main(void)
         TEST(a_damaged_file_grows_the_tree_again),
         TEST(keys_follow_what_growth_sees),
         TEST(keys_hold_no_addresses),
+        TEST(what_is_fitted_to_an_import_is_kept),
         TEST(imported_trees_are_named_by_mesh_and_pictures),
         TEST(splats_are_kept_by_model),
         TEST(looks_are_kept_by_species),
