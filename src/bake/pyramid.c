@@ -24,7 +24,6 @@ void wd_pyramid_init(struct wd_pyramid *pyramid, uint32_t width, uint32_t height
 {
     assert(mips >= 1 && mips <= WD_PYRAMID_MIPS);
     *pyramid = (struct wd_pyramid){.mips = mips};
-    wd_srgb_table(pyramid->linear);
     for (uint32_t mip = 0; mip < mips; mip++) {
         struct wd_pyramid_level *level = &pyramid->levels[mip];
         *level = (struct wd_pyramid_level){halved(width, mip), halved(height, mip), NULL};
@@ -48,7 +47,7 @@ static void first_level(struct wd_pyramid *pyramid, const uint8_t *planes)
         float *values = level->texels[i].values, coverage = (float)planes[4 * i + 3] / 255.0f;
         for (int k = 0; k < VALUES; k++) {
             uint8_t byte = planes[4 * (i + count * (size_t)(k / 4)) + (size_t)(k % 4)];
-            values[k] = coverage * (k < COVERAGE ? pyramid->linear[byte] : (float)byte / 255.0f);
+            values[k] = coverage * (k < COVERAGE ? wd_srgb_decode(byte) : (float)byte / 255.0f);
         }
         values[COVERAGE] = coverage;
     }

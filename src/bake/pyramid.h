@@ -20,7 +20,6 @@ struct wd_pyramid_level {
 struct wd_pyramid {
     struct wd_pyramid_level levels[WD_PYRAMID_MIPS];
     uint32_t mips;
-    float linear[256]; /* of sRGB */
 };
 
 /* Sides are powers of two; each mip halves both, down to 1. Serves any number of pictures. */

@@ -347,8 +347,7 @@ static void mean_albedo(const struct wd_point_look *look, uint32_t layer, float 
     size_t count = (size_t)look->size * look->size;
     double sum[3] = {0}, shown = 1e-9;
     const uint8_t *texels = look->rgba + 4 * count * layer;
-    float linear[256];
-    wd_srgb_table(linear);
+    const float *linear = wd_srgb_table();
     for (size_t i = 0; i < count; i++) {
         shown += texels[4 * i + 3];
         for (size_t k = 0; k < 3; k++)

@@ -1,17 +1,28 @@
 #include "base/color.h"
 
 #include <math.h>
+#include <pthread.h>
+
+static float decoded[256];
+
+static void fill_decoded(void)
+{
+    for (int value = 0; value < 256; value++) {
+        float x = (float)value / 255.0f;
+        decoded[value] = x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
+    }
+}
+
+const float *wd_srgb_table(void)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, fill_decoded);
+    return decoded;
+}
 
 float wd_srgb_decode(uint8_t value)
 {
-    float x = (float)value / 255.0f;
-    return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
-}
-
-void wd_srgb_table(float linear[256])
-{
-    for (int value = 0; value < 256; value++)
-        linear[value] = wd_srgb_decode((uint8_t)value);
+    return wd_srgb_table()[value];
 }
 
 uint8_t wd_unorm_encode(float value)

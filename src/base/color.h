@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 float wd_srgb_decode(uint8_t value);  /* to linear, 0..1 */
-void wd_srgb_table(float linear[256]); /* of every value: for what decodes many */
+const float *wd_srgb_table(void);     /* [256]: of every value, for what decodes many; thread-safe */
 uint8_t wd_srgb_encode(float linear); /* clamps to 0..1 */
 uint8_t wd_unorm_encode(float value); /* 0..1 to 0..255, clamped, rounded */
 

@@ -58,8 +58,9 @@ static void keep_coverage(uint8_t *rgba, uint32_t size, float wanted)
 }
 
 /* Halves a square sRGB image, averaging linear light. */
-static void halve(uint8_t *coarse, const uint8_t *fine, uint32_t size, const float linear[256])
+static void halve(uint8_t *coarse, const uint8_t *fine, uint32_t size)
 {
+    const float *linear = wd_srgb_table();
     for (uint32_t y = 0; y < size; y++) {
         for (uint32_t x = 0; x < size; x++) {
             const uint8_t *from = fine + 4 * ((size_t)2 * y * 2 * size + 2 * x);
@@ -112,14 +113,13 @@ static const uint8_t *layer_of(const uint8_t *rgba, uint32_t layer)
 struct mip_rule {
     void (*halve)(const struct mip_rule *rule, uint8_t *coarse, const uint8_t *fine,
                   uint32_t size);
-    float linear[256]; /* of sRGB bytes */
-    float covered;     /* share of the finest level that is opaque */
+    float covered; /* share of the finest level that is opaque */
 };
 
 static void halve_look(const struct mip_rule *rule, uint8_t *coarse, const uint8_t *fine,
                        uint32_t size)
 {
-    halve(coarse, fine, size, rule->linear);
+    halve(coarse, fine, size);
     keep_coverage(coarse, size, rule->covered);
 }
 
@@ -161,7 +161,6 @@ bool wd_looks_upload(struct wd_image *image, struct wd_gpu *gpu, const uint8_t *
                      uint32_t species_count)
 {
     struct mip_rule rule = {.halve = halve_look};
-    wd_srgb_table(rule.linear);
     return make_image(image, gpu, "looks", VK_FORMAT_R8G8B8A8_SRGB, species_count) &&
            upload_mips(image, gpu, rgba, &rule);
 }

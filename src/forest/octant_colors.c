@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/color.h"
 #include "base/memory.h"
 #include "forest/octant_pictures.h"
 #include "shared/tree_pose.h"
@@ -62,16 +61,14 @@ static uint32_t part_of(const struct wd_octant *parent, const struct wd_octant *
 
 /* What a side of the children shows: four columns of a near and a far part, or the plain mean. */
 static struct wd_octant_mean side_of_children(const struct wd_octant_look *const parts[8],
-                                              uint32_t side, enum wd_octant_average average,
-                                              const float linear[256])
+                                              uint32_t side, enum wd_octant_average average)
 {
     struct wd_octant_mean sum = {0};
     uint32_t axis = side / 2, near_bit = side % 2 == 0 ? 1u << axis : 0;
     for (uint32_t part = 0; part < 8; part++) {
         if (!parts[part])
             continue;
-        struct wd_octant_mean mean =
-            wd_octant_mean_of(parts[part], side, linear);
+        struct wd_octant_mean mean = wd_octant_mean_of(parts[part], side);
         const struct wd_octant_look *front = parts[part ^ 1u << axis];
         float seen = 0.25f;
         if (average == WD_OCTANT_PLAIN)
@@ -87,8 +84,6 @@ static struct wd_octant_mean side_of_children(const struct wd_octant_look *const
 static void add_children(struct wd_octant_look *looks, const struct wd_octree *octree,
                          enum wd_octant_average average)
 {
-    float linear[256];
-    wd_srgb_table(linear);
     for (uint32_t i = octree->count; i-- > 0;) {
         const struct wd_octant *octant = &octree->octants[i];
         const struct wd_octant_look *parts[8] = {NULL};
@@ -98,8 +93,8 @@ static void add_children(struct wd_octant_look *looks, const struct wd_octree *o
             child = octree->octants[child].next_sibling;
         }
         for (uint32_t side = 0; side < WD_OCTANT_SIDES && octant->child_count; side++) {
-            struct wd_octant_mean own = wd_octant_mean_of(&looks[i], side, linear);
-            struct wd_octant_mean below = side_of_children(parts, side, average, linear);
+            struct wd_octant_mean own = wd_octant_mean_of(&looks[i], side);
+            struct wd_octant_mean below = side_of_children(parts, side, average);
             struct wd_octant_mean both = {0};
             /* trees of both levels stand among each other: each hides half of where they cross */
             add_below(&both, &own, 1.0f - 0.5f * below.coverage);

@@ -34,14 +34,13 @@ static uint32_t mixed_of(const struct wd_octant_mean *mean)
     return packed;
 }
 
-struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint32_t side,
-                                        const float linear[256])
+struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint32_t side)
 {
     uint32_t color = look->color[side], normal = look->normal[side];
     uint32_t leaf = look->leaf[side / 4] >> (8 * (side % 4)) & 0xffu;
     struct wd_octant_mean mean = {.coverage = wd_octant_coverage(color)};
     for (int k = 0; k < 3; k++) {
-        mean.color[k] = mean.coverage * linear[color >> (8 * k) & 0xffu];
+        mean.color[k] = mean.coverage * wd_srgb_decode((uint8_t)(color >> (8 * k)));
         mean.normal[k] = mean.coverage * ((float)(normal >> (8 * k) & 0xffu) / 127.5f - 1.0f);
     }
     mean.openness = mean.coverage * (float)(normal >> 24) / 255.0f;
@@ -91,12 +90,12 @@ static struct wd_octant_mean mean_of_pixels(const struct wd_octant_pictures *p, 
             if (albedo[3] == 0)
                 continue;
             for (int k = 0; k < 3; k++) {
-                sum.color[k] += weight * p->linear[albedo[k]];
+                sum.color[k] += weight * wd_srgb_decode(albedo[k]);
                 sum.normal[k] += weight * ((float)normal[k] / 127.5f - 1.0f);
             }
             float openness = weight * (float)normal[3] / 255.0f, leaf = leaf_of((float)albedo[3] / 255.0f);
             for (int k = 0; k < 3; k++)
-                sum.leaves[k] += leaf * weight * p->linear[albedo[k]];
+                sum.leaves[k] += leaf * weight * wd_srgb_decode(albedo[k]);
             sum.leaves[3] += leaf * openness;
             sum.openness += openness;
             sum.leaf += weight * leaf;
@@ -148,7 +147,6 @@ bool wd_octant_pictures_init(struct wd_octant_pictures *p, struct wd_gpu *gpu,
     p->columns = ATLAS_PIXELS / (p->cells * p->pixels);
     p->albedo_bytes = wd_alloc((size_t)4 * ATLAS_PIXELS * ATLAS_PIXELS);
     p->normal_bytes = wd_alloc((size_t)4 * ATLAS_PIXELS * ATLAS_PIXELS);
-    wd_srgb_table(p->linear);
     bool ok = wd_frames_init(&p->frames, gpu) && init_pipeline(&p->pipeline, gpu) &&
               init_atlas(p) && wd_forest_make_cards(forest, gpu) &&
               wd_forest_bake_cards(forest, gpu, WD_BAKE_ALL, planes, WD_CARD_DEPTH_ALL);

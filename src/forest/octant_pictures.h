@@ -13,8 +13,7 @@ struct wd_octant_mean {
     float coverage;                            /* 0..1 */
     float leaves[WD_MIXED_KINDS];              /* colour and openness of leaves alone */
 };
-struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint32_t side,
-                                        const float linear[256]);
+struct wd_octant_mean wd_octant_mean_of(const struct wd_octant_look *look, uint32_t side);
 void wd_octant_mean_pack(const struct wd_octant_mean *mean, struct wd_octant_look *look,
                          uint32_t side);
 
@@ -38,7 +37,6 @@ struct wd_octant_pictures {
     size_t picture_count, picture_capacity, owner_capacity, entry_count, entry_capacity;
     uint32_t cells, pixels, columns; /* a picture's cells a side; a cell's pixels; tiles */
     uint32_t renders;
-    float linear[256]; /* of sRGB */
     /* Called with cells * cells means, rows from the top, of one finished picture. */
     void (*take)(void *user, uint32_t owner, const struct wd_octant_picture *picture,
                  const struct wd_octant_mean *means);

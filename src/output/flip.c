@@ -100,8 +100,7 @@ static void free_planes(struct plane_set *set)
 
 static void fill_opponent(struct plane_set *set, const uint8_t *pixels, uint32_t stride)
 {
-    float linear[256];
-    wd_srgb_table(linear);
+    const float *linear = wd_srgb_table();
     for (size_t i = 0; i < (size_t)set->width * set->height; i++) {
         const uint8_t *p = pixels + i * stride;
         const float rgb[3] = {linear[p[0]], linear[p[1]], linear[p[2]]};

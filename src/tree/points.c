@@ -16,7 +16,6 @@ struct surface {
     uint32_t *order; /* triangle */
     double *below;   /* [count + 1] m^2 */
     size_t count, wood_count;
-    float linear[256]; /* of sRGB */
 };
 
 enum { KEY = 0x70e5 };
@@ -103,7 +102,6 @@ static void surface_init(struct surface *surface, const struct wd_tree_mesh *mes
         .count = count,
         .wood_count = wood < count ? wood : count,
     };
-    wd_srgb_table(surface->linear);
     order_part(surface, 0, surface->wood_count, 1);
     order_part(surface, surface->wood_count, count - surface->wood_count, petals_seen(mesh));
 }
@@ -243,7 +241,7 @@ static void sample_point(struct wd_tree_point *point, const struct surface *surf
     float albedo[3];
     for (int k = 0; k < 3; k++) {
         point->position_m[k] = blend.position_m[k];
-        albedo[k] = blend.tint[k] * surface->linear[color[k]];
+        albedo[k] = blend.tint[k] * wd_srgb_decode(color[k]);
     }
     point->normal = wd_pack_normal(normal);
     point->face = wood ? point->normal : face_of(&triangle);

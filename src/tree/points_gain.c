@@ -236,8 +236,7 @@ static struct wd_facet *facets_of_bark(const struct wd_facet *facets, const stru
 {
     struct wd_facet *bark = wd_alloc_array(discs->count + 1, sizeof *bark);
     memcpy(bark, facets, discs->count * sizeof *bark);
-    float linear[256];
-    wd_srgb_table(linear);
+    const float *linear = wd_srgb_table();
     *sum = 0;
     for (size_t i = 0; i < discs->count; i++) {
         bark[i].openness = wd_unorm_encode(linear[(uint8_t)(discs->points[i].albedo >> 8)]);

@@ -17,8 +17,7 @@ void wd_image_block_means(const uint8_t *rgb, uint32_t width, uint32_t height, u
                           float *means)
 {
     uint32_t columns = (width + block - 1) / block, rows = (height + block - 1) / block;
-    float linear[256];
-    wd_srgb_table(linear);
+    const float *linear = wd_srgb_table();
     double *sums = wd_alloc_array((size_t)columns * rows * 3, sizeof *sums);
     for (uint32_t y = 0; y < height; y++) {
         double *row = sums + (size_t)(y / block) * columns * 3;
@@ -69,8 +68,7 @@ struct wd_image_difference wd_image_compare(const uint8_t *a, const uint8_t *b, 
     size_t pixels = (size_t)width * height;
     if (pixels == 0)
         return difference;
-    float linear[256];
-    wd_srgb_table(linear);
+    const float *linear = wd_srgb_table();
     double squares = 0;
     uint64_t sum = 0, different = 0;
     for (size_t i = 0; i < pixels; i++) {
