@@ -57,9 +57,9 @@ static char *describe_machine(const struct bench *bench)
     double memory_gb = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGE_SIZE) * 1e-9;
     if (asprintf(&text,
                  "device: %s\nprocessor: %s, %ld threads\nmemory: %.1f GB\nsystem: %s %s %s\n"
-                 "weald " WEALD_VERSION,
+                 "weald %s",
                  bench->device, processor, sysconf(_SC_NPROCESSORS_ONLN), memory_gb, name.sysname,
-                 name.release, name.machine) < 0)
+                 name.release, name.machine, wd_version()) < 0)
         abort();
     return text;
 }

@@ -133,8 +133,8 @@ static void manual_command(FILE *to, const struct cli_command *command)
 
 void cli_help_manual(FILE *to)
 {
+    fprintf(to, ".TH WEALD 1 \"\" \"weald %s\" \"User Commands\"\n", wd_version());
     fputs(
-        ".TH WEALD 1 \"\" \"weald " WEALD_VERSION "\" \"User Commands\"\n"
         ".SH NAME\nweald \\- draw forests from terrain, species and inventories\n"
         ".SH SYNOPSIS\n.B weald\n.I COMMAND\n[\\fIOPTIONS\\fR]\n"
         ".SH DESCRIPTION\n"

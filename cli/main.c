@@ -164,7 +164,7 @@ static enum cli_status run(int word_count, char **words)
         return CLI_USAGE;
     }
     if (!strcmp(words[0], "--version")) {
-        puts("weald " WEALD_VERSION);
+        printf("weald %s\n", wd_version());
         return CLI_OK;
     }
     if (!strcmp(words[0], "--help") || !strcmp(words[0], "-h") || !strcmp(words[0], "help")) {

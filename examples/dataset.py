@@ -11,9 +11,9 @@ in the terrain's own coordinates. The camera is a pinhole without distortion:
   fx, fy, cx, cy  are in pixels from the picture's upper left corner
   trees  are those in sight: id, pixels (how many), box (x0, y0, x1, y1 in pixels, x1 and y1 just
          beyond), species, position_m of the foot, height_m, distance_m of the foot
-Even pictures are seen by a person's eyes, odd ones from a drone; where there is a lake, heights
-are over its bed. The same seed gives the same set on the same device and driver. Needs libweald
-and nothing but Python's own library.
+Even pictures are seen by a person's eyes, odd ones from a drone, over water where it stands. The
+same seed gives the same set on the same device and driver. Needs libweald and nothing but Python's
+own library.
 """
 import argparse
 import contextlib
@@ -36,6 +36,7 @@ TRIES = 100    # to find such a view
 
 
 # Structures of include/weald/*.h, whole; pointers that are not followed here are c_void_p.
+VERSION = "0.1"
 
 class Log(Structure):
     _fields_ = [("sink", c_void_p), ("user", c_void_p)]  # NULL: errors go to standard error
@@ -97,7 +98,7 @@ class Picture(Structure):
 
 
 class WealdError(Exception):
-    """A call failed; the library has said why on standard error."""
+    """A call failed (the library has said why on standard error), or it is of another version."""
 
 
 def load_library(path):
@@ -108,13 +109,16 @@ def load_library(path):
         if result != 0:
             raise WealdError(f"{function.__name__}: {weald.wd_result_name(result).decode()} error")
 
-    weald.wd_result_name.restype = c_char_p
+    weald.wd_version.restype = weald.wd_result_name.restype = c_char_p
+    version = weald.wd_version().decode()
+    if version.rpartition(".")[0] != VERSION:
+        raise WealdError(f"{path} is weald {version}, these structures are of {VERSION}")
     for function in (weald.wd_forest_create, weald.wd_renderer_create,
                      weald.wd_renderer_set_forest, weald.wd_renderer_render,
                      weald.wd_picture_write):
         function.errcheck = check
     weald.wd_forest_get_tree.restype = weald.wd_forest_get_species.restype = c_bool
-    weald.wd_forest_ground_m.restype = c_double
+    weald.wd_forest_ground_m.restype = weald.wd_forest_water_m.restype = c_double
     return weald
 
 
@@ -138,8 +142,9 @@ class Scene:
         x, y = (low + (high - low) * rng.uniform(0.1, 0.9) for low, high in spans)
         to_x, to_y = (rng.uniform(low, high) for low, high in spans)
         heights_m, pitches_deg = VIEWS[view]
-        ground_m = self.weald.wd_forest_ground_m(self.forest, c_double(x), c_double(y))
-        return Camera((x, y, ground_m + rng.uniform(*heights_m)), math.atan2(to_x - x, to_y - y),
+        place = self.forest, c_double(x), c_double(y)
+        floor_m = max(self.weald.wd_forest_ground_m(*place), self.weald.wd_forest_water_m(*place))
+        return Camera((x, y, floor_m + rng.uniform(*heights_m)), math.atan2(to_x - x, to_y - y),
                       math.radians(rng.uniform(*pitches_deg)), math.radians(fov_deg))
 
     def trees(self, picture):

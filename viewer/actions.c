@@ -23,9 +23,10 @@ void viewer_notice(struct viewer_state *viewer, const char *format, ...)
     viewer->notice_until_frame = viewer->frame_count + NOTICE_FRAMES;
 }
 
+/* Of deep water not the bed: nobody walks there. */
 static double ground_m(const void *forest, double x_m, double y_m)
 {
-    return wd_forest_ground_m(forest, x_m, y_m);
+    return fmax(wd_forest_ground_m(forest, x_m, y_m), wd_forest_water_m(forest, x_m, y_m) - VIEWER_WADE_M);
 }
 
 struct viewer_ground viewer_ground(const struct viewer_state *viewer)

@@ -6,6 +6,7 @@
 
 #define VIEWER_EYE_M 1.7           /* height of a walker's eye above the ground */
 #define VIEWER_FLY_CLEARANCE_M 0.5 /* nearest to the ground that flying comes */
+#define VIEWER_WADE_M 0.4          /* so deep in water the ground is taken to be */
 
 enum viewer_gait {
     VIEWER_FLY,

@@ -93,6 +93,8 @@ bool wd_forest_get_tree(const struct wd_forest *forest, uint32_t id, struct wd_t
 
 /* Height of the ground at a local place, metres; outside, that of the nearest edge. Thread-safe. */
 double wd_forest_ground_m(const struct wd_forest *forest, double x_m, double y_m);
+/* Height of the water that stands over that ground, metres; -INFINITY where none does. Thread-safe. */
+double wd_forest_water_m(const struct wd_forest *forest, double x_m, double y_m);
 
 /* Least and greatest vertical field of view, in scene files as in struct wd_camera: 0.001746 to 3.124139
  * radians. Narrower views take ever longer to draw (minutes, below 0.005 degrees). */

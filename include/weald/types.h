@@ -35,6 +35,10 @@ enum wd_result {
 /* Threads. Calls said to be thread-safe may run beside each other on the same objects, as any may on objects that have
  * nothing to do with each other; all others on an object come one at a time. */
 
+/* Of the library that is loaded, as "1.2.3", for programs that hold its structures in another language: these are those
+ * of the headers of that version. Thread-safe. */
+const char *wd_version(void);
+
 /* Short English name of a result ("input", "output", ...); never NULL. Thread-safe. */
 const char *wd_result_name(enum wd_result result);
 

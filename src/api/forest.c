@@ -8,6 +8,7 @@
 #include "api/sky_file.h"
 #include "base/memory.h"
 #include "tree/import.h"
+#include "world/river.h"
 
 static bool parse_seed(const char *text, uint32_t *seed, const struct wd_log *log)
 {
@@ -181,6 +182,15 @@ bool wd_forest_get_tree(const struct wd_forest *forest, uint32_t id, struct wd_t
 double wd_forest_ground_m(const struct wd_forest *forest, double x_m, double y_m)
 {
     return wd_terrain_height(&forest->world.terrain, x_m, y_m);
+}
+
+double wd_forest_water_m(const struct wd_forest *forest, double x_m, double y_m)
+{
+    const struct wd_terrain *terrain = &forest->world.terrain;
+    double level_m = forest->scene.water.enabled ? forest->scene.water.level_m : -(double)INFINITY;
+    if (wd_river_covers(terrain, x_m, y_m))
+        level_m = fmax(level_m, (double)wd_river_level(terrain, x_m, y_m));
+    return level_m > wd_terrain_height(terrain, x_m, y_m) ? level_m : -(double)INFINITY;
 }
 
 void wd_forest_get_render_defaults(const struct wd_forest *forest,

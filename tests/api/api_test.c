@@ -52,6 +52,33 @@ static void the_forest_counts_its_trees(void **state)
     assert_int_equal(sum, info.tree_count);
 }
 
+static void water_stands_over_what_lies_below_its_level(void **state)
+{
+    struct suite *suite = *state;
+    const char *const settings[] = {"water.enabled=true", "water.level_m=12", NULL};
+    const struct wd_forest_params params = {.scene_path = suite->small_path, .settings = settings, .log = suite->log};
+    struct wd_forest *forest;
+    int under = 0, open = 0;
+    assert_int_equal(wd_forest_create(&forest, &params), WD_OK);
+    for (int i = 0; i < 100; i++) {
+        double x_m = 20 * (i % 10), y_m = 20 * (i / 10), ground_m = wd_forest_ground_m(forest, x_m, y_m);
+        assert_true(wd_forest_water_m(suite->forest, x_m, y_m) == -(double)INFINITY);
+        assert_true(wd_forest_water_m(forest, x_m, y_m) == (ground_m < 12 ? 12 : -(double)INFINITY));
+        under += ground_m < 12;
+        open += ground_m > 12;
+    }
+    assert_true(under > 0 && open > 0);
+    wd_forest_destroy(&forest);
+}
+
+static void the_library_tells_its_version(void **state)
+{
+    (void)state;
+    int major, minor, patch, length = 0;
+    assert_int_equal(sscanf(wd_version(), "%d.%d.%d%n", &major, &minor, &patch, &length), 3);
+    assert_int_equal(wd_version()[length], '\0');
+}
+
 static void there_is_nothing_beyond_the_last(void **state)
 {
     struct suite *suite = *state;
@@ -746,6 +773,8 @@ int main(int argc, char **argv)
     static struct suite suite;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(the_forest_counts_its_trees, &suite),
+        cmocka_unit_test_prestate(water_stands_over_what_lies_below_its_level, &suite),
+        cmocka_unit_test(the_library_tells_its_version),
         cmocka_unit_test_prestate(there_is_nothing_beyond_the_last, &suite),
         cmocka_unit_test_prestate(cameras_and_paths_go_by_name, &suite),
         cmocka_unit_test_prestate(unknown_cameras_are_named, &suite),

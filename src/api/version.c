@@ -1,0 +1,6 @@
+#include "weald/types.h"
+
+const char *wd_version(void)
+{
+    return WEALD_VERSION;
+}
