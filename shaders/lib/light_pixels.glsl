@@ -1,20 +1,18 @@
 /* Radiance of the pixels of some tiles. One pipeline for each combination of parts that tiles have
  * (light_tiles.comp), so that a tile of sky does not pay for trees. Expects FRAME_BLOCK: the kind of block
- * that the frame is read from. */
+ * that the frame is read from. With WET tiles hold pixels with and without water: one kind is shaded, that of
+ * PARTS; the other after or before. */
 #include "shared/frame.h"
 #include "shared/forest.h"
 #include "shared/light.h"
 
-layout(local_size_x = WD_TILE, local_size_y_id = 5) in; /* rows at once; a thread takes every so manieth */
+layout(local_size_x = WD_TILE, local_size_y_id = 4) in; /* rows at once; a thread takes every so manieth */
 
 layout(constant_id = 0) const uint PARTS = WD_PART_ALL;
 layout(constant_id = 1) const uint LIST = 0;
-layout(constant_id = 2) const uint MIXED = 0u; /* tiles hold pixels with and without water: one kind is
-                                                  shaded, that of PARTS; the other after or before */
-
-layout(constant_id = 3) const uint RUNS = 1u;
-layout(constant_id = 4) const uint SINGLE = 0u; /* 1: all leaves are single ones */
-layout(constant_id = 6) const uint COMPARES = 0u; /* see lib/shadow.glsl */
+layout(constant_id = 2) const uint RUNS = 1u;
+layout(constant_id = 3) const uint SINGLE = 0u; /* 1: all leaves are single ones */
+layout(constant_id = 5) const uint COMPARES = 0u; /* see lib/shadow.glsl */
 
 layout(scalar, set = 0, binding = 0) FRAME_BLOCK Frame { wd_frame_uniforms frame_block; };
 layout(set = 0, binding = 1) uniform sampler2D gbuffer_albedo;
@@ -63,6 +61,7 @@ wd_light_push push = push_block;
 #include "lib/tree.glsl"
 #include "lib/crown.glsl"
 #include "lib/shade.glsl"
+#ifdef WET
 #include "lib/river.glsl"
 #include "lib/water.glsl"
 
@@ -74,17 +73,20 @@ float pixel_water_m(ivec2 at)
     float way_m = pixel_is_sky(depth) ? WD_SKY_M : length(ray) * frame.near_m / depth;
     return water_ahead_m(normalize(ray), way_m);
 }
+#endif
 
 /* Ground or sky as the eye gets it, through water and air. */
 vec3 seen(uvec2 at, vec3 radiance, vec3 direction, float distance_m, float water_m,
           float sun_share, float ground_share)
 {
+#ifdef WET
     if ((PARTS & WD_PART_WATER) != 0u) {
         float depth_m = distance_m < WD_SKY_M ? distance_m - water_m : 1e4;
         radiance = water_radiance(at, radiance, direction, water_m, depth_m, sun_share);
         distance_m = water_m;
         haze_end = IN_THE_OPEN;
     }
+#endif
     bool sky = distance_m >= WD_SKY_M;
     if (sky && frame.fog_over <= 0.0)
         return radiance;
@@ -120,9 +122,12 @@ void light_pixel(ivec2 at)
 {
     if (at.x >= int(frame.width) || at.y >= int(frame.height))
         return;
-    float water_m = MIXED != 0u ? pixel_water_m(at) : -1.0;
-    if (MIXED != 0u && (water_m > 0.0) != ((PARTS & WD_PART_WATER) != 0u))
+    float water_m = -1.0;
+#ifdef WET
+    water_m = pixel_water_m(at);
+    if ((water_m > 0.0) != ((PARTS & WD_PART_WATER) != 0u))
         return;
+#endif
     haze_pixel = uvec2(at);
     haze_noise = pixel_noise(haze_pixel, frame.sample_index);
     vec4 radiance = vec4(pixel_radiance(at, water_m), 1.0);

@@ -20,7 +20,7 @@ layout(set = 0, binding = 10, rgba32f) uniform image2D radiance_image;
 layout(scalar, push_constant) uniform Push { wd_light_push push; };
 
 #define TREE_TEXELS
-layout(constant_id = 6) const uint COMPARES = 0u; /* see lib/shadow.glsl */
+layout(constant_id = 0) const uint COMPARES = 0u; /* see lib/shadow.glsl */
 #define SHADOW_DEPTH shadow_depth
 #define SHADOW_COMPARES (COMPARES != 0u)
 #define SUN_HEIGHT_AT(index) sun_height_m[index]

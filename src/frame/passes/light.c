@@ -76,14 +76,13 @@ static bool init_list(struct wd_pipeline *pipeline, struct wd_gpu *gpu, uint32_t
                       uint32_t parts, uint32_t single)
 {
     const uint32_t rows = gpu->software ? 1 : WD_TILE; /* of a tile at once */
-    const uint32_t constants[] = {parts,  list, list == WET_LIST, gpu->runs,
-                                  single, rows, compares(gpu)};
+    const uint32_t constants[] = {parts, list, gpu->runs, single, rows, compares(gpu)};
     struct wd_compute_params params = shading_params();
     if (list == WET_LIST) {
         params.shader = (struct wd_spirv)WD_SPIRV(light_water_comp);
         params.bindings.types[0] = BUFFER;
     }
-    params.constants = (struct wd_spec_constants){7, constants};
+    params.constants = (struct wd_spec_constants){6, constants};
     return wd_pipeline_init_compute(pipeline, gpu, &params);
 }
 
@@ -94,8 +93,8 @@ static bool init_view(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
     params.bindings.count = 11;
     params.bindings.types[0] = BUFFER;
     params.bindings.types[7] = BUFFER;
-    const uint32_t constants[] = {0, 0, 0, 0, 0, 0, compares(gpu)};
-    params.constants = (struct wd_spec_constants){7, constants};
+    const uint32_t compare = compares(gpu);
+    params.constants = (struct wd_spec_constants){1, &compare};
     return wd_pipeline_init_compute(pipeline, gpu, &params);
 }
 
