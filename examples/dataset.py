@@ -10,7 +10,8 @@ in the terrain's own coordinates. The camera is a pinhole without distortion:
   yaw_rad, pitch_rad, roll_rad  turn it clockwise from north, up from the horizon, and never
   fx, fy, cx, cy  are in pixels from the picture's upper left corner
   trees  are those in sight: id, pixels (how many), box (x0, y0, x1, y1 in pixels, x1 and y1 just
-         beyond), species, position_m of the foot, height_m, distance_m of the foot
+         beyond), species (as the scene names it: "open beech") and its Latin name, position_m of
+         the foot, height_m, distance_m of the foot
 Even pictures are seen by a person's eyes, odd ones from a drone, over water where it stands. The
 same seed gives the same set on the same device and driver. Needs libweald and nothing but Python's
 own library.
@@ -161,7 +162,7 @@ class Scene:
                 raise WealdError(f"the forest has no tree {tree_id}")
             self.weald.wd_forest_get_species(self.forest, c_uint32(tree.species), byref(species))
             yield {"id": tree_id, "pixels": pixels, "box": box, "species": species.name.decode(),
-                   "position_m": tree.position_m[:], "height_m": tree.height_m,
+                   "latin": (species.latin or b"").decode(), "position_m": tree.position_m[:], "height_m": tree.height_m,
                    "distance_m": math.dist(picture.camera.position_m, tree.position_m)}
 
     def describe(self, picture):

@@ -259,7 +259,8 @@ float sun_past_trees(wd_pixel pixel, uvec2 at, wd_site site, uint cascade)
 /* What comes of the bright sky about the sun: past the place's own leaves as the sun itself does, and by wider ways. */
 float sky_by_sun(wd_pixel pixel, wd_site site, float ground_share, float past_trees)
 {
-    float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER) * (pixel.surface == 0u ? floor_way(site.shelter) : 1.0);
+    float way = WIDE_WAY / (max(frame.sun_direction.z, 0.0) + WIDE_HIGHER);
+    way *= pixel.surface == 0u ? floor_way(site.shelter) : 1.0;
     float by_crown = min(sky_about_sun(site.alone) * wd_skylit_above(pixel.openness), 1.0);
     float wide_way = pow(mix(dot(frame.sunward, site.shelter.through), by_crown, site.alone.by_crown), way);
     wide_way += (1.0 - wide_way) * low_about_sun(frame.sun_direction.z) * dot(frame.sunward, site.alone.edge);
@@ -299,7 +300,8 @@ vec3 shade(wd_pixel pixel, uvec2 at, out float sun_share, out float ground_share
     float scatters = is_single(pixel) ? mix(1.0, OWN_OF_ONE_LEAF, site.alone.share) * sky_about_sun(site.alone) : past_trees;
     site.alone.scattered *= sunlight() * (place.about * ground_share * scatters);
     vec3 mirror = wax_mirror(pixel.direction, pixel.normal);
-    wd_around around = light_around(site.facing, mirror, site.shelter, ground_share, past_trees, site.alone, -pixel.direction.z);
+    wd_around around = light_around(site.facing, mirror, site.shelter, ground_share, past_trees, site.alone,
+                                    -pixel.direction.z);
     if (is_curtain(pixel)) /* before it lies bright haze, as the path tracer has it */
         around.front += 0.5 * frame.sky_irradiance;
     vec3 mirrored = mirrored_by_leaf(pixel, around, mirror, blade, sun_share);
