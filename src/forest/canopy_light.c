@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/dmath.h"
 #include "base/jobs.h"
@@ -10,6 +11,7 @@
 #include "shared/light.h"
 #include "shared/sky_rings.h"
 #include "shared/tree_pose.h"
+#include "tree/four.h"
 #include "tree/vec.h"
 
 static const float PI = (float)WD_PI;
@@ -24,12 +26,19 @@ static const float highs[RINGS] = {WD_SKY_RINGS_HIGH}, lows[RINGS] = {WD_SKY_RIN
 static const float levels[RINGS] = {WD_SKY_RINGS_LEVEL};
 static const float turns_deg[RINGS] = {-34, 11, -11, 34, -22, 5}; /* off the middles of quarters: at several bearings */
 
-/* Crowns of a cell as a layer of leaves over the ground. */
-struct stand {
-    float ground_m, base_m, middle_m, top_m; /* above the world's zero */
-    float per_half_m;                        /* one over half its depth */
-    float depth[RINGS];                      /* optical, of rays of each ring */
-    float stems_per_m;                       /* extinction of level ways below crowns */
+/* Cells that lie beside each other from west to east are asked together. */
+enum { FOUR = 4 };
+
+/* Crowns of each cell as a layer of leaves over the ground. A row's cells have FOUR on both sides that are none, so that
+ * cell i of row j is stands_place(i, j). */
+struct stands {
+    float *ground_m, *base_m, *middle_m; /* above the world's zero */
+    float *per_half_m;                   /* one over half its depth */
+    float *depth[RINGS];                 /* optical, of rays of each ring */
+    float *stems_per_m;                  /* extinction of level ways below crowns */
+    float *block;                        /* all of these */
+    size_t row;                          /* cells with those that are none */
+    float highest_m;                     /* of all tops */
 };
 
 static const double LEAST_CELL_M = 8;
@@ -42,13 +51,37 @@ static const float STEP_CELLS = 0.7f; /* and level, at most, close by */
 static const float FARTHEST_M = 3000; /* hills beyond are left to the sun's own shadow */
 static const float DARK = 6;          /* optical depth that ends a ray */
 
+struct ray {
+    float east, north, rise; /* unit */
+    int ring;
+};
+
 struct work {
     struct wd_canopy_field *field;
     const struct wd_world *world;
     const struct wd_canopy_field_params *params;
-    struct stand *stands;
-    float highest_m; /* of all tops */
+    struct stands stands;
+    struct ray rays[QUARTERS][RINGS];
 };
+
+static void stands_init(struct stands *stands, const struct wd_canopy_field *field)
+{
+    float **const parts[] = {&stands->ground_m, &stands->base_m, &stands->middle_m, &stands->per_half_m,
+                             &stands->stems_per_m};
+    const size_t others = sizeof parts / sizeof *parts;
+    stands->row = field->width + 2 * FOUR;
+    const size_t count = stands->row * field->height;
+    stands->block = wd_alloc_array((others + RINGS) * count, sizeof *stands->block);
+    for (size_t i = 0; i < others; i++)
+        *parts[i] = stands->block + i * count;
+    for (size_t i = 0; i < RINGS; i++)
+        stands->depth[i] = stands->block + (others + i) * count;
+}
+
+static size_t stands_place(const struct stands *stands, size_t i, size_t j)
+{
+    return j * stands->row + FOUR + i;
+}
 
 /* Of a cell's trees, by its share of the ground: the area of crowns' outlines from above; what they
  * cover, seen level, from half above and from above; how wide stems are; by what
@@ -172,9 +205,9 @@ static void settle_stand(struct work *work, size_t cell, struct sums sums, float
     const struct wd_canopy_field *field = work->field;
     double x_m = field->from_m[0] + ((double)(cell % field->width) + 0.5) * field->cell_m;
     double y_m = field->from_m[1] + ((double)(cell / field->width) + 0.5) * field->cell_m;
-    struct stand *stand = &work->stands[cell];
-    stand->ground_m = stand->base_m = stand->top_m =
-        wd_terrain_height(&work->world->terrain, x_m, y_m);
+    struct stands *stands = &work->stands;
+    const size_t at = stands_place(stands, cell % field->width, cell / field->width);
+    stands->ground_m[at] = stands->base_m[at] = wd_terrain_height(&work->world->terrain, x_m, y_m);
     if (sums.outline <= 0 && work->world->demand.count) {
         sums = sums_on_demand(work, fminf(cover_at(work->world, x_m, y_m, field->cell_m), 0.98f));
         on_map = wd_planted_apart(sums.outline);
@@ -186,17 +219,16 @@ static void settle_stand(struct work *work, size_t cell, struct sums sums, float
         return;
     const float *layer_m = field->layer_m[cell];
     float deep_m = fmaxf(layer_m[1] - layer_m[0], 1);
-    stand->base_m += layer_m[0];
-    stand->top_m = stand->base_m + deep_m;
-    stand->middle_m = stand->base_m + 0.5f * deep_m;
-    stand->per_half_m = 2 / deep_m;
+    stands->base_m[at] += layer_m[0];
+    stands->middle_m[at] = stands->base_m[at] + 0.5f * deep_m;
+    stands->per_half_m[at] = 2 / deep_m;
     float apart = crowns_apart(sums.outline, on_map);
-    stand->stems_per_m = sums.stems_m;
+    stands->stems_per_m[at] = sums.stems_m;
     for (int ring = 0; ring < RINGS; ring++) {
         float rise = rises[ring], seen = wd_seen_m2(sums.seen[0], sums.seen[1], sums.seen[2], rise);
-        stand->depth[ring] = apart * seen / rise;
+        stands->depth[ring][at] = apart * seen / rise;
     }
-    work->highest_m = fmaxf(work->highest_m, stand->top_m);
+    stands->highest_m = fmaxf(stands->highest_m, stands->base_m[at] + deep_m);
 }
 
 /* Cells without trees take the layer of those beside them, into which crowns reach out. */
@@ -244,7 +276,7 @@ static void settle_stands(struct work *work)
     struct sums *sums = wd_alloc_array(count, sizeof *sums);
     for (size_t i = 0; i < work->world->tree_count; i++)
         add_tree(sums, work->field, work->params, &work->world->trees[i]);
-    work->highest_m = work->world->terrain.min_m;
+    work->stands.highest_m = work->world->terrain.min_m;
     float *apart = apart_on_map(work, sums);
     for (size_t cell = 0; cell < count; cell++)
         settle_stand(work, cell, sums[cell], apart[cell]);
@@ -255,79 +287,104 @@ static void settle_stands(struct work *work)
 
 /* --- rays ---------------------------------------------------------------------------------- */
 
-struct ray {
-    float east, north, rise; /* unit */
-    int ring;
-};
+static bool is_any(wd_four_ints where)
+{
+    uint64_t pairs[FOUR / 2];
+    memcpy(pairs, &where, sizeof pairs);
+    return pairs[0] | pairs[1];
+}
 
 /* Share of a layer's leaves below a height, as in an ellipsoid that is as deep. `over`: of its middle, in halves of its
  * depth. */
-static float leaves_below(float over)
+static wd_four leaves_below(wd_four over)
 {
-    over = wd_minf(wd_maxf(over, -1), 1);
+    over = wd_four_min(wd_four_max(over, wd_four_of(-1)), wd_four_of(1));
     return 0.25f * over * (3 - over * over) + 0.5f;
 }
 
-/* Share of the light along a ray to a place half a metre over the ground; through crowns by Beer's
+/* Shares of the light along a ray to places half a metre over the ground of cells from `column` on; through crowns by Beer's
  * law, stopped by hills. */
-static float ray_through(const struct work *work, size_t cell, const struct ray *ray)
+static wd_four ray_through(const struct work *work, uint32_t column, uint32_t row, const struct ray *ray)
 {
-    const struct wd_canopy_field *field = work->field;
-    const float width = (float)field->width, height = (float)field->height;
-    const float cells_a_m = (float)(1 / field->cell_m);
-    const float free_m = wd_maxf(work->highest_m, work->world->terrain.max_m);
-    float x = (float)(cell % field->width) + 0.5f, y = (float)(cell / field->width) + 0.5f;
-    float z = work->stands[cell].ground_m + 0.5f, depth = 0, gone_m = 0;
+    static const wd_four_ints lanes = {0, 1, 2, 3};
+    const struct stands *stands = &work->stands;
+    const int32_t width = (int32_t)work->field->width;
+    const float height = (float)work->field->height, cells_a_m = (float)(1 / work->field->cell_m);
+    const float free_m = wd_maxf(stands->highest_m, work->world->terrain.max_m);
     const float across = sqrtf(1 - ray->rise * ray->rise);
+    const wd_four none = {0};
+    float x = 0.5f, y = (float)row + 0.5f, gone_m = 0; /* x from the cells' western edge */
     float step_m = wd_minf(STEP_M / ray->rise, STEP_CELLS / (cells_a_m * across));
-    while (depth < DARK && gone_m < FARTHEST_M) {
+    wd_four z = wd_four_load(stands->ground_m + stands_place(stands, column, row)) + 0.5f, depth = none;
+    wd_four_ints live = lanes + (int32_t)column < width, stopped = {0};
+    for (; gone_m < FARTHEST_M; gone_m += step_m) {
         step_m = wd_maxf(step_m, 0.08f * gone_m);
         float half = 0.5f * step_m * cells_a_m;
-        float at_x = x + half * ray->east, at_y = y + half * ray->north;
-        float low = z, high = z + step_m * ray->rise;
-        if (!(at_x >= 0 && at_y >= 0 && at_x < width && at_y < height) || low > free_m)
+        float at_y = y + half * ray->north;
+        int32_t at_x = (int32_t)floorf(x + half * ray->east) + (int32_t)column;
+        live &= (lanes + at_x >= 0) & (lanes + at_x < width) & (z <= free_m) & (depth < DARK);
+        if (!(at_y >= 0 && at_y < height) || !is_any(live))
             break;
-        const struct stand *stand =
-            &work->stands[(size_t)(int32_t)at_y * field->width + (size_t)(int32_t)at_x];
-        if (0.5f * (low + high) < stand->ground_m - 2)
-            return 0;
-        float within = leaves_below((high - stand->middle_m) * stand->per_half_m) -
-                       leaves_below((low - stand->middle_m) * stand->per_half_m);
-        float below = wd_minf(high, stand->base_m) - wd_maxf(low, stand->ground_m);
-        depth += within * stand->depth[ray->ring] + wd_maxf(below, 0) * stand->stems_per_m * across / ray->rise;
+        const ptrdiff_t place = (ptrdiff_t)stands_place(stands, 0, (size_t)at_y) + at_x;
+        wd_four low = z, high = z + step_m * ray->rise, ground_m = wd_four_load(stands->ground_m + place);
+        wd_four middle_m = wd_four_load(stands->middle_m + place), per_half_m = wd_four_load(stands->per_half_m + place);
+        wd_four_ints hill = live & (0.5f * (low + high) < ground_m - 2);
+        stopped |= hill;
+        live &= ~hill;
+        wd_four within = leaves_below((high - middle_m) * per_half_m) - leaves_below((low - middle_m) * per_half_m);
+        wd_four below = wd_four_min(high, wd_four_load(stands->base_m + place)) - wd_four_max(low, ground_m);
+        wd_four more = within * wd_four_load(stands->depth[ray->ring] + place) +
+                     wd_four_max(below, none) * wd_four_load(stands->stems_per_m + place) * across / ray->rise;
+        depth += wd_four_choose(live, more, none);
         x += 2 * half * ray->east;
         y += 2 * half * ray->north;
         z = high;
-        gone_m += step_m;
     }
-    return expf(-depth);
+    for (int lane = 0; lane < FOUR; lane++)
+        depth[lane] = stopped[lane] ? 0 : expf(-depth[lane]);
+    return depth;
 }
 
-static void fill_cell(const struct work *work, size_t cell)
+static void fill_cells(const struct work *work, uint32_t column, uint32_t row)
 {
     struct wd_canopy_field *field = work->field;
     for (int quarter = 0; quarter < QUARTERS; quarter++) {
-        float level = 0, high = 0, low = 0;
+        wd_four level = {0}, high = {0}, low = {0};
         for (int i = 0; i < RINGS; i++) {
-            float rise = rises[i], across = sqrtf(1 - rise * rise);
-            float bearing = (90.0f * (float)quarter + turns_deg[i]) * (PI / 180);
-            const struct ray ray = {across * cosf(bearing), across * sinf(bearing), rise, i};
-            float through = ray_through(work, cell, &ray);
+            wd_four through = ray_through(work, column, row, &work->rays[quarter][i]);
             level += levels[i] * through;
             high += highs[i] * through;
             low += lows[i] * through;
         }
-        field->quarters[cell][quarter] = level;
-        field->high[cell][quarter] = high;
-        field->low[cell][quarter] = low;
+        for (uint32_t lane = 0; lane < FOUR && column + lane < field->width; lane++) {
+            size_t cell = (size_t)row * field->width + column + lane;
+            field->quarters[cell][quarter] = level[lane];
+            field->high[cell][quarter] = high[lane];
+            field->low[cell][quarter] = low[lane];
+        }
     }
 }
 
-static void fill_row(void *user, size_t row)
+WD_FOUR_TWICE
+static void fill_row(const struct work *work, uint32_t row)
 {
-    const struct work *work = user;
-    for (uint32_t i = 0; i < work->field->width; i++)
-        fill_cell(work, row * work->field->width + i);
+    for (uint32_t column = 0; column < work->field->width; column += FOUR)
+        fill_cells(work, column, row);
+}
+
+static void run_row(void *user, size_t row)
+{
+    fill_row(user, (uint32_t)row);
+}
+
+static void aim_rays(struct work *work)
+{
+    for (int quarter = 0; quarter < QUARTERS; quarter++)
+        for (int i = 0; i < RINGS; i++) {
+            float rise = rises[i], across = sqrtf(1 - rise * rise);
+            float bearing = (90.0f * (float)quarter + turns_deg[i]) * (PI / 180);
+            work->rays[quarter][i] = (struct ray){across * cosf(bearing), across * sinf(bearing), rise, i};
+        }
 }
 
 struct trees {
@@ -390,10 +447,11 @@ void wd_canopy_field_init(struct wd_canopy_field *field,
     field->layer_m = wd_alloc_array(count, sizeof *field->layer_m);
     field->herbs = wd_alloc_array(count, sizeof *field->herbs);
     struct work work = {.field = field, .world = params->world, .params = params};
-    work.stands = wd_alloc_array(count, sizeof *work.stands);
+    stands_init(&work.stands, field);
     settle_stands(&work);
-    wd_jobs_run(params->threads, field->height, fill_row, &work);
-    free(work.stands);
+    aim_rays(&work);
+    wd_jobs_run(params->threads, field->height, run_row, &work);
+    free(work.stands.block);
 }
 
 void wd_canopy_field_finish(struct wd_canopy_field *field)
