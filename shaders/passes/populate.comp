@@ -32,8 +32,8 @@ shared uint planted;
 /* With the reach of crowns that lean and sway, and of those that stand for a block. */
 void add_bounds(wd_tree tree, uint level)
 {
-    int height_mm = int(tree.size & 0xffffu) * 10;
-    int around_mm = int(float(tree.size >> 16) * 7.5 * exp2(float(min(level, 12u))
+    int height_mm = int(WD_TREE_HEIGHT_CM(tree)) * 10;
+    int around_mm = int(float(WD_TREE_CROWN_CM(tree)) * 7.5 * exp2(float(min(level, 12u))
                                                             + (level > 0u ? 1.0 : 0.0)));
     int reach_mm = around_mm + height_mm / 10 + 500;
     int below_mm = level > 0u ? 1000 + around_mm / 2 : 1000;

@@ -61,7 +61,7 @@ WD_FUNC WD_STRUCT wd_packed_tree wd_tree_pack(WD_STRUCT wd_tree tree,
     packed.x_kind = x | (kind << 21);
     packed.y_look = y | ((tree.look >> 19) << 21);
     packed.z_height = z | (tree.size << 18);
-    packed.crown_look = (tree.size >> 16) | (tree.look << 13);
+    packed.crown_look = WD_TREE_CROWN_CM(tree) | (tree.look << 13);
     return packed;
 }
 

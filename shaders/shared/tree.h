@@ -24,8 +24,10 @@ WD_STATIC_ASSERT_SIZE(wd_tree, 28);
 
 #define WD_TREE_SPECIES(tree) ((tree).kind & 0xffffu)
 #define WD_TREE_VARIANT(tree) (((tree).kind >> 16) & 0xffu)
-#define WD_TREE_HEIGHT_M(tree) (WD_FLOAT((tree).size & 0xffffu) * 0.01f)
-#define WD_TREE_CROWN_M(tree) (WD_FLOAT((tree).size >> 16) * 0.01f)
+#define WD_TREE_HEIGHT_CM(tree) ((tree).size & 0xffffu)
+#define WD_TREE_CROWN_CM(tree) ((tree).size >> 16)
+#define WD_TREE_HEIGHT_M(tree) (WD_FLOAT(WD_TREE_HEIGHT_CM(tree)) * 0.01f)
+#define WD_TREE_CROWN_M(tree) (WD_FLOAT(WD_TREE_CROWN_CM(tree)) * 0.01f)
 #define WD_TREE_YAW(tree) (WD_FLOAT((tree).look & 0x3fffu) * (6.28318530718f / 16384.0f))
 #define WD_TREE_TINT(tree) (((tree).look >> 14) & 0xffu)
 #define WD_TREE_IS_MIRRORED(tree) (((tree).look & 0x400000u) != 0u)

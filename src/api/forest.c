@@ -170,10 +170,10 @@ bool wd_forest_get_tree(const struct wd_forest *forest, uint32_t id, struct wd_t
         return false;
     *info = (struct wd_tree_info){
         .id = id,
-        .species = tree.kind & 0xffffu,
+        .species = WD_TREE_SPECIES(tree),
         .position_m = {tree.x_mm * 0.001, tree.y_mm * 0.001, tree.z_mm * 0.001},
-        .height_m = (tree.size & 0xffffu) * 0.01,
-        .crown_diameter_m = (tree.size >> 16) * 0.01,
+        .height_m = WD_TREE_HEIGHT_CM(tree) * 0.01,
+        .crown_diameter_m = WD_TREE_CROWN_CM(tree) * 0.01,
         .yaw_rad = (double)WD_TREE_YAW(tree),
     };
     return true;

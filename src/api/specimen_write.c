@@ -84,10 +84,10 @@ static void place_tree(struct wd_export_instance *instance, const struct wd_tree
     const int32_t at_mm[3] = {tree->x_mm, tree->y_mm, tree->z_mm};
     for (int k = 0; k < 3; k++)
         instance->position_m[k] = (float)(at_mm[k] * 0.001 - origin_m[k]);
-    float across = (float)(tree->size >> 16) * 0.01f / model->crown_m;
+    float across = WD_TREE_CROWN_M(*tree) / model->crown_m;
     instance->yaw_rad = WD_TREE_YAW(*tree);
     instance->across = WD_TREE_IS_MIRRORED(*tree) ? -across : across;
-    instance->up = (float)(tree->size & 0xffffu) * 0.01f / model->height_m;
+    instance->up = WD_TREE_HEIGHT_M(*tree) / model->height_m;
     instance->id = tree->id;
 }
 

@@ -66,7 +66,7 @@ bool wd_canopy_map_use_forest(struct wd_canopy_map *map, struct wd_gpu *gpu,
     if (!world->tree_count)
         return true;
     for (size_t i = 0; i < world->tree_count; i += step, sampled++) {
-        double height_cm = world->trees[i].size & 0xffffu, crown_cm = world->trees[i].size >> 16;
+        double height_cm = WD_TREE_HEIGHT_CM(world->trees[i]), crown_cm = WD_TREE_CROWN_CM(world->trees[i]);
         sum_m += 0.01 * height_cm;
         sum_aspect += height_cm / (crown_cm > 1.0 ? crown_cm : 1.0);
     }

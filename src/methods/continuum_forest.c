@@ -49,8 +49,8 @@ struct gathering {
 /* With the reach of crowns that lean and sway. */
 static void add_bounds(struct wd_cluster *cluster, const struct wd_tree *tree)
 {
-    int32_t height_mm = (int32_t)(tree->size & 0xffffu) * 10;
-    int32_t reach_mm = (int32_t)(tree->size >> 16) * 15 / 2 + height_mm / 10 + 500;
+    int32_t height_mm = (int32_t)WD_TREE_HEIGHT_CM(*tree) * 10;
+    int32_t reach_mm = (int32_t)WD_TREE_CROWN_CM(*tree) * 15 / 2 + height_mm / 10 + 500;
     const int32_t low[3] = {tree->x_mm - reach_mm, tree->y_mm - reach_mm, tree->z_mm - 1000};
     const int32_t high[3] = {tree->x_mm + reach_mm, tree->y_mm + reach_mm,
                              tree->z_mm + height_mm + height_mm / 10};
@@ -278,7 +278,7 @@ static void measure_grains(struct wd_continuum_forest *own, const struct wd_fore
 static void count_heights(struct wd_continuum_forest *own, const struct wd_world *world)
 {
     for (size_t i = 0; i < world->tree_count; i++) {
-        uint32_t steps = (world->trees[i].size & 0xffffu) / WD_HEIGHT_STEP_CM;
+        uint32_t steps = WD_TREE_HEIGHT_CM(world->trees[i]) / WD_HEIGHT_STEP_CM;
         own->taller[steps < WD_HEIGHT_STEPS ? steps : WD_HEIGHT_STEPS - 1]++;
     }
     for (size_t i = WD_HEIGHT_STEPS - 1; i > 0; i--)

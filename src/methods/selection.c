@@ -148,7 +148,7 @@ struct tree_box {
 
 static struct tree_box box_of(const struct wd_tree *tree, const float foot[3])
 {
-    float half = 0.005f * (float)(tree->size >> 16), height = 0.01f * (float)(tree->size & 0xffffu);
+    float half = 0.005f * (float)WD_TREE_CROWN_CM(*tree), height = WD_TREE_HEIGHT_M(*tree);
     /* wind and leaning boughs reach a little further */
     float reach = half * 1.5f + 0.1f * height + 0.5f;
     return (struct tree_box){
@@ -213,7 +213,7 @@ void wd_selection_add_tree(struct wd_selection *selection, const struct wd_fores
         distance_squared += foot[k] * foot[k];
     if (tree_side(view, tree, foot) == WD_OUTSIDE)
         return;
-    float distance_m = sqrtf(distance_squared), height_m = 0.01f * (float)(tree->size & 0xffffu);
+    float distance_m = sqrtf(distance_squared), height_m = WD_TREE_HEIGHT_M(*tree);
     uint32_t layer = wd_forest_fade_of(forest, index);
     float fade = wd_layer_show(forest->host_fades[layer], distance_m);
     struct wd_level_rule own = *rule;

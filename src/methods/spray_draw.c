@@ -132,7 +132,7 @@ static void gather_tree(struct gather *gather, const struct wd_tree_draw *draw, 
                                   .reach = gather->scale * range->reach,
                                   .stand = wd_stand_of(draw, tree_index)};
     const float *foot = bearer.stand.foot;
-    float reach = 0.01f * (float)(tree->size >> 16) + WD_SPRAY_NONE_M * bearer.reach;
+    float reach = WD_TREE_CROWN_M(*tree) + WD_SPRAY_NONE_M * bearer.reach;
     if (foot[0] * foot[0] + foot[1] * foot[1] > reach * reach)
         return;
     uint32_t leaves = forest->meshes.ranges[model][WD_LEVEL_MESH].sets[WD_SET_LEAVES].leaf_count;

@@ -33,7 +33,7 @@ static void mark_disc(struct samples *samples, const struct wd_tree *tree)
 {
     double x = tree->x_mm * 0.001 / samples->step_m - 0.5;
     double y = tree->y_mm * 0.001 / samples->step_m - 0.5;
-    double radius = (tree->size >> 16) * 0.005 / samples->step_m;
+    double radius = WD_TREE_CROWN_CM(*tree) * 0.005 / samples->step_m;
     for (long row = (long)ceil(y - radius); (double)row <= y + radius; row++) {
         double up = (double)row - y, half = sqrt(fmax(radius * radius - up * up, 0.0));
         mark_row(samples, row, (long)ceil(x - half), (long)floor(x + half));
@@ -42,7 +42,7 @@ static void mark_disc(struct samples *samples, const struct wd_tree *tree)
 
 static void add_sward(float *layers, const struct wd_world *world, const struct wd_tree *tree)
 {
-    double cell_m = world->cover_cell_m, radius_m = (tree->size >> 16) * 0.005;
+    double cell_m = world->cover_cell_m, radius_m = WD_TREE_CROWN_CM(*tree) * 0.005;
     long column = (long)(tree->x_mm * 0.001 / cell_m), row = (long)(tree->y_mm * 0.001 / cell_m);
     if (column < 0 || row < 0 || column >= (long)world->cover_width ||
         row >= (long)world->cover_height)
@@ -57,7 +57,7 @@ static void sward_init(struct wd_world *world)
     size_t count = (size_t)world->cover_width * world->cover_height, herbs = 0;
     float *layers = wd_alloc_array(count, sizeof *layers);
     for (size_t i = 0; i < world->tree_count; i++) {
-        if ((world->trees[i].size & 0xffffu) >= WD_CANOPY_CM)
+        if (WD_TREE_HEIGHT_CM(world->trees[i]) >= WD_CANOPY_CM)
             continue;
         add_sward(layers, world, &world->trees[i]);
         herbs++;
@@ -108,7 +108,7 @@ void wd_cover_init(struct wd_world *world, unsigned threads)
     size_t count = (size_t)samples.width * samples.height;
     samples.masks = wd_alloc_array(count, sizeof *samples.masks);
     for (size_t i = 0; i < world->tree_count; i++)
-        if ((world->trees[i].size & 0xffffu) >= WD_CANOPY_CM)
+        if (WD_TREE_HEIGHT_CM(world->trees[i]) >= WD_CANOPY_CM)
             mark_disc(&samples, &world->trees[i]);
     world->cover = wd_alloc(count);
     for (size_t i = 0; i < count; i++)

@@ -50,7 +50,7 @@ void wd_far_sward_init(struct wd_world *world, const struct wd_scene *scene)
     for (size_t i = 0; i < world->tree_count; i++) {
         const struct wd_tree *tree = &world->trees[i];
         double crown_m = (double)WD_TREE_CROWN_M(*tree), own = crown_m * crown_m;
-        if ((tree->size & 0xffffu) >= WD_CANOPY_CM)
+        if (WD_TREE_HEIGHT_CM(*tree) >= WD_CANOPY_CM)
             continue;
         all += own;
         if (fades(scene, world, i)) {

@@ -17,7 +17,7 @@ struct box {
 
 static struct box box_of(const struct wd_tree *tree)
 {
-    int64_t radius_mm = (int64_t)(tree->size >> 16) * 5, height_mm = (tree->size & 0xffffu) * 10;
+    int64_t radius_mm = (int64_t)WD_TREE_CROWN_CM(*tree) * 5, height_mm = WD_TREE_HEIGHT_CM(*tree) * 10;
     return (struct box){
         .min_mm = {tree->x_mm - radius_mm, tree->y_mm - radius_mm, tree->z_mm},
         .max_mm = {tree->x_mm + radius_mm, tree->y_mm + radius_mm, tree->z_mm + height_mm},

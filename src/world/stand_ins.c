@@ -33,7 +33,7 @@ struct stand {
 
 static bool is_above_herbs(const struct wd_tree *tree)
 {
-    return (tree->size & 0xffffu) >= LEAST_CM;
+    return WD_TREE_HEIGHT_CM(*tree) >= LEAST_CM;
 }
 
 static size_t column_of(const struct stand *stand, const struct wd_tree *tree)
@@ -176,7 +176,7 @@ static uint32_t kind_of(const struct wd_tree *tree, uint32_t species, const stru
     uint32_t range_cm[2], random = wd_hash3(params->seed, tree->id, WD_FOR_VARIANT);
     uint32_t variants = scene->variants < 1 ? 1 : scene->variants > 256 ? 256 : (uint32_t)scene->variants;
     wd_variant_range_cm(&scene->species[species], range_cm);
-    return species | wd_place_variant(random, variants, tree->size & 0xffffu, range_cm[0], range_cm[1]) << 16;
+    return species | wd_place_variant(random, variants, WD_TREE_HEIGHT_CM(*tree), range_cm[0], range_cm[1]) << 16;
 }
 
 /* Crowns are as wide by either species, which follow one allometry; those of given files may not be. */
@@ -259,7 +259,7 @@ static double crown_cm_of(const struct crowns *crowns, uint32_t species, uint32_
 static void become(struct wd_tree *tree, uint32_t species, struct wd_tree_row row, const struct crowns *crowns,
                    const struct wd_placement_params *params)
 {
-    uint32_t height_cm = tree->size & 0xffffu, crown_cm = tree->size >> 16;
+    uint32_t height_cm = WD_TREE_HEIGHT_CM(*tree), crown_cm = WD_TREE_CROWN_CM(*tree);
     double dbh_cm = (double)row.dbh_cm;
     if (!row.crown_measured) {
         double wider = crown_cm_of(crowns, species, height_cm, dbh_cm) /
