@@ -74,7 +74,7 @@ static void bark_tiles(void **state)
 {
     (void)state;
     struct wd_arena arena = {0};
-    for (int s = 0; s < SPECIES_COUNT; s += 4) {
+    for (int s = 0; s < SPECIES_COUNT; s += 4 * SPECIES_STEP) {
         struct wd_species species = test_species(&arena, test_species_names[s]);
         for (species.bark.pattern = 0; species.bark.pattern <= WD_BARK_BARE;
              species.bark.pattern++) {
