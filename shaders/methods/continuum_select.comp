@@ -82,14 +82,14 @@ bool box_shades_nothing(vec3 low, vec3 high)
     return ORTHOGRAPHIC != 0u && !may_shade(at, length(half_m) * scale);
 }
 
-/* Reach of crowns that lean and sway, as octree's selection has it. */
+/* `stretch`: of the crown of a tree that stands for several. */
 bool tree_is_outside(wd_tree tree, vec3 foot, float stretch)
 {
     float height_m = WD_TREE_HEIGHT_M(tree);
-    float reach = WD_TREE_CROWN_M(tree) * 0.75 * stretch + 0.1 * height_m + 0.5;
-    float below = stretch > 1.0 ? 1.0 + 0.5 * reach : 1.0;
-    vec3 low = foot - vec3(reach, reach, below);
-    vec3 high = foot + vec3(reach, reach, 0.1 * height_m + height_m + below - 1.0);
+    float reach = WD_TREE_REACH_M(WD_TREE_CROWN_M(tree) * stretch, height_m);
+    float lower = stretch > 1.0 ? 0.5 * reach : 0.0;
+    vec3 low = foot - vec3(reach, reach, WD_TREE_BELOW_M + lower);
+    vec3 high = foot + vec3(reach, reach, WD_TREE_ABOVE_M(height_m) + lower);
     return box_is_outside(low, high) || box_shades_nothing(low, high);
 }
 

@@ -28,6 +28,11 @@ WD_STATIC_ASSERT_SIZE(wd_tree, 28);
 #define WD_TREE_CROWN_CM(tree) ((tree).size >> 16)
 #define WD_TREE_HEIGHT_M(tree) (WD_FLOAT(WD_TREE_HEIGHT_CM(tree)) * 0.01f)
 #define WD_TREE_CROWN_M(tree) (WD_FLOAT(WD_TREE_CROWN_CM(tree)) * 0.01f)
+/* How far from the middle of its foot a tree of such a crown and height is found, which leans and sways: to the sides, below
+ * it and above. */
+#define WD_TREE_REACH_M(crown_m, height_m) ((crown_m) * 0.75f + (height_m) * 0.1f + 0.5f)
+#define WD_TREE_BELOW_M 1.0f
+#define WD_TREE_ABOVE_M(height_m) ((height_m) * 1.1f)
 #define WD_TREE_YAW(tree) (WD_FLOAT((tree).look & 0x3fffu) * (6.28318530718f / 16384.0f))
 #define WD_TREE_TINT(tree) (((tree).look >> 14) & 0xffu)
 #define WD_TREE_IS_MIRRORED(tree) (((tree).look & 0x400000u) != 0u)

@@ -55,14 +55,13 @@ static float seen_distance(const struct search *search, const double min_m[3], c
     return distance;
 }
 
-/* As wide as the wind and leaning boughs reach (methods/selection.c). */
 static float tree_distance(const struct search *search, const struct wd_tree *tree)
 {
-    double height_m = 0.01 * WD_TREE_HEIGHT_CM(*tree), half_m = 0.005 * WD_TREE_CROWN_CM(*tree);
-    double reach_m = 1.5 * half_m + 0.1 * height_m + 0.5;
+    const float height_m = WD_TREE_HEIGHT_M(*tree);
+    const double reach_m = (double)WD_TREE_REACH_M(WD_TREE_CROWN_M(*tree), height_m);
     const double foot_m[3] = {0.001 * tree->x_mm, 0.001 * tree->y_mm, 0.001 * tree->z_mm};
-    const double min_m[3] = {foot_m[0] - reach_m, foot_m[1] - reach_m, foot_m[2] - 1.0};
-    const double max_m[3] = {foot_m[0] + reach_m, foot_m[1] + reach_m, foot_m[2] + 1.1 * height_m};
+    const double min_m[3] = {foot_m[0] - reach_m, foot_m[1] - reach_m, foot_m[2] - (double)WD_TREE_BELOW_M};
+    const double max_m[3] = {foot_m[0] + reach_m, foot_m[1] + reach_m, foot_m[2] + (double)WD_TREE_ABOVE_M(height_m)};
     return seen_distance(search, min_m, max_m);
 }
 

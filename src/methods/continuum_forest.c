@@ -46,14 +46,17 @@ struct gathering {
     size_t count, capacity;
 };
 
-/* With the reach of crowns that lean and sway. */
+static int32_t mm_of(float m)
+{
+    return (int32_t)ceilf(1000 * m);
+}
+
 static void add_bounds(struct wd_cluster *cluster, const struct wd_tree *tree)
 {
-    int32_t height_mm = (int32_t)WD_TREE_HEIGHT_CM(*tree) * 10;
-    int32_t reach_mm = (int32_t)WD_TREE_CROWN_CM(*tree) * 15 / 2 + height_mm / 10 + 500;
-    const int32_t low[3] = {tree->x_mm - reach_mm, tree->y_mm - reach_mm, tree->z_mm - 1000};
-    const int32_t high[3] = {tree->x_mm + reach_mm, tree->y_mm + reach_mm,
-                             tree->z_mm + height_mm + height_mm / 10};
+    const float height_m = WD_TREE_HEIGHT_M(*tree);
+    const int32_t reach_mm = mm_of(WD_TREE_REACH_M(WD_TREE_CROWN_M(*tree), height_m));
+    const int32_t low[3] = {tree->x_mm - reach_mm, tree->y_mm - reach_mm, tree->z_mm - mm_of(WD_TREE_BELOW_M)};
+    const int32_t high[3] = {tree->x_mm + reach_mm, tree->y_mm + reach_mm, tree->z_mm + mm_of(WD_TREE_ABOVE_M(height_m))};
     for (int k = 0; k < 3; k++) {
         cluster->min_mm[k] = low[k] < cluster->min_mm[k] ? low[k] : cluster->min_mm[k];
         cluster->max_mm[k] = high[k] > cluster->max_mm[k] ? high[k] : cluster->max_mm[k];

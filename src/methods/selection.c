@@ -148,12 +148,10 @@ struct tree_box {
 
 static struct tree_box box_of(const struct wd_tree *tree, const float foot[3])
 {
-    float half = 0.005f * (float)WD_TREE_CROWN_CM(*tree), height = WD_TREE_HEIGHT_M(*tree);
-    /* wind and leaning boughs reach a little further */
-    float reach = half * 1.5f + 0.1f * height + 0.5f;
+    float height = WD_TREE_HEIGHT_M(*tree), reach = WD_TREE_REACH_M(WD_TREE_CROWN_M(*tree), height);
     return (struct tree_box){
-        {foot[0] - reach, foot[1] - reach, foot[2] - 1.0f},
-        {foot[0] + reach, foot[1] + reach, foot[2] + 1.1f * height},
+        {foot[0] - reach, foot[1] - reach, foot[2] - WD_TREE_BELOW_M},
+        {foot[0] + reach, foot[1] + reach, foot[2] + WD_TREE_ABOVE_M(height)},
     };
 }
 
