@@ -35,8 +35,8 @@ enum wd_result {
 /* Threads. Calls said to be thread-safe may run beside each other on the same objects, as any may on objects that have
  * nothing to do with each other; all others on an object come one at a time. */
 
-/* Of the library that is loaded, as "1.2.3", for programs that hold its structures in another language: these are those
- * of the headers of that version. Thread-safe. */
+/* The version of the library that is loaded, as "1.2.3". Structures are those of the headers of that version, which tells
+ * programs that mirror them in another language whether theirs fit. Never NULL, valid for ever. Thread-safe. */
 const char *wd_version(void);
 
 /* Short English name of a result ("input", "output", ...); never NULL. Thread-safe. */

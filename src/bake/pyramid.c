@@ -43,11 +43,12 @@ static void first_level(struct wd_pyramid *pyramid, const uint8_t *planes)
 {
     struct wd_pyramid_level *level = &pyramid->levels[0];
     size_t count = (size_t)level->width * level->height;
+    const float *linear = wd_srgb_table();
     for (size_t i = 0; i < count; i++) {
         float *values = level->texels[i].values, coverage = (float)planes[4 * i + 3] / 255.0f;
         for (int k = 0; k < VALUES; k++) {
             uint8_t byte = planes[4 * (i + count * (size_t)(k / 4)) + (size_t)(k % 4)];
-            values[k] = coverage * (k < COVERAGE ? wd_srgb_decode(byte) : (float)byte / 255.0f);
+            values[k] = coverage * (k < COVERAGE ? linear[byte] : (float)byte / 255.0f);
         }
         values[COVERAGE] = coverage;
     }

@@ -82,6 +82,7 @@ static float leaf_of(float opacity)
 static struct wd_octant_mean mean_of_pixels(const struct wd_octant_pictures *p, size_t x, size_t y)
 {
     struct wd_octant_mean sum = {0};
+    const float *linear = wd_srgb_table();
     float weight = 1.0f / (float)(p->pixels * p->pixels);
     for (size_t row = y; row < y + p->pixels; row++) {
         for (size_t column = x; column < x + p->pixels; column++) {
@@ -90,12 +91,12 @@ static struct wd_octant_mean mean_of_pixels(const struct wd_octant_pictures *p, 
             if (albedo[3] == 0)
                 continue;
             for (int k = 0; k < 3; k++) {
-                sum.color[k] += weight * wd_srgb_decode(albedo[k]);
+                sum.color[k] += weight * linear[albedo[k]];
                 sum.normal[k] += weight * ((float)normal[k] / 127.5f - 1.0f);
             }
             float openness = weight * (float)normal[3] / 255.0f, leaf = leaf_of((float)albedo[3] / 255.0f);
             for (int k = 0; k < 3; k++)
-                sum.leaves[k] += leaf * weight * wd_srgb_decode(albedo[k]);
+                sum.leaves[k] += leaf * weight * linear[albedo[k]];
             sum.leaves[3] += leaf * openness;
             sum.openness += openness;
             sum.leaf += weight * leaf;

@@ -5,6 +5,7 @@
 #include "suite.h"
 
 int argument_tests(struct suite *suite);
+int forest_tests(struct suite *suite);
 int film_tests(struct suite *suite);
 int memory_tests(struct suite *suite);
 
