@@ -175,8 +175,13 @@ void wd_cmd_bind(struct wd_cmd *cmd, const struct wd_pipeline *pipeline,
 {
     if (cmd->failed)
         return;
+    VkPipeline made = wd_pipeline_made(pipeline, cmd->gpu);
+    if (!made) {
+        cmd->failed = true;
+        return;
+    }
     cmd->recorded = true;
-    vkCmdBindPipeline(cmd->vk, pipeline->bind_point, pipeline->pipeline);
+    vkCmdBindPipeline(cmd->vk, pipeline->bind_point, made);
     if (pipeline->bindings.count > 0 && !bind_set(cmd, pipeline, bindings))
         cmd->failed = true;
 }

@@ -61,7 +61,7 @@ struct wd_cmd {
     struct wd_frames *frames;
     struct wd_frame_slot *slot;
     VkCommandBuffer vk; /* changes when a scope is submitted alone: do not keep it */
-    bool failed;        /* a descriptor or upload could not be had; wd_frame_submit returns false */
+    bool failed;        /* a pipeline, descriptor or upload could not be had; wd_frame_submit returns false */
     uint32_t scope_stack[WD_MAX_SCOPE_DEPTH], scope_depth;
     double scope_start[WD_MAX_SCOPES], scope_processor[WD_MAX_SCOPES];
     enum wd_timing timing; /* of this frame */

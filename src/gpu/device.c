@@ -181,7 +181,8 @@ static bool init_rest(struct wd_gpu *gpu)
 
 bool wd_gpu_init(struct wd_gpu *gpu, const struct wd_gpu_params *params, const struct wd_log *log)
 {
-    *gpu = (struct wd_gpu){.log = log};
+    *gpu = (struct wd_gpu){.log = log,
+                           .makes_at_once = params->external || params->presentation == WD_GPU_PRESENT};
     bool ok = params->external ? init_external(gpu, params) : init_own(gpu, params);
     if (!ok || !init_rest(gpu)) {
         bool no_memory = gpu->no_memory;

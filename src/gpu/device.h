@@ -67,6 +67,7 @@ struct wd_gpu {
     unsigned threads;  /* of the processor that make what it is given; 0: one a processor */
     uint32_t runs;     /* of workgroups that it deals to its threads at once; 1: none */
     bool owned;        /* instance and device are ours to destroy */
+    bool makes_at_once; /* pipelines, not only where they are bound */
     bool lost;         /* VK_ERROR_DEVICE_LOST was seen; every later call fails fast */
     bool no_memory;    /* memory ran out since whoever asks cleared it */
     uint64_t bytes_allocated;  /* device memory held now through memory.h */

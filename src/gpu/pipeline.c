@@ -62,12 +62,17 @@ bool wd_pipeline_init_layout(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
     return wd_gpu_check(gpu, result, name);
 }
 
-bool wd_shader_module_init(VkShaderModule *module, struct wd_gpu *gpu, const struct wd_spirv *spirv)
+bool wd_spirv_check(const struct wd_spirv *spirv, struct wd_gpu *gpu)
 {
     const uint32_t spirv_magic = 0x07230203;
-    *module = VK_NULL_HANDLE;
     if (spirv->size < 20 || spirv->size % 4 != 0 || spirv->words[0] != spirv_magic)
         return wd_error(gpu->log, "shader \"%s\" is not SPIR-V", spirv->name);
+    return true;
+}
+
+bool wd_shader_module_init(VkShaderModule *module, struct wd_gpu *gpu, const struct wd_spirv *spirv)
+{
+    *module = VK_NULL_HANDLE;
     const VkShaderModuleCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
         .codeSize = spirv->size,
@@ -83,12 +88,12 @@ VkShaderStageFlags wd_pipeline_stages(const struct wd_pipeline *pipeline)
                : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 }
 
-static bool create_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
-                           const struct wd_compute_params *params)
+VkPipeline wd_compute_create(struct wd_gpu *gpu, VkPipelineLayout layout, const struct wd_compute_params *params)
 {
     VkShaderModule module;
+    VkPipeline made = VK_NULL_HANDLE;
     if (!wd_shader_module_init(&module, gpu, &params->shader))
-        return false;
+        return VK_NULL_HANDLE;
     struct wd_specialization specialization;
     wd_specialization_init(&specialization, &params->constants);
     const VkComputePipelineCreateInfo info = {
@@ -100,14 +105,14 @@ static bool create_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
             .pName = "main",
             .pSpecializationInfo = &specialization.info,
         },
-        .layout = pipeline->layout,
+        .layout = layout,
     };
-    VkResult result = vkCreateComputePipelines(gpu->device, gpu->pipeline_cache, 1, &info, NULL,
-                                               &pipeline->pipeline);
+    VkResult result = vkCreateComputePipelines(gpu->device, gpu->pipeline_cache, 1, &info, NULL, &made);
     vkDestroyShaderModule(gpu->device, module, NULL);
-    if (result != VK_SUCCESS)
-        pipeline->pipeline = VK_NULL_HANDLE;
-    return wd_gpu_check(gpu, result, params->shader.name);
+    if (!wd_gpu_check(gpu, result, params->shader.name))
+        return VK_NULL_HANDLE;
+    wd_set_object_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)made, params->shader.name);
+    return made;
 }
 
 static void add_compute(struct wd_pipeline_key *key, const struct wd_compute_params *params)
@@ -126,23 +131,17 @@ bool wd_pipeline_init_compute(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
     if (!gpu->lost && wd_pipeline_find(pipeline, gpu, &key))
         return true;
     *pipeline = (struct wd_pipeline){.bind_point = VK_PIPELINE_BIND_POINT_COMPUTE};
-    if (gpu->lost ||
+    if (gpu->lost || !wd_spirv_check(&params->shader, gpu) ||
         !wd_pipeline_init_layout(pipeline, gpu, &params->bindings, params->push_size,
-                                 VK_SHADER_STAGE_COMPUTE_BIT, params->shader.name) ||
-        !create_compute(pipeline, gpu, params)) {
-        wd_pipeline_destroy(pipeline, gpu);
+                                 VK_SHADER_STAGE_COMPUTE_BIT, params->shader.name)) {
+        wd_pipeline_destroy_layout(pipeline, gpu);
         return false;
     }
-    wd_set_object_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)pipeline->pipeline,
-                       params->shader.name);
-    wd_pipeline_keep(pipeline, gpu, &key);
-    return true;
+    return wd_pipeline_keep(pipeline, gpu, &key, &(struct wd_pipeline_params){.compute = *params});
 }
 
-void wd_pipeline_destroy(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+void wd_pipeline_destroy_layout(struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
-    if (pipeline->pipeline)
-        vkDestroyPipeline(gpu->device, pipeline->pipeline, NULL);
     if (pipeline->layout)
         vkDestroyPipelineLayout(gpu->device, pipeline->layout, NULL);
     if (pipeline->set_layout)

@@ -1,5 +1,7 @@
 /* pipeline.h: compute and graphics pipelines from SPIR-V that is embedded in the program. The device keeps them
- * until it is finished: what is asked for with equal parameters is the same pipeline. */
+ * until it is finished: what is asked for with equal parameters is the same pipeline. Drivers make one when it is
+ * first bound, for a picture needs about half of those that its renderer has; for windows and on an embedder's device
+ * at once, so that no frame waits for one. */
 #ifndef WD_GPU_PIPELINE_H
 #define WD_GPU_PIPELINE_H
 
@@ -23,7 +25,7 @@ struct wd_bindings {
 };
 
 struct wd_pipeline {
-    VkPipeline pipeline;
+    struct wd_kept_pipeline *pipeline; /* the device's; NULL: none */
     VkPipelineLayout layout;
     VkDescriptorSetLayout set_layout;
     VkPipelineBindPoint bind_point;
@@ -77,6 +79,10 @@ struct wd_graphics_params {
 /* Viewport and scissor are dynamic; wd_cmd_begin_rendering sets them. */
 bool wd_pipeline_init_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
                                const struct wd_graphics_params *params);
+
+/* Has the driver make it now: many are made by several threads in less time. False, with a message, on failure. Any
+ * thread may do so. */
+bool wd_pipeline_make(const struct wd_pipeline *pipeline, struct wd_gpu *gpu);
 
 enum wd_sampler_kind {
     WD_SAMPLER_NEAREST_CLAMP,

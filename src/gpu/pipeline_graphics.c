@@ -71,10 +71,9 @@ static VkPipelineShaderStageCreateInfo stage_info(VkShaderStageFlagBits stage,
     };
 }
 
-static VkResult create_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
+static VkResult create_graphics(VkPipeline *made, struct wd_gpu *gpu, VkPipelineLayout layout,
                                 const struct wd_graphics_params *params,
-                                const VkPipelineShaderStageCreateInfo *stages,
-                                uint32_t stage_count)
+                                const VkPipelineShaderStageCreateInfo *stages, uint32_t stage_count)
 {
     const VkVertexInputBindingDescription buffer = {.stride = params->vertices.stride};
     VkVertexInputAttributeDescription attributes[WD_MAX_VERTEX_ATTRIBUTES];
@@ -139,34 +138,33 @@ static VkResult create_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu
         .pDepthStencilState = &depth,
         .pColorBlendState = &blend,
         .pDynamicState = &dynamic,
-        .layout = pipeline->layout,
+        .layout = layout,
     };
-    return vkCreateGraphicsPipelines(gpu->device, gpu->pipeline_cache, 1, &info, NULL,
-                                     &pipeline->pipeline);
+    return vkCreateGraphicsPipelines(gpu->device, gpu->pipeline_cache, 1, &info, NULL, made);
 }
 
-static bool create_with_shaders(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
-                                const struct wd_graphics_params *params)
+VkPipeline wd_graphics_create(struct wd_gpu *gpu, VkPipelineLayout layout, const struct wd_graphics_params *params)
 {
     struct wd_specialization specialization;
     wd_specialization_init(&specialization, &params->constants);
     bool depth_only = !params->fragment.words;
     VkShaderModule vertex = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
-    bool ok = wd_shader_module_init(&vertex, gpu, &params->vertex) &&
-              (depth_only || wd_shader_module_init(&fragment, gpu, &params->fragment));
-    if (ok) {
+    VkPipeline made = VK_NULL_HANDLE;
+    if (wd_shader_module_init(&vertex, gpu, &params->vertex) &&
+        (depth_only || wd_shader_module_init(&fragment, gpu, &params->fragment))) {
         const VkPipelineShaderStageCreateInfo stages[] = {
             stage_info(VK_SHADER_STAGE_VERTEX_BIT, vertex, &specialization),
             stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, &specialization),
         };
-        VkResult result = create_graphics(pipeline, gpu, params, stages, depth_only ? 1 : 2);
-        if (result != VK_SUCCESS)
-            pipeline->pipeline = VK_NULL_HANDLE;
-        ok = wd_gpu_check(gpu, result, params->vertex.name);
+        VkResult result = create_graphics(&made, gpu, layout, params, stages, depth_only ? 1 : 2);
+        if (wd_gpu_check(gpu, result, params->vertex.name))
+            wd_set_object_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)made, params->vertex.name);
+        else
+            made = VK_NULL_HANDLE;
     }
     vkDestroyShaderModule(gpu->device, vertex, NULL);
     vkDestroyShaderModule(gpu->device, fragment, NULL);
-    return ok;
+    return made;
 }
 
 static void add_graphics(struct wd_pipeline_key *key, const struct wd_graphics_params *params)
@@ -196,15 +194,12 @@ bool wd_pipeline_init_graphics(struct wd_pipeline *pipeline, struct wd_gpu *gpu,
         return true;
     *pipeline = (struct wd_pipeline){.bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS};
     VkShaderStageFlags stages = wd_pipeline_stages(pipeline);
-    if (gpu->lost ||
+    if (gpu->lost || !wd_spirv_check(&params->vertex, gpu) ||
+        (params->fragment.words && !wd_spirv_check(&params->fragment, gpu)) ||
         !wd_pipeline_init_layout(pipeline, gpu, &params->bindings, params->push_size, stages,
-                                 params->vertex.name) ||
-        !create_with_shaders(pipeline, gpu, params)) {
-        wd_pipeline_destroy(pipeline, gpu);
+                                 params->vertex.name)) {
+        wd_pipeline_destroy_layout(pipeline, gpu);
         return false;
     }
-    wd_set_object_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)pipeline->pipeline,
-                       params->vertex.name);
-    wd_pipeline_keep(pipeline, gpu, &key);
-    return true;
+    return wd_pipeline_keep(pipeline, gpu, &key, &(struct wd_pipeline_params){.graphics = *params});
 }

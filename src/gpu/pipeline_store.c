@@ -6,16 +6,20 @@
 #include "base/memory.h"
 #include "gpu/pipeline_parts.h"
 
-struct kept_pipeline {
-    struct kept_pipeline *next;
+struct wd_kept_pipeline {
+    struct wd_kept_pipeline *next;
     struct wd_pipeline pipeline;
+    struct wd_pipeline_params params;
+    uint32_t constants[WD_MAX_SPEC_CONSTANTS];
+    pthread_mutex_t lock; /* of `made` */
+    VkPipeline made;
     size_t key_size;
     unsigned char key[];
 };
 
 struct wd_pipeline_store {
     pthread_mutex_t lock;
-    struct kept_pipeline *first;
+    struct wd_kept_pipeline *first;
 };
 
 void wd_pipeline_key_add(struct wd_pipeline_key *key, const void *bytes, size_t size)
@@ -32,9 +36,9 @@ void wd_pipeline_key_add_constants(struct wd_pipeline_key *key, const struct wd_
     wd_pipeline_key_add(key, constants->values, constants->count * sizeof *constants->values);
 }
 
-static struct kept_pipeline *find(struct wd_pipeline_store *store, const struct wd_pipeline_key *key)
+static struct wd_kept_pipeline *find(struct wd_pipeline_store *store, const struct wd_pipeline_key *key)
 {
-    struct kept_pipeline *kept = store->first;
+    struct wd_kept_pipeline *kept = store->first;
     while (kept && !(kept->key_size == key->size && memcmp(kept->key, key->bytes, key->size) == 0))
         kept = kept->next;
     return kept;
@@ -44,33 +48,78 @@ bool wd_pipeline_find(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const st
 {
     struct wd_pipeline_store *store = gpu->pipelines;
     pthread_mutex_lock(&store->lock);
-    const struct kept_pipeline *kept = find(store, key);
+    const struct wd_kept_pipeline *kept = find(store, key);
     if (kept)
         *pipeline = kept->pipeline;
     pthread_mutex_unlock(&store->lock);
     return kept;
 }
 
-void wd_pipeline_keep(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct wd_pipeline_key *key)
+static void take_constants(struct wd_kept_pipeline *kept, struct wd_spec_constants *constants)
+{
+    if (constants->count)
+        memcpy(kept->constants, constants->values, constants->count * sizeof *constants->values);
+    constants->values = kept->constants;
+}
+
+static struct wd_kept_pipeline *kept_of(const struct wd_pipeline *pipeline, const struct wd_pipeline_key *key,
+                                        const struct wd_pipeline_params *params)
+{
+    struct wd_kept_pipeline *kept = wd_alloc(sizeof *kept + key->size);
+    kept->pipeline = *pipeline;
+    kept->pipeline.pipeline = kept;
+    kept->params = *params;
+    take_constants(kept, pipeline->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE ? &kept->params.compute.constants
+                                                                                : &kept->params.graphics.constants);
+    kept->key_size = key->size;
+    memcpy(kept->key, key->bytes, key->size);
+    pthread_mutex_init(&kept->lock, NULL);
+    return kept;
+}
+
+static void destroy(struct wd_kept_pipeline *kept, struct wd_gpu *gpu)
+{
+    if (kept->made)
+        vkDestroyPipeline(gpu->device, kept->made, NULL);
+    wd_pipeline_destroy_layout(&kept->pipeline, gpu);
+    pthread_mutex_destroy(&kept->lock);
+    free(kept);
+}
+
+bool wd_pipeline_keep(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct wd_pipeline_key *key,
+                      const struct wd_pipeline_params *params)
 {
     struct wd_pipeline_store *store = gpu->pipelines;
-    struct kept_pipeline *made = wd_alloc(sizeof *made + key->size);
-    made->pipeline = *pipeline;
-    made->key_size = key->size;
-    memcpy(made->key, key->bytes, key->size);
+    struct wd_kept_pipeline *own = kept_of(pipeline, key, params);
     pthread_mutex_lock(&store->lock);
-    const struct kept_pipeline *other = find(store, key); /* of a thread that was faster */
-    if (other) {
-        *pipeline = other->pipeline;
-    } else {
-        made->next = store->first;
-        store->first = made;
+    struct wd_kept_pipeline *other = find(store, key); /* of a thread that was faster */
+    if (!other) {
+        own->next = store->first;
+        store->first = own;
     }
     pthread_mutex_unlock(&store->lock);
-    if (other) {
-        wd_pipeline_destroy(&made->pipeline, gpu);
-        free(made);
-    }
+    *pipeline = (other ? other : own)->pipeline;
+    if (other)
+        destroy(own, gpu);
+    return !gpu->makes_at_once || wd_pipeline_make(pipeline, gpu);
+}
+
+VkPipeline wd_pipeline_made(const struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+{
+    struct wd_kept_pipeline *kept = pipeline->pipeline;
+    pthread_mutex_lock(&kept->lock);
+    if (!kept->made && !gpu->lost)
+        kept->made = pipeline->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE
+                         ? wd_compute_create(gpu, pipeline->layout, &kept->params.compute)
+                         : wd_graphics_create(gpu, pipeline->layout, &kept->params.graphics);
+    VkPipeline made = kept->made;
+    pthread_mutex_unlock(&kept->lock);
+    return made;
+}
+
+bool wd_pipeline_make(const struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+{
+    return wd_pipeline_made(pipeline, gpu);
 }
 
 void wd_pipeline_store_init(struct wd_gpu *gpu)
@@ -85,10 +134,9 @@ void wd_pipeline_store_finish(struct wd_gpu *gpu)
     if (!store)
         return;
     while (store->first) {
-        struct kept_pipeline *kept = store->first;
+        struct wd_kept_pipeline *kept = store->first;
         store->first = kept->next;
-        wd_pipeline_destroy(&kept->pipeline, gpu);
-        free(kept);
+        destroy(kept, gpu);
     }
     pthread_mutex_destroy(&store->lock);
     free(store);

@@ -216,6 +216,28 @@ static void equal_parameters_give_the_same_pipeline(void **state)
     assert_true(same.pipeline == first.pipeline);
 }
 
+/* Drivers make pipelines as they are bound. */
+static void what_cannot_be_made_fails_the_frame(void **state)
+{
+    struct gpu_test *test = *state;
+    struct wd_pipeline pipeline = make_compute(test, SPIRV(count_comp), BINDINGS(STORAGE), 0);
+    struct wd_buffer buffer = make_buffer(test, 2048);
+    struct wd_cmd cmd = begin_frame(test);
+    test->gpu.lost = true;
+    wd_cmd_bind(&cmd, &pipeline, (struct wd_binding[]){WD_BIND_BUFFER(&buffer)});
+    assert_true(cmd.failed);
+    test->gpu.lost = false;
+    assert_false(wd_frame_submit(&cmd, VK_NULL_HANDLE, VK_NULL_HANDLE));
+    assert_true(wd_pipeline_make(&pipeline, &test->gpu));
+    cmd = begin_frame(test);
+    test->gpu.lost = true;
+    wd_cmd_bind(&cmd, &pipeline, (struct wd_binding[]){WD_BIND_BUFFER(&buffer)});
+    test->gpu.lost = false;
+    assert_false(cmd.failed); /* it was there */
+    finish_frame(test, &cmd);
+    wd_buffer_finish(&buffer, &test->gpu);
+}
+
 int main(void)
 {
 #define GPU_TEST(f) cmocka_unit_test_setup_teardown(f, gpu_setup, gpu_teardown)
@@ -229,6 +251,7 @@ int main(void)
         GPU_TEST(layers_and_mips_are_sampled),
         GPU_TEST(what_is_not_spirv_is_refused),
         GPU_TEST(equal_parameters_give_the_same_pipeline),
+        GPU_TEST(what_cannot_be_made_fails_the_frame),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

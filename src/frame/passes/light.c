@@ -134,7 +134,8 @@ static void prepare_list(void *user, size_t index)
     bool water = pipeline == &work->pass->water;
     bool single = list < WD_TILE_LISTS && pipeline == &work->pass->single[list];
     uint32_t parts = water ? WD_PART_ALL : wd_tile_list_parts(list) & ~WD_PART_WATER;
-    if (!init_list(pipeline, work->gpu, water ? WET_LIST : list, parts, single))
+    if (!init_list(pipeline, work->gpu, water ? WET_LIST : list, parts, single) ||
+        !wd_pipeline_make(pipeline, work->gpu))
         atomic_store(&work->failed, true);
 }
 
