@@ -14,19 +14,19 @@ bool wd_targets_init(struct wd_targets *targets, struct wd_gpu *gpu, uint32_t wi
         struct wd_image_params params;
     } images[] = {
         {&targets->albedo, {"albedo", WD_ALBEDO_FORMAT, width, height, 1, 1, target, 0,
-                            stored ? WD_ALBEDO_STORED : VK_FORMAT_UNDEFINED}},
-        {&targets->normal, {"normal", WD_NORMAL_FORMAT, width, height, 1, 1, filled, 0, 0}},
-        {&targets->surface, {"surface", WD_SURFACE_FORMAT, width, height, 1, 1, filled, 0, 0}},
-        {&targets->depth, {"depth", WD_DEPTH_FORMAT, width, height, 1, 1, depth, 0, 0}},
-        {&targets->overlay, {"overlay", WD_OVERLAY_FORMAT, width, height, 1, 1, target, 0, 0}},
-        {&targets->radiance, {"radiance", WD_RADIANCE_FORMAT, width, height, 1, 1, storage, 0, 0}},
-        {&targets->display, {"display", WD_DISPLAY_FORMAT, width, height, 1, 1, storage, 0, 0}},
+                            stored ? WD_ALBEDO_STORED : VK_FORMAT_UNDEFINED, true}},
+        {&targets->normal, {"normal", WD_NORMAL_FORMAT, width, height, 1, 1, filled, 0, 0, true}},
+        {&targets->surface, {"surface", WD_SURFACE_FORMAT, width, height, 1, 1, filled, 0, 0, true}},
+        {&targets->depth, {"depth", WD_DEPTH_FORMAT, width, height, 1, 1, depth, 0, 0, true}},
+        {&targets->overlay, {"overlay", WD_OVERLAY_FORMAT, width, height, 1, 1, target, 0, 0, true}},
+        {&targets->radiance, {"radiance", WD_RADIANCE_FORMAT, width, height, 1, 1, storage, 0, 0, true}},
+        {&targets->display, {"display", WD_DISPLAY_FORMAT, width, height, 1, 1, storage, 0, 0, true}},
         {&targets->shadow,
          {"shadow", WD_DEPTH_FORMAT, shadow_size, shadow_size, WD_CASCADES, 1, depth,
-          WD_IMAGE_ARRAY, 0}},
+          WD_IMAGE_ARRAY, 0, false}},
         {&targets->stored_shadow,
          {"stored shadow", WD_DEPTH_STORED, shadow_size, shadow_size, WD_CASCADES, 1, storage,
-          WD_IMAGE_ARRAY, 0}},
+          WD_IMAGE_ARRAY, 0, false}},
     };
     const size_t count = sizeof images / sizeof *images - (stored ? 0 : 1);
     *targets = (struct wd_targets){

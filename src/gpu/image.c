@@ -135,6 +135,12 @@ static bool create_whole_views(struct wd_gpu *gpu, struct wd_image *image,
             create_whole_view(gpu, image, &stored, params->name, &image->stored));
 }
 
+static uint32_t side_of(const struct wd_gpu *gpu, const struct wd_image_params *params, uint32_t side)
+{
+    bool power = (side & (side - 1)) == 0 && side < gpu->properties.limits.maxImageDimension2D;
+    return side + (params->by_texel && gpu->software && power);
+}
+
 static bool create_image(struct wd_image *image, struct wd_gpu *gpu,
                          const struct wd_image_params *params, VkImageUsageFlags usage)
 {
@@ -143,7 +149,7 @@ static bool create_image(struct wd_image *image, struct wd_gpu *gpu,
         .flags = image_flags(params),
         .imageType = VK_IMAGE_TYPE_2D,
         .format = image->format,
-        .extent = {image->width, image->height, 1},
+        .extent = {side_of(gpu, params, image->width), side_of(gpu, params, image->height), 1},
         .mipLevels = image->mips,
         .arrayLayers = image->layers,
         .samples = VK_SAMPLE_COUNT_1_BIT,

@@ -262,6 +262,7 @@ static bool fit_visible(struct wd_card_soup *soup, const struct wd_tree_draw *dr
         .width = draw->targets->width,
         .height = draw->targets->height,
         .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+        .by_texel = true,
     };
     if (soup->visible.width == params.width && soup->visible.height == params.height)
         return true;
