@@ -471,29 +471,40 @@ static uint8_t root_byte(float share)
     return (uint8_t)(sqrtf(fminf(share, 1)) * 255 + 0.5f);
 }
 
-bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
+/* Cells at the edge stand for those that it has more. */
+static uint32_t side_of(uint32_t cells)
+{
+    return cells + ((cells & (cells - 1)) == 0);
+}
+
+bool wd_canopy_light_upload(struct wd_image *image, float scale[2], struct wd_gpu *gpu,
                             const struct wd_canopy_field *field)
 {
     const struct wd_image_params params = {.name = "canopy light",
                                            .format = VK_FORMAT_R8G8B8A8_UNORM,
-                                           .width = field->width,
-                                           .height = field->height,
+                                           .width = side_of(field->width),
+                                           .height = side_of(field->height),
                                            .layers = 4,
                                            .mips = 1,
                                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
-    size_t count = (size_t)field->width * field->height;
+    size_t count = (size_t)params.width * params.height;
     uint8_t(*texels)[4] = wd_alloc_array(4 * count, sizeof *texels);
     for (size_t i = 0; i < count; i++) {
+        size_t x = i % params.width, y = i / params.width;
+        size_t cell = (y < field->height ? y : field->height - 1) * field->width +
+                      (x < field->width ? x : field->width - 1);
         for (int k = 0; k < QUARTERS; k++) {
-            texels[i][k] = root_byte(field->quarters[i][k]);
-            texels[2 * count + i][k] = root_byte(field->high[i][k]);
-            texels[3 * count + i][k] = root_byte(field->low[i][k]);
+            texels[i][k] = root_byte(field->quarters[cell][k]);
+            texels[2 * count + i][k] = root_byte(field->high[cell][k]);
+            texels[3 * count + i][k] = root_byte(field->low[cell][k]);
         }
         for (int k = 0; k < 2; k++)
-            texels[count + i][k] = root_byte(field->layer_m[i][k] / WD_CANOPY_MOST_M);
-        texels[count + i][2] = root_byte(field->herbs[i][0] / WD_HERBS_MOST);
-        texels[count + i][3] = root_byte(field->herbs[i][1] / WD_HERB_M);
+            texels[count + i][k] = root_byte(field->layer_m[cell][k] / WD_CANOPY_MOST_M);
+        texels[count + i][2] = root_byte(field->herbs[cell][0] / WD_HERBS_MOST);
+        texels[count + i][3] = root_byte(field->herbs[cell][1] / WD_HERB_M);
     }
+    scale[0] = (float)(1 / (field->cell_m * params.width));
+    scale[1] = (float)(1 / (field->cell_m * params.height));
     bool ok = wd_image_init(image, gpu, &params);
     for (uint32_t layer = 0; ok && layer < params.layers; layer++)
         ok = wd_image_upload(gpu, image, layer, 0, texels + layer * count, count * sizeof *texels);

@@ -38,8 +38,9 @@ void wd_canopy_field_finish(struct wd_canopy_field *field);
 /* Four layers of R8G8B8A8_UNORM; x runs east, y north over the field's cells. The first holds square
  * roots of the shares of level ground; the second those of base and top over WD_CANOPY_MOST_M, of herbs' layers over
  * WD_HERBS_MOST and of their height over WD_HERB_M; the others those of the shares of upright surfaces,
- * of the sky above 30 degrees and below. */
-bool wd_canopy_light_upload(struct wd_image *image, struct wd_gpu *gpu,
+ * of the sky above 30 degrees and below. (Local metres - from) * `scale` are its coordinates; no side is a power of two,
+ * for which llvmpipe compiles all shaders that look it up anew. */
+bool wd_canopy_light_upload(struct wd_image *image, float scale[2], struct wd_gpu *gpu,
                             const struct wd_canopy_field *field);
 
 #endif

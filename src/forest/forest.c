@@ -207,11 +207,9 @@ static bool make_canopy_light(struct preparation *work, struct wd_gpu *gpu)
                                      .grown = work->grown,
                                      .variants = forest->variants,
                                      .threads = work->params->threads});
-    forest->canopy_light_scale[0] = (float)(1 / (field.cell_m * field.width));
-    forest->canopy_light_scale[1] = (float)(1 / (field.cell_m * field.height));
     for (int k = 0; k < 2; k++)
         forest->canopy_light_from_m[k] = (float)field.from_m[k];
-    bool ok = wd_canopy_light_upload(&forest->canopy_light, gpu, &field);
+    bool ok = wd_canopy_light_upload(&forest->canopy_light, forest->canopy_light_scale, gpu, &field);
     wd_canopy_field_finish(&field);
     set_leaf_scatter(work);
     return ok;

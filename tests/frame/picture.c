@@ -71,9 +71,7 @@ static bool make_canopy_light(struct picture_test *test)
         .world = &test->world, .models = &none, .variants = 1, .threads = 1};
     struct wd_canopy_field field;
     wd_canopy_field_init(&field, &params);
-    test->forest.canopy_light_scale[0] = (float)(1 / (field.cell_m * field.width));
-    test->forest.canopy_light_scale[1] = (float)(1 / (field.cell_m * field.height));
-    bool ok = wd_canopy_light_upload(&test->forest.canopy_light, &test->gpu, &field);
+    bool ok = wd_canopy_light_upload(&test->forest.canopy_light, test->forest.canopy_light_scale, &test->gpu, &field);
     wd_canopy_field_finish(&field);
     return ok;
 }
