@@ -597,17 +597,15 @@ void select_trees(uint index, wd_cluster cluster, uvec2 range, uint mask)
     } while (i < end);
 }
 
-/* Those of a word of the masks that are seen past what is drawn by now. */
-void select_put_off(uint word)
+/* Whether what a cluster holds is hidden past what is drawn by now. */
+bool cluster_is_hidden(wd_cluster cluster)
 {
-    uint index = word >> 1u, first = (word & 1u) * 32u;
-    wd_cluster cluster = clusters[index];
     vec3 low = rel_of_mm(ivec3(cluster.min_mm[0], cluster.min_mm[1], cluster.min_mm[2]));
     vec3 high = rel_of_mm(ivec3(cluster.max_mm[0], cluster.max_mm[1], cluster.max_mm[2]));
-    if (!was_hidden(low, high))
-        select_trees(index, cluster, uvec2(first, first + 32u), put_off[word]);
+    return was_hidden(low, high);
 }
 
+/* One call of select_trees, which is most of the shader, for both rounds. */
 void main()
 {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
@@ -615,10 +613,15 @@ void main()
     if (group >= groups)
         return;
     group = dealt(group, groups);
-    if (AGAIN != 0u) {
-        select_put_off(put_off[view.put_off_words + group]);
-        return;
+    uint index = AGAIN != 0u ? 0u : visible[group], mask = ~0u;
+    uvec2 range = uvec2(0u, WD_CLUSTER_TREES);
+    if (AGAIN != 0u) { /* of the trees that a word of the masks tells of */
+        uint word = put_off[view.put_off_words + group];
+        index = word >> 1u;
+        mask = put_off[word];
+        range = (word & 1u) * 32u + uvec2(0u, 32u);
+        if (cluster_is_hidden(clusters[index]))
+            return;
     }
-    uint index = visible[group];
-    select_trees(index, clusters[index], uvec2(0u, WD_CLUSTER_TREES), ~0u);
+    select_trees(index, clusters[index], range, mask);
 }
