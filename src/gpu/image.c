@@ -192,6 +192,7 @@ bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu, const struct wd_i
     };
     if (params->mips == WD_ALL_MIPS)
         image->mips = mip_count(params->width, params->height);
+    assert(!params->by_texel || image->mips == 1);
     VkImageUsageFlags usage =
         params->usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
         (params->stored_as ? VK_IMAGE_USAGE_STORAGE_BIT : 0);

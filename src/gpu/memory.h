@@ -79,8 +79,8 @@ struct wd_image_params {
     VkImageUsageFlags usage; /* ORed with TRANSFER_SRC and TRANSFER_DST */
     enum wd_image_view_kind view;
     VkFormat stored_as; /* of a view for storage alone, where the image's own format has none; 0: none */
-    /* Shaders look at texels, not at places from 0 to 1: it may have more than asked for. llvmpipe compiles each of its
-     * shaders anew for sides that are powers of two, so it never gets such. */
+    /* Shaders look at texels, not at places from 0 to 1, and at one mip: it may have more than asked for. llvmpipe
+     * compiles each of its shaders anew for sides that are powers of two, so it gets none. */
     bool by_texel;
 };
 #define WD_ALL_MIPS UINT32_MAX

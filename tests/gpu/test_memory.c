@@ -97,6 +97,7 @@ static void images_round_trip(void **state)
 {
     struct gpu_test *test = *state;
     const VkImageUsageFlags sampled = VK_IMAGE_USAGE_SAMPLED_BIT;
+    const uint32_t most = test->gpu.properties.limits.maxImageDimension2D; /* a power of two */
     const struct wd_image_params images[] = {
         {"layers and mips", VK_FORMAT_R8G8B8A8_UNORM, 37, 20, 5, WD_ALL_MIPS, sampled, 0},
         {"one texel", VK_FORMAT_R32_UINT, 1, 1, 0, 0, sampled, WD_IMAGE_ARRAY},
@@ -105,6 +106,8 @@ static void images_round_trip(void **state)
         {"depth", VK_FORMAT_D32_SFLOAT, 33, 9, 2, 1,
          sampled | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 0},
         {"only moved", VK_FORMAT_R8G8B8A8_UNORM, 8, 8, 1, 1, 0, 0},
+        {"larger than asked for", VK_FORMAT_R32_UINT, 64, 16, 1, 1, sampled, 0, 0, true},
+        {"no larger than can be", VK_FORMAT_R8_UNORM, most, 3, 1, 1, sampled, 0, 0, true},
     };
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         check_image(test, &images[i]);
