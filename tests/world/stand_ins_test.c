@@ -253,5 +253,7 @@ int main(void)
         cmocka_unit_test(low_trees_are_young_ones),
         cmocka_unit_test(trees_on_demand_are_told_of),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    unlink(path);
+    return failed;
 }
