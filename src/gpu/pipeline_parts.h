@@ -50,7 +50,8 @@ void wd_pipeline_store_init(struct wd_gpu *gpu);
 void wd_pipeline_store_finish(struct wd_gpu *gpu); /* destroys them */
 bool wd_pipeline_find(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct wd_pipeline_key *key);
 /* Keeps `pipeline`, which has a layout, with a copy of what it is made from; where another thread has kept one of the
- * same key, this one's layout is destroyed and that is given. False, with a message, if it was to be made and was not. */
+ * same key, this one's layout is destroyed and that is given. False, with {0} and a message, if it was to be made at once
+ * and was not; then the next who asks for it has another try. */
 bool wd_pipeline_keep(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const struct wd_pipeline_key *key,
                       const struct wd_pipeline_params *params);
 

@@ -101,7 +101,10 @@ bool wd_pipeline_keep(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const st
     *pipeline = (other ? other : own)->pipeline;
     if (other)
         destroy(own, gpu);
-    return !gpu->makes_at_once || wd_pipeline_make(pipeline, gpu);
+    bool ok = !gpu->makes_at_once || wd_pipeline_make(pipeline, gpu);
+    if (!ok)
+        *pipeline = (struct wd_pipeline){0};
+    return ok;
 }
 
 VkPipeline wd_pipeline_made(const struct wd_pipeline *pipeline, struct wd_gpu *gpu)
