@@ -309,7 +309,7 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
     uint32_t samples = frame->params.samples;
     bool only_last = frame->params.light == WD_FRAME_UNLIT && frame->params.gbuffer != WD_GBUFFER_READ_EACH;
     uint32_t first = only_last ? samples - 1 : 0; /* layers are those of the last */
-    double start = wd_clock_s();
+    double start = wd_clock_s() - renderer->gpu.making_s;
     for (uint32_t i = first; i < samples; i++) {
         struct wd_cmd cmd;
         if (samples - first > 1 && !wd_progress_report(&renderer->progress, "samples", i, samples))
@@ -331,7 +331,7 @@ static enum wd_result render_samples(struct wd_renderer *renderer)
     if (!wd_frames_wait(&frame->ring))
         return wd_renderer_failure(renderer);
     renderer->samples = samples - first;
-    renderer->frame_ms = (wd_clock_s() - start) * 1e3 / renderer->samples;
+    renderer->frame_ms = (wd_clock_s() - renderer->gpu.making_s - start) * 1e3 / renderer->samples;
     if (frame->params.method->check)
         frame->params.method->check(frame->method_state, &renderer->gpu);
     renderer->discs = 0;

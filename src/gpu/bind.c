@@ -1,6 +1,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "gpu/frames.h"
@@ -170,18 +171,23 @@ static bool bind_set(struct wd_cmd *cmd, const struct wd_pipeline *pipeline,
     return true;
 }
 
+static bool make(struct wd_gpu *gpu, const struct wd_pipeline *pipeline)
+{
+    double clock_s = wd_clock_s(), processor_s = wd_processor_s();
+    bool ok = wd_pipeline_make(pipeline, gpu);
+    gpu->making_s += wd_clock_s() - clock_s;
+    gpu->making_processor_s += wd_processor_s() - processor_s;
+    return ok;
+}
+
 void wd_cmd_bind(struct wd_cmd *cmd, const struct wd_pipeline *pipeline,
                  const struct wd_binding *bindings)
 {
+    cmd->failed = cmd->failed || (!wd_pipeline_made(pipeline) && !make(cmd->gpu, pipeline));
     if (cmd->failed)
         return;
-    VkPipeline made = wd_pipeline_made(pipeline, cmd->gpu);
-    if (!made) {
-        cmd->failed = true;
-        return;
-    }
     cmd->recorded = true;
-    vkCmdBindPipeline(cmd->vk, pipeline->bind_point, made);
+    vkCmdBindPipeline(cmd->vk, pipeline->bind_point, wd_pipeline_made(pipeline));
     if (pipeline->bindings.count > 0 && !bind_set(cmd, pipeline, bindings))
         cmd->failed = true;
 }

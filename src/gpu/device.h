@@ -68,6 +68,8 @@ struct wd_gpu {
     uint32_t runs;     /* of workgroups that it deals to its threads at once; 1: none */
     bool owned;        /* instance and device are ours to destroy */
     bool makes_at_once; /* pipelines, not only where they are bound */
+    /* What frames have spent on having pipelines made, which no time of theirs holds: by the clock, of the processor. */
+    double making_s, making_processor_s;
     bool lost;         /* VK_ERROR_DEVICE_LOST was seen; every later call fails fast */
     bool no_memory;    /* memory ran out since whoever asks cleared it */
     uint64_t bytes_allocated;  /* device memory held now through memory.h */

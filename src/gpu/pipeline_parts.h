@@ -42,8 +42,8 @@ struct wd_pipeline_params {
 VkPipeline wd_compute_create(struct wd_gpu *gpu, VkPipelineLayout layout, const struct wd_compute_params *params);
 VkPipeline wd_graphics_create(struct wd_gpu *gpu, VkPipelineLayout layout, const struct wd_graphics_params *params);
 
-/* The driver's, made where it has not been yet; VK_NULL_HANDLE, with a message, on failure. */
-VkPipeline wd_pipeline_made(const struct wd_pipeline *pipeline, struct wd_gpu *gpu);
+/* The driver's; VK_NULL_HANDLE where it has not been made yet. */
+VkPipeline wd_pipeline_made(const struct wd_pipeline *pipeline);
 
 /* What the device keeps. Threads may ask for pipelines at the same time. */
 void wd_pipeline_store_init(struct wd_gpu *gpu);

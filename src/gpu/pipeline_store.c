@@ -107,7 +107,7 @@ bool wd_pipeline_keep(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const st
     return ok;
 }
 
-VkPipeline wd_pipeline_made(const struct wd_pipeline *pipeline, struct wd_gpu *gpu)
+bool wd_pipeline_make(const struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
     struct wd_kept_pipeline *kept = pipeline->pipeline;
     pthread_mutex_lock(&kept->lock);
@@ -115,14 +115,18 @@ VkPipeline wd_pipeline_made(const struct wd_pipeline *pipeline, struct wd_gpu *g
         kept->made = pipeline->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE
                          ? wd_compute_create(gpu, pipeline->layout, &kept->params.compute)
                          : wd_graphics_create(gpu, pipeline->layout, &kept->params.graphics);
+    bool ok = kept->made;
+    pthread_mutex_unlock(&kept->lock);
+    return ok;
+}
+
+VkPipeline wd_pipeline_made(const struct wd_pipeline *pipeline)
+{
+    struct wd_kept_pipeline *kept = pipeline->pipeline;
+    pthread_mutex_lock(&kept->lock);
     VkPipeline made = kept->made;
     pthread_mutex_unlock(&kept->lock);
     return made;
-}
-
-bool wd_pipeline_make(const struct wd_pipeline *pipeline, struct wd_gpu *gpu)
-{
-    return wd_pipeline_made(pipeline, gpu);
 }
 
 void wd_pipeline_store_init(struct wd_gpu *gpu)

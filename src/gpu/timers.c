@@ -34,6 +34,17 @@ static void cut(struct wd_cmd *cmd)
     }
 }
 
+/* Of the frame's own work. */
+static double clock_s(const struct wd_cmd *cmd)
+{
+    return wd_clock_s() - cmd->waited_s - cmd->gpu->making_s;
+}
+
+static double processor_s(const struct wd_cmd *cmd)
+{
+    return wd_processor_s() - cmd->gpu->making_processor_s;
+}
+
 static void stamp(struct wd_cmd *cmd, uint32_t query)
 {
     vkCmdWriteTimestamp2(cmd->vk, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, cmd->slot->queries, query);
@@ -51,8 +62,8 @@ static uint32_t open_scope(struct wd_cmd *cmd, const char *name)
         stamp(cmd, 2 * index);
     else
         cut(cmd);
-    cmd->scope_processor[index] = wd_processor_s();
-    cmd->scope_start[index] = wd_clock_s() - cmd->waited_s;
+    cmd->scope_processor[index] = processor_s(cmd);
+    cmd->scope_start[index] = clock_s(cmd);
     return index;
 }
 
@@ -84,14 +95,13 @@ void wd_cmd_scope_end(struct wd_cmd *cmd)
         cmd->gpu->end_label(cmd->vk);
     uint32_t index = cmd->scope_stack[cmd->scope_depth - 1];
     if (index != untimed) {
-        double now_s = wd_clock_s() - cmd->waited_s;
-        cmd->slot->scopes[index].cpu_us = 1e6 * (now_s - cmd->scope_start[index]);
+        cmd->slot->scopes[index].cpu_us = 1e6 * (clock_s(cmd) - cmd->scope_start[index]);
         if (has_timestamps(cmd->gpu)) {
             stamp(cmd, 2 * index + 1);
         } else {
             cut(cmd);
             cmd->slot->scopes[index].processor_us =
-                1e6 * (wd_processor_s() - cmd->scope_processor[index]);
+                1e6 * (processor_s(cmd) - cmd->scope_processor[index]);
         }
     }
     cmd->scope_depth--;

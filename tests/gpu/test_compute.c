@@ -238,6 +238,22 @@ static void what_cannot_be_made_fails_the_frame(void **state)
     wd_buffer_finish(&buffer, &test->gpu);
 }
 
+static void frames_tell_what_making_pipelines_took(void **state)
+{
+    struct gpu_test *test = *state;
+    struct wd_pipeline pipeline = make_compute(test, SPIRV(count_comp), BINDINGS(STORAGE), 0);
+    struct wd_buffer buffer = make_buffer(test, 2048);
+    assert_true(test->gpu.making_s == 0);
+    struct wd_cmd cmd = begin_frame(test);
+    wd_cmd_bind(&cmd, &pipeline, (struct wd_binding[]){WD_BIND_BUFFER(&buffer)});
+    double first_s = test->gpu.making_s;
+    assert_true(first_s > 0 && test->gpu.making_processor_s > 0);
+    wd_cmd_bind(&cmd, &pipeline, (struct wd_binding[]){WD_BIND_BUFFER(&buffer)});
+    assert_true(test->gpu.making_s == first_s);
+    finish_frame(test, &cmd);
+    wd_buffer_finish(&buffer, &test->gpu);
+}
+
 int main(void)
 {
 #define GPU_TEST(f) cmocka_unit_test_setup_teardown(f, gpu_setup, gpu_teardown)
@@ -252,6 +268,7 @@ int main(void)
         GPU_TEST(what_is_not_spirv_is_refused),
         GPU_TEST(equal_parameters_give_the_same_pipeline),
         GPU_TEST(what_cannot_be_made_fails_the_frame),
+        GPU_TEST(frames_tell_what_making_pipelines_took),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
