@@ -93,12 +93,15 @@ bool tree_is_outside(wd_tree tree, vec3 foot, float stretch)
     return box_is_outside(low, high) || box_shades_nothing(low, high);
 }
 
-/* Pixels that a crown covers: half a spheroid's shadow, as crowns taper. */
+/* What a crown covers of its height by its width: less than a spheroid's 0.79, as crowns taper. */
+const float CROWN_SHADOW = 0.6;
+
+/* Pixels that a crown covers. */
 float covered_px(wd_tree tree, vec3 toward, float pixels_per_m)
 {
     float wide = WD_TREE_CROWN_M(tree), tall = WD_TREE_HEIGHT_M(tree);
     float level = 1.0 - toward.z * toward.z;
-    float seen = 0.6 * wide * sqrt(tall * tall * level + wide * wide * toward.z * toward.z);
+    float seen = CROWN_SHADOW * wide * sqrt(tall * tall * level + wide * wide * toward.z * toward.z);
     return seen * pixels_per_m * pixels_per_m;
 }
 
@@ -308,13 +311,19 @@ uint far_wood(uint model)
 /* So many times the triangles where no leaves hide branches. */
 const float BARE_WOOD = 8.0;
 
+/* Triangles of wood for each pixel that a tree is tall, and for each squared. */
+const float WOOD_A_PX = 1.0, WOOD_A_PX2 = 0.006;
+
+/* A tree has its stem, in place of the far one, from so many times the stem's triangles on, and so much later by lot. */
+const float STEM_FROM = 1.6, STEM_LATER = 0.8;
+
 /* Triangles of wood for a tree that tall: few of the first while it is small. In a cascade twigs, which
  * discs stand for then, are lost in the penumbra. */
 uint wood_triangles(uint model, float tall_px)
 {
     tall_px *= ORTHOGRAPHIC != 0u ? 0.5 : 1.0;
     float finer = ORTHOGRAPHIC != 0u || model_float(model, WD_WORD_LEAF_AREA_M2) > 0.0 ? 1.0 : BARE_WOOD;
-    return min(uint(finer * (tall_px * tall_px * 0.006 + tall_px)), far_wood(model));
+    return min(uint(finer * (tall_px * tall_px * WOOD_A_PX2 + tall_px * WOOD_A_PX)), far_wood(model));
 }
 
 /* Of all triangles that a small tree may have, the first so many; the far stem is among them, for which large trees
@@ -323,7 +332,7 @@ void add_share_of_wood(uint slot, uint model, uint triangles, float share, uint 
 {
     uint stem = model_word(model, WD_WORD_WOOD_STEM), far_stem = model_word(model, WD_WORD_WOOD_FAR_STEM);
     uint wanted = uint(ceil(share * float(triangles)));
-    float enough = min(float(stem) * (1.6 + 0.8 * wd_hash_unit(random)), float(far_wood(model)));
+    float enough = min(float(stem) * (STEM_FROM + STEM_LATER * wd_hash_unit(random)), float(far_wood(model)));
     bool near = float(triangles) >= enough;
     add_wood(slot, 0u, near ? min(wanted * stem / max(far_stem, 1u), stem) : 0u);
     uint begin = near ? far_stem : 0u;
