@@ -311,8 +311,8 @@ uint far_wood(uint model)
 /* So many times the triangles where no leaves hide branches. */
 const float BARE_WOOD = 8.0;
 
-/* Triangles of wood for each pixel that a tree is tall, and for each squared. */
-const float WOOD_A_PX = 1.0, WOOD_A_PX2 = 0.006;
+/* Triangles of wood for each squared pixel of a tree's height, beside one for each pixel. */
+const float WOOD_A_PX2 = 0.006;
 
 /* A tree has its stem, in place of the far one, from so many times the stem's triangles on, and so much later by lot. */
 const float STEM_FROM = 1.6, STEM_LATER = 0.8;
@@ -323,7 +323,7 @@ uint wood_triangles(uint model, float tall_px)
 {
     tall_px *= ORTHOGRAPHIC != 0u ? 0.5 : 1.0;
     float finer = ORTHOGRAPHIC != 0u || model_float(model, WD_WORD_LEAF_AREA_M2) > 0.0 ? 1.0 : BARE_WOOD;
-    return min(uint(finer * (tall_px * tall_px * WOOD_A_PX2 + tall_px * WOOD_A_PX)), far_wood(model));
+    return min(uint(finer * (tall_px * tall_px * WOOD_A_PX2 + tall_px)), far_wood(model));
 }
 
 /* Of all triangles that a small tree may have, the first so many; the far stem is among them, for which large trees

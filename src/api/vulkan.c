@@ -71,7 +71,7 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
     if (true_clock)
         renderer->frame.ring.timing = WD_TIMING_ON;
     struct wd_cmd cmd;
-    double start = wd_clock_s();
+    double start = wd_clock_s() - renderer->gpu.making_s;
     if (!wd_frame_begin(&renderer->frame.ring, &cmd))
         return wd_renderer_failure(renderer);
     wd_frame_record(&renderer->frame, &cmd, 0);
@@ -82,7 +82,7 @@ enum wd_result wd_renderer_draw(struct wd_renderer *renderer, const struct wd_re
         return wd_renderer_failure(renderer);
     }
     renderer->samples = 1;
-    renderer->frame_ms = (wd_clock_s() - start) * 1e3;
+    renderer->frame_ms = (wd_clock_s() - renderer->gpu.making_s - start) * 1e3;
     wd_renderer_keep_times(renderer);
     renderer->gpu_ms = true_clock ? scopes_ms(&renderer->frame.ring) : 0.0;
     return WD_OK;

@@ -77,12 +77,12 @@ static uint32_t job_form(const struct wd_bake_job *job)
 static bool init_pipelines(struct wd_baker *baker, const struct wd_bake_job *job)
 {
     uint32_t depths = job->depths == WD_BAKE_DEPTHS;
-    bool ok = (baker->flat.pipeline || init_flat(baker)) &&
-              (baker->resolve[depths].pipeline || init_resolve(baker, depths));
+    bool ok = (baker->flat.kept || init_flat(baker)) &&
+              (baker->resolve[depths].kept || init_resolve(baker, depths));
     for (uint32_t i = 0; i < 2 * baker->passes && ok; i++) {
         uint32_t form = job_form(job) | (i & 1 ? WD_BAKE_RASTER_LARGE : 0) |
                         (i & 2 ? WD_BAKE_RASTER_IDENTITY : 0);
-        ok = baker->raster[form].pipeline || init_raster(baker, form);
+        ok = baker->raster[form].kept || init_raster(baker, form);
     }
     return ok;
 }

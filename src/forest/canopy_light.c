@@ -472,18 +472,13 @@ static uint8_t root_byte(float share)
 }
 
 /* Cells at the edge stand for those that it has more. */
-static uint32_t side_of(uint32_t cells)
-{
-    return cells + ((cells & (cells - 1)) == 0);
-}
-
 bool wd_canopy_light_upload(struct wd_image *image, float scale[2], struct wd_gpu *gpu,
                             const struct wd_canopy_field *field)
 {
     const struct wd_image_params params = {.name = "canopy light",
                                            .format = VK_FORMAT_R8G8B8A8_UNORM,
-                                           .width = side_of(field->width),
-                                           .height = side_of(field->height),
+                                           .width = wd_image_odd_side(field->width),
+                                           .height = wd_image_odd_side(field->height),
                                            .layers = 4,
                                            .mips = 1,
                                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT};

@@ -171,23 +171,30 @@ static bool bind_set(struct wd_cmd *cmd, const struct wd_pipeline *pipeline,
     return true;
 }
 
-static bool make(struct wd_gpu *gpu, const struct wd_pipeline *pipeline)
+/* Makes it where it has not been yet; VK_NULL_HANDLE, with a message, on failure. */
+static VkPipeline made_now(struct wd_gpu *gpu, const struct wd_pipeline *pipeline)
 {
+    VkPipeline made = wd_pipeline_made(pipeline);
+    if (made)
+        return made;
     double clock_s = wd_clock_s(), processor_s = wd_processor_s();
-    bool ok = wd_pipeline_make(pipeline, gpu);
+    wd_pipeline_make(pipeline, gpu);
     gpu->making_s += wd_clock_s() - clock_s;
     gpu->making_processor_s += wd_processor_s() - processor_s;
-    return ok;
+    return wd_pipeline_made(pipeline);
 }
 
 void wd_cmd_bind(struct wd_cmd *cmd, const struct wd_pipeline *pipeline,
                  const struct wd_binding *bindings)
 {
-    cmd->failed = cmd->failed || (!wd_pipeline_made(pipeline) && !make(cmd->gpu, pipeline));
+    if (cmd->failed)
+        return;
+    VkPipeline made = made_now(cmd->gpu, pipeline);
+    cmd->failed = !made;
     if (cmd->failed)
         return;
     cmd->recorded = true;
-    vkCmdBindPipeline(cmd->vk, pipeline->bind_point, wd_pipeline_made(pipeline));
+    vkCmdBindPipeline(cmd->vk, pipeline->bind_point, made);
     if (pipeline->bindings.count > 0 && !bind_set(cmd, pipeline, bindings))
         cmd->failed = true;
 }

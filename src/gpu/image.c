@@ -135,10 +135,17 @@ static bool create_whole_views(struct wd_gpu *gpu, struct wd_image *image,
             create_whole_view(gpu, image, &stored, params->name, &image->stored));
 }
 
+uint32_t wd_image_odd_side(uint32_t side)
+{
+    while ((side & (side - 1)) == 0)
+        side++;
+    return side;
+}
+
 static uint32_t side_of(const struct wd_gpu *gpu, const struct wd_image_params *params, uint32_t side)
 {
-    bool power = (side & (side - 1)) == 0 && side < gpu->properties.limits.maxImageDimension2D;
-    return side + (params->by_texel && gpu->software && power);
+    bool may = params->by_texel && gpu->software && side < gpu->properties.limits.maxImageDimension2D;
+    return may ? wd_image_odd_side(side) : side;
 }
 
 static bool create_image(struct wd_image *image, struct wd_gpu *gpu,

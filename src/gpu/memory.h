@@ -84,6 +84,9 @@ struct wd_image_params {
     bool by_texel;
 };
 #define WD_ALL_MIPS UINT32_MAX
+/* The least side of so many or more that is no power of two. */
+uint32_t wd_image_odd_side(uint32_t side);
+
 bool wd_image_init(struct wd_image *image, struct wd_gpu *gpu,
                    const struct wd_image_params *params);
 void wd_image_finish(struct wd_image *image, struct wd_gpu *gpu);

@@ -25,7 +25,7 @@ struct wd_bindings {
 };
 
 struct wd_pipeline {
-    struct wd_kept_pipeline *pipeline; /* the device's; NULL: none */
+    struct wd_kept_pipeline *kept; /* by the device; NULL: there is none */
     VkPipelineLayout layout;
     VkDescriptorSetLayout set_layout;
     VkPipelineBindPoint bind_point;

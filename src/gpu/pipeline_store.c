@@ -67,7 +67,7 @@ static struct wd_kept_pipeline *kept_of(const struct wd_pipeline *pipeline, cons
 {
     struct wd_kept_pipeline *kept = wd_alloc(sizeof *kept + key->size);
     kept->pipeline = *pipeline;
-    kept->pipeline.pipeline = kept;
+    kept->pipeline.kept = kept;
     kept->params = *params;
     take_constants(kept, pipeline->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE ? &kept->params.compute.constants
                                                                                 : &kept->params.graphics.constants);
@@ -109,7 +109,7 @@ bool wd_pipeline_keep(struct wd_pipeline *pipeline, struct wd_gpu *gpu, const st
 
 bool wd_pipeline_make(const struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 {
-    struct wd_kept_pipeline *kept = pipeline->pipeline;
+    struct wd_kept_pipeline *kept = pipeline->kept;
     pthread_mutex_lock(&kept->lock);
     if (!kept->made && !gpu->lost)
         kept->made = pipeline->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE
@@ -122,7 +122,7 @@ bool wd_pipeline_make(const struct wd_pipeline *pipeline, struct wd_gpu *gpu)
 
 VkPipeline wd_pipeline_made(const struct wd_pipeline *pipeline)
 {
-    struct wd_kept_pipeline *kept = pipeline->pipeline;
+    struct wd_kept_pipeline *kept = pipeline->kept;
     pthread_mutex_lock(&kept->lock);
     VkPipeline made = kept->made;
     pthread_mutex_unlock(&kept->lock);

@@ -387,14 +387,14 @@ static void record_shape(struct continuum *c, const struct wd_tree_draw *draw, u
                                           WD_BIND_BUFFER(&c->forest.lit),
                                           WD_BIND_BUFFER(&c->pixels), /* and its texels: lib/drawn.glsl */
                                           WD_BIND_BUFFER(&c->large)};
-    if (!pipeline->pipeline)
+    if (!pipeline->kept)
         return;
     wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
     if (wood)
         wd_cmd_use_buffer(cmd, &c->large, WD_USE_COMPUTE_WRITE);
     wd_cmd_bind(cmd, pipeline, bindings);
     wd_cmd_dispatch_indirect(cmd, &c->groups, groups[shape]);
-    if (!wood || !large->pipeline)
+    if (!wood || !large->kept)
         return;
     wd_cmd_use_buffer(cmd, &c->large, WD_USE_INDIRECT);
     wd_cmd_use_buffer(cmd, &c->pixels, WD_USE_COMPUTE_WRITE);
@@ -582,15 +582,15 @@ static void store_cascade(struct continuum *c, const struct wd_tree_draw *draw)
 static void continuum_merge(void *state, const struct wd_tree_draw *draw)
 {
     struct continuum *c = state;
-    if (draw->pass == WD_PASS_SHADOW && c->pipelines.cascade_store.pipeline && !draw->cmd->failed)
+    if (draw->pass == WD_PASS_SHADOW && c->pipelines.cascade_store.kept && !draw->cmd->failed)
         store_cascade(c, draw);
 }
 
 static enum wd_filled continuum_fill(void *state, const struct wd_tree_draw *draw)
 {
     struct continuum *c = state;
-    bool fills = draw->pass == WD_PASS_SHADOW || c->pipelines.resolve_all.pipeline;
-    bool stores = draw->pass == WD_PASS_SHADOW && c->pipelines.cascade_store.pipeline; /* in continuum_merge */
+    bool fills = draw->pass == WD_PASS_SHADOW || c->pipelines.resolve_all.kept;
+    bool stores = draw->pass == WD_PASS_SHADOW && c->pipelines.cascade_store.kept; /* in continuum_merge */
     bool meshes = c->near.mesh_count > 0;
     c->filled = WD_FILLED_NOT;
     if (draw->cmd->failed)

@@ -120,10 +120,10 @@ bool wd_tree_pipelines_prepare(struct wd_tree_pipelines *pipelines, struct wd_gp
                                const struct wd_forest_device *forest, bool cards)
 {
     bool ok = true;
-    if (!pipelines->leaf_listed[WD_PASS_SHADOW][1].pipeline && forest->falls)
+    if (!pipelines->leaf_listed[WD_PASS_SHADOW][1].kept && forest->falls)
         ok = init_leaves(pipelines, gpu, 1);
     for (int pass = WD_PASS_CAMERA; ok && cards && pass <= WD_PASS_SHADOW; pass++)
-        if (!pipelines->card_listed[pass].pipeline)
+        if (!pipelines->card_listed[pass].kept)
             ok = init_card(&pipelines->card_range[pass], gpu, pass, 0) &&
                  init_card(&pipelines->card_listed[pass], gpu, pass, 1);
     return ok;

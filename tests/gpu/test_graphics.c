@@ -258,11 +258,11 @@ static void other_parameters_give_other_pipelines(void **state)
         changes[i](&params);
         assert_true(wd_pipeline_init_graphics(&pipelines[i], &test->gpu, &params));
         assert_true(wd_pipeline_init_graphics(&again, &test->gpu, &params));
-        assert_true(again.pipeline == pipelines[i].pipeline);
+        assert_true(again.kept == pipelines[i].kept);
     }
     for (int i = 0; i <= CHANGES; i++)
         for (int k = 0; k < i; k++)
-            assert_true(pipelines[i].pipeline != pipelines[k].pipeline);
+            assert_true(pipelines[i].kept != pipelines[k].kept);
 }
 
 int main(void)

@@ -113,6 +113,14 @@ static void images_round_trip(void **state)
         check_image(test, &images[i]);
 }
 
+static void odd_sides_are_no_powers_of_two(void **state)
+{
+    static const uint32_t sides[][2] = {{1, 3}, {2, 3}, {3, 3}, {64, 65}, {65, 65}, {100, 100}, {16384, 16385}};
+    (void)state;
+    for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++)
+        assert_int_equal(wd_image_odd_side(sides[i][0]), sides[i][1]);
+}
+
 static void all_mips_go_down_to_one_texel(void **state)
 {
     struct gpu_test *test = *state;
@@ -237,6 +245,7 @@ int main(void)
         GPU_TEST(empty_transfer_is_fine),
         GPU_TEST(mapped_memory_is_shared),
         GPU_TEST(images_round_trip),
+        GPU_TEST(odd_sides_are_no_powers_of_two),
         GPU_TEST(all_mips_go_down_to_one_texel),
         GPU_TEST(absurd_buffer_is_out_of_memory),
         GPU_TEST(full_heap_is_out_of_memory),

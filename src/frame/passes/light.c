@@ -129,7 +129,7 @@ static void prepare_list(void *user, size_t index)
     struct preparation *work = user;
     uint32_t list = (uint32_t)index;
     struct wd_pipeline *pipeline = shading_of(work->pass, work->gpu, list, work->needs);
-    if (!pipeline || pipeline->pipeline)
+    if (!pipeline || pipeline->kept)
         return;
     bool water = pipeline == &work->pass->water;
     bool single = list < WD_TILE_LISTS && pipeline == &work->pass->single[list];
@@ -146,10 +146,10 @@ bool wd_light_pass_prepare(struct wd_light_pass *pass, struct wd_gpu *gpu,
     struct preparation work = {pass, gpu, needs, false};
     uint32_t missing = 0;
     if (needs->view_mode != WD_MODE_LIT)
-        return pass->view.pipeline || init_view(&pass->view, gpu);
+        return pass->view.kept || init_view(&pass->view, gpu);
     for (uint32_t list = 0; list <= WD_TILE_LISTS; list++) {
         const struct wd_pipeline *pipeline = shading_of(pass, gpu, list, needs);
-        missing += pipeline && !pipeline->pipeline;
+        missing += pipeline && !pipeline->kept;
     }
     if (missing)
         wd_jobs_run(gpu->threads, WD_TILE_LISTS + 1, prepare_list, &work);

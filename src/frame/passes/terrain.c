@@ -107,7 +107,7 @@ bool wd_terrain_pass_prepare(struct wd_terrain_pass *pass, struct wd_gpu *gpu,
 {
     bool ok = true;
     for (uint32_t near = 0; near < 2 && ok && ground->terrain->hole; near++)
-        ok = pass->pipelines[1][near].pipeline ||
+        ok = pass->pipelines[1][near].kept ||
              init_pipeline(&pass->pipelines[1][near], gpu, 1, near);
     return ok;
 }
@@ -172,7 +172,7 @@ void wd_terrain_pass_shade(struct wd_terrain_pass *pass, struct wd_cmd *cmd,
                            const struct wd_terrain_params *params, struct wd_targets *targets)
 {
     const struct wd_ground *ground = params->ground;
-    if (!pass->shade.pipeline || !pass->view.buffer || cmd->failed)
+    if (!pass->shade.kept || !pass->view.buffer || cmd->failed)
         return;
     wd_cmd_use_image(cmd, &targets->depth, WD_USE_COMPUTE_READ);
     wd_cmd_use_image(cmd, &targets->surface, WD_USE_COMPUTE_WRITE);
@@ -197,7 +197,7 @@ struct wd_rendering wd_terrain_pass_targets(const struct wd_terrain_pass *pass,
                                             struct wd_targets *targets)
 {
     struct wd_rendering rendering = wd_targets_gbuffer(targets, WD_LOAD_KEEP);
-    if (pass->shade.pipeline) {
+    if (pass->shade.kept) {
         rendering.color_count = 1;
         rendering.color[0].image = &targets->surface;
     }
