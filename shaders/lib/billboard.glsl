@@ -56,7 +56,7 @@ wd_billboard billboard_corner(wd_model model, tree_pose pose, vec3 toward, vec2 
     middle_m += (growth - 1.0) * tall_m * level; /* the foot keeps its place */
     board.offset = vec3(across * (side.x * growth * model.half_width_m * pose.across), middle_m)
                    - up * (side.y * growth * tall_m);
-    board.uv = vec2(side.x * mirror, side.y) * 0.5 + 0.5;
+    board.uv = card_picture_uv(vec2(side.x * mirror, side.y) * 0.5 + 0.5, card_lies(model));
     return board;
 }
 
@@ -73,8 +73,8 @@ wd_card_flat billboard_flat(wd_billboard board, wd_model model, tree_pose pose, 
     constants.mirror = pose.mirror.x;
     constants.ratio = pose.up / pose.across;
     constants.layer = model.card_layer + board.card;
-    constants.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0,
-                          float(WD_CARD_LAST_MIP));
+    constants.lies = card_lies(model);
+    constants.lod = card_lod_of(model, constants.ratio, tall_px);
     constants.random = wd_tree_random(tree) ^ (board.card * 0x9e3779b9u);
     constants.surface = surface;
     constants.mixed = model.mixed;

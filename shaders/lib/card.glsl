@@ -30,5 +30,5 @@ bool card_shows(uint interval, float length, uint sample_index)
 float card_opacity(float alpha, float lod)
 {
     float sharp = clamp((alpha - 0.4) * 4.0 + 0.4, 0.0, 1.0);
-    return mix(sharp, alpha, clamp(lod * 0.5 + 0.5, 0.0, 1.0));
+    return mix(sharp, alpha, clamp(lod + 1.0, 0.0, 1.0));
 }

@@ -70,7 +70,7 @@ card_tree card_tree_of(wd_tree tree, wd_model model)
     t.show = wd_layer_show(fades[WD_TREE_LAYER(tree)], distance_m);
     float tall_px = height_m * (SHADOW != 0u ? 1.0 / frame.cascades[push.cascade][WD_CASCADE_TEXEL_M]
                                              : push.pixels_per_radian / distance_m);
-    t.lod = clamp(log2(WD_CARD_HEIGHT_TEXELS / max(tall_px, 1.0)), -1.0, float(WD_CARD_LAST_MIP));
+    t.lod = card_lod_of(model, t.pose.up / t.pose.across, tall_px);
     t.level = level_share(card_crown(t), abs(t.toward.z));
     return t;
 }
@@ -207,6 +207,7 @@ wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show
     result.mirror = t.pose.mirror.x;
     result.ratio = t.pose.up / t.pose.across;
     result.layer = t.model.card_layer + card.layer;
+    result.lies = card_lies(t.model);
     result.lod = t.lod;
     result.random = SHADOW != 0u ? wd_tree_random(t.tree) ^ (card.layer * 0x9e3779b9u)
                                  : card_noise_shift(t.tree, t.foot) | uint(card.begin * 255.0 + 0.5) << 8;

@@ -1,6 +1,7 @@
 /* Constants of a card, from its vertices to its fragments. */
 #include "shared/card_soup.h"
 #include "shared/sunlit.h"
+#include "lib/card_picture.glsl"
 
 struct card_flat {
     vec2 turn;
@@ -11,6 +12,7 @@ struct card_flat {
     float mirror; /* -1: mirrored in the model's x */
     float ratio;  /* vertical over horizontal scale */
     uint layer;
+    bool lies; /* WD_CARD_LIES */
     float lod;
     uint random, surface, mixed;
     float to_leaf; /* of the picture's wood what is to be leaves; below 0: of its leaves what is to be wood */
@@ -38,13 +40,29 @@ float crown_begins(wd_model model, bool from_above)
     return from_above ? 1.0 : clamp((model.top_m - model.crown_base_m) / (model.top_m - model.bottom_m), 0.0, 1.0);
 }
 
+/* How far down the card a place of its picture is. */
+float card_down(vec2 uv, uint layer_lod)
+{
+    return (layer_lod & WD_CARD_LYING) != 0u ? uv.x : uv.y;
+}
+
+/* Mip of the pictures of a tree that is `tall_px` high on screen: a texel a pixel along the axis that has fewer, as
+ * wide plants have across. `ratio`: vertical over horizontal scale. */
+float card_lod_of(wd_model model, float ratio, float tall_px)
+{
+    float wide_to_tall = 2.0 * model.half_width_m / ((model.top_m - model.bottom_m) * ratio);
+    vec2 texels = vec2(WD_CARD_WIDTH_TEXELS, WD_CARD_HEIGHT_TEXELS);
+    texels = card_lies(model) ? texels.yx : texels;
+    return clamp(log2(min(texels.x / wide_to_tall, texels.y) / max(tall_px, 1.0)), -1.0, float(WD_CARD_LAST_MIP));
+}
+
 wd_card_flat card_pack(card_flat card)
 {
     uint flags = (card.mirror < 0.0 ? WD_CARD_MIRRORED : 0u)
                  | (card.behind ? WD_CARD_BEHIND : 0u)
                  | (card.normal.z > 0.5 ? WD_CARD_LEVEL : 0u);
     uint wood = uint(card.base * 31.0 + 0.5) << 19 | uint(clamp(card.to_leaf, -1.0, 1.0) * 127.0 + 128.5) << 24;
-    uint lod = uint(clamp(card.lod + 1.0, 0.0, 255.0) * 256.0);
+    uint lod = uint(clamp(card.lod + 1.0, 0.0, 127.0) * 256.0) | (card.lies ? WD_CARD_LYING >> 16 : 0u);
     return wd_card_flat(packSnorm2x16(card.turn), packUnorm4x8(vec4(card.tint * 0.5, card.show)),
                         packSnorm2x16(card.normal.xy),
                         packHalf2x16(vec2(card.ratio, 0.0)) | flags | wood, card.layer | (lod << 16),
@@ -61,7 +79,7 @@ float card_leaf_shown(float leaf, float down, uint flags)
 
 float card_lod(uint layer_lod)
 {
-    return float(layer_lod >> 16) * (1.0 / 256.0) - 1.0;
+    return float(layer_lod >> 16 & 0x7fffu) * (1.0 / 256.0) - 1.0;
 }
 
 float card_layer(uint layer_lod)

@@ -2,13 +2,16 @@
  * card_flat.glsl and the outputs out_albedo, out_normal and out_surface. */
 #include "lib/card_material.glsl"
 
-/* `albedo` is that of the card at uv (z: layer); `card` is turn, tint_show, normal, ratio_flags. */
-void card_surface(vec3 uv, float lod, vec4 albedo, uvec4 card, uint surface, uint mixed)
+/* `albedo` is that of the card's picture at uv (z: layer); `card` is turn, tint_show, normal, ratio_flags, `more` is
+ * layer_lod, random, surface, mixed. */
+void card_surface(vec3 uv, vec4 albedo, uvec4 card, uvec4 more)
 {
+    float lod = card_lod(more.x);
+    uint surface = more.z;
     vec4 packed = textureLod(card_normal, uv, lod - float(WD_CARD_NORMAL_MIP));
     float leaf = textureLod(card_leaf, uv, lod - float(WD_CARD_NORMAL_MIP)).x;
-    uint material = card_material(card_leaf_shown(leaf, uv.y, card.w), card_cell(uv.xy, lod), surface);
-    vec4 own = unmixed(vec4(albedo.rgb, packed.a), leaf, material == WD_MATERIAL_WOOD, mixed);
+    uint material = card_material(card_leaf_shown(leaf, card_down(uv.xy, more.x), card.w), card_cell(uv.xy, lod), surface);
+    vec4 own = unmixed(vec4(albedo.rgb, packed.a), leaf, material == WD_MATERIAL_WOOD, more.w);
     own.rgb *= material == WD_MATERIAL_WOOD ? vec3(1.0) : unpackUnorm4x8(card.y).rgb * 2.0;
     if (frame.view_mode == WD_MODE_LOD)
         own.rgb = level_color(WD_LEVEL_CARD) * (0.3 + 0.7 * own.a);

@@ -23,7 +23,7 @@ layout(location = 2) out uint out_surface;
 
 /* A card is a parallelogram a + u b + v c. In clip space without depth, the pixel at (x, y) is a
  * multiple of (x, y, 1): Cramer's rule gives (1, u, v) up to that factor. */
-vec2 card_uv(uint card, vec2 at)
+vec2 card_place(uint card, vec2 at)
 {
     vec3 a = vertices[4u * card].clip.xyw;
     vec3 b = vertices[4u * card + 1u].clip.xyw - a;
@@ -40,8 +40,9 @@ void main()
         discard;
     wd_card_flat card = cards[shown - 1u];
     vec2 clip = gl_FragCoord.xy / vec2(frame.width, frame.height) * 2.0 - 1.0;
-    vec3 uv = vec3(card_uv(shown - 1u, clip), card_layer(card.layer_lod));
-    float lod = card_lod(card.layer_lod);
-    card_surface(uv, lod, textureLod(card_albedo, uv, lod),
-                 uvec4(card.turn, card.tint_show, card.normal, card.ratio_flags), card.surface, card.mixed);
+    vec2 place = card_place(shown - 1u, clip);
+    vec3 uv = vec3(card_picture_uv(place, (card.layer_lod & WD_CARD_LYING) != 0u), card_layer(card.layer_lod));
+    card_surface(uv, textureLod(card_albedo, uv, card_lod(card.layer_lod)),
+                 uvec4(card.turn, card.tint_show, card.normal, card.ratio_flags),
+                 uvec4(card.layer_lod, card.random, card.surface, card.mixed));
 }

@@ -36,7 +36,7 @@ void main()
     if (noise >= covered)
         discard;
     float normal_lod = lod - float(WD_CARD_NORMAL_MIP);
-    float leaves = card_leaf_shown(textureLod(card_leaf, uv, normal_lod).x, uv.y, in_card.w);
+    float leaves = card_leaf_shown(textureLod(card_leaf, uv, normal_lod).x, card_down(in_uv, in_more.x), in_card.w);
     bool is_wood = noise >= covered * leaves;
     vec4 packed = is_wood ? textureLod(wood_normal, uv, normal_lod)
                           : textureLod(leaf_normal, uv, normal_lod);

@@ -55,7 +55,7 @@ void main()
     pixel.direction = normalize(pixel.ray);
     pixel.axis_m = frame.near_m / gl_FragCoord.z;
     pixel.rel = pixel.ray * pixel.axis_m;
-    pixel.material = card_material(card_leaf_shown(leaf, uv.y, in_card.w), card_cell(in_uv, lod), in_more.z);
+    pixel.material = card_material(card_leaf_shown(leaf, card_down(in_uv, in_more.x), in_card.w), card_cell(in_uv, lod), in_more.z);
     bool wood = pixel.material == WD_MATERIAL_WOOD;
     vec4 own = unmixed(vec4(albedo.rgb, packed.a), leaf, wood, in_more.w);
     pixel.albedo = wood ? own.rgb : own.rgb * tint_show.rgb * 2.0;

@@ -29,5 +29,5 @@ void main()
     float opacity = card_opacity(albedo.a, lod) * unpackUnorm4x8(in_card.y).a;
     if (!card_shows(in_more.y, opacity, frame.sample_index))
         discard;
-    card_surface(uv, lod, albedo, in_card, in_more.z, in_more.w);
+    card_surface(uv, albedo, in_card, in_more);
 }

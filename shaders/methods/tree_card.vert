@@ -39,7 +39,7 @@ void main()
     card_frame card = card_at(t, vertex / 4u);
     vec2 side = vec2(float(vertex & 1u), float((vertex >> 1) & 1u)) * 2.0 - 1.0;
     wd_card_flat constants = card_constants(t, card, index, show);
-    out_uv = side * 0.5 + 0.5;
+    out_uv = card_picture_uv(side * 0.5 + 0.5, card_lies(t.model));
     out_card = uvec4(constants.turn, constants.tint_show, constants.normal, constants.ratio_flags);
     out_more = uvec4(constants.layer_lod, constants.random, constants.surface, constants.mixed);
     bool shows = show * t.show * card.share > 0.0;

@@ -15,6 +15,7 @@ layout(scalar, push_constant) uniform Push { wd_octant_push push; };
 #include "lib/octant.glsl"
 #include "lib/dither.glsl"
 #include "lib/mixed.glsl"
+#include "lib/card_picture.glsl"
 
 layout(location = 0) in vec2 in_place;
 layout(location = 1) flat in uvec2 in_entry;
@@ -41,7 +42,7 @@ float pressed(octant_tree t, float foot_m, float off_m)
 }
 
 /* Seen from the side: the card that faces the viewer most, turned to face it wholly. */
-octant_card upright_card(octant_tree t, vec2 place)
+octant_card upright_card(octant_tree t, vec2 at_m)
 {
     vec2 toward = octant_model_axis(t, t.axes.toward.xy);
     vec2 right = octant_model_axis(t, t.axes.right.xy);
@@ -60,19 +61,18 @@ octant_card upright_card(octant_tree t, vec2 place)
     card.width = vec2(-card.normal.y, card.normal.x);
     card.behind = dot(card.normal, toward) < 0.0 ? 1.0 : 0.0;
     card.mirrored = dot(card.width, right) < 0.0 ? -1.0 : 1.0;
-    float off_m = place.x - t.foot.x;
+    float off_m = at_m.x - t.foot.x;
     card.denser = pressed(t, t.foot.x, off_m);
     float across = off_m * card.denser / (t.model.half_width_m * t.pose.across);
-    float z = (place.y - t.foot.y) / t.pose.up;
-    card.uv = vec3(0.5 + 0.5 * card.mirrored * across,
-                   (t.model.top_m - z) / (t.model.top_m - t.model.bottom_m),
-                   float(t.model.card_layer + index));
+    float z = (at_m.y - t.foot.y) / t.pose.up;
+    vec2 place = vec2(0.5 + 0.5 * card.mirrored * across, (t.model.top_m - z) / (t.model.top_m - t.model.bottom_m));
+    card.uv = vec3(card_picture_uv(place, card_lies(t.model)), float(t.model.card_layer + index));
     return card;
 }
 
-octant_card level_card(octant_tree t, vec2 place)
+octant_card level_card(octant_tree t, vec2 at_m)
 {
-    vec2 off = place - t.foot.xy;
+    vec2 off = at_m - t.foot.xy;
     vec2 press = vec2(pressed(t, t.foot.x, off.x), pressed(t, t.foot.y, off.y));
     off *= press;
     vec2 world = off.x * t.axes.right.xy + off.y * t.axes.up.xy;
@@ -82,7 +82,8 @@ octant_card level_card(octant_tree t, vec2 place)
     card.behind = t.picture.side == 5u ? 1.0 : 0.0;
     card.mirrored = 1.0;
     card.width = card.normal = vec2(0.0);
-    card.uv = vec3(0.5 + 0.5 * own.x, 0.5 - 0.5 * own.y, float(t.model.card_layer + WD_CARD_SIDES));
+    card.uv = vec3(card_picture_uv(vec2(0.5 + 0.5 * own.x, 0.5 - 0.5 * own.y), card_lies(t.model)),
+                   float(t.model.card_layer + WD_CARD_SIDES));
     return card;
 }
 
@@ -138,7 +139,8 @@ void main()
         card = level_card(t, place);
     else
         card = upright_card(t, place);
-    float texel_m = 2.0 * t.model.half_width_m * t.pose.across / float(WD_CARD_WIDTH_TEXELS);
+    float texels = float(card_lies(t.model) ? WD_CARD_HEIGHT_TEXELS : WD_CARD_WIDTH_TEXELS);
+    float texel_m = 2.0 * t.model.half_width_m * t.pose.across / texels;
     float lod = max(log2(pixel_m / texel_m), 0.0);
     vec4 albedo = textureLod(card_albedo, card.uv, lod);
     float noise = dither_from(at, seed);

@@ -25,7 +25,7 @@ struct wd_card_flat {
     uint32_t ratio_flags; /* half float: vertical over horizontal scale; bits WD_CARD_*; bits 19..23: down to how many
                              31sts of the picture's height its crown reaches; 24..31: of wood there the share that is
                              to be leaves, or less than 128 of leaves wood, in 127ths of all */
-    uint32_t layer_lod;   /* image layer in bits 0..15; mip, 8.8 fixed point and 1 up, above */
+    uint32_t layer_lod;   /* image layer in bits 0..15; mip, 7.8 fixed point and 1 up, above; WD_CARD_LYING */
     uint32_t random;      /* bits 0..7 are 0 */
     uint32_t surface;     /* tree + 1 */
     uint32_t mixed;       /* as of wd_model */
@@ -34,6 +34,7 @@ WD_STATIC_ASSERT_SIZE(wd_card_flat, 32);
 #define WD_CARD_MIRRORED 0x10000u
 #define WD_CARD_BEHIND 0x20000u /* seen from the side that it was not rendered from */
 #define WD_CARD_LEVEL 0x40000u  /* the level card: its normal is up */
+#define WD_CARD_LYING 0x80000000u /* of layer_lod: WD_CARD_LIES */
 
 struct wd_card_vertex {
     WD_VEC4(clip);

@@ -16,6 +16,9 @@
  * keeps crowns whole from above). */
 #define WD_CARD_WIDTH_TEXELS 128 /* of the finest mip */
 #define WD_CARD_HEIGHT_TEXELS 256
+/* Pictures of plants that are wider than high lie on their side, what is up to the left: texels are to be as fine
+ * across as up. */
+#define WD_CARD_LIES(half_width_m, bottom_m, top_m) (2.0f * (half_width_m) > (top_m) - (bottom_m))
 /* Normals and openness are kept from this mip on: colour and holes alone show finer ones. */
 #define WD_CARD_NORMAL_MIP 1
 /* The coarsest, 8 x 16 texels: of fewer, chance has too little to choose from, and trees of 8 pixels

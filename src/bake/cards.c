@@ -79,27 +79,41 @@ struct wd_card_extent wd_card_extent_of(const struct wd_tree_mesh *mesh)
     };
 }
 
+/* A place on the card (right and down, 0..1) as one of the picture's samples: card_picture.glsl. */
+static void put_picture(struct wd_bake_shot *shot, const float right[4], const float down[4], bool lies)
+{
+    const float width = WD_CARD_WIDTH * WD_CARD_SUPERSAMPLING;
+    const float height = WD_CARD_HEIGHT * WD_CARD_SUPERSAMPLING;
+    for (int k = 0; k < 4; k++) {
+        float left = (k == 3 ? 1.0f : 0.0f) - right[k];
+        shot->x[k] = width * (lies ? down[k] : right[k]);
+        shot->y[k] = height * (lies ? left : down[k]);
+    }
+}
+
 /* Card i of the upright ones spans u = (cos a, sin a, 0) and z and is seen from u x z; the level
  * one spans x and y and is seen from above. */
 static struct wd_bake_shot card_shot(const struct wd_card_extent *extent, uint32_t card)
 {
-    const float half_width = 0.5f * WD_CARD_WIDTH * WD_CARD_SUPERSAMPLING;
-    const float height = WD_CARD_HEIGHT * WD_CARD_SUPERSAMPLING;
     float tall_m = extent->top_m - extent->bottom_m;
-    if (card == WD_CARD_SIDES)
-        return (struct wd_bake_shot){
-            .x = {half_width / extent->half_depth_m, 0.0f, 0.0f, half_width},
-            .y = {0.0f, -0.5f * height / extent->half_depth_m, 0.0f, 0.5f * height},
-            .depth = {0.0f, 0.0f, 1.0f / tall_m, -extent->bottom_m / tall_m},
-        };
+    bool lies = WD_CARD_LIES(extent->half_width_m, extent->bottom_m, extent->top_m);
+    struct wd_bake_shot shot = {0};
+    if (card == WD_CARD_SIDES) {
+        float per_m = 0.5f / extent->half_depth_m;
+        put_picture(&shot, (const float[4]){per_m, 0.0f, 0.0f, 0.5f},
+                    (const float[4]){0.0f, -per_m, 0.0f, 0.5f}, lies);
+        shot.depth[2] = 1.0f / tall_m;
+        shot.depth[3] = -extent->bottom_m / tall_m;
+        return shot;
+    }
     double angle = WD_PI / WD_CARD_SIDES * card;
-    float c = (float)wd_dcos(angle), s = (float)wd_dsin(angle);
-    float across = half_width / extent->half_width_m, depth = 0.5f / extent->half_width_m;
-    return (struct wd_bake_shot){
-        .x = {c * across, s * across, 0.0f, half_width},
-        .y = {0.0f, 0.0f, -height / tall_m, height * extent->top_m / tall_m},
-        .depth = {s * depth, -c * depth, 0.0f, 0.5f},
-    };
+    float c = (float)wd_dcos(angle), s = (float)wd_dsin(angle), per_m = 0.5f / extent->half_width_m;
+    put_picture(&shot, (const float[4]){c * per_m, s * per_m, 0.0f, 0.5f},
+                (const float[4]){0.0f, 0.0f, -1.0f / tall_m, extent->top_m / tall_m}, lies);
+    shot.depth[0] = s * per_m;
+    shot.depth[1] = -c * per_m;
+    shot.depth[3] = 0.5f;
+    return shot;
 }
 
 /* Writes a mip of the pyramid; `texels` has room for it. */

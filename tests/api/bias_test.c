@@ -17,6 +17,7 @@ struct bound {
     const char *form;
     struct range coverage_pct, radiance_pct;
     bool traced;
+    double most_error_pct; /* of single pixels, root mean square, beside the drawn mesh; 0: not asked */
 };
 enum { MOST_FORMS = 4 };
 static const struct row {
@@ -24,6 +25,7 @@ static const struct row {
     int height; /* of bias_height_px */
     struct bound bounds[MOST_FORMS];
     bool clouds;
+    bool level; /* seen by a standing eye, else from above */
 } rows[] = {
     /* cards: +5.9 (+2.3 while needles lacked the wax of sides that they do not show, and had the bark's colour: docs/trees.md);
        discs: +0.9 (-3.3 while their first triangles of wood were a small part of a stem with root lobes) */
@@ -39,6 +41,8 @@ static const struct row {
     {"species/grass.json", 0, {{"full", {-1.5, 1.5}, {-1.5, 2}, true}}},
     /* tufts that stand free have their models' tables, and are as wide as they grew: -12.9 otherwise, +0.5 */
     {"species/grass.json", 2, {{"zfield", {-2, 1.5}, {-1.5, 2.5}, true}}},
+    /* pictures of wide plants lie on their side: an error of 84.1 % if drawn upright, 74.9 mirrored, 72.7 */
+    {"species/grass.json", 1, {{"cards", {-2, 1.5}, {-2, 1.5}, false, 73.8}}, .level = true},
     /* discs of wood show less of the white stem than they would: +8.3 otherwise. These two models have -7.7, and had -8.6
        before discs had less of what is overhead, when other pairs had -8.1, -4.0, -2.5 and +2.1, ten at once -3.0 (-2.2
        while feet were round, these two +0.9) */
@@ -51,7 +55,11 @@ static const struct row {
     {"species/maple.json", 3, {{"octants", {-3, 0}, {-1.5, 2}, true}}},
 };
 
-enum { FROM_ABOVE = 1 };
+/* One of bias_elevation_deg. */
+static int view_of(const struct row *row)
+{
+    return row->level ? 0 : 1;
+}
 
 static const struct bias_form *form_named(const char *name)
 {
@@ -87,31 +95,32 @@ static void measure_bound(struct wd_renderer *renderer, const struct bias_stand 
     struct wd_forest *forest;
     struct bias bias;
     take(renderer, stand, bound->form, &forest);
-    assert_true(bias_measure(&bias, renderer, stand, row->height, FROM_ABOVE, reference));
+    assert_true(bias_measure(&bias, renderer, stand, row->height, view_of(row), reference));
     leave(renderer, &forest);
-    print_message("%s, %s: coverage %+.1f%%, radiance %+.1f%%\n", row->species, bound->form,
-                  bias.coverage_pct, bias.radiance_pct);
+    print_message("%s, %s: coverage %+.1f%%, radiance %+.1f%%, error %.1f%%\n", row->species, bound->form,
+                  bias.coverage_pct, bias.radiance_pct, bias.error_pct);
     assert_true(lies_in(bias.coverage_pct, &bound->coverage_pct));
     assert_true(lies_in(bias.radiance_pct, &bound->radiance_pct));
+    assert_true(bound->most_error_pct == 0 || bias.error_pct < bound->most_error_pct);
 }
 
-static void trace_reference(struct bias_shown *traced, const struct bias_stand *stand, int height)
+static void trace_reference(struct bias_shown *traced, const struct bias_stand *stand, const struct row *row)
 {
     struct wd_reference *tracer = NULL;
     struct wd_forest *forest = bias_forest(stand, form_named("reference"));
     assert_non_null(forest);
     assert_int_equal(wd_reference_create(&tracer, forest, &(struct wd_reference_params){0}), WD_OK);
-    assert_true(bias_trace(traced, tracer, stand, height, FROM_ABOVE));
+    assert_true(bias_trace(traced, tracer, stand, row->height, view_of(row)));
     wd_reference_destroy(&tracer);
     wd_forest_destroy(&forest);
 }
 
 static void draw_reference(struct bias_shown *drawn, struct wd_renderer *renderer,
-                           const struct bias_stand *stand, int height)
+                           const struct bias_stand *stand, const struct row *row)
 {
     struct wd_forest *forest;
     take(renderer, stand, "reference", &forest);
-    assert_true(bias_show_reference(drawn, renderer, stand, height, FROM_ABOVE));
+    assert_true(bias_show_reference(drawn, renderer, stand, row->height, view_of(row)));
     leave(renderer, &forest);
 }
 
@@ -127,9 +136,9 @@ static void measure_row(struct wd_renderer *renderer, const struct row *row)
     assert_true(bias_stand_init(&stand, row->species, row->clouds));
     stand.quick = true;
     if (any_traced)
-        trace_reference(&traced, &stand, row->height);
+        trace_reference(&traced, &stand, row);
     if (any_drawn)
-        draw_reference(&drawn, renderer, &stand, row->height);
+        draw_reference(&drawn, renderer, &stand, row);
     for (const struct bound *bound = row->bounds; bound < row->bounds + MOST_FORMS && bound->form; bound++)
         measure_bound(renderer, &stand, row, bound, bound->traced ? &traced : &drawn);
     free(drawn.luminance);

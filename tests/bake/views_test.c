@@ -333,6 +333,38 @@ static void cards_show_the_cube_from_three_sides_and_above(void **state)
     finish(&f);
 }
 
+/* What is up in the plant is to the left in its picture, what is to the right is up. */
+static void cards_of_wide_plants_lie(void **state)
+{
+    struct fixture f;
+    make(&f, state, add_cube, add_ball);
+    static const struct wd_card_form form = {WD_BAKE_LEAVES, {WD_CARD_TEXELS, WD_CARD_TEXELS, WD_CARD_NOTHING}};
+    static const struct wd_card_extent extents[] = {{1.4f, 1.4f, 0.0f, 3.0f}, {1.6f, 1.6f, 0.0f, 3.0f}};
+    for (int lies = 0; lies < 2; lies++) {
+        struct wd_cards cards;
+        assert_true(wd_cards_bake(&cards, &f.baker, &f.device.mesh, &extents[lies], &form));
+        const uint8_t *albedo = cards.planes[WD_PLANE_ALBEDO] + wd_card_offset(&form, WD_PLANE_ALBEDO, 0, 0);
+        const uint8_t *normal = cards.planes[WD_PLANE_NORMAL]
+                                + wd_card_offset(&form, WD_PLANE_NORMAL, 0, WD_CARD_NORMAL_MIP);
+        /* the ball's right, and its top; metres right of the axis and above the ground */
+        static const float places_m[2][2] = {{0.8f, 1.0f}, {0.0f, 1.8f}};
+        for (int i = 0; i < 2; i++) {
+            float right = 0.5f + 0.5f * places_m[i][0] / extents[lies].half_width_m, down = 1.0f - places_m[i][1] / 3.0f;
+            size_t x = (size_t)(WD_CARD_WIDTH * (lies ? down : right));
+            size_t y = (size_t)(WD_CARD_HEIGHT * (lies ? 1.0f - right : down));
+            assert_int_equal(albedo[4 * (y * WD_CARD_WIDTH + x) + 3], 255);
+            const uint8_t *n = normal + 4 * (y / 2 * (WD_CARD_WIDTH / 2) + x / 2);
+            assert_in_range(n[i ? 2 : 0], 220, 240); /* 0.8 */
+            assert_in_range(n[i ? 0 : 2], 117, 138); /* 0 */
+        }
+        size_t air = lies ? (size_t)4 * (WD_CARD_HEIGHT / 2 * WD_CARD_WIDTH + WD_CARD_WIDTH / 4)
+                          : (size_t)4 * (WD_CARD_HEIGHT / 4 * WD_CARD_WIDTH + WD_CARD_WIDTH / 2);
+        assert_int_equal(albedo[air + 3], 0);
+        wd_cards_finish(&cards);
+    }
+    finish(&f);
+}
+
 static void bad_parameters_are_named(void **state)
 {
     struct gpu_test *test = *state;
@@ -375,6 +407,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(cards_without_depth_show_the_same, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(cards_show_the_cube_from_three_sides_and_above, gpu_setup,
                                         gpu_teardown),
+        cmocka_unit_test_setup_teardown(cards_of_wide_plants_lie, gpu_setup, gpu_teardown),
         cmocka_unit_test_setup_teardown(bad_parameters_are_named, gpu_setup, gpu_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
