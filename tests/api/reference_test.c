@@ -30,13 +30,14 @@ static void test_agreement(void **state)
     assert_true(fabs(a.ground_albedo_pct) < 3.0);
 }
 
-static struct wd_reference *open_reference(struct suite *suite, bool (*report)(void *, const char *,
-                                                                               uint64_t, uint64_t))
+/* Of the suite's forest, for all tests: one traces pictures, the other ends half-way. */
+static struct wd_reference *reference, *stopping;
+
+static bool open_reference(struct wd_reference **opened, struct suite *suite,
+                           bool (*report)(void *, const char *, uint64_t, uint64_t))
 {
     const struct wd_reference_params params = {.progress = {report, suite}, .log = suite->log};
-    struct wd_reference *reference;
-    assert_int_equal(wd_reference_create(&reference, suite->forest, &params), WD_OK);
-    return reference;
+    return wd_reference_create(opened, suite->forest, &params) == WD_OK;
 }
 
 static bool stop_half_way(void *user, const char *stage, uint64_t done, uint64_t total)
@@ -57,7 +58,6 @@ static struct wd_reference_picture_params picture_params(struct suite *suite)
 static void layers_need_no_paths(void **state)
 {
     struct suite *suite = suite_of(state);
-    struct wd_reference *reference = open_reference(suite, NULL);
     struct wd_reference_picture_params params = picture_params(suite);
     const size_t pixels = (size_t)params.width * params.height;
     struct wd_picture lit, layers;
@@ -77,15 +77,12 @@ static void layers_need_no_paths(void **state)
     assert_int_equal(access(params.checkpoint, F_OK), 0);
     wd_picture_finish(&lit);
     wd_picture_finish(&layers);
-    wd_reference_destroy(&reference);
 }
 
 /* Stopped and gone on with is the same as never stopped. */
 static void test_resume(void **state)
 {
     struct suite *suite = suite_of(state);
-    struct wd_reference *stopping = open_reference(suite, stop_half_way);
-    struct wd_reference *reference = open_reference(suite, NULL);
     struct wd_reference_picture_params params = picture_params(suite);
     struct wd_picture whole, resumed;
     struct wd_reference_stats stats;
@@ -106,16 +103,12 @@ static void test_resume(void **state)
     assert_int_not_equal(access(params.checkpoint, F_OK), 0);
     wd_picture_finish(&whole);
     wd_picture_finish(&resumed);
-    wd_reference_destroy(&stopping);
-    wd_reference_destroy(&reference);
 }
 
 /* Fewer samples than a checkpoint has are refused, and it stays; as many as it has, or more, are taken. */
 static void test_fewer_samples(void **state)
 {
     struct suite *suite = suite_of(state);
-    struct wd_reference *stopping = open_reference(suite, stop_half_way);
-    struct wd_reference *reference = open_reference(suite, NULL);
     struct wd_reference_picture_params params = picture_params(suite), fewer;
     struct wd_picture whole, resumed;
     params.samples = 24;
@@ -133,15 +126,12 @@ static void test_fewer_samples(void **state)
     assert_memory_equal(whole.color, resumed.color, (size_t)48 * 36 * 3 * sizeof(float));
     wd_picture_finish(&whole);
     wd_picture_finish(&resumed);
-    wd_reference_destroy(&stopping);
-    wd_reference_destroy(&reference);
 }
 
 /* A checkpoint that cannot be written is told before paths are traced. */
 static void test_no_folder(void **state)
 {
     struct suite *suite = suite_of(state);
-    struct wd_reference *reference = open_reference(suite, NULL);
     struct wd_reference_picture_params params = picture_params(suite);
     struct wd_reference_stats stats;
     struct wd_picture picture;
@@ -152,16 +142,14 @@ static void test_no_folder(void **state)
     assert_null(picture.color);
     wd_reference_get_stats(reference, &stats);
     assert_int_equal(stats.rays, 0);
-    wd_reference_destroy(&reference);
 }
 
 /* Turned leaves on the same trees are another picture. */
 static void test_other_leaves(void **state)
 {
     struct suite *suite = suite_of(state);
-    struct wd_reference *stopping = open_reference(suite, stop_half_way);
     struct wd_reference_picture_params params = picture_params(suite);
-    struct wd_reference *reference;
+    struct wd_reference *turned;
     struct wd_forest *autumn;
     struct wd_picture picture;
     const char *const settings[] = {"time.date=2026-09-25", NULL};
@@ -170,18 +158,17 @@ static void test_other_leaves(void **state)
     const struct wd_reference_params reference_params = {.log = suite->log};
     params.checkpoint = suite_path(suite, "summer.partial");
     assert_int_equal(wd_reference_render(stopping, &params, &picture), WD_ERROR_INTERRUPTED);
-    wd_reference_destroy(&stopping);
     assert_int_equal(wd_forest_create(&autumn, &forest_params), WD_OK);
-    assert_int_equal(wd_reference_create(&reference, autumn, &reference_params), WD_OK);
+    assert_int_equal(wd_reference_create(&turned, autumn, &reference_params), WD_OK);
     suite_clear(suite);
-    assert_int_equal(wd_reference_render(reference, &params, &picture), WD_ERROR_INPUT);
+    assert_int_equal(wd_reference_render(turned, &params, &picture), WD_ERROR_INPUT);
     assert_true(suite_logged(suite, "another scene, camera"));
-    wd_reference_destroy(&reference);
+    wd_reference_destroy(&turned);
+    wd_reference_destroy(&turned);
     wd_forest_destroy(&autumn);
 }
 
-static void assert_refused(struct suite *suite, struct wd_reference *reference,
-                           const struct wd_reference_picture_params *params, const char *part)
+static void assert_refused(struct suite *suite, const struct wd_reference_picture_params *params, const char *part)
 {
     struct wd_picture picture;
     suite_clear(suite);
@@ -191,48 +178,48 @@ static void assert_refused(struct suite *suite, struct wd_reference *reference,
 }
 
 /* Refused as by the renderer. */
-static void refuse_numbers(struct suite *suite, struct wd_reference *reference)
+static void refuse_numbers(struct suite *suite)
 {
     const struct wd_reference_picture_params good = picture_params(suite);
     struct wd_reference_picture_params params = good;
     params.width = 0;
-    assert_refused(suite, reference, &params, "0 x 36");
+    assert_refused(suite, &params, "0 x 36");
     params = good;
     params.camera.fov_rad = 4;
-    assert_refused(suite, reference, &params, "camera.fov_rad is 4");
+    assert_refused(suite, &params, "camera.fov_rad is 4");
     params.camera.fov_rad = 1e-4;
-    assert_refused(suite, reference, &params, "camera.fov_rad is 0.0001");
+    assert_refused(suite, &params, "camera.fov_rad is 0.0001");
     params = good;
     params.camera.position_m[1] = NAN;
-    assert_refused(suite, reference, &params, "camera.position_m is");
+    assert_refused(suite, &params, "camera.position_m is");
     params = good;
     params.camera.yaw_rad = NAN;
-    assert_refused(suite, reference, &params, "camera.yaw_rad is nan");
+    assert_refused(suite, &params, "camera.yaw_rad is nan");
     params = good;
     params.samples = 1u << 30;
-    assert_refused(suite, reference, &params, "1073741824 samples");
+    assert_refused(suite, &params, "1073741824 samples");
     params = good;
     params.time_s = INFINITY;
-    assert_refused(suite, reference, &params, "time_s is inf");
+    assert_refused(suite, &params, "time_s is inf");
     params = good;
     params.places = (enum wd_reference_places)9;
-    assert_refused(suite, reference, &params, "places is 9");
-    assert_refused(suite, reference, NULL, "params is NULL");
+    assert_refused(suite, &params, "places is 9");
+    assert_refused(suite, NULL, "params is NULL");
 }
 
 /* Layers that it lacks are refused by name; of all it makes those that it has. */
-static void refuse_layers(struct suite *suite, struct wd_reference *reference)
+static void refuse_layers(struct suite *suite)
 {
     struct wd_reference_picture_params params = picture_params(suite);
     struct wd_picture picture;
     params.layers = WD_LAYER_VELOCITY | WD_LAYER_DEPTH;
-    assert_refused(suite, reference, &params, "layers asks for velocity, which");
+    assert_refused(suite, &params, "layers asks for velocity, which");
     params.layers = WD_LAYER_CRYPTOMATTE;
-    assert_refused(suite, reference, &params, "layers asks for cryptomatte, which");
+    assert_refused(suite, &params, "layers asks for cryptomatte, which");
     params.layers = WD_LAYER_ALL | WD_LAYER_CRYPTOMATTE;
-    assert_refused(suite, reference, &params, "layers asks for velocity and cryptomatte, which");
+    assert_refused(suite, &params, "layers asks for velocity and cryptomatte, which");
     params.layers = WD_LAYER_COLOR | 1u << 9;
-    assert_refused(suite, reference, &params, "layers has the unknown bits 0x200");
+    assert_refused(suite, &params, "layers has the unknown bits 0x200");
     params.layers = WD_LAYER_ALL;
     params.width = params.height = 4;
     params.samples = 1;
@@ -243,7 +230,7 @@ static void refuse_layers(struct suite *suite, struct wd_reference *reference)
 }
 
 /* The largest picture there is, with all layers: 13 GiB. */
-static void refuse_what_no_memory_holds(struct suite *suite, struct wd_reference *reference)
+static void refuse_what_no_memory_holds(struct suite *suite)
 {
     struct wd_reference_picture_params params = picture_params(suite);
     struct wd_picture picture;
@@ -263,22 +250,19 @@ static void refuse_what_no_memory_holds(struct suite *suite, struct wd_reference
 static void test_bad_input(void **state)
 {
     struct suite *suite = suite_of(state);
-    struct wd_reference *reference = open_reference(suite, NULL);
-    refuse_numbers(suite, reference);
-    refuse_layers(suite, reference);
-    refuse_what_no_memory_holds(suite, reference);
-    wd_reference_destroy(&reference);
-    wd_reference_destroy(&reference);
+    refuse_numbers(suite);
+    refuse_layers(suite);
+    refuse_what_no_memory_holds(suite);
 }
 
 static size_t textures_kept(struct suite *suite, const char *cache_dir)
 {
     const struct wd_reference_params params = {.cache_dir = cache_dir, .log = suite->log};
-    struct wd_reference *reference;
+    struct wd_reference *own;
     char pattern[1280];
     glob_t found;
-    assert_int_equal(wd_reference_create(&reference, suite->forest, &params), WD_OK);
-    wd_reference_destroy(&reference);
+    assert_int_equal(wd_reference_create(&own, suite->forest, &params), WD_OK);
+    wd_reference_destroy(&own);
     snprintf(pattern, sizeof pattern, "%s/looks-*.bin", suite->scratch);
     assert_true(glob(pattern, 0, NULL, &found) != GLOB_ABORTED);
     size_t count = found.gl_pathc;
@@ -296,7 +280,8 @@ static void textures_are_kept_where_asked(void **state)
 int main(int argc, char **argv)
 {
     static struct suite suite;
-    if (argc != 2 || !suite_init(&suite, argv[1]))
+    if (argc != 2 || !suite_init(&suite, argv[1]) || !open_reference(&reference, &suite, NULL)
+        || !open_reference(&stopping, &suite, stop_half_way))
         return 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(test_agreement, &suite),
@@ -309,6 +294,8 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(test_bad_input, &suite),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    wd_reference_destroy(&reference);
+    wd_reference_destroy(&stopping);
     suite_finish(&suite);
     return failed;
 }

@@ -1,35 +1,28 @@
 #include "planted.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "forest/octant_colors.h"
 
 /* Trees are baked once for all tests. */
-static char cache[] = "/tmp/weald-test-XXXXXX";
+static char *cache;
 
-static int make_cache(void **state)
+static int find_cache(void **state)
 {
     (void)state;
-    return mkdtemp(cache) ? 0 : -1;
+    cache = wd_cache_directory();
+    return 0;
 }
 
-static int remove_cache(void **state)
+static int free_cache(void **state)
 {
     (void)state;
-    DIR *folder = opendir(cache);
-    for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        char *path = wd_format("%s/%s", cache, entry->d_name);
-        unlink(path);
-        free(path);
-    }
-    if (folder)
-        closedir(folder);
-    return rmdir(cache);
+    free(cache);
+    return 0;
 }
 
 static double alpha(uint32_t color)
@@ -248,5 +241,5 @@ int main(void)
         TEST(faint_cells_are_dropped),
         TEST(bad_parameters_are_named),
     };
-    return cmocka_run_group_tests(tests, make_cache, remove_cache);
+    return cmocka_run_group_tests(tests, find_cache, free_cache);
 }

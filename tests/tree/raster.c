@@ -214,3 +214,20 @@ void wd_raster_tree(struct wd_raster *raster, const struct wd_tree_mesh *mesh,
     scan_mesh(mesh, &eye, &color);
     free(painter.shadow);
 }
+
+static void plot_cover(void *user, int x, int y, float depth, const float weight[3],
+                       const struct wd_tree_vertex *const vertex[3])
+{
+    (void)depth, (void)weight, (void)vertex;
+    struct wd_raster *raster = user;
+    raster->covered[(size_t)y * (size_t)raster->width + (size_t)x] = 1;
+}
+
+void wd_raster_silhouette(struct wd_raster *raster, const struct wd_tree_mesh *mesh,
+                          const struct wd_raster_view *view)
+{
+    struct camera eye = camera_of(view);
+    struct scan cover = {.plot = plot_cover, .user = raster, .width = raster->width,
+                         .height = raster->height};
+    scan_mesh(mesh, &eye, &cover);
+}

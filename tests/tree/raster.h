@@ -29,6 +29,9 @@ void wd_raster_finish(struct wd_raster *raster);
 /* Draws with sun (shadow-mapped), sky by the vertices' openness, and light through leaves. */
 void wd_raster_tree(struct wd_raster *raster, const struct wd_tree_mesh *mesh,
                     const struct wd_raster_looks *looks, const struct wd_raster_view *view);
+/* Covers what that would, without colour. */
+void wd_raster_silhouette(struct wd_raster *raster, const struct wd_tree_mesh *mesh,
+                          const struct wd_raster_view *view);
 /* Share of the canvas that trees cover. */
 double wd_raster_coverage(const struct wd_raster *raster);
 

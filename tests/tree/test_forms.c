@@ -5,11 +5,8 @@
 
 enum { VARIANTS = 20, SIDE = 56 };
 
-static void draw(const struct wd_tree_model *model, const struct wd_species *species,
-                 unsigned char covered[SIDE * SIDE])
+static void draw(const struct wd_tree_model *model, unsigned char covered[SIDE * SIDE])
 {
-    uint8_t texel[4] = {128, 128, 128, 255};
-    struct wd_raster_looks looks = {1, texel, texel, species};
     float reach = fmaxf(model->full.max_m[0] - model->full.min_m[0],
                         model->full.max_m[2] - model->full.min_m[2]);
     float middle = 0.5f * (model->full.max_m[0] + model->full.min_m[0]);
@@ -17,7 +14,7 @@ static void draw(const struct wd_tree_model *model, const struct wd_species *spe
     struct wd_raster_view view = {0.5f * SIDE - middle * scale, 0.95f * SIDE, scale, 0, 0.02f};
     struct wd_raster raster;
     wd_raster_init(&raster, SIDE, SIDE);
-    wd_raster_tree(&raster, &model->full, &looks, &view);
+    wd_raster_silhouette(&raster, &model->full, &view);
     memcpy(covered, raster.covered, SIDE * SIDE);
     wd_raster_finish(&raster);
 }
@@ -45,7 +42,7 @@ static void variants_look_different(void **state)
             struct wd_grow_params params = {.seed = v + 1, .detail = 0.2f, .openness = 0.35f};
             struct wd_tree_model model;
             assert_true(wd_tree_grow(&model, &species, &params, NULL));
-            draw(&model, &species, covered[v]);
+            draw(&model, covered[v]);
             wd_tree_model_finish(&model);
         }
         double least = 1;

@@ -432,17 +432,14 @@ static void any_prefix_of_leaves_is_fair(void **state)
     for_all(check_prefix);
 }
 
-static double coverage(const struct wd_tree_mesh *mesh, const struct wd_species *species,
-                       float height_m, float azimuth_rad, float elevation_rad)
+static double coverage(const struct wd_tree_mesh *mesh, float height_m, float azimuth_rad, float elevation_rad)
 {
     enum { SIDE = 400 };
-    uint8_t texel[4] = {128, 128, 128, 255};
-    struct wd_raster_looks looks = {1, texel, texel, species};
     struct wd_raster_view view = {0.5f * SIDE, 0.8f * SIDE, 0.6f * SIDE / height_m, azimuth_rad,
                                   elevation_rad};
     struct wd_raster raster;
     wd_raster_init(&raster, SIDE, SIDE);
-    wd_raster_tree(&raster, mesh, &looks, &view);
+    wd_raster_silhouette(&raster, mesh, &view);
     double share = wd_raster_coverage(&raster);
     wd_raster_finish(&raster);
     return share;
@@ -468,8 +465,8 @@ static void reduced_mesh_keeps_area_and_coverage(void **state)
             assert_alike(&a, &b, 1.5 * (double)model.crown_radius_m, 0.07);
             for (int view = 0; view < 3; view++) {
                 float azimuth = 2.1f * (float)view, up = view == 2 ? 0.9f : 0.05f;
-                double one = coverage(full, &species, model.height_m, azimuth, up);
-                double two = coverage(reduced, &species, model.height_m, azimuth, up);
+                double one = coverage(full, model.height_m, azimuth, up);
+                double two = coverage(reduced, model.height_m, azimuth, up);
                 print_message("%s open %d view %d: reduced covers %+.1f%%\n",
                               test_species_names[s], open, view, 100 * (two / one - 1));
                 /* of a spruce of a stand, whose crown is 4.3 m wide, reduced shoots stand out: 6.7 % */
