@@ -15,8 +15,13 @@ layout(set = 0, binding = 1, rgba32f) uniform image2D radiance_image;
 layout(set = 0, binding = 2) uniform usampler2D gbuffer_surface;
 layout(set = 0, binding = 3) uniform sampler2D gbuffer_depth;
 layout(scalar, set = 0, binding = 4) readonly buffer Velocity { vec2 velocity_px[]; };
-layout(scalar, set = 0, binding = 5) readonly buffer Before { wd_history_pixel before[]; };
-layout(scalar, set = 0, binding = 6) buffer Now { wd_history_pixel now[]; };
+/* shared/accumulate.h */
+layout(scalar, set = 0, binding = 5) readonly buffer RedGreenBefore { vec2 red_green_before[]; };
+layout(scalar, set = 0, binding = 6) readonly buffer BlueSamplesBefore { vec2 blue_samples_before[]; };
+layout(scalar, set = 0, binding = 7) readonly buffer SeenBefore { uvec2 seen_before[]; };
+layout(scalar, set = 0, binding = 8) buffer RedGreenNow { vec2 red_green_now[]; };
+layout(scalar, set = 0, binding = 9) buffer BlueSamplesNow { vec2 blue_samples_now[]; };
+layout(scalar, set = 0, binding = 10) writeonly buffer SeenNow { uvec2 seen_now[]; };
 layout(scalar, push_constant) uniform Push { wd_accumulate_push push; };
 
 /* Of a pixel and the eight around it. */
@@ -66,12 +71,13 @@ vec4 fetch_history(vec2 place)
         ivec2 tap = ivec2(corner) + ivec2(i & 1, i >> 1);
         if (any(lessThan(tap, ivec2(0))) || tap.x >= int(frame.width) || tap.y >= int(frame.height))
             continue;
-        wd_history_pixel pixel = before[index_of(tap)];
+        uint index = index_of(tap);
+        uvec2 seen = seen_before[index];
         vec2 shares = mix(1.0 - share, share, vec2(i & 1, i >> 1));
         float counts = shares.x * shares.y;
-        if (counts <= 0.0 || !is_known(pixel.surface, pixel.depth))
+        if (counts <= 0.0 || !is_known(seen.x, uintBitsToFloat(seen.y)))
             continue;
-        sum += counts * vec4(pixel.radiance, pixel.samples);
+        sum += counts * vec4(red_green_before[index], blue_samples_before[index]);
         weight += counts;
     }
     return weight > 0.05 ? sum / weight : vec4(0.0);
@@ -79,24 +85,25 @@ vec4 fetch_history(vec2 place)
 
 void gather(ivec2 at)
 {
+    uint index = index_of(at);
     vec3 sample_radiance = imageLoad(radiance_image, at).rgb;
     vec4 history = vec4(0.0);
     if (push.has_history != 0u && push.still != 0u) {
-        wd_history_pixel same = before[index_of(at)];
-        history = vec4(same.radiance, min(same.samples, WD_STILL_SAMPLES - 1.0));
+        history = vec4(red_green_before[index], blue_samples_before[index]);
+        history.w = min(history.w, WD_STILL_SAMPLES - 1.0);
     } else if (push.has_history != 0u) {
         read_neighbours(at);
-        vec2 moved_px = velocity_px[index_of(at)];
+        vec2 moved_px = velocity_px[index];
         history = fetch_history(vec2(at) + 0.5 - moved_px);
         history.rgb = clamp(history.rgb, lowest, highest);
         history.w = min(history.w, WD_MOVING_SAMPLES - 1.0);
     }
-    wd_history_pixel mean;
-    mean.samples = history.w + 1.0;
-    mean.radiance = mix(history.rgb, sample_radiance, 1.0 / mean.samples);
-    mean.surface = texelFetch(gbuffer_surface, at, 0).x;
-    mean.depth = texelFetch(gbuffer_depth, at, 0).x;
-    now[index_of(at)] = mean;
+    float samples = history.w + 1.0;
+    vec3 mean = mix(history.rgb, sample_radiance, 1.0 / samples);
+    red_green_now[index] = mean.rg;
+    blue_samples_now[index] = vec2(mean.b, samples);
+    seen_now[index] = uvec2(texelFetch(gbuffer_surface, at, 0).x,
+                            floatBitsToUint(texelFetch(gbuffer_depth, at, 0).x));
 }
 
 void main()
@@ -104,8 +111,9 @@ void main()
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= int(frame.width) || at.y >= int(frame.height))
         return;
+    uint index = index_of(at);
     if (STORES != 0u)
-        imageStore(radiance_image, at, vec4(now[index_of(at)].radiance, 1.0));
+        imageStore(radiance_image, at, vec4(red_green_now[index], blue_samples_now[index].x, 1.0));
     else
         gather(at);
 }

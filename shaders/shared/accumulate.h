@@ -5,13 +5,12 @@
 
 #include "shared/types.h"
 
-/* What has been gathered of one pixel. */
-struct wd_history_pixel {
-    WD_VEC3(radiance);  /* mean */
-    float samples;      /* that it stands for */
-    uint32_t surface;   /* as the G-buffer's, of the newest sample */
-    float depth;        /* likewise */
-};
+/* What has been gathered of pixels, in buffers of two words a pixel: devices may let a shader see no more of one buffer
+ * than four words of each pixel of 3840 x 2160. */
+#define WD_HISTORY_RED_GREEN 0    /* of the mean radiance */
+#define WD_HISTORY_BLUE_SAMPLES 1 /* its blue; how many samples the mean stands for */
+#define WD_HISTORY_SEEN 2         /* surface and depth as in the G-buffer, of the newest sample */
+#define WD_HISTORY_PARTS 3
 
 /* Samples that a pixel's mean stands for at most: while nothing moves, and while something does. */
 #define WD_STILL_SAMPLES 256.0

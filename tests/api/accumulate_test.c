@@ -159,6 +159,20 @@ static void nothing_is_kept_of_something_else(void **state)
     wd_picture_finish(&again);
 }
 
+/* Software devices let a shader see 128 MB of a buffer. */
+static void windows_of_4k_have_room(void **state)
+{
+    struct suite *suite = *state;
+    struct wd_render_params params = params_of(suite, "over");
+    params.accumulation = WD_ACCUMULATE;
+    params.width = 4096;
+    params.height = 2160;
+    params.camera.pitch_rad = 1.5; /* the sky */
+    params.layers = WD_LAYER_DISPLAY;
+    struct wd_picture picture = suite_render(suite, &params);
+    wd_picture_finish(&picture);
+}
+
 int main(int argc, char **argv)
 {
     static struct suite suite;
@@ -176,6 +190,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(moving_cameras_leave_no_trail, &suite),
         cmocka_unit_test_prestate(swaying_trees_leave_no_trail, &suite),
         cmocka_unit_test_prestate(nothing_is_kept_of_something_else, &suite),
+        cmocka_unit_test_prestate(windows_of_4k_have_room, &suite),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     suite_finish(&suite);

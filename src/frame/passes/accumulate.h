@@ -8,7 +8,7 @@
 struct wd_accumulate_pass {
     struct wd_pipeline gather, store;
     VkSampler nearest;
-    struct wd_buffer history[2]; /* struct wd_history_pixel, of the frame before and of this one */
+    struct wd_buffer history[2][WD_HISTORY_PARTS]; /* of the frame before and of this one */
     uint32_t newest;             /* of history */
     uint32_t width, height;      /* that it holds; 0: nothing */
 };
