@@ -1,10 +1,41 @@
 #include "cli.h"
 
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "output_name.h"
 #include "viewer/viewer.h"
 
 static bool keep_running(void *user)
 {
     return !cli_session_interrupted(user);
+}
+
+/* Lines may go to a pipe or a terminal, too. */
+static bool can_report(struct cli_session *session, const char *path)
+{
+    struct stat status;
+    if (!path)
+        return true;
+    if (stat(path, &status) || S_ISDIR(status.st_mode))
+        return cli_output_probe(session, path);
+    return access(path, W_OK) == 0 || cli_fail(session, "%s cannot be written: %s", path, strerror(errno));
+}
+
+static bool can_take_pictures(struct cli_session *session, const char *folder)
+{
+    char *name = NULL;
+    if (!folder)
+        return true;
+    if (asprintf(&name, "%s/weald.png", folder) < 0)
+        return cli_fail(session, "out of memory");
+    bool can = cli_output_probe(session, name);
+    free(name);
+    return can;
 }
 
 enum cli_status cli_view(struct cli_session *session)
@@ -37,6 +68,8 @@ enum cli_status cli_view(struct cli_session *session)
     };
     if (!wd_viewer_display_present(&session->log))
         return CLI_NO_DISPLAY;
+    if (!can_report(session, options->report) || !can_take_pictures(session, options->screenshots))
+        return CLI_FAILED;
     struct wd_forest *forest = NULL;
     enum wd_result result = cli_forest_open(session, &forest);
     if (result == WD_OK && !(cli_places_check(session, forest) && cli_bound_check(session, forest)))

@@ -100,9 +100,11 @@ void viewer_act_earlier(struct viewer_state *viewer)
     move_sun(viewer, -SUN_STEP_H);
 }
 
+/* And back to what was shown at the beginning. */
 void viewer_act_lod(struct viewer_state *viewer)
 {
-    viewer->view = viewer->view == WD_VIEW_LOD ? WD_VIEW_LIT : WD_VIEW_LOD;
+    enum wd_view_mode begun = viewer->params->view == WD_VIEW_LOD ? WD_VIEW_LIT : viewer->params->view;
+    viewer->view = viewer->view == WD_VIEW_LOD ? begun : WD_VIEW_LOD;
     if (viewer->view == WD_VIEW_LOD)
         viewer_notice(viewer, "%s", level_legend(viewer->method));
 }

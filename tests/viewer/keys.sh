@@ -107,6 +107,17 @@ env -u DISPLAY -u WAYLAND_DISPLAY "$weald" view "$scratch/tiny.json" >"$scratch/
 grep -q 'no window can be opened' "$scratch/log" || fail "no display: no message"
 echo "ok   no display"
 
+# refused WHAT OPTIONS...: before a forest is planted
+refused() {
+    what=$1
+    shift
+    status=0
+    "$weald" view "$scratch/tiny.json" "$@" >"$scratch/log" 2>&1 || status=$?
+    [ "$status" -eq 1 ] && grep -q "$what" "$scratch/log" && ! grep -q ' trees' "$scratch/log" ||
+        fail "$what: exit status $status instead of 1"
+    echo "ok   $what"
+}
+
 mkfifo "$scratch/display"
 # Without -noreset it starts anew when the last window closes, and refuses whoever comes then.
 Xvfb -noreset -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 3>"$scratch/display" 2>/dev/null &
@@ -115,6 +126,10 @@ read -r number <"$scratch/display"
 DISPLAY=:$number
 export DISPLAY
 unset WAYLAND_DISPLAY
+
+refused 'none/report cannot be written: its directory does not exist' --report "$scratch/none/report"
+refused 'shots is a directory' --report "$scratch/shots"
+refused 'none/weald.png cannot be written' --screenshots "$scratch/none"
 
 start
 ask
@@ -221,11 +236,15 @@ expect 'frames go on after the window was hidden' '.frames > $before.frames'
 "$close_window" "$window" || fail "no message to the window"
 ended 0 'closing the window ends the viewer'
 
-start --walk --camera west --view lod
+start --walk --camera west --view albedo
 ask
-holds '.gait == "walk" and .view == "lod" and .camera == "west" and .saved_cameras == 1 and '"$on_ground" ||
+holds '.gait == "walk" and .view == "albedo" and .camera == "west" and .saved_cameras == 1 and '"$on_ground" ||
     fail "options"
 echo "ok   options"
+xdotool key l
+expect 'L colours by level in place of albedo' '.view == "lod"'
+xdotool key l
+expect 'and comes back to it' '.view == "albedo"'
 remember
 sleep 1
 ask
