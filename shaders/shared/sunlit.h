@@ -128,7 +128,7 @@ WD_FUNC uint32_t wd_sunlit_place(uint32_t eye_ring, uint32_t sun_ring, uint32_t 
  * once. */
 struct wd_lit_leaves {
     uint32_t base_petals;         /* two half floats: height of the lowest living branch, of the tree's; and of plants
-                                     in flower the green albedo of leaves, else 0 */
+                                     in flower the green albedo of leaves, below 0 where they are plumes; else 0 */
     uint32_t cloud_wax;           /* two half floats, as of struct wd_tree_model */
     uint32_t sun_curve;           /* of wd_crown_lit: two half floats */
     uint32_t paler;               /* WD_PALER_*: albedo of leaves' lower sides over that of the upper ones */

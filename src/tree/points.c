@@ -2,13 +2,14 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/color.h"
 #include "base/dmath.h"
 #include "base/memory.h"
+#include "shared/sun_ways.h"
 #include "tree/progressive.h"
 #include "tree/random.h"
-#include "tree/silhouette.h"
 
 /* Triangles of wood, then of leaves, each along its own curve, with the area up to each. */
 struct surface {
@@ -41,38 +42,58 @@ static bool is_petal(const struct wd_tree_mesh *mesh, size_t triangle)
     return wd_vertex_layer(mesh->vertices[mesh->indices[3 * triangle]].kind) == WD_LOOK_FLOWER;
 }
 
-/* Petals lie over one another, where few points a flower would show all of them: share of what they would cover side by
- * side that they cover, seen from around and from above. 1 without petals. */
-static double petals_seen(const struct wd_tree_mesh *mesh)
+/* A triangle's middle as a point that any side is seen of, and its plane's normal times its area. */
+static struct wd_vec3 put_middle(struct wd_tree_point *point, const struct wd_tree_mesh *mesh, size_t triangle)
 {
-    enum { ROUND = 5, VIEWS = ROUND + 1 };
-    struct wd_silhouette *picture = wd_alloc(sizeof *picture);
-    struct wd_tree_mesh petals = {.vertices = mesh->vertices, .vertex_count = mesh->vertex_count,
-                                  .indices = wd_alloc_array(mesh->index_count + 1, sizeof *mesh->indices)};
-    double shown = 0, all = 0;
-    for (size_t i = 0; i < mesh->index_count / 3; i++)
-        for (size_t k = 0; k < 3 && is_petal(mesh, i); k++)
-            petals.indices[petals.index_count++] = mesh->indices[3 * i + k];
-    for (int view = 0; view < VIEWS && petals.index_count; view++) {
-        double turn = 2 * WD_PI * view / ROUND, up = view < ROUND ? 0.3 : 1.4;
-        float level = (float)wd_dcos(up);
-        wd_silhouette_init(picture, mesh, WD_V3(level * (float)wd_dcos(turn), level * (float)wd_dsin(turn),
-                                                (float)wd_dsin(up)));
-        wd_silhouette_cover(picture, 1, &petals, 0, petals.index_count);
-        double px_per_m = (double)picture->scale;
-        shown += (double)wd_silhouette_count(picture) / (px_per_m * px_per_m);
-        for (size_t i = 0; i < petals.index_count / 3; i++) {
-            struct wd_vec3 a = corner(&petals, 3 * i), b = wd_v3_sub(corner(&petals, 3 * i + 1), a);
-            struct wd_vec3 across = wd_v3_cross(b, wd_v3_sub(corner(&petals, 3 * i + 2), a));
-            all += 0.5 * (double)fabsf(wd_v3_dot(across, picture->toward));
-        }
-    }
-    free(petals.indices);
-    free(picture);
-    return all > 0 ? fmin(shown / all, 1) : 1;
+    struct wd_vec3 a = corner(mesh, 3 * triangle), b = corner(mesh, 3 * triangle + 1), c = corner(mesh, 3 * triangle + 2);
+    struct wd_vec3 middle = wd_v3_scale(wd_v3_add(a, wd_v3_add(b, c)), 1 / 3.0f);
+    *point = (struct wd_tree_point){.position_m = {middle.x, middle.y, middle.z}};
+    return wd_v3_cross(wd_v3_sub(b, a), wd_v3_sub(c, a));
 }
 
-static void order_part(struct surface *surface, size_t first, size_t count, double petals)
+/* Petals lie over one another, where few points a flower would show all of them: of each triangle, the share of what it
+ * would cover, seen from above and around, that no petal hides. 1 of what is none. */
+static void find_petals_seen(float *shares, const struct wd_tree_mesh *mesh)
+{
+    const size_t count = mesh->index_count / 3;
+    struct wd_tree_mesh petals = *mesh;
+    struct wd_tree_points middles = {.points = wd_alloc_array(count + 1, sizeof *middles.points)};
+    struct wd_vec3 *faces = wd_alloc_array(count + 1, sizeof *faces), ways[WD_SUN_WAYS];
+    uint32_t *open = wd_alloc_array(count + 1, sizeof *open);
+    petals.indices = wd_alloc_array(mesh->index_count + 1, sizeof *petals.indices);
+    petals.index_count = petals.wood_index_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        shares[i] = 1;
+        if (!is_petal(mesh, i))
+            continue;
+        memcpy(petals.indices + petals.index_count, mesh->indices + 3 * i, 3 * sizeof *petals.indices);
+        petals.index_count += 3;
+        faces[middles.count] = put_middle(&middles.points[middles.count], mesh, i);
+        middles.count++;
+    }
+    for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
+        ways[way] = wd_sun_way(way);
+    if (middles.count)
+        wd_tree_points_open(open, &middles, &petals, 0, ways, WD_SUN_WAYS);
+    for (size_t i = 0, at = 0; i < count && at < middles.count; i++) {
+        float seen = 0, all = 0;
+        if (!is_petal(mesh, i))
+            continue;
+        for (uint32_t way = 0; way < WD_SUN_WAYS; way++) {
+            float shown = fabsf(wd_v3_dot(faces[at], ways[way]));
+            all += shown;
+            seen += shown * wd_sun_way_lit(open[at], way);
+        }
+        shares[i] = all > 0 ? seen / all : 1;
+        at++;
+    }
+    wd_tree_points_finish(&middles);
+    free(petals.indices);
+    free(faces);
+    free(open);
+}
+
+static void order_part(struct surface *surface, size_t first, size_t count, const float *shares)
 {
     struct wd_vec3 *centers = wd_alloc_array(count ? count : 1, sizeof *centers);
     double *areas = wd_alloc_array(count ? count : 1, sizeof *areas);
@@ -81,7 +102,7 @@ static void order_part(struct surface *surface, size_t first, size_t count, doub
         for (size_t k = 0; k < 3; k++)
             sum = wd_v3_add(sum, corner(surface->mesh, 3 * (first + i) + k));
         centers[i] = wd_v3_scale(sum, 1 / 3.0f);
-        areas[i] = triangle_area(surface->mesh, first + i) * (is_petal(surface->mesh, first + i) ? petals : 1);
+        areas[i] = triangle_area(surface->mesh, first + i) * (double)shares[first + i];
     }
     wd_curve_order(surface->order + first, centers, count);
     for (size_t i = first; i < first + count; i++) {
@@ -102,8 +123,11 @@ static void surface_init(struct surface *surface, const struct wd_tree_mesh *mes
         .count = count,
         .wood_count = wood < count ? wood : count,
     };
-    order_part(surface, 0, surface->wood_count, 1);
-    order_part(surface, surface->wood_count, count - surface->wood_count, petals_seen(mesh));
+    float *shares = wd_alloc_array(count + 1, sizeof *shares);
+    find_petals_seen(shares, mesh);
+    order_part(surface, 0, surface->wood_count, shares);
+    order_part(surface, surface->wood_count, count - surface->wood_count, shares);
+    free(shares);
 }
 
 static void surface_finish(struct surface *surface)

@@ -167,7 +167,7 @@ static float petal_leaf_green(const struct wd_species *species)
     if (species->imported || species->flower.count <= 0)
         return 0;
     wd_look_color(species, WD_LOOK_LEAF, leaf);
-    return leaf[1];
+    return species->flower.petals > 0 ? leaf[1] : -leaf[1];
 }
 
 void wd_variant_describe_light(struct wd_lit_model *lit, const struct wd_species *species,
