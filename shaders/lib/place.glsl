@@ -208,7 +208,7 @@ const float PETALS_BRIGHTER = 1.5;
 bool is_petal(wd_pixel pixel, wd_lit_leaves model)
 {
     float leaf = abs(unpackHalf2x16(model.base_petals).y);
-    return leaf > 0.0 && pixel.snow == 0.0
+    return leaf > 0.0 && pixel.snow == 0.0 && pixel.material >= WD_MATERIAL_LEAF
            && max(max(pixel.albedo.r, pixel.albedo.g), pixel.albedo.b) >= PETALS_BRIGHTER * leaf;
 }
 
@@ -220,7 +220,7 @@ vec3 leaf_by_petal(wd_lit_leaves model)
 }
 
 /* So much of what scatters light to a petal of a flower are other petals; to one of a plume leaves do. By path-traced
- * camellias and catalpas close by, which were 27 and 75 % too bright while all of it were petals. */
+ * camellias of 128 px and plumes of catalpas close by, 27 and 75 % too bright while all of it were petals. */
 const float PETALS_BY_PETALS = 0.15;
 
 vec3 scatters_to_petal(vec3 petal, wd_lit_leaves model)

@@ -55,12 +55,14 @@ static void methods_go_both_ways(void **state)
 static void levels_are_explained_by_method(void **state)
 {
     (void)state;
-    struct viewer_state viewer = {.method = "octree"};
+    const struct wd_viewer_params params = {.view = WD_VIEW_ALBEDO};
+    struct viewer_state viewer = {.params = &params, .view = params.view, .method = "octree"};
     SDL_Keysym l = {.scancode = SDL_SCANCODE_L, .sym = SDLK_l};
     press(&viewer, l, 0);
     assert_non_null(strstr(viewer.notice, "blue: billboard"));
     assert_true(viewer.notice_until_frame > viewer.frame_count + 1); /* however slow frames are */
     press(&viewer, l, 0);
+    assert_int_equal(viewer.view, WD_VIEW_ALBEDO);
     viewer.method = "continuum";
     press(&viewer, l, 0);
     assert_null(strstr(viewer.notice, "billboard"));
