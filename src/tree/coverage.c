@@ -27,9 +27,21 @@ struct fit {
     uint32_t *parts;         /* [vertex] number of its leaf */
     struct middle *middles;  /* [leaf] */
     struct wd_vec3 *unscaled; /* [vertex] */
-    struct wd_silhouette *views, *wood; /* [view_count]; wood: what it covers, whatever the size of leaves */
+    struct wd_silhouette *views, *still; /* [view_count]; still: what is covered, whatever the factor */
     int view_count;
+    bool flowers;        /* they are scaled, not leaves */
+    uint32_t first, end; /* indices of what is scaled */
 };
+
+/* Flowers' triangles come last. */
+static uint32_t first_flower_index(const struct wd_tree_mesh *mesh)
+{
+    uint32_t first = mesh->index_count;
+    while (first > mesh->wood_index_count &&
+           mesh->vertices[mesh->indices[first - 1]].kind & WD_VERTEX_FLOWER)
+        first -= 3;
+    return first;
+}
 
 static struct wd_vec3 position(const struct wd_tree_mesh *mesh, uint32_t vertex)
 {
@@ -77,12 +89,17 @@ static void find_middles(struct fit *fit)
             wd_v3_scale(fit->middles[i].place, 1 / (float)fit->middles[i].members);
 }
 
-/* Wood is made of vertices of its own, which are left as they are. */
-static void scale_leaves(struct fit *fit, float factor)
+static bool is_scaled(const struct fit *fit, const struct wd_tree_vertex *vertex)
+{
+    return vertex->kind & WD_VERTEX_LEAF && fit->flowers == !!(vertex->kind & WD_VERTEX_FLOWER);
+}
+
+/* Wood, leaves and flowers are made of vertices of their own. */
+static void scale_parts(struct fit *fit, float factor)
 {
     struct wd_tree_mesh *mesh = fit->mesh;
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        if (!(mesh->vertices[i].kind & WD_VERTEX_LEAF))
+        if (!is_scaled(fit, &mesh->vertices[i]))
             continue;
         struct wd_vec3 p = wd_v3_mix(fit->middles[fit->parts[i]].place, fit->unscaled[i], factor);
         mesh->vertices[i].position_m[0] = p.x;
@@ -101,9 +118,8 @@ static float seen(const struct wd_silhouette *views, int count)
 
 static float covered(const struct fit *fit)
 {
-    memcpy(fit->views, fit->wood, (size_t)fit->view_count * sizeof *fit->views);
-    wd_silhouette_cover(fit->views, fit->view_count, fit->mesh, fit->mesh->wood_index_count,
-                        fit->mesh->index_count);
+    memcpy(fit->views, fit->still, (size_t)fit->view_count * sizeof *fit->views);
+    wd_silhouette_cover(fit->views, fit->view_count, fit->mesh, fit->first, fit->end);
     return seen(fit->views, fit->view_count);
 }
 
@@ -120,7 +136,7 @@ static float find_factor(struct fit *fit, float wanted)
         factor = wd_clampf(factor + (wanted - found) / slope, LEAST, MOST);
         if (factor == last_factor)
             break;
-        scale_leaves(fit, factor);
+        scale_parts(fit, factor);
         found = covered(fit);
     }
     return factor;
@@ -136,34 +152,56 @@ static struct wd_vec3 view_toward(int view)
     return WD_V3(turn[0] * v.x - turn[1] * v.y, turn[1] * v.x + turn[0] * v.y, v.z);
 }
 
-float wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full)
+/* Flowers cover as much as those of `full` do by themselves, leaves as all of it does. */
+static float find_wanted(struct fit *fit, const struct wd_tree_mesh *full)
 {
-    if (reduced->wood_index_count == reduced->index_count)
-        return 1;
+    const struct wd_tree_mesh *reduced = fit->mesh;
+    for (int i = 0; i < fit->view_count; i++)
+        wd_silhouette_init(&fit->views[i], full, view_toward(i));
+    memcpy(fit->still, fit->views, (size_t)fit->view_count * sizeof *fit->views);
+    if (!fit->flowers) {
+        wd_silhouette_cover(fit->still, fit->view_count, reduced, 0, fit->first);
+        wd_silhouette_cover(fit->still, fit->view_count, reduced, fit->end, reduced->index_count);
+    }
+    wd_silhouette_cover(fit->views, fit->view_count, full, fit->flowers ? first_flower_index(full) : 0,
+                        full->index_count);
+    return seen(fit->views, fit->view_count);
+}
+
+static float fit_parts(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full, bool flowers)
+{
+    uint32_t first_flower = first_flower_index(reduced);
     int view_count = full->index_count < 3 * FEW_TRIANGLES ? MORE_VIEWS : VIEWS;
     struct fit fit = {
         .mesh = reduced,
-        .parts = wd_alloc_array(reduced->vertex_count, sizeof *fit.parts),
-        .unscaled = wd_alloc_array(reduced->vertex_count, sizeof *fit.unscaled),
-        .views = wd_alloc_array((size_t)view_count, sizeof *fit.views),
-        .wood = wd_alloc_array((size_t)view_count, sizeof *fit.wood),
+        .flowers = flowers,
+        .first = flowers ? first_flower : reduced->wood_index_count,
+        .end = flowers ? reduced->index_count : first_flower,
         .view_count = view_count,
     };
-    for (int i = 0; i < view_count; i++)
-        wd_silhouette_init(&fit.views[i], full, view_toward(i));
-    memcpy(fit.wood, fit.views, (size_t)view_count * sizeof *fit.views);
-    wd_silhouette_cover(fit.wood, view_count, reduced, 0, reduced->wood_index_count);
-    wd_silhouette_cover(fit.views, view_count, full, 0, full->index_count);
-    float wanted = seen(fit.views, view_count);
+    if (fit.first == fit.end)
+        return 1;
+    fit.parts = wd_alloc_array(reduced->vertex_count, sizeof *fit.parts);
+    fit.unscaled = wd_alloc_array(reduced->vertex_count, sizeof *fit.unscaled);
+    fit.views = wd_alloc_array((size_t)view_count, sizeof *fit.views);
+    fit.still = wd_alloc_array((size_t)view_count, sizeof *fit.still);
+    float wanted = find_wanted(&fit, full);
     find_middles(&fit);
     float factor = find_factor(&fit, wanted);
     free(fit.parts);
     free(fit.middles);
     free(fit.unscaled);
     free(fit.views);
-    free(fit.wood);
-    wd_tree_mesh_update_bounds(reduced);
+    free(fit.still);
     return factor;
+}
+
+void wd_tree_mesh_fit_coverage(struct wd_tree_mesh *reduced, const struct wd_tree_mesh *full,
+                               float factors[WD_LEAF_SETS])
+{
+    factors[WD_SET_FLOWERS] = fit_parts(reduced, full, true);
+    factors[WD_SET_LEAVES] = fit_parts(reduced, full, false);
+    wd_tree_mesh_update_bounds(reduced);
 }
 
 /* Mean over `turns` sides that are `step` of a turn apart. */

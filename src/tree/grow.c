@@ -296,12 +296,13 @@ static void build_spray(struct wd_tree_model *model, const struct wd_foliage *fo
     model->spray_forms = wd_leaf_spray_forms(species);
 }
 
-/* Leaves of the reduced mesh get the size with which it covers as much as the full one. */
+/* Leaves and flowers of the reduced mesh get the size with which it covers as much as the full one. */
 static void fit_reduced(struct wd_tree_model *model)
 {
-    float factor = wd_tree_mesh_fit_coverage(&model->reduced, &model->full);
+    float factors[WD_LEAF_SETS];
+    wd_tree_mesh_fit_coverage(&model->reduced, &model->full, factors);
     for (int kind = 0; kind < WD_LEAF_SETS; kind++)
-        wd_leaf_set_scale_parts(&model->sets[1][kind], factor);
+        wd_leaf_set_scale_parts(&model->sets[1][kind], factors[kind]);
     move_sets(model, 1);
 }
 

@@ -265,7 +265,7 @@ void wd_tree_mesh_reduce_import(struct wd_tree_mesh *reduced, const struct wd_tr
         else
             copy_pieces(&copier, &pieces, leaves, leaf_triangles);
         if (!simplified && seen_in_silhouettes(full, &pieces))
-            wd_tree_mesh_fit_coverage(reduced, full);
+            wd_tree_mesh_fit_coverage(reduced, full, (float[WD_LEAF_SETS]){0});
         free(pieces.items);
         free(pieces.order);
     }
