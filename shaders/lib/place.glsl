@@ -489,19 +489,24 @@ const float MESH_SINGLE = 0.6;
 
 /* Where a pixel of a tree that stands free is so wide, a reduced mesh's few leaves in the maps shade one another less than
  * those that it stands for, and its table alone lights it. By path-traced oaks and birches at 128 px and hazels at 32,
- * which were up to 19 and 48 % too bright. */
+ * which were up to 19 and 48 % too bright. So does that of a shrub, from pixels on that are as wide beside it as these are
+ * beside a tree of MESH_MAPPED_TREE_M: by brambles and camellias at 128 px, which were up to 20 % too dark. */
 const vec2 MESH_MAPPED_M = vec2(0.05, 0.15);
+const float MESH_MAPPED_TREE_M = 20.0;
 
 /* How far shadow maps hold leaves as they are seen. Of a z-field that stands free, the table alone lights leaves: maps hold
  * others than it shows. By path-traced rows of seven species at 32 and 128 px, which were up to 14 % too bright and of hazel
  * from -18 to +31 %. */
-float leaves_in_maps(wd_pixel pixel, float free, uint cascade)
+float leaves_in_maps(wd_pixel pixel, wd_crown crown, float free, uint cascade)
 {
     bool disc = pixel.lit >= 0.0 && pixel.lit < 1.0;
     if (pixel.material == WD_MATERIAL_CARD || disc)
         return 0.0;
     bool pictured = pixel.lit < 0.0 && push.level_cards == 0u; /* a z-field's */
-    float wide = smoothstep(MESH_MAPPED_M.x, MESH_MAPPED_M.y, pixel_size_m(pixel));
+    float height_m = crown.center_rel.z + crown.radii_m.z - crown.foot_z;
+    float shrub = smoothstep(0.34, 0.42, crown.radii_m.z) * (1.0 - smoothstep(5.0, 9.0, height_m));
+    float lower = mix(1.0, MESH_MAPPED_TREE_M / height_m, shrub);
+    float wide = smoothstep(MESH_MAPPED_M.x, MESH_MAPPED_M.y, lower * pixel_size_m(pixel));
     return map_holds_leaves(cascade, free) * (1.0 - free * (is_reduced(pixel) ? wide : pictured ? 1.0 : 0.0));
 }
 
@@ -537,7 +542,7 @@ wd_place leaf_place(wd_pixel pixel, wd_crown crown, wd_lit_leaves model, wd_uppe
     bool card = pixel.material == WD_MATERIAL_CARD, reduced = is_reduced(pixel), disc = pixel.lit >= 0.0 && pixel.lit < 1.0;
     vec3 eye = -pixel.direction;
     float near = card ? 0.25 : mix(0.8, 0.3, clamp(pixel.axis_m / 120.0, 0.0, 1.0));
-    float fine = leaves_in_maps(pixel, free, cascade), plain = leaf_is_plain(pixel, crown, fine);
+    float fine = leaves_in_maps(pixel, crown, free, cascade), plain = leaf_is_plain(pixel, crown, fine);
     float mapped = fine * mix(0.75, 1.0, is_tree(crown));
     wd_place place;
     place.bulges = 0.0;
