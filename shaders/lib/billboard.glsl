@@ -81,5 +81,6 @@ wd_card_flat billboard_flat(wd_billboard board, wd_model model, tree_pose pose, 
     bool from_above = board.card == WD_CARD_SIDES;
     constants.to_leaf = wood_to_leaf(model, sine, from_above);
     constants.base = crown_begins(model, from_above);
+    constants.hides = crown_hides(model, sine, constants.base);
     return card_pack(constants);
 }

@@ -216,5 +216,6 @@ wd_card_flat card_constants(card_tree t, card_frame card, uint index, float show
     bool from_above = card.layer == WD_CARD_SIDES;
     result.to_leaf = wood_to_leaf(t.model, t.toward.z, from_above);
     result.base = crown_begins(t.model, from_above);
+    result.hides = crown_hides(t.model, t.toward.z, result.base);
     return card_pack(result);
 }

@@ -17,22 +17,30 @@ struct card_flat {
     uint random, surface, mixed;
     float to_leaf; /* of the picture's wood what is to be leaves; below 0: of its leaves what is to be wood */
     float base;    /* of its height down to the lowest living branch */
+    float hides;   /* and to where the crown hides the stem below that */
 };
 
-/* Of what an eye at an elevation of this sine sees of the crown. */
-float wood_seen(wd_model model, float sine)
+/* To an eye at an elevation of this sine; `shares`: a byte for each ring. */
+float share_seen(uint shares[2], float sine)
 {
     uint at = wd_sunlit_ring(sine), ring = at & 255u;
-    return mix(WD_RING_SHARE(model.wood_seen, ring), WD_RING_SHARE(model.wood_seen, ring + 1u),
-               float(at >> 8) * (1.0 / 65535.0));
+    return mix(WD_RING_SHARE(shares, ring), WD_RING_SHARE(shares, ring + 1u), float(at >> 8) * (1.0 / 65535.0));
 }
 
 /* Eyes from above see fewer boughs than one of the same height, whose picture a card shows, and more than one right
  * above the tree: what of either is to be the other, card_flat's `to_leaf`. */
 float wood_to_leaf(wd_model model, float sine, bool from_above)
 {
-    float shown = wood_seen(model, from_above ? 1.0 : 0.0), seen = wood_seen(model, sine);
+    float shown = share_seen(model.wood_seen, from_above ? 1.0 : 0.0), seen = share_seen(model.wood_seen, sine);
     return seen < shown ? 1.0 - seen / shown : (shown - seen) / max(1.0 - shown, 0.01);
+}
+
+/* Boughs hang before the upper part of a stem to eyes from above, which a picture from its own height shows: of a card
+ * whose crown reaches down to `base` of its height, to where. */
+float crown_hides(wd_model model, float sine, float base)
+{
+    float shown = share_seen(model.stem_seen, 0.0), seen = share_seen(model.stem_seen, sine);
+    return seen < shown ? mix(1.0, base, seen / shown) : base;
 }
 
 float crown_begins(wd_model model, bool from_above)
@@ -66,15 +74,23 @@ wd_card_flat card_pack(card_flat card)
     return wd_card_flat(packSnorm2x16(card.turn), packUnorm4x8(vec4(card.tint * 0.5, card.show)),
                         packSnorm2x16(card.normal.xy),
                         packHalf2x16(vec2(card.ratio, 0.0)) | flags | wood, card.layer | (lod << 16),
-                        card.random & 0xffffff00u, card.surface, card.mixed);
+                        (card.random & 0xffffff00u) | uint(card.hides * 255.0 + 0.5), card.surface, card.mixed);
 }
 
-/* Share of leaves that a place `down` a picture is to show, where it has `leaf`. `flags`: of wd_card_flat. */
-float card_leaf_shown(float leaf, float down, uint flags)
+/* Share of leaves that a place `down` a picture is to show, where it has `leaf`. `flags`, `random_stem`: of wd_card_flat. */
+float card_leaf_shown(float leaf, float down, uint flags, uint random_stem)
 {
     float to_leaf = (float(flags >> 24) - 128.0) * (1.0 / 127.0);
     float shown = to_leaf < 0.0 ? leaf * (1.0 + to_leaf) : leaf + (1.0 - leaf) * to_leaf;
-    return down * 31.0 <= float(flags >> 19 & 31u) ? shown : leaf;
+    shown = down * 31.0 <= float(flags >> 19 & 31u) ? shown : 1.0;
+    return down * 255.0 <= float(random_stem & 255u) ? shown : leaf;
+}
+
+/* Half way from a picture's top to the lowest living branch. */
+vec2 card_amid_crown(uint flags, uint layer_lod)
+{
+    float down = 0.5 * float(flags >> 19 & 31u) * (1.0 / 31.0);
+    return (layer_lod & WD_CARD_LYING) != 0u ? vec2(down, 0.5) : vec2(0.5, down);
 }
 
 float card_lod(uint layer_lod)

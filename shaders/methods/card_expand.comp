@@ -8,7 +8,7 @@ layout(scalar, set = 0, binding = 8) writeonly buffer Vertices { wd_card_vertex 
 void write_card(uint slot, card_tree t, card_frame card, uint tree)
 {
     wd_card_flat constants = card_constants(t, card, tree, 1.0);
-    uint random_show = constants.random | (constants.tint_show >> 24);
+    uint random_show = (constants.random_stem & 0xffffff00u) | (constants.tint_show >> 24);
     if (SHADOW == 0u)
         cards[slot] = constants;
     for (uint i = 0u; i < 4u; i++) {

@@ -44,5 +44,5 @@ void main()
     vec3 uv = vec3(card_picture_uv(place, (card.layer_lod & WD_CARD_LYING) != 0u), card_layer(card.layer_lod));
     card_surface(uv, textureLod(card_albedo, uv, card_lod(card.layer_lod)),
                  uvec4(card.turn, card.tint_show, card.normal, card.ratio_flags),
-                 uvec4(card.layer_lod, card.random, card.surface, card.mixed));
+                 uvec4(card.layer_lod, card.random_stem, card.surface, card.mixed));
 }

@@ -19,7 +19,7 @@ layout(set = 0, binding = 9) uniform sampler2DArray card_leaf;
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
-layout(location = 2) flat in uvec4 in_more; /* layer_lod, random, surface, mixed */
+layout(location = 2) flat in uvec4 in_more; /* layer_lod, random_stem, surface, mixed */
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
@@ -32,11 +32,11 @@ void main()
     vec4 leaf = textureLod(leaf_albedo, uv, lod), wood = textureLod(wood_albedo, uv, lod);
     vec4 tint_show = unpackUnorm4x8(in_card.y);
     float covered = card_opacity(textureLod(card_albedo, uv, lod).a, lod) * tint_show.a;
-    float noise = card_noise(in_uv, lod, in_more.y, frame.sample_index);
+    float noise = card_noise(in_uv, lod, in_more.y & 0xffffff00u, frame.sample_index);
     if (noise >= covered)
         discard;
     float normal_lod = lod - float(WD_CARD_NORMAL_MIP);
-    float leaves = card_leaf_shown(textureLod(card_leaf, uv, normal_lod).x, card_down(in_uv, in_more.x), in_card.w);
+    float leaves = card_leaf_shown(textureLod(card_leaf, uv, normal_lod).x, card_down(in_uv, in_more.x), in_card.w, in_more.y);
     bool is_wood = noise >= covered * leaves;
     vec4 packed = is_wood ? textureLod(wood_normal, uv, normal_lod)
                           : textureLod(leaf_normal, uv, normal_lod);

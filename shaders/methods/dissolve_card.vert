@@ -36,6 +36,6 @@ void main()
                                          instance.tree + 1u);
     out_uv = board.uv;
     out_card = uvec4(packed.turn, packed.tint_show, packed.normal, packed.ratio_flags);
-    out_more = uvec4(packed.layer_lod, packed.random, packed.surface, packed.mixed);
+    out_more = uvec4(packed.layer_lod, packed.random_stem, packed.surface, packed.mixed);
     gl_Position = frame.clip_from_rel * vec4(card_over_ground(foot + offset, foot), 1.0);
 }

@@ -32,11 +32,11 @@ layout(scalar, push_constant) uniform Push { wd_patch_push patch_push; };
 #include "lib/shade.glsl"
 #include "lib/card.glsl"
 #include "lib/card_flat.glsl"
-#include "lib/card_material.glsl"
+#include "lib/card_own.glsl"
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
-layout(location = 2) flat in uvec4 in_more; /* layer_lod, random, surface, mixed */
+layout(location = 2) flat in uvec4 in_more; /* layer_lod, random_stem, surface, mixed */
 
 layout(location = 0) out vec4 out_color;
 
@@ -55,11 +55,10 @@ void main()
     pixel.direction = normalize(pixel.ray);
     pixel.axis_m = frame.near_m / gl_FragCoord.z;
     pixel.rel = pixel.ray * pixel.axis_m;
-    pixel.material = card_material(card_leaf_shown(leaf, card_down(in_uv, in_more.x), in_card.w), card_cell(in_uv, lod), in_more.z);
-    bool wood = pixel.material == WD_MATERIAL_WOOD;
-    vec4 own = unmixed(vec4(albedo.rgb, packed.a), leaf, wood, in_more.w);
-    pixel.albedo = wood ? own.rgb : own.rgb * tint_show.rgb * 2.0;
-    pixel.openness = own.a;
+    card_own own = card_own_at(uv, lod, vec4(albedo.rgb, packed.a), leaf, in_card, in_more);
+    pixel.material = own.wood ? WD_MATERIAL_WOOD : WD_MATERIAL_CARD;
+    pixel.albedo = own.wood ? own.mean.rgb : own.mean.rgb * tint_show.rgb * 2.0;
+    pixel.openness = own.mean.a;
     pixel_set_normal(pixel, card_world_normal(packed.xyz, in_card));
     pixel.surface = in_more.z;
     pixel.lit = -1.0;

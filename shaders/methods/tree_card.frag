@@ -13,7 +13,7 @@ layout(set = 0, binding = 7) uniform sampler2DArray card_leaf;
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
-layout(location = 2) flat in uvec4 in_more; /* layer_lod, random, surface, mixed */
+layout(location = 2) flat in uvec4 in_more; /* layer_lod, random_stem, surface, mixed */
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;

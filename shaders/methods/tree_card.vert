@@ -21,7 +21,7 @@ layout(scalar, push_constant) uniform Push { wd_tree_push push; };
 
 layout(location = 0) out vec2 out_uv;
 layout(location = 1) flat out uvec4 out_card; /* turn, tint_show, normal, ratio_flags */
-layout(location = 2) flat out uvec4 out_more; /* layer_lod, random, surface, mixed */
+layout(location = 2) flat out uvec4 out_more; /* layer_lod, random_stem, surface, mixed */
 
 void main()
 {
@@ -41,7 +41,7 @@ void main()
     wd_card_flat constants = card_constants(t, card, index, show);
     out_uv = card_picture_uv(side * 0.5 + 0.5, card_lies(t.model));
     out_card = uvec4(constants.turn, constants.tint_show, constants.normal, constants.ratio_flags);
-    out_more = uvec4(constants.layer_lod, constants.random, constants.surface, constants.mixed);
+    out_more = uvec4(constants.layer_lod, constants.random_stem, constants.surface, constants.mixed);
     bool shows = show * t.show * card.share > 0.0;
     gl_Position = shows ? card_clip(t, card, side) : vec4(0.0, 0.0, 0.0, 1.0);
 }

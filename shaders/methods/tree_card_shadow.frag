@@ -9,12 +9,12 @@ layout(set = 0, binding = 4) uniform sampler2DArray card_albedo;
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uvec4 in_card; /* turn, tint_show, normal, ratio_flags */
-layout(location = 2) flat in uvec4 in_more; /* layer_lod, random, surface, mixed */
+layout(location = 2) flat in uvec4 in_more; /* layer_lod, random_stem, surface, mixed */
 
 void main()
 {
     float lod = card_lod(in_more.x), show = unpackUnorm4x8(in_card.y).a;
     float alpha = textureLod(card_albedo, vec3(in_uv, card_layer(in_more.x)), lod).a;
-    if (card_noise(in_uv, lod, in_more.y, 0u) >= card_opacity(alpha, lod) * show)
+    if (card_noise(in_uv, lod, in_more.y & 0xffffff00u, 0u) >= card_opacity(alpha, lod) * show)
         discard;
 }

@@ -26,7 +26,8 @@ struct wd_card_flat {
                              31sts of the picture's height its crown reaches; 24..31: of wood there the share that is
                              to be leaves, or less than 128 of leaves wood, in 127ths of all */
     uint32_t layer_lod;   /* image layer in bits 0..15; mip, 7.8 fixed point and 1 up, above; WD_CARD_LYING */
-    uint32_t random;      /* bits 0..7 are 0 */
+    uint32_t random_stem; /* bits 8..31: random; 0..7: down to how many 255ths of the picture's height its crown hides
+                             the stem below its lowest living branch, or 0 */
     uint32_t surface;     /* tree + 1 */
     uint32_t mixed;       /* as of wd_model */
 };

@@ -66,6 +66,7 @@ struct wd_model {
     WD_VEC3(seen_m2); /* that the whole tree covers, seen from the sides of wd_seen_m2 */
     uint32_t wood_seen[2]; /* share of wood in what eyes see above the lowest living branch: a byte for each ring of
                               shared/sunlit.h, the lowest first */
+    uint32_t stem_seen[2]; /* likewise, of wood below that branch in what they see of all */
     uint32_t mixed;        /* wood over leaves in its cards, as shared/mixed.h packs it; not known before they are made */
 };
 

@@ -21,7 +21,7 @@ enum { MESHES = 5, MESH_WORDS = 6, BOUNDS = 14, GROWTHS = 2 * WD_GAIN_SIDES * WD
        SKYLIT = (int)(WD_SKYLIT_PLACES * WD_SKYLIT_KINDS), SKYLIT_AT = SUNLIT_AT + SUNLIT + 2,
        CLOUD_WAX_AT = SKYLIT_AT + SKYLIT,
        NEAR_SHADE_AT = CLOUD_WAX_AT + 2, UPPER_AT = NEAR_SHADE_AT + 5,
-       UPPER = (int)(WD_EYE_RINGS * WD_UPPER_KINDS), SHADE_AT = UPPER_AT + UPPER + (int)WD_EYE_RINGS,
+       UPPER = (int)(WD_EYE_RINGS * WD_UPPER_KINDS), SHADE_AT = UPPER_AT + UPPER + 2 * (int)WD_EYE_RINGS,
        FIGURES = SHADE_AT + 5,
        SETS = 2 * WD_LEAF_SETS, SET_WORDS = 10, SET_AT = FIGURES + MESHES * MESH_WORDS,
        LEAVES = SET_AT + SETS * SET_WORDS, WORDS = LEAVES + 4 };
@@ -138,8 +138,10 @@ static void figures_of(float *figures[FIGURES], struct wd_tree_model *model)
     figures[NEAR_SHADE_AT + 4] = &model->flatness;
     for (size_t k = 0; k < UPPER; k++)
         figures[UPPER_AT + k] = &model->upper[k / WD_UPPER_KINDS][k % WD_UPPER_KINDS];
-    for (size_t k = 0; k < WD_EYE_RINGS; k++)
+    for (size_t k = 0; k < WD_EYE_RINGS; k++) {
         figures[UPPER_AT + UPPER + k] = &model->wood_seen[k];
+        figures[UPPER_AT + UPPER + WD_EYE_RINGS + k] = &model->stem_seen[k];
+    }
     figures[SHADE_AT] = &model->shade.radius_m;
     figures[SHADE_AT + 1] = &model->shade.half_m;
     figures[SHADE_AT + 2] = &model->shade.middle_m;

@@ -59,6 +59,7 @@ struct wd_tree_model {
     float upper[WD_EYE_RINGS][WD_UPPER_KINDS]; /* shares of upper sides (shared/sunlit.h); likewise */
     float wood_seen[WD_EYE_RINGS]; /* share of wood in what eyes on these rings see above the lowest living branch; not
                                       known: 0 */
+    float stem_seen[WD_EYE_RINGS]; /* and of wood below that branch in what they see of all; likewise */
     float cloud_wax[2]; /* what leaves' wax mirrors of the sun to an eye, over WD_WAX of what they would send of it were
                            they white: toward the sun, and what wd_cloud_wax_rise adds; 0: not known yet */
     float near_shade[2]; /* at WD_NEAR_SHADE_M, and the power; 0: not known yet */

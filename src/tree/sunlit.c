@@ -92,6 +92,7 @@ struct fit {
     struct sent sent[EYES][WD_SUN_WAYS];
     struct skylit skylit[WD_SKYLIT_PLACES];
     float crown_seen[WD_EYE_RINGS], crown_wood[WD_EYE_RINGS]; /* area toward eyes above the lowest living branch */
+    float below_seen[WD_EYE_RINGS], stem[WD_EYE_RINGS];       /* and below it */
     float leaf_seen[WD_EYE_RINGS], leaf_open[WD_EYE_RINGS];   /* of leaves, and times their openness */
 };
 
@@ -411,15 +412,17 @@ static float mixed_openness(struct cells *cells, struct wd_vec3 place)
     return cell->area > 0 ? cell->open / cell->area : 1;
 }
 
-/* What eyes see of the crown, and of wood in it. */
-static void count_crown(struct fit *fit, const struct shown *point, uint32_t seen, bool wood)
+/* What eyes see of the crown and below it, and of wood there. */
+static void count_wood(struct fit *fit, const struct shown *point, uint32_t seen, bool wood)
 {
-    for (uint32_t i = 0; i < EYES && point->place.z > -fit->radii_m.z; i++) {
+    bool below = point->place.z <= -fit->radii_m.z;
+    float *all = below ? fit->below_seen : fit->crown_seen, *of_wood = below ? fit->stem : fit->crown_wood;
+    for (uint32_t i = 0; i < EYES; i++) {
         float area = wd_v3_dot(point->face, fit->eyes[i].toward);
         if (!(seen >> i & 1) || (wood && area <= 0))
             continue;
-        fit->crown_seen[fit->eyes[i].ring] += fabsf(area);
-        fit->crown_wood[fit->eyes[i].ring] += wood ? area : 0;
+        all[fit->eyes[i].ring] += fabsf(area);
+        of_wood[fit->eyes[i].ring] += wood ? area : 0;
     }
 }
 
@@ -433,7 +436,7 @@ static void send(struct fit *fit, const struct wd_tree_points *points, const str
         for (uint32_t way = 0; way < WD_SUN_WAYS; way++)
             shown.left[way] = wd_crown_lit(shown.left[way], fit->curve[0], fit->curve[1]);
         send_skylight(fit, &shown, fit->views[i], !(points->points[i].kind & WD_POINT_LEAF));
-        count_crown(fit, &shown, fit->views[i], !(points->points[i].kind & WD_POINT_LEAF));
+        count_wood(fit, &shown, fit->views[i], !(points->points[i].kind & WD_POINT_LEAF));
         for (uint32_t eye = 0; eye < EYES; eye++)
             if (fit->views[i] >> eye & 1 && points->points[i].kind & WD_POINT_LEAF)
                 send_leaf(fit, &shown, eye, mixed_openness(&cells[eye], shown.place));
@@ -671,6 +674,7 @@ static void fill_upper(struct wd_tree_model *model, const struct fit *fit)
         model->upper[ring][WD_UPPER_OPEN] = fit->leaf_open[ring] / fmaxf(fit->leaf_seen[ring], 1e-9f);
         model->upper[ring][WD_UPPER_SEEN] = upper_share(upper, seen, seen);
         model->wood_seen[ring] = fit->crown_wood[ring] / fmaxf(fit->crown_seen[ring], 1e-9f);
+        model->stem_seen[ring] = fit->stem[ring] / fmaxf(fit->crown_seen[ring] + fit->below_seen[ring], 1e-9f);
     }
 }
 

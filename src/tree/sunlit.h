@@ -7,7 +7,7 @@
 /* Fills model->sunlit from what of the full mesh, which has its leaves, the eye and the sun see from 21 and
  * from 32 sides: each leaf reflects or transmits by its own face and normal, as the path tracer's does. Tells
  * each of model->leaves which ways its tree leaves open, and how open it is by these (tree/leaves_open.h). Fills
- * model->sun_curve, skylit, cloud_wax, near_shade, recollision, flatness, low_sky, upper and wood_seen, too. To be
+ * model->sun_curve, skylit, cloud_wax, near_shade, recollision, flatness, low_sky, upper, wood_seen and stem_seen, too. To be
  * called once. */
 void wd_tree_sunlit_fit(struct wd_tree_model *model);
 

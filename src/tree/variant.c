@@ -84,6 +84,7 @@ void wd_variant_describe(struct wd_model *model, const struct wd_scene *scene, u
         .mixed = WD_MIXED_EVEN,
     };
     pack_rings(model->wood_seen, grown->wood_seen, 1, 1);
+    pack_rings(model->stem_seen, grown->stem_seen, 1, 1);
     for (int k = 0; k < 3; k++) {
         float late = species->leaf.season_color[0][k], early = species->leaf.season_color[1][k];
         model->behind[k] = late > 0 ? late : 1;
