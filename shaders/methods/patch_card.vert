@@ -71,6 +71,6 @@ void main()
         billboard_flat(board, model, pose, tree, show, tall_px, toward.z, index + 1u);
     out_uv = board.uv;
     out_card = uvec4(packed.turn, packed.tint_show, packed.normal, packed.ratio_flags);
-    out_more = uvec4(packed.layer_lod, card_noise_shift(tree, foot), packed.surface, packed.mixed);
+    out_more = uvec4(packed.layer_lod, card_noise_shift(tree, foot) | (packed.random_stem & 0xffu), packed.surface, packed.mixed);
     gl_Position = frame.clip_from_rel * vec4(card_over_ground(foot + offset, foot), 1.0);
 }
